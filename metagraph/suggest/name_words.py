@@ -53,9 +53,9 @@ class NameGuess:
 class _Parse:
     """A name taken apart. stance: where it begins; act: the words of what is done, numbers left out.
 
-    own: how many words at the beginning are its stance's, 0 for a stance that only follows from what is done.
-    joined: the words that make it a transition, "" if none do; end, end_words: the stance it ends in, or
-    words for one, with their confidence. sure: that it is a transition.
+    own: how many words are its stance's, 0 for a stance that only follows from what is done; at: from which
+    on they stand. joined: the words that make it a transition, "" if none do; end, end_words: the stance it
+    ends in, or words for one, with their confidence. sure: that it is a transition.
     """
 
     words: Words
@@ -67,6 +67,7 @@ class _Parse:
     end_words: Words = ()
     end_confidence: float = 0.0
     sure: float = 0.9
+    at: int = 0
 
 
 def read_names(names: Sequence[str], patterns: Patterns | None = None) -> dict[str, NameGuess]:
@@ -118,7 +119,11 @@ class _Reader:
             rest = rest[1:]
         if len(rest) > 2 and rest[0] in ("trans", "transition") and rest[1] in self._joins:
             rest = rest[1:]
-        return self._passing(words, stance, rest) or _Parse(words, stance, used, self._act(rest))
+        passing = self._passing(words, stance, rest)
+        if passing is None and stance is None and (told := self._stances.within(words)) is not None:
+            found, start, end = told
+            return _Parse(words, found, end - start, self._act((*words[:start], *words[end:])), at=start)
+        return passing or _Parse(words, stance, used, self._act(rest))
 
     def _two(self, rest: Words) -> bool:
         return rest[0] == "2" and len(rest) > 1 and self._stances.named(rest[1:]) is not None
@@ -161,8 +166,10 @@ class _Reader:
         return self._moving(words, stance, rest)
 
     def _to(self, words: Words, stance: FoundStance | None, joined: str, end: Words, sure: float) -> _Parse:
-        end = end[: len(end) - variant(end)] or end
         found = self._stances.named(end, stance.words if stance else ())
+        if found is None or found[0].words != end:
+            end = end[: len(end) - variant(end)] or end
+            found = self._stances.named(end, stance.words if stance else ()) or found
         shown = f"{joined} {label(end)}".strip()
         if found:
             return _Parse(words, stance, int(stance is not None), (), shown, found[0], end, found[1], sure)
@@ -200,6 +207,8 @@ class _Reader:
         if told.text in ("stand up", "get up", "rise"):
             low = self._stances.low([w for w in words if w not in _UP])
             return _Parse(words, low, 0, (), told.text, *self._end(self._stances.standing(), ("stand",)), 0.9)
+        if (pair := self._pair(words[told.end :])) is not None:  # "trans sit stand"
+            return _Parse(words, pair[0], 0, (), told.text, pair[1], pair[1].words, 0.85, 0.9)
         others = without_numbers((*words[: told.start], *words[told.end :]))
         about = self._stances.named(others) if others else None
         if told.text == "exit":
@@ -217,6 +226,14 @@ class _Reader:
             after[1] if after else 0.0,
             0.85,
         )
+
+    def _pair(self, words: Words) -> tuple[FoundStance, FoundStance] | None:
+        """Return two stances that words name one after the other."""
+        for at in range(1, len(words)):
+            start, end = self._stances.known(words[:at]), self._stances.known(words[at:])
+            if start is not None and end is not None and start is not end:
+                return start, end
+        return None
 
     def _end(self, found: FoundStance | None, otherwise: Words) -> tuple[FoundStance | None, Words, float]:
         return (found, found.words, 0.9) if found else (None, otherwise, 0.5)
@@ -283,6 +300,7 @@ class _Reader:
             stance and parse.own and any(len(w) > 2 for w in parse.act)
         ):  # shorter ones are directions: "head_dl"
             idle = "idle" in (stance.words[0] if len(stance.words) == 1 else "", self._before(parse))
+            idle = idle and not self._stances.common(stance)
             reason = f"name adds '{' '.join(parse.act)}' to the stance \"{stance.text}\""
             return Belief("fidget" if idle else "gesture", 0.55, reason)
         return None
@@ -300,9 +318,11 @@ class _Reader:
             begins = (
                 f'comes from "{parse.stance.text}"'
                 if parse.joined
-                else f"begins with '{' '.join(parse.words[: parse.own])}'"
+                else f"{'has' if parse.at else 'begins with'} "
+                f"'{' '.join(parse.words[parse.at : parse.at + parse.own])}'"
             )
-            return Belief(parse.stance.text, min(0.97, parse.stance.confidence + 0.05), f"name {begins}")
+            sure = min(0.85 if parse.at else 0.97, parse.stance.confidence + 0.05)
+            return Belief(parse.stance.text, sure, f"name {begins}")
         if parse.stance:
             return Belief(self._called(parse.stance), 0.8, f"name says '{parse.joined}', which begins there")
         usual = self._stances.usual()

@@ -8,7 +8,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from metagraph.suggest.words_patterns import Patterns
-from metagraph.suggest.words_tokens import Taken, is_number, phrases, stem, variant, without_numbers
+from metagraph.suggest.words_tokens import (
+    Taken,
+    is_designator,
+    is_number,
+    phrases,
+    stem,
+    variant,
+    without_numbers,
+)
 
 Words = tuple[str, ...]
 
@@ -73,6 +81,7 @@ _PARTS = {
     "r",
 }
 _PLACES = {"chair", "floor", "ground", "desk", "table", "wall", "bench"}
+COMMON = 0.4  # of all clips that begin with a stance, from which on it is no special one
 _STEMS_DOWN = ("sit", "lie", "kneel", "crouch")
 
 
@@ -115,7 +124,7 @@ class Stances:
             self._clip_that_others_continue(taken.words, followers)
         self._heads(distinct)
         self._passed_between(distinct)
-        self._numbered(distinct, followers)
+        self._designated(distinct)
         self._united()
         self._by_prefix: dict[Words, FoundStance] = {}
         for stance in self.found.values():
@@ -124,6 +133,11 @@ class Stances:
                 if held is None or (held.confidence, held.words) < (stance.confidence, stance.words):
                     self._by_prefix[prefix] = stance
         self._longest = max(map(len, self._by_prefix), default=0)
+        self._count = len(distinct)
+        self._begun: dict[Words, int] = {}
+        for taken in distinct:
+            if (told := self.of(taken.words, taken.split)) is not None:
+                self._begun[told[0].words] = self._begun.get(told[0].words, 0) + 1
         self._resolved: dict[tuple[Words, Words], tuple[FoundStance, float] | None] = {}
 
     # -- finding
@@ -305,19 +319,41 @@ class Stances:
     def _only_number(self, words: Words) -> bool:
         return variant(words) == len(words)
 
-    def _numbered(self, distinct: Sequence[Taken], followers: Mapping[Words, int]) -> None:
-        """Stances that differ by their number only, each with clips of its own, are different stances."""
-        groups: dict[Words, set[Words]] = {}
+    def _designated(self, distinct: Sequence[Taken]) -> None:
+        """Stances called alike but for a number or letter ("idle 1", "idle 2", "sit a") are different ones
+        where clips go on from one or pass into it, whether or not they have clips of their own.
+        """
+        marks: dict[Words, dict[str, bool]] = {}  # core -> designator -> whether anything goes on from it
         for taken in distinct:
-            core = taken.words[: len(taken.words) - variant(taken.words)]
-            if core != taken.words and core in self.found and followers.get(taken.words):
-                groups.setdefault(core, set()).add(taken.words)
-        for core, several in groups.items():
-            if len(several) > 1:
-                held = self.found[core]
-                for words in several:
-                    held.prefixes.discard(words)
-                    self._add(words, held.confidence, held.why, words)
+            words = taken.words
+            for start in (0, *(i + 1 for i, w in enumerate(words) if i and self._joins.get(w) == "to")):
+                for at in range(start + 1, len(words)):
+                    core = words[start:at]
+                    if is_designator(words[at]) and self._stands(core):
+                        rest = words[at + 1 :]
+                        goes_on = start > 0 or variant(rest) < len(rest)
+                        mine = marks.setdefault(core, {})
+                        mine[words[at]] = mine.get(words[at], False) or goes_on
+                        break
+        for core, mine in marks.items():
+            if len(mine) < 2 or not any(mine.values()):
+                continue
+            held = self.found.get(core)
+            confidence, why = (held.confidence, held.why) if held else (0.75, " ".join(core))
+            for mark in mine:
+                if held is not None:
+                    held.prefixes.discard((*core, mark))
+                self._add((*core, mark), confidence, why, (*core, mark))
+            plainly = any(
+                t.words[: len(core)] == core and not (t.words[len(core) :] and t.words[len(core)] in mine)
+                for t in distinct
+            )
+            if held is not None and not plainly:
+                del self.found[core]
+
+    def _stands(self, core: Words) -> bool:
+        """Whether words may be what a stance is called, a number apart."""
+        return core in self.found or (not self._acts(core) and not self._other(core) and self.postural(core))
 
     def _united(self) -> None:
         """One stance spelled in several ways ("seated", "sitting") is one, called by its surest name."""
@@ -340,6 +376,35 @@ class Stances:
                 return found, n
         return None
 
+    def known(self, words: Words) -> FoundStance | None:
+        """Return the stance that words, a number after them apart, are the name of."""
+        for n in range(variant(words) + 1):
+            if len(words) > n and (found := self._by_prefix.get(words[: len(words) - n])) is not None:
+                return found
+        return None
+
+    def common(self, stance: FoundStance) -> bool:
+        """Whether most clips begin with a stance: then what goes on from it is whatever there is, not a
+        fidget.
+        """
+        return self._begun.get(stance.words, 0) > COMMON * self._count
+
+    def within(self, words: Words) -> tuple[FoundStance, int, int] | None:
+        """Return a stance of posture that is told after what is done ("talk_sitting_01"), and from where to
+        where.
+        """
+        best: tuple[int, int, FoundStance] | None = None
+        for start in range(1, len(words)):
+            for end in range(min(len(words), start + self._longest), start, -1):
+                found = self._by_prefix.get(words[start:end])
+                if (
+                    found is not None
+                    and self.postural(words[start:end])
+                    and (best is None or end - start > best[0])
+                ):
+                    best = end - start, start, found
+        return None if best is None else (best[2], best[1], best[1] + best[0])
+
     def named(self, words: Sequence[str], beside: Words = ()) -> tuple[FoundStance, float] | None:
         """Return the stance that words mean and how surely; `beside`: the stance one comes from, whose
         sisters are likelier.
@@ -350,9 +415,10 @@ class Stances:
         return self._resolved[key]
 
     def _named(self, words: Words, beside: Words) -> tuple[FoundStance, float] | None:
-        if words in self._by_prefix:
-            return self._by_prefix[words], 0.98
+        if (exact := self.known(words)) is not None:  # "idle 2" before "idle": the number may tell which
+            return exact, 0.98
         asked = self._bare(words)
+        marks = _marks(words)
         if not asked:
             whole = [w for w in words if not is_number(w)]
             plain = [s for s in self.found.values() if whole and s.words == tuple(whole)]
@@ -360,7 +426,8 @@ class Stances:
         best: tuple[tuple[float, float, int, Words], FoundStance] | None = None
         for stance in self.found.values():
             own = self._bare(stance.words)
-            if not own:
+            theirs = _marks(stance.words)
+            if not own or (theirs and marks and theirs != marks):
                 continue
             if own == asked:
                 score = 0.96
@@ -409,6 +476,11 @@ class Stances:
             return next(iter(self.found.values())), 0.75
         plain = self.found.get(("idle",)) or self.found.get(("stand",)) or self.found.get(("standing",))
         return (plain, 0.6) if plain else None
+
+
+def _marks(words: Words) -> Words:
+    """Return the numbers and letters that tell a stance from others called alike."""
+    return tuple(w for n, w in enumerate(words) if n and is_designator(w))
 
 
 def is_low(words: Sequence[str]) -> bool:

@@ -5,6 +5,7 @@ character names add.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -15,12 +16,16 @@ from metagraph.suggest.words_patterns import Patterns
 _EXTENSION = re.compile(r"\.(?:fbx|bvh|glb|gltf|anim|dae|c3d|ma|mb|blend|uasset)$", re.IGNORECASE)
 _PIECES = re.compile(r"\d+[hH](?![^\W_])|\d+|[^\W\d_]+|[\W_]+")
 _LONGEST = 4  # words in a phrase
+SEVERAL = 8  # names, from which on what nearly all of them begin with says nothing
+FEW = 3  # names at most that may share a word of the list because they are of one kind
 _GLUED = range(6, 25)  # letters of a word that may be several written as one
 
 
 @dataclass(frozen=True, slots=True)
 class Taken:
-    """words: lower case, numbers as written. splits: how many words stand before each double underscore."""
+    """words: lower case, numbers without leading zeros. splits: how many words stand before each double
+    underscore.
+    """
 
     words: tuple[str, ...]
     splits: tuple[int, ...] = ()
@@ -58,12 +63,17 @@ def take_apart(name: str, patterns: Patterns) -> Taken:
     return Taken(tuple(words), tuple(splits))
 
 
+def _number(piece: str) -> str:
+    """Return digits without leading zeros: a stance called 1 here and 01 there is one. "2H" stays."""
+    return str(int(piece)) if piece.isdecimal() and len(piece) < 10 else piece
+
+
 def _segment(text: str, patterns: Patterns) -> Taken:
     words: list[str] = []
     splits: list[int] = []
     for piece in _PIECES.findall(text):
         if piece[0].isalpha() or piece[0].isdecimal():
-            for word in _camel(piece) if piece[0].isalpha() else [piece]:
+            for word in _camel(piece) if piece[0].isalpha() else [_number(piece)]:
                 words += _known(word.lower(), patterns.vocabulary)
         elif "__" in piece and words:
             splits.append(len(words))
@@ -133,21 +143,43 @@ def _unglued(word: str, vocabulary: frozenset[str]) -> tuple[str, ...]:
 
 
 def without_shared(taken: Sequence[Taken], patterns: Patterns) -> list[Taken]:
-    """Leave out the words all names begin with (a character, a project) as far as they mean nothing; a name
-    keeps one word at least.
+    """Leave out the words names begin with (a character, a project) as far as they tell nothing apart: words
+    nobody knows that nearly all begin with, and any but those of posture that all do. A name keeps one word
+    at least.
     """
-    named = [t.words for t in taken if t.words]
+    out = list(taken)
+    while (word := _shared_first(out, patterns)) is not None:
+        out = [
+            _without_junk(t.without(1), patterns) if len(t.words) > 1 and t.words[0] == word else t
+            for t in out
+        ]
+    return out
+
+
+def _shared_first(taken: Sequence[Taken], patterns: Patterns) -> str | None:
+    """Return the word that names begin with and that says nothing of any, None where there is none."""
+    named = [t.words for t in taken if t.words and not _is_other(t.words, patterns)]
     if len(named) < 2:
-        return list(taken)
-    first, last = min(named), max(named)
-    count = 0
-    while (
-        count < min(map(len, named)) - 1
-        and first[count] == last[count]
-        and first[count] not in patterns.vocabulary
-    ):
-        count += 1
-    return [_without_junk(t.without(count), patterns) if count and t.words else t for t in taken]
+        return None
+    word, count = Counter(words[0] for words in named).most_common(1)[0]
+    meanings = patterns.meanings
+    if any(word in meanings[table] for table in ("postures", "joins", "limbs")) or meanings["kinds"].get(
+        word
+    ) in ("stance", "transition"):
+        return None
+    going_on = [words[1:] for words in named if words[0] == word and len(words) > 1]
+    if len(going_on) < count or len(named) - count > (len(named) // 20 if len(named) >= SEVERAL else 0):
+        return None
+    if word not in patterns.vocabulary:
+        return word
+    # A word of the list that all share is a character's ("generic male ..."), unless it is what they all are.
+    saying = sum(1 for words in going_on if phrases(words, meanings["kinds"]))
+    return word if len(named) > FEW and 2 * saying >= len(going_on) else None
+
+
+def _is_other(words: Sequence[str], patterns: Patterns) -> bool:
+    found = phrases(words, patterns.meanings["kinds"])
+    return bool(found) and all(p.meaning == "other" for p in found)
 
 
 def phrases(words: Sequence[str], table: Meanings) -> list[Phrase]:
@@ -168,10 +200,9 @@ def phrases(words: Sequence[str], table: Meanings) -> list[Phrase]:
 
 def quoted(name: str, words: Sequence[str]) -> str:
     """Return words in quotes as the name writes them, or plainly where they do not stand together in it."""
-    kept = [i for i, letter in enumerate(name) if letter.isalnum()]
-    squeezed, wanted = "".join(name[i] for i in kept).lower(), "".join(words)
-    at = squeezed.rfind(wanted) if wanted and len(squeezed) == len(kept) else -1
-    return f"'{name[kept[at] : kept[at + len(wanted) - 1] + 1]}'" if at >= 0 else f"'{' '.join(words)}'"
+    parts = (f"0*{word}" if word.isdecimal() else re.escape(word) for word in words)
+    found = list(re.finditer(r"[\W_]*".join(parts), name, re.IGNORECASE)) if words else []
+    return f"'{found[-1][0]}'" if found else f"'{' '.join(words)}'"
 
 
 def is_number(word: str) -> bool:
@@ -180,6 +211,11 @@ def is_number(word: str) -> bool:
 
 def without_numbers(words: Iterable[str]) -> tuple[str, ...]:
     return tuple(w for w in words if not w.isdecimal())
+
+
+def is_designator(word: str) -> bool:
+    """Whether a word may tell stances apart that are called alike: a number, or a letter that is no side."""
+    return word.isdecimal() or word in ("a", "b", "c", "d", "e", "f", "g", "h")
 
 
 def variant(words: Sequence[str]) -> int:

@@ -509,3 +509,61 @@ def test_a_corrected_name_is_read_as_corrected_or_teaches_nothing(
     if patterns.learned and field != "limb":
         assert told([name], patterns=patterns)[field] == value
     assert learn(patterns, name, "tags", ["a", "b"]).learned.get("tags") is not None or not patterns.learned
+
+
+# --- numbers and letters that tell stances apart
+
+
+NUMBERED = ["ChrX@Idle01_Shrug01", "ChrX@Idle02_PointLf01", "ChrX@Idle03", "ChrX@Idle02_ToIdle01"]
+
+
+@pytest.mark.parametrize(
+    ("name", "stance"), [*zip(NUMBERED, ("idle 1", "idle 2", "idle 3", "idle 2"), strict=True)]
+)
+def test_a_stances_number_stays_though_no_clip_of_its_own_is_there(name: str, stance: str) -> None:
+    assert told(NUMBERED, name)["stance"] == stance
+
+
+def test_a_transition_ends_in_the_stance_of_the_number_it_names() -> None:
+    assert told(NUMBERED, NUMBERED[3])["end_stance"] == "idle 1"
+    names = ["Sit_A", "Sit_B", "Sit_A_To_Sit_B", "Sit_B_To_Sit_A_02"]
+    assert told(names, names[2])["end_stance"] == "sit b"
+    assert told(names, names[3])["end_stance"] == "sit a"
+
+
+def test_numbers_from_which_nothing_goes_on_are_takes_of_one_stance() -> None:
+    names = ["idle_01", "idle_02", "idle_scratch_01", "wave_01"]
+    assert {told(names, n)["stance"] for n in names} == {"idle"}
+
+
+@pytest.mark.parametrize("spelled", ["Idle1_Nod", "Idle_01_Nod", "idle 001 nod"])
+def test_leading_zeros_make_no_other_stance(spelled: str) -> None:
+    assert told([*NUMBERED, f"ChrX@{spelled}"], f"ChrX@{spelled}")["stance"] == "idle 1"
+
+
+# --- what all names begin with
+
+
+def test_words_all_names_begin_with_are_left_out_though_they_mean_something_elsewhere() -> None:
+    rest = ("idle standing upright 1", "idle standing upright 1 off screen reveal", "sitting idle", "nod yes")
+    names = [f"generic mle adult {x}" for x in rest] + ["T-Pose"]
+    assert told(names, names[0]) == {
+        "kind": "stance",
+        "stance": "idle standing upright",
+        "layer": "body",
+        "number": 1,
+    }
+    assert told(names, names[3])["layer"] == "head"
+
+
+def test_what_all_clips_are_is_not_left_out() -> None:
+    names = [f"wave_{n:02}" for n in range(12)]
+    assert {told(names, n)["kind"] for n in names} == {"gesture"}
+
+
+def test_a_stance_may_be_told_after_what_is_done() -> None:
+    names = ["Sitting_Idle", "Standing_Idle", "Talk_Sitting_01", "Shrug_Standing", "Trans_Sitting_Standing"]
+    assert told(names, names[2])["stance"] == "sitting"
+    assert told(names, names[3])["stance"] == "standing"
+    both = told(names, names[4])
+    assert (both["kind"], both["stance"], both["end_stance"]) == ("transition", "sitting", "standing")
