@@ -8,7 +8,8 @@ import argparse
 import sys
 import time
 from argparse import Namespace
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -59,6 +60,7 @@ def run(options: Namespace) -> int:
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.store import SUFFIX, save_project
     from metagraph.graph.check import check
+    from metagraph.suggest.bridges import bridged, told
     from metagraph.suggest.propose import SOURCES, accept, propose
 
     began = time.perf_counter()
@@ -79,6 +81,8 @@ def run(options: Namespace) -> int:
     project, notes = _project(source, path)
     found = propose(project, patterns=patterns, examples=examples, sources=tuple(options.sources or SOURCES))
     taken = accept(project, found, options.above)
+    labelled, bridges = bridged(taken.project)
+    taken = replace(taken, project=labelled)
     save_project(taken.project, path, source if source.is_file() else path)
     place = path.with_name(path.name.removesuffix(SUFFIX) + ".labels.html")
     drawn = {} if options.no_pictures else _pictures(taken.project, path.resolve().parent, [*found.proposals])
@@ -86,11 +90,18 @@ def run(options: Namespace) -> int:
     look = [p for p in found.doubtful if needs_a_look(p, taken)]
     errors = [p.message for p in check(taken.project) if p.severity == "error"]
     seconds = time.perf_counter() - began
+    aside: dict[str, list[str]] = {}
+    for clip, why in found.aside.items():
+        aside.setdefault(why, []).append(project.clips[clip].name)
     for note in notes:
         print(f"note: {note}", file=sys.stderr)
     for stance, rest in taken.held.items():
         if (made := taken.project.stance(stance)) is not None:
             print(f"held: {made.name}: {rest.reason}", file=sys.stderr)
+    for line in told(taken.project, bridges):
+        print(f"bridged: {line}", file=sys.stderr)
+    for why, clips in aside.items():
+        print(f"aside: {_several(clips)}: {why}", file=sys.stderr)
     for clip, why in taken.left.items():
         print(f"left: {project.clips[clip].name}: {why}", file=sys.stderr)
     words = (
@@ -98,7 +109,7 @@ def run(options: Namespace) -> int:
         f"{len(look)} need a look\n{place}"
     )
     names = {clip: project.clips[clip].name for clip in found.proposals}
-    data = {
+    data: dict[str, Any] = {
         "project": str(path),
         "report": str(place),
         "labelled": len(taken.placed),
@@ -106,12 +117,22 @@ def run(options: Namespace) -> int:
         "held": {
             s.name: r.reason for i, r in taken.held.items() if (s := taken.project.stance(i)) is not None
         },
+        "bridged": told(taken.project, bridges),
+        "aside": {project.clips[c].name: why for c, why in found.aside.items()},
         "look": [names[p.clip] for p in look],
         "errors": errors,
         "seconds": round(seconds, 2),
     }
     say(options, words, data)
     return 3 if taken.left or errors else 0
+
+
+def _several(names: Sequence[str]) -> str:
+    return (
+        names[0]
+        if len(names) == 1
+        else f"{len(names)} clips ({', '.join(names[:3])}{' ...' * (len(names) > 3)})"
+    )
 
 
 def _taught(options: Namespace, path: Path) -> tuple[Patterns | None, list[Example]]:

@@ -12,6 +12,7 @@ from metagraph.graph.edits import EditError
 from metagraph.graph.model import LAYERS, Kind, Layer, Project
 from metagraph.playback.phases import phases
 from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, plain
+from metagraph.suggest.whole_body import CARRIER
 
 
 @dataclass(frozen=True)
@@ -53,6 +54,8 @@ def accept(
         if p.kind.value == "stance" and p.stance is not None
     }
     before, placed, held = project, list[str](), dict[str, Rest]()
+    if found.whole and wanted:
+        project = edits.set_weight(project, CARRIER, "legs", 1.0)
     for p in sorted(wanted, key=lambda p: (p.kind.value != "stance", -p.confidence)):
         try:
             project = _place(project, p, found.places, keys, loops, held)
@@ -80,7 +83,9 @@ def _begun(before: Project, project: Project) -> Project:
         ]
         loops = [loop for graph, start in starts for loop in graph.of(str(start), "stance")]
         if loops:
-            project = edits.set_base(project, loops[0].clip)
+            entry = project.clips[loops[0].clip]
+            frame = min(round(loops[0].timing.start * entry.fps), max(0, entry.frames - 1))
+            project = edits.set_base(project, entry.id, frame)
     return project
 
 

@@ -13,7 +13,7 @@ from math import exp, log
 from metagraph.graph.words import LAYERS, Kind, Layer, Limb
 from metagraph.suggest.clip_measures import SUREST, TYPICAL, energy, layer_of, resting, walks
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.stances import Shape, Stances, distance, nearest
+from metagraph.suggest.stances import Shape, Stances, distance, likely, nearest
 from metagraph.suggest.traits import LayerTraits, Traits
 
 # of the way of a clip that ends in no other stance, the share from end to end from which on it is a
@@ -25,14 +25,19 @@ ELSEWHERE = (
 LIFE = (
     0.11  # of all movement of a resting clip that hips and legs make, from which on the whole body breathes
 )
+CLEAREST = 0.99  # how sure the stance is of a pose that lies in it
 ALONE = 0.5  # of the arms' energy on one side more than on the other, from which it is one-armed
+
+
+Likely = Sequence[tuple[float, Shape]]
 
 
 @dataclass(frozen=True)
 class MotionGuess:
     """What a clip seems to be; None where the motion says nothing. stance, end_stance: of a `Shape`; the end
     stance of transitions only. runner_up: the next nearest stance. stroke: seconds. chances: of each kind,
-    adding up to 1.
+    adding up to 1. begins, ends: how likely each stance is that its first and last pose is of, the likeliest
+    first; what is left to 1 is none of them.
     """
 
     kind: Belief[Kind]
@@ -44,17 +49,24 @@ class MotionGuess:
     runner_up: Shape | None = None
     stroke: Belief[float] | None = None
     chances: Mapping[Kind, float] | None = None
+    begins: Likely = ()
+    ends: Likely = ()
 
 
-def guess(traits: Traits, stances: Stances, on: Layer | None = None) -> MotionGuess:
+def guess(
+    traits: Traits, stances: Stances, on: Layer | None = None, posture: LayerTraits | None = None
+) -> MotionGuess:
     """Return what a clip seems to be from its motion alone, beside known or discovered stances (none will
-    do). on: the layer it is of, where that is known from elsewhere.
+    do). on: the layer it is of, where that is known from elsewhere. posture: its poses as the stances are
+    told, where that is not the layer's (see `whole_body`).
     """
     layer = _layer_beside(traits, stances) if on is None else Belief(on, SUREST, "")
     x = traits.layers[layer.value]
+    told = x if posture is None else posture
     shapes = stances.get(layer.value, ())
-    starts, ends = nearest(shapes, x.names, x.first), nearest(shapes, x.names, x.last)
-    moved = _sigmoid(_moving(traits, layer.value, starts, ends))
+    starts, ends = nearest(shapes, told.names, told.first), nearest(shapes, told.names, told.last)
+    begins, leaves = likely(shapes, told.names, told.first), likely(shapes, told.names, told.last)
+    moved = _passing(begins, leaves, _sigmoid(_moving(told, layer.value, starts, ends)))
     calm = starts[0][1].calm if starts and starts[0][0] < 0.5 * TYPICAL[layer.value] else 0.0
     walking = walks(traits)
     rests = 1.0 if walking else resting(traits) + (3.0 if energy(traits) <= 1.05 * calm else 0.0)
@@ -84,8 +96,6 @@ def guess(traits: Traits, stances: Stances, on: Layer | None = None) -> MotionGu
         "fidget": f"goes {x.extent * cm:.0f} cm away in {_times(x.bouts)}, up to {x.peak * cm:.0f} cm/s"
         + _touching(traits, cm),
     }[kind]
-    if kind == "stance":
-        starts = nearest(shapes, x.names, x.typical)
     return MotionGuess(
         Belief(kind, min(SUREST, chances[kind], (1 + layer.confidence) / 2), reason),
         layer,
@@ -93,11 +103,13 @@ def guess(traits: Traits, stances: Stances, on: Layer | None = None) -> MotionGu
         Belief(
             kind == "stance", min(SUREST, chances[kind]), f"its ends are {x.loop_error * cm:.1f} cm apart"
         ),
-        _beside(starts, "begins" if kind != "stance" else "rests", layer, cm),
-        _beside(ends, "ends", layer, cm) if kind == "transition" else None,
+        _beside(starts, begins, "begins" if kind != "stance" else "rests", layer, cm),
+        _beside(ends, leaves, "ends", layer, cm) if kind == "transition" else None,
         starts[1][1] if len(starts) > 1 else None,
         _stroke(x, cm) if kind in ("gesture", "fidget") and x.peak > 0 else None,
         chances,
+        begins,
+        leaves,
     )
 
 
@@ -127,20 +139,28 @@ def _sigmoid(z: float) -> float:
 
 
 def _beside(
-    found: Sequence[tuple[float, Shape]], verb: str, layer: Belief[Layer], cm: float
+    found: Sequence[tuple[float, Shape]], likely: Likely, verb: str, layer: Belief[Layer], cm: float
 ) -> Belief[Shape] | None:
     if not found:
         return None
-    (near, shape), typical = found[0], TYPICAL[layer.value]
-    second = found[1][0] if len(found) > 1 else None
-    margin = 1.0 if second is None else (second - near) / max(second, 1e-9)
-    confidence = SUREST * exp(-((near / typical) ** 2)) * (0.4 + 0.6 * min(1.0, 1.5 * margin))
+    (chance, shape) = likely[0]
+    near = next(away for away, other in found if other is shape)
+    second = min((away for away, other in found if other is not shape), default=None)
     more = "" if second is None else f"; next nearest {_cm(second * cm)}"
     return Belief(
         shape,
-        min(confidence, shape.confidence, layer.confidence),
+        min(CLEAREST * chance, layer.confidence),
         f'{verb} {_cm(near * cm)} from "{shape.name}"{more}',
     )
+
+
+def _passing(begins: Likely, ends: Likely, otherwise: float) -> float:
+    """Return the chance that a clip passes from one stance to another. otherwise: the chance where nobody
+    knows whether its ends are of stances.
+    """
+    same = sum(p * q for p, shape in begins for q, other in ends if shape is other)
+    known = sum(p for p, _ in begins) * sum(p for p, _ in ends)
+    return known - same + (1 - known) * otherwise
 
 
 def _cm(length: float) -> str:
@@ -212,10 +232,9 @@ def limb_of(traits: Traits, layer: Layer, kind: Kind) -> Belief[Limb]:
 
 
 def _moving(
-    traits: Traits, layer: Layer, starts: Sequence[tuple[float, Shape]], ends: Sequence[tuple[float, Shape]]
+    x: LayerTraits, layer: Layer, starts: Sequence[tuple[float, Shape]], ends: Sequence[tuple[float, Shape]]
 ) -> float:
     """Return how much speaks for a transition, a logit."""
-    x = traits.layers[layer]
     if x.loop_error < 1e-6:
         return -10.0
     z = 3.0 * log(x.loop_error / (0.4 * TYPICAL[layer])) + 12.0 * (

@@ -37,7 +37,8 @@ _UP: Final = frozenset(("up", "stand", "rise", "get"))
 class NameGuess:
     """What one name says; None where it says nothing. stance, end_stance: words for stances, "arms crossed".
 
-    number: which of several like it, as the name counts them.
+    number: which of several like it, as the name counts them. other: the word that says that it is none of
+    the four kinds.
     """
 
     kind: Belief[Kind] | None = None
@@ -47,6 +48,7 @@ class NameGuess:
     limb: Belief[Limb] | None = None
     tags: Belief[tuple[str, ...]] | None = None
     number: Belief[int] | None = None
+    other: Belief[str] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,7 +266,12 @@ class _Reader:
             limb=_spelled(name, self._limb(parse)),
             tags=_spelled(name, self._tags(parse)),
             number=self._number(words),
+            other=_spelled(name, self._other(words)) if kind is None else None,
         )
+
+    def _other(self, words: Words) -> Belief[str] | None:
+        told = next((p for p in phrases(words, self._kinds) if p.meaning == "other"), None)
+        return Belief(told.text, 0.85, f"name says '{told.text}'") if told is not None else None
 
     def _recalled(self, parse: _Parse, field: str) -> Belief[str] | None:
         found = recalled(self._patterns, field, self.key(parse, field))

@@ -80,10 +80,14 @@ class Proposal:
 
 @dataclass(frozen=True)
 class Proposals:
-    """Proposals by clip, and the stances they speak of, by key."""
+    """Proposals by clip, and the stances they speak of, by key. aside: clip -> why it is none of the four
+    kinds: walks, turns, exercises. whole: whether one layer plays the whole body (see `whole_body`).
+    """
 
     proposals: Mapping[str, Proposal]
     places: Mapping[str, Place]
+    aside: Mapping[str, str] = field(default_factory=dict)
+    whole: bool = False
 
     @property
     def doubtful(self) -> list[Proposal]:

@@ -7,7 +7,7 @@ next step is the widest; a group that several clips share, or that a resting cli
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
@@ -26,8 +26,11 @@ SAME: Mapping[Layer, tuple[float, float]] = {
     "head": (0.008, 0.025),
     "body": (0.008, 0.025),
 }
+NEAR: Mapping[Layer, float] = {"arms": 0.008, "head": 0.003, "body": 0.003}  # heights within which ends meet
+STRAY = 0.002  # of the weight an end has that lies in a stance, of one that lies in none
 FINGERTIP = 0.5  # how much a fingertip's place counts beside the hand's
 MOST = 400  # poses joined at once; more are thinned out first
+EXACT = 0.5  # of the limits within which ends are of one stance, where they meet exactly
 FEW = 3  # clips that begin and end in a pose, from which on the quietest of them is taken for its loop
 QUIET = 0.6  # of their median energy
 # heights a second, of all parts together, that the only clip which stays in a pose moves at most to be its
@@ -42,7 +45,8 @@ class Shape:
 
     names: points, n. poses `[k, n, 3]`, heights. members: clips that rest, begin or end in it. clip, at: a
     clip and the second in which it can be seen. confidence: 0..1, that it is one. calm: energy of the clip
-    that is taken for its loop as the quietest; 0 where one rests, or none is.
+    that is taken for its loop as the quietest; 0 where one rests, or none is. spread `[n]`: how far half of
+    its clips' ends are from it, heights; empty where that is not known.
     """
 
     id: str
@@ -55,6 +59,12 @@ class Shape:
     at: float
     confidence: float
     calm: float = 0.0
+    spread: Array = field(default_factory=lambda: np.zeros(0))
+
+    def scale(self) -> float:
+        """Return how far an end that belongs to it usually is, heights: see `likely`."""
+        widest = float(self.spread.max(initial=0.0))
+        return min(max(NEAR[self.layer], 2.0 * widest), 3.0 * NEAR[self.layer])
 
 
 Stances = Mapping[Layer, Sequence[Shape]]
@@ -131,6 +141,20 @@ def nearest(shapes: Sequence[Shape], names: tuple[str, ...], pose: Array) -> lis
     return sorted((x for x in found if x[0] < float("inf")), key=lambda x: x[0])
 
 
+def likely(shapes: Sequence[Shape], names: tuple[str, ...], pose: Array) -> list[tuple[float, Shape]]:
+    """Return the stances a pose `[n, 3]` may be of with how likely each is, the likeliest first; what is left
+    to 1 is that it is of none.
+
+    Student's t with three degrees of freedom over distances in the stance's own scale: ends of takes mostly
+    meet, and some lie far off.
+    """
+    weights = [
+        ((1 + (away / shape.scale()) ** 2 / 3) ** -2, shape) for away, shape in nearest(shapes, names, pose)
+    ]
+    whole = sum(w for w, _ in weights) + STRAY
+    return sorted(((w / whole, shape) for w, shape in weights), key=lambda x: -x[0])
+
+
 def _weights(names: Sequence[str]) -> Array:
     return np.array([FINGERTIP if n.endswith("_tip") else 1.0 for n in names])
 
@@ -139,16 +163,20 @@ def _weights(names: Sequence[str]) -> Array:
 # --------------------------------------------------------------------------------------------------
 
 
-def discover(traits: Mapping[str, Traits], layer: Layer) -> tuple[Shape, ...]:
+def discover(traits: Mapping[str, Traits], layer: Layer, together: bool = False) -> tuple[Shape, ...]:
     """Return the stances that clips of a layer rest, begin and end in, the one with the most members
-    first.
+    first. together: all clips are of the layer (see `whole_body`).
     """
     moving = {
         clip: t
         for clip, t in sorted(traits.items())
         if not (0 < t.duration < HELD and nothing(t)) and not walks(t)
     }
-    mine = {clip: t for clip, t in moving.items() if t.layers[layer].names and layer_of(t).value == layer}
+    mine = {
+        clip: t
+        for clip, t in moving.items()
+        if t.layers[layer].names and (t.face == 0 if together else layer_of(t).value == layer)
+    }
     if not mine:
         return ()
     others = {clip: t for clip, t in moving.items() if clip not in mine and t.face == 0}
@@ -160,11 +188,12 @@ def discover(traits: Mapping[str, Traits], layer: Layer) -> tuple[Shape, ...]:
         if x.names != names:
             continue
         rests = resting(t) > 0
-        found.append((clip, 0.0, x.typical if rests else x.first, rests))
+        # Where a loop begins is where transitions end; its middle is away by as much as it breathes.
+        found.append((clip, 0.0, x.first, rests))
         if not rests:
             found.append((clip, t.duration, x.last, False))
     poses = np.array([pose for _, _, pose, _ in found])
-    groups = _groups(poses, _weights(names), *SAME[layer])
+    groups = _groups(poses, _weights(names), *_limits(poses, [c for c, *_ in found], _weights(names), layer))
     shapes = []
     for rows in groups:
         members = list(dict.fromkeys(found[i][0] for i in rows))
@@ -187,7 +216,7 @@ def discover(traits: Mapping[str, Traits], layer: Layer) -> tuple[Shape, ...]:
                 closed[0],
                 energy(mine[found[closed[0]][0]]),
             )  # others only come there or leave: what stays is its loop
-        poses_of = np.array([middle, *(poses[i] for i in loops)])
+        poses_of = np.array([middle, *(mine[found[i][0]].layers[layer].typical for i in loops)])
         clip, at = found[best][0], found[best][1]
         if (
             not loops and not closed
@@ -204,7 +233,10 @@ def discover(traits: Mapping[str, Traits], layer: Layer) -> tuple[Shape, ...]:
                 calm = staying[clip]
                 members.append(clip)
         confidence = min(SUREST, 1 - 0.6 * 0.8 ** len(members) + (0.0 if loops else 0.1 if calm else -0.15))
-        shapes.append(Shape("", clip, layer, names, poses_of, tuple(members), clip, at, confidence, calm))
+        spread = np.median(np.linalg.norm(poses[rows] - middle, axis=-1), axis=0)
+        shapes.append(
+            Shape("", clip, layer, names, poses_of, tuple(members), clip, at, confidence, calm, spread)
+        )
     return tuple(sorted(shapes, key=lambda s: (-len(s.members), s.clip)))
 
 
@@ -218,6 +250,25 @@ def _far(x: LayerTraits, pose: str, middle: Array, names: tuple[str, ...]) -> fl
 def discovered(traits: Mapping[str, Traits]) -> dict[Layer, tuple[Shape, ...]]:
     """Return what `discover` finds on each layer."""
     return {layer: discover(traits, layer) for layer in LAYERS}
+
+
+def _limits(poses: Array, clips: Sequence[str], weights: Array, layer: Layer) -> tuple[float, float]:
+    """Return between which distances stances are told apart, heights: those of SAME, less where the ends of
+    most clips meet as exactly as only one pose does.
+
+    How exactly: of four ends, the nearest end of another clip is no farther for three.
+    """
+    least, most = SAME[layer]
+    if len(set(clips)) < FEW:
+        return least, most
+    some = np.unique(np.linspace(0, len(poses) - 1, min(len(poses), MOST)).astype(int))
+    apart = _apart(poses[some], weights)
+    owner = np.array(clips)[some]
+    apart[owner[:, None] == owner[None, :]] = np.inf
+    near = apart.min(1)
+    tight = float(np.quantile(near[np.isfinite(near)], 0.75)) if np.isfinite(near).any() else least
+    share = min(1.0, max(EXACT, 4 * tight / least))
+    return least * share, max(most * share, least * share * 2)
 
 
 def _apart(poses: Array, weights: Array) -> Array:

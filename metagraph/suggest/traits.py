@@ -74,8 +74,9 @@ class Traits:
     the arms move as mirror images. out, near: how much farther from, and nearer to, the trunk and head the
     hands come than where they begin. touch: how near a moving hand comes to the other arm, the neck or the
     head, beyond how near it was. stride: how far each foot comes in front of the other, the lesser of both:
-    what walks. face: of a clip in which nothing else moves, how much joints of the face do, 0..2; 0 of any
-    other.
+    what walks. turned: degrees the character turns round, from its first to its last pose. rise: how far the
+    hips go up and down, heights. face: of a clip in which nothing else moves, how much joints of the face do,
+    0..2; 0 of any other.
     """
 
     height: float
@@ -91,6 +92,8 @@ class Traits:
     touch: float
     stride: float = 0.0
     face: float = 0.0
+    turned: float = 0.0
+    rise: float = 0.0
 
 
 # Clips are values that never change, so what was found of one holds for as long as it lives.
@@ -330,7 +333,15 @@ def _of(figure: Figure, points: Mapping[str, Array], world: Mapping[str, Array],
         near,
         touch,
         _stride(points),
+        turned=_turned(facing),
+        rise=float(np.ptp(world["hips"][:, 1])),
     )
+
+
+def _turned(facing: Array) -> float:
+    """Return by how many degrees a character turns round. facing `[F, 2]`: sine and cosine."""
+    angle = np.unwrap(np.arctan2(facing[:, 0], facing[:, 1]))
+    return float(np.degrees(abs(angle[-1] - angle[0])))
 
 
 def _face(clip: Clip, roles: Mapping[str, int]) -> float:

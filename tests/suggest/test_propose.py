@@ -234,16 +234,16 @@ def test_a_clip_that_nothing_says_the_stance_of_goes_where_most_are(practice: Pr
     assert found.proposals["c1"].stance.confidence > 0.5  # type: ignore[union-attr]
 
 
-def test_walks_are_stances_of_their_own() -> None:
+def test_walks_and_fights_are_left_aside_with_a_word() -> None:
     folder = ROOT.parent / "shared" / "data" / "kaykit-rogue"
     if not folder.is_dir():
         pytest.skip(f"{folder} is not there")
     project = import_files(Project(), None, [folder]).into(Project())
+    names = {entry.name: clip for clip, entry in project.clips.items()}
+    walks = [names[f"Walking_{x}"] for x in "ABC"]
     found = propose(project)
-    by_name = {project.clips[p.clip].name: p for p in found.proposals.values()}
-    walks = [by_name[f"Walking_{x}"] for x in "ABC"]
-    assert {(p.kind.value, p.layer.value, found.places[p.stance.value].name) for p in walks if p.stance} == {
-        ("stance", "body", "walking")
-    }
-    assert all("goes on walking" in p.kind.reason for p in walks)
-    assert by_name["Interact"].kind.value == "gesture"
+    assert {found.aside[clip] for clip in walks} == {"name says 'Walking'"}
+    assert found.proposals[names["Interact"]].kind.value == "gesture"
+    unnamed = propose(project, sources=("motion",))
+    assert all(unnamed.aside[clip].startswith("walks or runs: its feet pass") for clip in walks)
+    assert not set(walks) & set(accept(project, found).placed)

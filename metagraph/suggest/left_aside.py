@@ -1,0 +1,47 @@
+"""Clips that are none of the four kinds: walks, turns in place, exercises, fights. They are left aside with a
+word, not forced into what a talking character does.
+"""
+
+from __future__ import annotations
+
+from metagraph.suggest.clip_measures import walks
+from metagraph.suggest.motion_guess import MotionGuess
+from metagraph.suggest.name_words import NameGuess
+from metagraph.suggest.traits import Traits
+
+FAR = 0.5  # heights over the ground, from which on a clip that goes to no other stance goes away
+ROUND = 50.0  # degrees that one who goes to no other stance turns round
+EXERCISE = 0.14  # heights the hips go up and down, while the legs move fast
+FAST = 0.25  # heights a second the legs move
+PASSES = 0.8  # of the chance that a clip passes between two stances, from which on that is why it moves so
+
+
+def left_aside(said: NameGuess, traits: Traits | None, motion: MotionGuess | None) -> str:
+    """Return why a clip is none of the four kinds, "" where it may be one."""
+    if said.kind is not None:
+        return ""
+    if said.other is not None:
+        return said.other.reason
+    if traits is None or motion is None or motion.chances is None:
+        return ""
+    if walks(traits):
+        return (
+            f"walks or runs: its feet pass each other by {100 * traits.height * traits.stride:.0f} cm, and "
+            "its end flows into its beginning"
+        )
+    begins, ends = motion.begins[:1], motion.ends[:1]
+    if begins and ends and begins[0][1] is not ends[0][1] and min(begins[0][0], ends[0][0]) > PASSES:
+        return ""
+    if traits.travel > FAR:
+        return f"goes {traits.height * traits.travel:.1f} m away and to no other stance"
+    if traits.turned > ROUND:
+        return f"turns round by {traits.turned:.0f} degrees and to no other stance"
+    if (
+        traits.rise > EXERCISE
+        and traits.energy["legs"] > FAST
+        and begins
+        and ends
+        and begins[0][1] is ends[0][1]
+    ):
+        return f"goes up and down by {100 * traits.height * traits.rise:.0f} cm: an exercise"
+    return ""
