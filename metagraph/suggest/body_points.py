@@ -20,6 +20,7 @@ from metagraph.graph.words import Layer
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.suggest.self_contact import SKULL
 
 Array = NDArray[Any]
 
@@ -33,6 +34,7 @@ NAMES: Mapping[Layer, tuple[str, ...]] = {
     "body": ("hips", "trunk", "trunk_ahead", "left_lower_leg", "left_foot", "right_lower_leg", "right_foot"),
 }
 _CARRIERS = ("upper_chest", "chest", "spine", "hips")
+_WORLD = ("_hand", "_tip", "_lower_arm", "_upper_arm", "_upper_leg", "_lower_leg")
 _LIMBS = ("upper_arm", "lower_arm", "hand", "upper_leg", "lower_leg", "foot")
 
 
@@ -189,8 +191,10 @@ def points_of(
     world = {
         "facing": facing,
         "hips": p["hips"],
-        **{name: p[name] for name in p if name.endswith(("_hand", "_lower_arm"))},
+        **{name: p[name] for name in p if name.endswith(_WORLD)},
     }
+    if "head" in p:
+        world["skull"] = p["head"] + SKULL * axis("head", (0, 1, 0))
     for name in ("head", carrier):
         if name in p:
             world["head" if name == "head" else "carrier"] = p[name]

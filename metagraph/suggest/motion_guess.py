@@ -25,6 +25,7 @@ ELSEWHERE = (
 LIFE = (
     0.11  # of all movement of a resting clip that hips and legs make, from which on the whole body breathes
 )
+SMALL = 0.12  # heights the hands go, below which they tell little
 CLEAREST = 0.99  # how sure the stance is of a pose that lies in it
 ALONE = 0.5  # of the arms' energy on one side more than on the other, from which it is one-armed
 
@@ -70,7 +71,9 @@ def guess(
     calm = starts[0][1].calm if starts and starts[0][0] < 0.5 * TYPICAL[layer.value] else 0.0
     walking = walks(traits)
     rests = 1.0 if walking else resting(traits) + (3.0 if energy(traits) <= 1.05 * calm else 0.0)
-    rest, gesture = _sigmoid(rests), _gesturing(traits, layer)
+    moves = layer if posture is None else layer_of(traits)
+    x = traits.layers[moves.value]
+    rest, gesture = _sigmoid(rests), _gesturing(traits, moves)
     chances: dict[Kind, float] = {
         "transition": moved,
         "stance": (1 - moved) * rest,
@@ -80,8 +83,8 @@ def guess(
     kind = max(chances, key=lambda k: chances[k])
     cm = 100 * traits.height
     reason = {
-        "transition": f"ends {x.loop_error * cm:.1f} cm from where it begins and goes only "
-        f"{x.extent * cm:.0f} cm beside that way",
+        "transition": f"ends {told.loop_error * cm:.1f} cm from where it begins and goes only "
+        f"{told.extent * cm:.0f} cm beside that way",
         "stance": (
             f"moves at most {max(y.peak for y in traits.layers.values()) * cm:.0f} cm/s in "
             f"{traits.duration:.1f} s"
@@ -265,19 +268,53 @@ def _gesturing(traits: Traits, layer: Belief[Layer]) -> float:
 def _telling(traits: Traits, layer: Layer) -> float:
     """Return how much speaks for a gesture rather than a fidget, a logit.
 
-    Weights: a logistic regression on the sample clips, rounded; lengths and speeds are in typical ones.
+    Hands that go far into the space before the body tell (McNeill, Hand and Mind, 1992, on gesture space);
+    the less they move, the more counts what head or body do.
+    """
+    small = 1 / (1 + (traits.layers["arms"].extent / SMALL) ** 3)
+    return (1 - small) * _hands_telling(traits) + small * _rest_telling(traits, layer)
+
+
+def _hands_telling(traits: Traits) -> float:
+    """Return how much the hands speak for a gesture: a stroke in free space does, and so do raised shoulders;
+    hands on the own head, hair, arm or hand are self-adaptors (Ekman and Friesen, 1969), a weight that goes
+    from leg to leg is a postural shift, and what is done over and over is neither a stroke.
+
+    The signs are the literature's, the sizes were set by hand on the sets of docs/labels.md.
+    """
+    arms, head, body = (traits.layers[layer] for layer in ("arms", "head", "body"))
+    touch = traits.contact
+    still = 1 / (1 + (arms.extent / 0.1) ** 3)
+    bouts = max((arms, head, body), key=lambda y: y.peak).bouts
+    scratching = _clipped((touch.trunk * traits.duration - 1.1) / 0.6, 0, 1) * _clipped(
+        (touch.rub - 0.09) / 0.05, 0, 1
+    )
+    return (
+        1.7
+        + _clipped(_log(arms.extent, 0.12), -1.6, 1)
+        + 0.5 * _clipped(_log(head.peak, 0.06), -1.5, 1)
+        + 1.5 * still * _clipped(_log(head.peak, 0.12), 0, 1)
+        + 1.6 * _clipped(traits.shrug / 0.01, 0, 1.2)
+        + 6.0 * min(traits.out, 0.15)
+        - 12.0 * min(touch.head, 0.4)
+        - 7.0 * min(touch.arm, 0.4)
+        - 3.0 * scratching
+        - 2.4 * _clipped((touch.kept - 0.6) / 0.3, 0, 1) / (1 + (arms.extent / 0.2) ** 4)
+        - 4.0 * still * _clipped((traits.sway - 0.04) / 0.05, 0, 1)
+        - 1.2 * still * _clipped(_log(traits.energy["legs"], 0.04), 0, 1.5)
+        - 0.8 * min(max(bouts - 2, 0), 2)
+    )
+
+
+def _rest_telling(traits: Traits, layer: Layer) -> float:
+    """Return how much a clip in which the hands hardly move speaks for a gesture.
+
+    Weights for head and body: a logistic regression on the sample clips, rounded; lengths and speeds are in
+    typical ones.
     """
     arms, head, body = (traits.layers[layer] for layer in ("arms", "head", "body"))
     bouts = max((arms, head, body), key=lambda y: y.peak).bouts
     nods, leans = _log(head.peak, 0.12), _log(body.peak, 0.1)
-    busy = 1.0 if bouts > 2 else 0.0
-    if layer == "arms":
-        away = (
-            1.9 * 5 * min(traits.out, 0.2)
-            - 1.3 * 5 * min(traits.near, 0.2)
-            - 1.55 * 10 * min(traits.touch, 0.1)
-        )
-        return 3.5 + 1.1 * _log(arms.extent, 0.2) + 0.9 * leans + 1.15 * nods + away - 1.95 * busy
     if layer == "head":
         return (
             1.6 * nods
@@ -286,13 +323,14 @@ def _telling(traits: Traits, layer: Layer) -> float:
             - 0.3 * _log(head.extent, 0.03)
             - 2.0
         )
-    return (
-        1.2
-        + 0.9 * nods
-        + leans
-        - 1.4 * _log(traits.energy["legs"] + traits.energy["hips"], 0.02)
-        - 2.9 * busy
-    )
+    if layer == "body":
+        lower = _log(traits.energy["legs"] + traits.energy["hips"], 0.02)
+        return 1.55 + 0.9 * nods + leans - 1.4 * lower - (2.9 if bouts > 2 else 0.0)
+    return _hands_telling(traits)
+
+
+def _clipped(x: float, least: float, most: float) -> float:
+    return min(most, max(least, x))
 
 
 def _log(x: float, typical: float) -> float:

@@ -22,6 +22,7 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton
 from metagraph.suggest.body_points import NAMES, Figure, figure_of, points_of, seen_from
+from metagraph.suggest.self_contact import NOTHING, SelfContact, self_contact
 
 Array = NDArray[Any]
 
@@ -76,7 +77,9 @@ class Traits:
     head, beyond how near it was. stride: how far each foot comes in front of the other, the lesser of both:
     what walks. turned: degrees the character turns round, from its first to its last pose. rise: how far the
     hips go up and down, heights. face: of a clip in which nothing else moves, how much joints of the face do,
-    0..2; 0 of any other.
+    0..2; 0 of any other. contact: with its own body. shrug: how far the shoulders rise more than the
+    trunk, heights. sway: how far the hips go to a side. front, lifted: how far before the chest, and above
+    the hips, the hand is that goes farthest, when it is farthest, heights.
     """
 
     height: float
@@ -94,6 +97,11 @@ class Traits:
     face: float = 0.0
     turned: float = 0.0
     rise: float = 0.0
+    contact: SelfContact = NOTHING
+    shrug: float = 0.0
+    sway: float = 0.0
+    front: float = 0.0
+    lifted: float = 0.0
 
 
 # Clips are values that never change, so what was found of one holds for as long as it lives.
@@ -335,7 +343,35 @@ def _of(figure: Figure, points: Mapping[str, Array], world: Mapping[str, Array],
         _stride(points),
         turned=_turned(facing),
         rise=float(np.ptp(world["hips"][:, 1])),
+        contact=self_contact(world, float(times[1] - times[0]) if len(times) > 1 else 0.0),
+        shrug=_shrug(points),
+        sway=float(np.ptp(points["hips"][:, 0])) if "hips" in points else 0.0,
+        **_gesture_space(points, world),
     )
+
+
+def _shrug(points: Mapping[str, Array]) -> float:
+    rises = [
+        float(np.max(points[name][:, 1]) - points[name][0, 1])
+        for name in ("left_upper_arm", "right_upper_arm")
+        if name in points
+    ]
+    return min(rises, default=0.0)
+
+
+def _gesture_space(points: Mapping[str, Array], world: Mapping[str, Array]) -> dict[str, float]:
+    """Return where the hand is that goes farthest: before the chest and above the hips."""
+    best, out = 0.0, {"front": 0.0, "lifted": 0.0}
+    for name in ("left_hand", "right_hand"):
+        if name not in points:
+            continue
+        away = np.linalg.norm(points[name] - points[name][0], axis=-1)
+        far = _greatest(away)
+        if away[far] > best:
+            best = float(away[far])
+            height = world[name][far, 1] - world["hips"][far, 1]
+            out = {"front": float(points[name][far, 2]), "lifted": float(height)}
+    return out
 
 
 def _turned(facing: Array) -> float:
