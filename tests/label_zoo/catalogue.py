@@ -40,8 +40,8 @@ RECIPES: Mapping[str, Recipe] = {
         FEW, figure=Figure("lower", rest="T", axes="none", missing=("fingers", "face", "toes"))
     ),
     "random axes, a turned rest": Recipe(FEW, figure=Figure("letters", rest="turned", axes="random", seed=3)),
-    "few joints in german": Recipe(
-        FEW, figure=Figure("german", missing=("fingers", "face", "shoulders", "upper chest"))
+    "few joints": Recipe(
+        FEW, figure=Figure("blender", missing=("fingers", "face", "shoulders", "upper chest"))
     ),
     "japanese joints": Recipe(FEW, figure=Figure("japanese", axes="none", missing=("face",))),
     "a hundred times too large": Recipe(FEW, recording=Recording(size=100.0)),
@@ -166,7 +166,9 @@ def drawn(seed: int, number: int) -> Recipe:
         accents=draw.random() < 0.6,
     )
     figure = Figure(
-        names=one("sample", "mixamo", "biped", "unreal", "blender", "letters", "lower", "japanese", "german"),
+        names=one(
+            "sample", "mixamo", "biped", "unreal", "blender", "letters", "lower", "japanese", "numbers"
+        ),
         limbs=tuple(
             (limb, float(draw.uniform(0.75, 1.3))) for limb in ("arms", "legs", "trunk", "shoulders")
         ),

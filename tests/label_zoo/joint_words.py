@@ -89,15 +89,6 @@ CONVENTIONS: Mapping[str, Convention] = {
         fingers=("親指", "人指", "中指", "薬指", "小指"),  # type: ignore[arg-type]
         root="センター",
     ),
-    "german": _of(
-        "Becken|Wirbel1|Wirbel2|Brust|Hals|Kopf|Kiefer|Schulter_@|Oberarm_@|Unterarm_@|Hand_@|"
-        "Oberschenkel_@|Unterschenkel_@|Fuss_@|Zehen_@",
-        "L R",
-        "Finger{f}{n}_@",
-        fingers=("A", "B", "C", "D", "E"),  # type: ignore[arg-type]
-        face="{f}_@",
-        root="Wurzel",
-    ),
     "numbers": Convention((), ("", ""), "", root="node_root"),
 }
 _FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")

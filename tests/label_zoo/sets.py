@@ -36,9 +36,9 @@ class Recipe:
 
     layers: tuple[str, ...] = ()
     wholes: tuple[Whole, ...] = ()
-    grammar: Grammar = Grammar()
-    figure: Figure = Figure()
-    recording: Recording = Recording()
+    grammar: Grammar = field(default_factory=Grammar)
+    figure: Figure = field(default_factory=Figure)
+    recording: Recording = field(default_factory=Recording)
     steps: int = 0
     clips: int = 9
     unseen: float = 0.0
