@@ -62,6 +62,17 @@ RECIPES: Mapping[str, Recipe] = {
     "numbers of unseen stances": Recipe(wholes=STANDING, grammar=STUDIO, unseen=0.67, clips=14),
     "arms tell the stances": Recipe(wholes=ARMED, grammar=Grammar(style="Snake", side="L")),
     "sitting talker": Recipe(wholes=SITTING, grammar=SEATS),
+    "seats by posture": Recipe(
+        wholes=(Whole("sit"), Whole("sit_back"), Whole("sit_forward"), Whole("sit_back", near=1)),
+        grammar=Grammar("ChrX@", "synonym", style="camel", numbered="Idle{}", together=True, side="Lf"),
+        unseen=0.5,
+    ),
+    "seats by letter": Recipe(
+        wholes=SITTING,
+        grammar=Grammar(style="Snake", numbered="Sit_@", side="L"),
+        recording=Recording(noise=0.3),
+    ),
+    "arms alone": Recipe(ARMS, unlinked=0.0, grammar=Grammar(to="glued", style="camel", side="none")),
     "sitting without legs": Recipe(
         wholes=SITTING, grammar=SEATS, figure=Figure("biped", missing=("legs", "face")), unseen=0.34
     ),
@@ -157,7 +168,9 @@ def drawn(seed: int, number: int) -> Recipe:
         side=side,
         order=one("stance first", "stance first", "action first", "action only"),
         silent=draw.random() < 0.15,
-        numbered=maybe(0.35, one("Idle", "Pose", "IdleSeated" if seated else "Stand", "St"), ""),
+        numbered=maybe(
+            0.35, one("Idle", "Pose", "IdleSeated" if seated else "Stand", "St", "Idle{}", "Pose_@"), ""
+        ),
         together=draw.random() < 0.2,
         to=one(*TO),
         loop=one("", "", "loop", "idle", "base"),

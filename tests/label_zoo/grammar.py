@@ -27,7 +27,7 @@ SIDES: Mapping[str, tuple[str, str, str]] = {
     "ja": ("左", "右", "両手"),
     "zh": ("左", "右", "双手"),
 }
-TO = ("to", "2", "from to", "trans", "To only", "arrow")
+TO = ("to", "2", "from to", "trans", "To only", "arrow", "glued")
 Order = Literal["stance first", "action first", "action only"]
 
 
@@ -37,7 +37,9 @@ class Grammar:
 
     prefix: before every name, as it is. language: a column of the words. style: one of STYLES. side: a key of
     SIDES. order: whether and where clips say their stance; the clips of the first stance say none where
-    `silent`. numbered: stances by number after a word ("Idle" -> Idle01), or "" by what they are. together:
+    `silent`. numbered: stances by number after a word ("Idle" -> Idle01), by letter where it ends with `@`
+    ("Sit_@" -> Sit_A), by posture and number where it holds `{}` ("Idle{}" -> IdleSitBack01), or "" by what
+    they are. together:
     stance and action joined without a separator but `_` between (IdleSeated01_ShrugLf01). to: one of TO.
     loop: what the name of a stance's loop ends with. take: "", "1", "01", "001" or "(1)". opaque: names that
     tell nothing, `{}` the number.
@@ -97,6 +99,13 @@ class Namer:
         if not self.how.numbered:
             return self._told(self.words[key])
         number = self.stances.index(key) + 1
+        if self.how.numbered.endswith("@"):
+            return self.how.numbered[:-1] + "ABCDEFGHIJKLMNOP"[number - 1]
+        if "{}" in self.how.numbered:
+            postures = {k: [w for w in keys.split() if len(w) > 1] for k, keys in self.words.items()}
+            alike = [k for k in self.stances if postures[k] == postures[key]]
+            posture = joined([self._told(" ".join(postures[key]))], "camel")
+            return f"{self.how.numbered.replace('{}', posture)}{alike.index(key) + 1:02d}"
         digits = f"{number:02d}" if len(self.how.take) != 1 else str(number)
         return f"{self.how.numbered}{digits}"
 
@@ -147,6 +156,8 @@ class Namer:
             return f"{joined([a], 'camel')}_To{joined([b], 'camel')}"
         if how.to == "2":
             return self._text([a]) + "2" + self._text([b])
+        if how.to == "glued":
+            return self._text([a]) + "to" + self._text([b])
         if how.to == "arrow":
             return f"{self._text([a])}-{self._text([b])}"
         to = {"de": "zu", "fr": "vers", "es": "a", "it": "a", "pt": "para", "ja": "から", "zh": "到"}

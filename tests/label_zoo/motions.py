@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import numpy as np
 
@@ -44,7 +44,7 @@ def recorded(clip: Clip, how: Recording, draw: np.random.Generator, loop: bool =
     """
     turns, root = clip.rotations.astype(np.float64), clip.root.astype(np.float64)
     if how.mirrored:
-        turned = mirror(clip, pairs_of(skeleton()))
+        turned = mirror(clip, _pairs())
         turns, root = turned.rotations.astype(np.float64), turned.root.astype(np.float64)
     if how.sizes != (1.0, 1.0) and not loop:
         turns, root = _sized(turns, root, float(draw.uniform(*how.sizes)))
@@ -61,6 +61,11 @@ def recorded(clip: Clip, how: Recording, draw: np.random.Generator, loop: bool =
         first, last = (int(x) for x in draw.integers(0, how.trim + 1, 2))
         out = out.trimmed(first, out.frames - last) if out.frames > 20 + first + last else out
     return _sampled(out, how.fps, how.warp, draw)
+
+
+@cache
+def _pairs() -> tuple[int, ...]:
+    return pairs_of(skeleton())
 
 
 def with_bind(clip: Clip, how: Recording) -> Clip:

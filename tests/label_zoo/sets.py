@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from metagraph.formats.bvh import write_bvh
 from metagraph.formats.gltf_writer import write_glb
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -102,14 +104,20 @@ class MadeSet:
         """How many clips of each kind there are."""
         return Counter(row["kind"] or "none" for row in self.truth.values())
 
-    def write(self, folder: Path) -> list[Path]:
-        """Write each clip into a GLB of its name, where a name cannot be a file's with `_` in it."""
+    def write(self, folder: Path, bvh: bool = False) -> list[Path]:
+        """Write each clip into a GLB of its name, or a BVH in centimetres; with `_` where a file's name
+        cannot be.
+        """
         folder.mkdir(parents=True, exist_ok=True)
         out = []
         for entry in self.project.clips.values():
             assert entry.motion is not None
-            out.append(folder / f"{entry.name.replace('/', '_')}.glb")
-            write_glb(out[-1], [entry.motion])
+            name = re.sub(r'[/\\:*?"<>|]', "_", entry.name)
+            out.append(folder / f"{name}{'.bvh' if bvh else '.glb'}")
+            if bvh:
+                write_bvh(entry.motion, out[-1])
+            else:
+                write_glb(out[-1], [entry.motion])
         return out
 
 

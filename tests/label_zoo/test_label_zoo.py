@@ -280,9 +280,15 @@ def test_mirroring_swaps_the_hands_and_the_sides_of_stances() -> None:
             Grammar(language="fr", side="none", accents=False),
             ("assis", "assis_hausser_les_epaules_01", "assis_vers_bras_croises"),
         ),
+        (
+            Grammar("Hero|", style="camel", numbered="Idle{}", together=True),
+            ("Hero|IdleSit01", "Hero|IdleSit01_ShrugBt01", "Hero|IdleSit01_ToIdleArmsCrossed01"),
+        ),
+        (Grammar(style="Snake", numbered="Sit_@", take="1"), ("Sit_A", "Sit_A_Shrug_Bt_1", "Sit_A_To_Sit_B")),
+        (Grammar(style="camel", to="glued"), ("Sit", "SitShrugBt01", "SittoArmsCrossed")),
         (Grammar(language="zh", side="none", take=""), ("坐姿", "坐姿_耸肩", "坐姿_到_抱胸")),
     ],
-    ids=lambda x: x.prefix or x.language if isinstance(x, Grammar) else "",
+    ids=lambda x: x.prefix or x.numbered or x.to + x.language if isinstance(x, Grammar) else "",
 )  # fmt: skip
 def test_names_follow_their_grammar(how: Grammar, names: tuple[str, str, str]) -> None:
     namer = Namer(how, {"0": "sit", "1": "arms_crossed"}, np.random.default_rng(0))
@@ -317,10 +323,11 @@ def test_bind_keys_that_reading_leaves_there_stay() -> None:
     )
 
 
-def test_a_set_that_is_written_is_read_as_it_was(tmp_path: Path) -> None:
+@pytest.mark.parametrize("bvh", [False, True], ids=["glb", "bvh"])
+def test_a_set_that_is_written_is_read_as_it_was(tmp_path: Path, bvh: bool) -> None:
     recipe = Recipe(wholes=STANDING[:2], clips=2, grammar=Grammar("ChrX@", language="ja", side="ja"))
     made = make("written", recipe, 0)
-    made.write(tmp_path / "set")
+    made.write(tmp_path / "set", bvh)
     read = import_files(Project(), None, gather([tmp_path / "set"])).into(Project())
     assert {e.name for e in read.clips.values()} == set(made.truth)
     before = {e.name: e.motion for e in made.project.clips.values()}
