@@ -1,19 +1,26 @@
-"""How often labels are proposed rightly: python tests/benchmarks/bench_labels.py
+"""How often labels are proposed rightly: python tests/benchmarks/bench_labels.py [--zoo N] [--json FILE]
 
-With names and motion, with names alone and with names hidden, on the sample clips and on labelled sets made
-by others, by field. A stance counts as right where most clips proposed for it are of that stance. Then with
-wrong names: a fifth of the clips swap names with clips of another kind, stance or layer, by five seeds; how
-many of those are flagged, and how many of the others. Prints the tables of docs/labels.md.
+On the sample clips, on labelled sets made by others, and on sets made from the sample clips
+(`tests.label_zoo`), each left out of whatever is learned from the others: with names and motion, with names
+alone and with names hidden, by field. A stance counts as right where most clips proposed for it are of that
+stance; "all" are clips all of whose kind, layer, stance and end stance are right; "none" those that are none
+of the four kinds and are told so. Then: whether what is wrong is flagged for a look, how often what is said
+with what confidence is right, how much is right after a person's first looks, and what happens with wrong
+names. "seen" are sets that whoever wrote the product looked at. Prints the tables of docs/labels.md.
 """
 
 from __future__ import annotations
 
+import argparse
+import importlib
 import json
 import random
 import sys
-from collections import Counter, defaultdict
-from collections.abc import Mapping, Sequence
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import chain, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -22,18 +29,50 @@ sys.path.insert(0, str(ROOT))
 
 from metagraph.formats.imports import gather, import_files  # noqa: E402
 from metagraph.graph.model import Project  # noqa: E402
-from metagraph.suggest.propose import Proposals, accept, propose  # noqa: E402
+from metagraph.suggest.propose import propose  # noqa: E402
+from tests.label_zoo import catalogue  # noqa: E402
+from tests.label_zoo.measure import (  # noqa: E402
+    BINS,
+    CAUSES,
+    FIELDS,
+    LabelSet,
+    Proposer,
+    Tally,
+    looked,
+    measured,
+    others,
+)
 
 TRUTH = ROOT / "tests" / "suggest" / "truth"
-FIELDS = ("kind", "stance", "end_stance", "layer", "limb")
 WAYS = {"names and motion": ("name", "motion"), "names alone": ("name",), "names hidden": ("motion",)}
+WHOLE = "names and motion"
+LOOKS = (0, 5, 10, 20)
 SEEDS = 5
 UNSURE = 0.7  # below this somebody looks at it anyway
-SETS = ("sample_clips", "kaykit-rogue", "robot-expressive", "sumerian-hosts", "bandai-namco-1", "fbx-pab")
+SPREAD = (  # of the zoo, where not all of it is measured on
+    "long limbs on mixamo",
+    "random axes, a turned rest",
+    "gestures that do not return",
+    "strewn over the floor",
+    "standing talker by number",
+    "numbers of unseen stances",
+    "arms tell the stances",
+    "sitting without legs",
+    "sitting, leaning, standing",
+    "close stances, unseen, recorded",
+    "one stance and exercises",
+    "codes before and takes behind",
+    "german names",
+    "chinese names",
+    "opaque takes",
+    "all at once",
+)
+# given the sets that may be learned from, a function as `propose`
+Trainer = Callable[[Sequence[LabelSet]], Proposer]
 
 
 def projects(name: str) -> list[Project]:
-    """Return a set's clips as projects, one for each skeleton."""
+    """Return a set's clips as projects, one for each skeleton; none where the set is not there."""
     folder = (
         ROOT / "sample_clips" / "clips" if name == "sample_clips" else ROOT.parent / "shared" / "data" / name
     )
@@ -49,26 +88,35 @@ def projects(name: str) -> list[Project]:
     return out
 
 
-def count(project: Project, truth: Mapping[str, Any], found: Proposals) -> tuple[Counter[str], Counter[str]]:
-    """Return by field how many were right, and how many there are."""
-    told = {clip.id: row for clip in project.clips.values() if (row := truth.get(clip.name)) is not None}
-    meant: dict[str, Counter[str]] = defaultdict(Counter)
-    for ident, row in told.items():
-        p = found.proposals.get(ident)
-        if p is not None and p.stance is not None and row["stance"] is not None:
-            meant[p.stance.value][row["stance"]] += 1
-    best = {key: votes.most_common(1)[0][0] for key, votes in meant.items()}
-    right, there = Counter[str](), Counter[str]()
-    for ident, row in told.items():
-        p = found.proposals.get(ident)
-        for field in FIELDS:
-            if row.get(field) is None:
-                continue
-            there[field] += 1
-            belief = getattr(p, field) if p is not None else None
-            value = belief.value if belief is not None else None
-            right[field] += (best.get(str(value)) if "stance" in field else value) == row[field]
-    return right, there
+def real_sets() -> Iterator[LabelSet]:
+    """Load the sets that somebody made by hand and that are labelled."""
+    for path in sorted(TRUTH.glob("*.json"), key=lambda p: (p.stem != "sample_clips", p.stem)):
+        data = json.loads(path.read_text("utf-8"))
+        if found := projects(path.stem):
+            yield LabelSet(path.stem, found, data["clips"], bool(data["looked_at"]))
+
+
+def zoo_sets(count: int | None, seed: int = 0) -> Iterator[LabelSet]:
+    """Make sets: SPREAD when None, else so many, the named ones first."""
+    names = SPREAD if count is None else tuple(catalogue.RECIPES)[:count]
+    drawn = 0 if count is None else count - len(names)
+    for made in chain(catalogue.named_sets(names), catalogue.made_sets(drawn, seed)):
+        what = ("zoo", *made.what)
+        yield LabelSet(made.name, [made.project], made.truth, False, made.made_from, what)
+
+
+def measure(one: LabelSet, propose_: Proposer = propose, looks: bool = True) -> dict[str, Any]:
+    """Return a set's tallies by way, and its looks."""
+    ways = {}
+    for way, sources in WAYS.items():
+        ways[way] = Tally()
+        for project in one.projects:
+            ways[way] += measured(project, one.truth, propose_(project, sources=sources))
+    after: dict[int, Counter[str]] = {n: Counter() for n in LOOKS}
+    for project in one.projects if looks else ():
+        for n, state in looked(project, one.truth, LOOKS, propose_).items():
+            after[n].update(state)
+    return {"ways": ways, "looks": after}
 
 
 def swapped(project: Project, truth: Mapping[str, Any], seed: int) -> tuple[Project, set[str]]:
@@ -100,7 +148,7 @@ def swapped(project: Project, truth: Mapping[str, Any], seed: int) -> tuple[Proj
     return replace(project, clips=clips), lying
 
 
-def flagged(project: Project, truth: Mapping[str, Any]) -> Counter[str]:
+def flagged(project: Project, truth: Mapping[str, Any], propose_: Proposer = propose) -> Counter[str]:
     """Return how many clips with wrong and with right names there were, with a conflict told, and unsure (or
     with one).
     """
@@ -109,7 +157,7 @@ def flagged(project: Project, truth: Mapping[str, Any]) -> Counter[str]:
         wrong, lying = swapped(project, truth, seed)
         if not lying:
             continue
-        found = propose(wrong, sources=("name", "motion"))
+        found = propose_(wrong, sources=("name", "motion"))
         for ident, clip in project.clips.items():
             if (truth.get(clip.name) or {}).get("kind") is None:
                 continue
@@ -121,40 +169,164 @@ def flagged(project: Project, truth: Mapping[str, Any]) -> Counter[str]:
     return out
 
 
-def main() -> None:
-    lies: list[str] = []
-    rows: dict[str, list[str]] = {way: [] for way in WAYS}
-    for name in SETS:
-        data = json.loads((TRUTH / f"{name}.json").read_text("utf-8"))
-        known: Sequence[Project] = projects(name)
-        tally: Counter[str] = sum((flagged(project, data["clips"]) for project in known), Counter())
+# -- tables
+# --------------------------------------------------------------------------------------------------
+
+
+def share(part: float, whole: float) -> str:
+    return f"{part / whole:.2f}" if whole else "–"
+
+
+def fraction(part: float, whole: float) -> str:
+    return f"{part:.0f}/{whole:.0f}" if whole else "–"
+
+
+def table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], before: str = "") -> None:
+    print(f"\n### {title}\n")
+    if before:
+        print(f"{before}\n")
+    print("\n".join(f"| {' | '.join(row)} |" for row in (columns, ["---"] * len(columns), *rows)))
+
+
+def groups(results: Sequence[tuple[LabelSet, dict[str, Any]]]) -> dict[str, dict[str, Any]]:
+    """Return results by what the tables have a row for: each set that was not made, and the made ones by
+    their troubles.
+    """
+    out: dict[str, dict[str, Any]] = {}
+    counts = Counter[str]()
+    for one, result in results:
+        for name in one.what or (f"{one.name}{' (seen)' if one.seen else ''}",):
+            name = f"zoo: {name}" if one.what and name != "zoo" else name
+            counts[name] += 1
+            mine = out.setdefault(name, {"ways": {}, "looks": {n: Counter() for n in LOOKS}})
+            for way, tally in result["ways"].items():
+                mine["ways"].setdefault(way, Tally()).__iadd__(tally)
+            for n, state in result["looks"].items():
+                mine["looks"][n].update(state)
+    order = sorted(out, key=lambda name: (name.startswith("zoo"), name != "zoo", name))
+    real = [name for name in order if not name.startswith("zoo")]
+    named = {name: f"{name}, {counts[name]} sets" if name.startswith("zoo") else name for name in order}
+    return {named[name]: out[name] for name in [*real, *(n for n in order if n.startswith("zoo"))]}
+
+
+def show(rows: Mapping[str, Mapping[str, Any]]) -> None:
+    """Print the tables of what was measured."""
+    fields = (*FIELDS, "clip", "none")
+    heads = [f.replace("_", " ").replace("clip", "all") for f in fields]
+    for way in WAYS:
+        lines = []
+        for name, result in rows.items():
+            tally: Tally = result["ways"][way]
+            cells = [fraction(tally.right[f], tally.there[f]) for f in fields]
+            lines.append([name, *cells, fraction(tally.placed, tally.clips)])
+        table(f"With {way}", ["set", *heads, "placed"], lines)
+    lines = []
+    for name, result in rows.items():
+        f = result["ways"][WHOLE].flags
+        cells = [fraction(f["flagged"], f["clips"]), fraction(f["wrong"], f["clips"])]
+        cells += [share(f["both"], f["flagged"]), share(f["both"], f["wrong"])]
+        lines.append([name, *cells, *(fraction(f[f"{c} wrong"], f[c]) for c in CAUSES)])
+    columns = ["set", "flagged", "wrong", "precision", "recall", *(f"wrong of {c}" for c in CAUSES)]
+    table("What needs a look", columns, lines, "Flags against what is wrong, with names and motion.")
+    bins = [f"{a:.2f}–{min(b, 1):.2f}" for a, b in pairwise(BINS)]
+    for kind in ("made by others", "zoo"):
+        whole = {way: Tally() for way in WAYS}
+        for name, result in rows.items():
+            if (name.split(",")[0] == "zoo") if kind == "zoo" else not name.startswith("zoo"):
+                for way in WAYS:
+                    whole[way] += result["ways"][way]
+        lines = []
+        for way in (WHOLE, "names hidden"):
+            for name in ("kind", "layer", "stance", "end_stance", "limb", "clip"):
+                if name in whole[way].sure:
+                    cells = [
+                        f"{share(r, n)} of {n} (said {share(said, n)})" if n else "–"
+                        for n, r, said in whole[way].sure[name]
+                    ]
+                    lines.append(
+                        [f"{name.replace('_', ' ')}, {way}", *cells, f"{whole[way].calibration(name):.3f}"]
+                    )
+        if lines:
+            table(f"How often what is said is right, {kind}", ["said", *bins, "off by"], lines)
+    lines = []
+    for name, result in rows.items():
+        if result["looks"][0]["all"]:
+            states = [result["looks"][n] for n in LOOKS]
+            cells = [
+                f"{share(s['rest right'], s['rest'])} ({share(s['all right'], s['all'])}; {s['told']} told)"
+                for s in states
+            ]
+            lines.append([name, *cells])
+    if lines:
+        heads = ["set", *(f"{n} looks" for n in LOOKS)]
+        table("After looks", heads, lines, "Right of the rest (of all; fields corrected).")
+
+
+def show_wrong_names(sets: Sequence[tuple[LabelSet, Counter[str]]]) -> None:
+    lines = []
+    for one, tally in sets:
         if tally["wrong"]:
-            cells = " | ".join(
+            cells = [
                 f"{tally[f'{w} {f}']}/{tally[w]} ({tally[f'{w} {f}'] / max(tally[w], 1):.0%})"
                 for w in ("wrong", "right")
                 for f in ("told", "unsure")
-            )
-            lies.append(f"| {name} | {cells} |")
-        for way, sources in WAYS.items():
-            right, there = Counter[str](), Counter[str]()
-            placed = clips = 0
-            for project in known:
-                found = propose(project, sources=sources)  # type: ignore[arg-type]
-                good, every = count(project, data["clips"], found)
-                right, there = right + good, there + every
-                placed, clips = placed + len(accept(project, found).placed), clips + len(project.clips)
-            if clips:
-                cells = " | ".join(f"{right[f]}/{there[f]}" if there[f] else "–" for f in FIELDS)
-                rows[way].append(f"| {name} | {cells} | {placed}/{clips} |")
-    for way, lines in rows.items():
-        print(
-            f"\n### With {way}\n\n| set | kind | stance | end stance | layer | limb | placed "
-            "|\n|---|---|---|---|---|---|---|"
-        )
-        print("\n".join(lines))
+            ]
+            lines.append([one.name, *cells])
     columns = ("set", "wrong: told", "wrong: told or unsure", "right: told", "right: told or unsure")
-    print(f"\n### With wrong names\n\n| {' | '.join(columns)} |\n|---|---|---|---|---|")
-    print("\n".join(lies))
+    table("With wrong names", columns, lines)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="How often labels are proposed rightly.")
+    parser.add_argument("--zoo", type=int, metavar="N", help="made sets to measure on; else a spread of 16")
+    parser.add_argument("--seed", type=int, default=0, help="of the made sets that are drawn")
+    parser.add_argument("--only", nargs="*", metavar="SET", help="measure on these sets alone")
+    parser.add_argument("--quick", action="store_true", help="without looks and without wrong names")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write all that was measured here")
+    parser.add_argument(
+        "--trainer",
+        metavar="MODULE:FUNCTION",
+        help="learns from the sets it is given and returns a function as `propose`; no set is measured with "
+        "what learned from it, from one made of it, or from what it is made of",
+    )
+    parser.add_argument("--siblings", action="store_true", help="made sets may learn from other made sets")
+    options = parser.parse_args()
+    began = time.perf_counter()
+    trainer: Trainer | None = None
+    if options.trainer:
+        module, _, function = options.trainer.partition(":")
+        trainer = getattr(importlib.import_module(module), function)
+    stream = chain(real_sets(), zoo_sets(options.zoo, options.seed))
+    every = list(stream) if trainer is not None else stream
+    results: list[tuple[LabelSet, dict[str, Any]]] = []
+    wrong: list[tuple[LabelSet, Counter[str]]] = []
+    for one in every:
+        if options.only and one.name not in options.only:
+            continue
+        proposer = trainer(others(every, one, options.siblings)) if trainer is not None else propose
+        result = measure(one, proposer, not options.quick)
+        if not one.what and not options.quick:
+            tallies = (flagged(project, one.truth, proposer) for project in one.projects)
+            wrong.append((one, sum(tallies, Counter[str]())))
+        kept = one if trainer is not None else replace(one, projects=())  # nothing keeps the motions
+        results.append((kept, result))
+        print(f"{time.perf_counter() - began:6.1f} s  {one.name}", file=sys.stderr)
+    show(groups(results))
+    if wrong:
+        show_wrong_names(wrong)
+    if options.json:
+        data = {
+            one.name: {
+                "seen": one.seen,
+                "made_from": one.made_from,
+                "what": one.what,
+                "ways": {way: tally.to_json() for way, tally in result["ways"].items()},
+                "looks": {str(n): dict(state) for n, state in result["looks"].items()},
+            }
+            for one, result in results
+        }
+        names = {one.name: dict(tally) for one, tally in wrong}
+        options.json.write_text(json.dumps({"sets": data, "wrong names": names}, indent=1), "utf-8")
 
 
 if __name__ == "__main__":
