@@ -19,6 +19,7 @@ TYPICAL: Mapping[Layer, float] = {
 HELD = 1.0  # seconds in which nothing moves, from which on that is a pose to stand in
 FLOWING = 0.2  # of its greatest speed that a clip has at its ends, from which on it is a loop that flows
 STRIDE = 0.05  # heights that each foot comes before the other in a walk, at least
+BREATHES = 0.008  # heights a second that arms move which hang on a chest that breathes, while the head moves
 # how often a guess from motion is right at most: it alone cannot tell a small gesture from a large fidget
 SUREST = 0.95
 
@@ -68,8 +69,9 @@ def walks(traits: Traits) -> bool:
 def layer_of(traits: Traits) -> Belief[Layer]:
     """Return which layer a clip moves: the body where hips or legs do, else the arms, else the head."""
     e, layers = traits.energy, traits.layers
-    arms = e["left_arm"] + e["right_arm"] + e["fingers"]
     lower, upper = e["hips"] + e["legs"], e["head"] + e["trunk"]
+    breath = BREATHES if upper > 3 * BREATHES else 0.0
+    arms = max(0.0, e["left_arm"] + e["right_arm"] - breath) + e["fingers"]
     have = [layer for layer in ("body", "arms", "head") if layers[layer].names]
     if have == ["body"]:
         return Belief("body", SUREST, "the character has neither arms nor a head that are known")

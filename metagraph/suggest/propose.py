@@ -17,6 +17,7 @@ import numpy as np
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Action, Layer, Limb, Project
 from metagraph.suggest.accept import Taken, accept
 from metagraph.suggest.alike import Alike, Example
+from metagraph.suggest.clip_measures import layer_of
 from metagraph.suggest.details import masked, rest_of, stroked, timed, weighted
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.left_aside import left_aside
@@ -24,7 +25,7 @@ from metagraph.suggest.motion_guess import guess
 from metagraph.suggest.name_words import NameGuess, Patterns, read_names
 from metagraph.suggest.places import Heard, Places
 from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, plain, words_of
-from metagraph.suggest.stances import Shape, discover, discovered, known
+from metagraph.suggest.stances import Shape, discover, discovered, known, parted
 from metagraph.suggest.traits import Traits, traits_of
 from metagraph.suggest.vote_fusion import Agreed, combine
 from metagraph.suggest.whole_body import CARRIER, carried, recorded_whole, whole_of
@@ -46,6 +47,7 @@ __all__ = [
 
 Source = Literal["name", "motion", "learned"]
 SOURCES: tuple[Source, ...] = ("name", "motion", "learned")
+TOLD = 0.7  # of how sure a name is of its stance, below which it does not say what stances there are
 LENT = 0.5  # of a clip that a stance plays, below which it only borrows a moment of it
 
 
@@ -118,10 +120,15 @@ def propose(
     names = read_names([project.clips[c].name for c in chosen], patterns) if "name" in sources else {}
     moving = "motion" in sources
     mine = {c: traits[c] for c in chosen if c in traits}
-    whole = moving and (
-        carried(project) or (not any(True for _ in project.actions()) and recorded_whole(mine))
-    )
-    shapes = _shapes(project, traits, mine, whole) if moving else {}
+    called = {c: names.get(project.clips[c].name, NameGuess()) for c in mine}
+    begun = {
+        c: said.stance.value
+        for c, said in called.items()
+        if said.stance is not None and said.stance.confidence >= TOLD
+    }
+    fresh = not any(True for _ in project.actions())
+    whole = moving and (carried(project) or (fresh and recorded_whole(mine, begun)))
+    shapes = _shapes(project, traits, mine, whole, called) if moving else {}
     alike = Alike([*examples_of(project, traits), *examples]) if "learned" in sources else Alike([])
     heard, aside = list[Heard](), dict[str, str]()
     for c in chosen:
@@ -157,17 +164,46 @@ def propose(
 
 
 def _shapes(
-    project: Project, traits: Mapping[str, Traits], mine: Mapping[str, Traits], whole: bool
+    project: Project,
+    traits: Mapping[str, Traits],
+    mine: Mapping[str, Traits],
+    whole: bool,
+    called: Mapping[str, NameGuess],
 ) -> Mapping[Layer, Sequence[Shape]]:
-    """Return the stances of each layer as the project's clips show them, else those found among `mine`."""
+    """Return the stances of each layer as the project's clips show them, else those found among `mine`,
+    parted where names and poses part alike.
+    """
     if whole:
         every = {c: whole_of(t) if t.face == 0 else t for c, t in traits.items()}
         there = known(project, every)
         found = discovered({c: t for c, t in mine.items() if t.face > 0})
         found[CARRIER] = discover({c: every[c] for c in mine}, CARRIER, together=True)
     else:
+        every = dict(traits)
         there, found = known(project, traits), discovered(mine)
+    for layer, shapes in found.items():
+        if shapes:
+            found[layer] = parted(shapes, _ends({c: every[c] for c in mine}, layer, called, whole))
     return {layer: there.get(layer) or found.get(layer, ()) for layer in LAYERS}
+
+
+def _ends(
+    traits: Mapping[str, Traits], layer: Layer, called: Mapping[str, NameGuess], whole: bool
+) -> list[tuple[str, float, Any, str]]:
+    """Return the ends of a layer's clips that names speak of."""
+    out = []
+    for clip, t in traits.items():
+        said, x = called[clip], t.layers[layer]
+        if not whole and layer_of(t).value != layer:
+            continue
+        kind = said.kind.value if said.kind is not None else None
+        if said.stance is not None:
+            out.append((clip, 0.0, x.first, said.stance.value))
+            if kind in ("gesture", "fidget"):
+                out.append((clip, t.duration, x.last, said.stance.value))
+        if said.end_stance is not None:
+            out.append((clip, t.duration, x.last, said.end_stance.value))
+    return out
 
 
 def _layer_of(each: Heard) -> Agreed[Layer] | None:

@@ -7,7 +7,7 @@ next step is the widest; a group that several clips share, or that a resting cli
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
 
@@ -238,6 +238,56 @@ def discover(traits: Mapping[str, Traits], layer: Layer, together: bool = False)
             Shape("", clip, layer, names, poses_of, tuple(members), clip, at, confidence, calm, spread)
         )
     return tuple(sorted(shapes, key=lambda s: (-len(s.members), s.clip)))
+
+
+Ends = Sequence[tuple[str, float, Array, str]]  # clip, second, pose there, and what its name says of it
+
+
+def parted(shapes: Sequence[Shape], ends: Ends) -> tuple[Shape, ...]:
+    """Return discovered stances, those parted in which clips of different words have different poses: "idle
+    1" and "idle 2" that stand close by. ends: first and last poses that names speak of.
+    """
+    out: list[Shape] = []
+    mine: dict[int, dict[str, list[tuple[str, float, Array]]]] = {id(shape): {} for shape in shapes}
+    for clip, at, pose, word in ends:
+        found = likely(shapes, shapes[0].names, pose) if len(pose) == len(shapes[0].names) else []
+        if found and found[0][0] > 0.5:
+            mine[id(found[0][1])].setdefault(word, []).append((clip, at, pose))
+    for shape in shapes:
+        weights = _weights(shape.names)
+        parts: list[tuple[Array, float, list[tuple[str, float, Array]]]] = []
+        for some in mine[id(shape)].values():
+            poses = np.array([pose for *_, pose in some])
+            middle = np.median(poses, axis=0)
+            spread = float(np.median((np.linalg.norm(poses - middle, axis=-1) * weights).max(-1)))
+            spread /= len(some) ** 0.5  # how far off the middle itself may be
+            if len(some) >= 2:
+                parts.append((middle, spread, some))
+        apart = len(parts) > 1 and all(
+            (np.linalg.norm(one[0] - other[0], axis=-1) * weights).max()
+            > max(NEAR[shape.layer], 3 * max(one[1], other[1]))
+            for n, one in enumerate(parts)
+            for other in parts[:n]
+        )
+        if not apart:
+            out.append(shape)
+            continue
+        for middle, _, some in parts:
+            poses = np.array([pose for *_, pose in some])
+            best = min(some, key=lambda x: (float(np.linalg.norm(x[2] - middle)), x[0]))
+            members = tuple(dict.fromkeys(clip for clip, *_ in some))
+            out.append(
+                replace(
+                    shape,
+                    name=best[0],
+                    poses=middle[None],
+                    members=members,
+                    clip=best[0],
+                    at=best[1],
+                    spread=np.median(np.linalg.norm(poses - middle, axis=-1), axis=0),
+                )
+            )
+    return tuple(out)
 
 
 def _far(x: LayerTraits, pose: str, middle: Array, names: tuple[str, ...]) -> float:

@@ -8,6 +8,7 @@ them as they were recorded.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -18,7 +19,7 @@ from numpy.typing import NDArray
 from metagraph.graph.model import Project
 from metagraph.graph.words import LAYERS, Layer
 from metagraph.suggest.body_points import NAMES
-from metagraph.suggest.clip_measures import TYPICAL, nothing
+from metagraph.suggest.clip_measures import TYPICAL, layer_of, nothing
 from metagraph.suggest.stances import Shape, discover, likely
 from metagraph.suggest.traits import LayerTraits, Traits
 
@@ -27,9 +28,13 @@ Array = NDArray[Any]
 CARRIER: Layer = "arms"  # the layer that moves the whole body where all of it was recorded together
 # How much farther than the carrier's points another layer's count: another stance of the trunk is smaller
 SCALE: Mapping[Layer, float] = {layer: TYPICAL[CARRIER] / TYPICAL[layer] for layer in LAYERS}
-TOGETHER = 0.5  # of the stances beside the most used one that differ in several layers, from which on all do
+# Of the clips that stay in another stance than the most used one, the share whose stance differs in a layer
+# that they do not move: arms that gesture while the weight is on the other leg, a nod with crossed arms
+TOGETHER = 0.3
+FEW = 3  # clips of one stance, from which on its name tells what is done in it
+MIXED = 0.2  # of those clips that move another layer than most of their stance
 SETTLED = 0.4  # of all clips that begin and end in a stance, below which there are no stances to speak of
-APART: Mapping[Layer, float] = {"arms": 0.012, "head": 0.006, "body": 0.006}  # heights; less is the same pose
+APART: Mapping[Layer, float] = {"arms": 0.02, "head": 0.012, "body": 0.01}  # heights; less is the same pose
 WIDER = 4.0  # times the spread of its clips' ends that a stance of a layer is away at least
 
 
@@ -71,33 +76,48 @@ def whole_of(traits: Traits) -> Traits:
     return replace(traits, layers={**traits.layers, CARRIER: whole})
 
 
-def recorded_whole(traits: Mapping[str, Traits]) -> bool:
-    """Return whether stances of several layers change together in these clips: whole-body recordings.
+def recorded_whole(traits: Mapping[str, Traits], named: Mapping[str, str] | None = None) -> bool:
+    """Return whether these clips are recordings of the whole body, made in several stances. named: clip ->
+    the stance its name begins with.
 
-    Clips of single layers keep the others where they are; of whole-body takes hardly one does.
+    A clip of a single layer leaves the others where they always are; in takes of the whole body arms gesture
+    in every stance the legs have, and one stance's name stands before what arms, head and legs do.
     """
+    return _named_whole(traits, named or {}) or _seen_whole(traits)
+
+
+def _named_whole(traits: Mapping[str, Traits], named: Mapping[str, str]) -> bool:
+    groups: dict[str, list[Layer]] = {}
+    for clip, word in named.items():
+        if clip in traits and traits[clip].face == 0 and not nothing(traits[clip]):
+            groups.setdefault(word, []).append(layer_of(traits[clip]).value)
+    several = [layers for layers in groups.values() if len(layers) >= FEW]
+    mixed = sum(len(layers) - max(Counter(layers).values()) for layers in several)
+    return len(several) > 1 and mixed > MIXED * sum(map(len, several))
+
+
+def _seen_whole(traits: Mapping[str, Traits]) -> bool:
     moving = {
         clip: whole_of(t)
         for clip, t in traits.items()
         if t.face == 0 and not nothing(t) and all(t.layers[layer].names for layer in ("arms", "body"))
     }
     shapes = discover(moving, CARRIER, together=True)
-    held = {id(shape): 0.0 for shape in shapes}
-    for t in moving.values():
+    held: list[tuple[Shape, Layer]] = []  # of clips that stay in a stance, it and the layer they move
+    settled = 0.0
+    for clip, t in moving.items():
         x = t.layers[CARRIER]
         begins, ends = (likely(shapes, x.names, pose) for pose in (x.first, x.last))
         if begins and ends and min(begins[0][0], ends[0][0]) > 0.5:
-            held[id(begins[0][1])] += 0.5
-            held[id(ends[0][1])] += 0.5
-    if len(shapes) < 2 or sum(held.values()) < SETTLED * len(moving):
+            settled += 1
+            if begins[0][1] is ends[0][1]:
+                held.append((begins[0][1], layer_of(traits[clip]).value))
+    if len(shapes) < 2 or settled < SETTLED * len(moving):
         return False  # cut from longer takes, or poses to look at: nobody stands anywhere
     first = shapes[0]
-    weight = several = 0.0
-    for shape in shapes[1:]:
-        apart = {layer for layer in LAYERS if _apart(first, shape, layer)}
-        weight += held[id(shape)]
-        several += held[id(shape)] * ({"arms", "body"} <= apart)
-    return weight >= 1 and several >= TOGETHER * weight
+    apart = {id(shape): {x for x in LAYERS if _apart(first, shape, x)} for shape in shapes[1:]}
+    away = [(apart[id(shape)], layer) for shape, layer in held if shape is not first]
+    return sum(1 for differ, layer in away if differ - {layer}) > TOGETHER * len(away)
 
 
 def _apart(one: Shape, other: Shape, layer: Layer) -> bool:

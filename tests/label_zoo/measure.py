@@ -13,6 +13,7 @@ from metagraph.suggest.memory import Memory
 from metagraph.suggest.proposal import Proposal, Proposals, plain
 from metagraph.suggest.propose import SOURCES, accept, propose, waiting
 from metagraph.suggest.review import Review
+from metagraph.suggest.whole_body import CARRIER
 
 FIELDS = ("kind", "stance", "end_stance", "layer", "limb")
 DECIDING = ("kind", "layer", "stance", "end_stance")  # where a clip goes: what makes it right or wrong
@@ -131,8 +132,12 @@ def meanings(project: Project, truth: Truth, found: Proposals) -> dict[str, str]
     return {key: some.most_common(1)[0][0] for key, some in votes.items()}
 
 
-def verdict(p: Proposal | None, row: Mapping[str, Any], meant: Mapping[str, str]) -> dict[str, bool]:
-    """Return for each field the truth speaks of whether the proposal is right."""
+def verdict(
+    p: Proposal | None, row: Mapping[str, Any], meant: Mapping[str, str], whole: bool = False
+) -> dict[str, bool]:
+    """Return for each field the truth speaks of whether the proposal is right. whole: one layer plays the
+    whole body, so that it is right for whatever a clip moves.
+    """
     out = {}
     for name in FIELDS:
         if row.get(name) is None:
@@ -140,14 +145,18 @@ def verdict(p: Proposal | None, row: Mapping[str, Any], meant: Mapping[str, str]
         belief = getattr(p, name) if p is not None else None
         value = belief.value if belief is not None else None
         out[name] = (meant.get(str(value)) if "stance" in name else value) == row[name]
+        if name == "layer" and whole and value == CARRIER:
+            out[name] = True
     return out
 
 
-def right_clip(p: Proposal | None, row: Mapping[str, Any], meant: Mapping[str, str]) -> bool:
+def right_clip(
+    p: Proposal | None, row: Mapping[str, Any], meant: Mapping[str, str], whole: bool = False
+) -> bool:
     """Whether all that decides where a clip goes is right, as far as the truth speaks of it."""
     if none_of_the_four(row):
         return said_none(p)
-    told = verdict(p, row, meant)
+    told = verdict(p, row, meant, whole)
     return all(told[name] for name in DECIDING if name in told)
 
 
@@ -160,14 +169,14 @@ def measured(project: Project, truth: Truth, found: Proposals) -> Tally:
         row, p = truth.get(entry.name), found.proposals.get(ident)
         if row is None:
             continue
-        right = right_clip(p, row, meant)
+        right = right_clip(p, row, meant, found.whole)
         if none_of_the_four(row):
             out.there["none"] += 1
             out.right["none"] += said_none(p)
         else:
             out.there["clip"] += 1
             out.right["clip"] += right
-        for name, good in verdict(p, row, meant).items():
+        for name, good in verdict(p, row, meant, found.whole).items():
             out.there[name] += 1
             out.right[name] += good
             if p is not None and (belief := getattr(p, name)) is not None:
