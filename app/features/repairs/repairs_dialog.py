@@ -22,12 +22,13 @@ from app.project.jobs import Job, Jobs
 from app.widgets.making import make_widget
 from app.widgets.tree_items import items_below, top_items
 from metagraph.formats.repairs import Repaired, Reread, repairs_of, reread
-from metagraph.formats.takes import BIND_POSE, NAME, ONE_FRAME, UNIT, UP
+from metagraph.formats.takes import BIND_POSE, LONE_FRAME, NAME, ONE_FRAME, UNIT, UP
 from metagraph.graph.edits import EditError
 
 PLACE = Qt.ItemDataRole.UserRole
 TITLES = {
-    BIND_POSE: "Drop a bind pose on the first frame",
+    BIND_POSE: "Drop bind poses at the ends",
+    LONE_FRAME: "Mend frames unlike both their neighbours",
     UNIT: "Find the unit of length",
     UP: "Turn from Z up to Y up",
     ONE_FRAME: "Skip takes of one frame",

@@ -67,7 +67,7 @@ def apply(drive, dialog):
 def test_an_import_tells_each_repair_and_one_is_left_out_in_one_step(drive, folder, dialog):
     assert dialog.headline.text() == "Imported 3 clips"
     groups = [dialog.tree.topLevelItem(n).text(0) for n in range(dialog.tree.topLevelItemCount())]
-    assert groups == ["Drop a bind pose on the first frame (2)", "Skip takes of one frame (1)"]
+    assert groups == ["Drop bind poses at the ends (2)", "Skip takes of one frame (1)"]
     assert not dialog.go.isEnabled()
     before = drive.document.project.clips["c1"].frames
     tick(dialog, "Drop", 0)
