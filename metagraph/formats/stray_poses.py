@@ -152,6 +152,11 @@ def stray_poses(clip: Clip, bound: Sequence[Pose] = ()) -> StrayPoses:
     return StrayPoses(first, last, lone)
 
 
+def is_bind_pose(clip: Clip) -> bool:
+    """Whether a clip's first frame is the rest pose, a T- or an A-pose."""
+    return bool(np.isfinite(_Take(clip, ()).factor(0)))
+
+
 def _leading(take: _Take, backwards: bool) -> int:
     """Return how many frames of a take's beginning, or its end, belong to a stray pose."""
     way = slice(None, None, -1 if backwards else 1)

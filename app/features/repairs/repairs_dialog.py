@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from pathlib import PurePath
 
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
@@ -31,7 +32,7 @@ TITLES = {
     LONE_FRAME: "Mend frames unlike both their neighbours",
     UNIT: "Find the unit of length",
     UP: "Turn from Z up to Y up",
-    ONE_FRAME: "Skip takes of one frame",
+    ONE_FRAME: "Skip bind poses of one frame",
     NAME: "Clean names",
 }
 TICKED, OPEN = Qt.CheckState.Checked, Qt.CheckState.Unchecked
@@ -102,9 +103,12 @@ class RepairsDialog(QDialog):
             font.setBold(True)
             top.setFont(0, font)
             for n in mine:
-                item = QTreeWidgetItem(top, [project.clips[found[n].clip].name, found[n].repair.words])
+                entry, repair = project.clips[found[n].clip], found[n].repair
+                # A skipped take is none of the clips; its words name it, its file is what it has.
+                whose = entry.name if repair.take is None else PurePath(entry.path).name
+                item = QTreeWidgetItem(top, [whose, repair.words])
                 item.setData(0, PLACE, n)
-                item.setToolTip(0, project.clips[found[n].clip].path)
+                item.setToolTip(0, entry.path)
                 item.setCheckState(0, TICKED if found[n].repair.made else OPEN)
             top.setExpanded(len(mine) <= 12)
         self.tree.blockSignals(False)
