@@ -69,10 +69,11 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         from metagraph.formats.gltf import read_gltf_clips
 
         takes = read_gltf_clips(path.parent / document.glb)
-    # Clips of one frame are passed over where a file has longer ones, so they do not count as takes.
+    # Clips of one frame are read behind the longer ones.
     longer = sorted(x.animation for x in document.clips if x.frames > 1) or [
         x.animation for x in document.clips
     ]
+    order = [*longer, *sorted({x.animation for x in document.clips}.difference(longer))]
     clips: dict[str, ClipEntry] = {}
     for n, clip in enumerate(document.clips):
         if clip.id in clips:
@@ -87,7 +88,7 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
             if motion is not None and motion.skeleton.names == skeleton.names
             else motion
         )
-        take = longer.index(clip.animation) if clip.animation in longer else len(longer) + n
+        take = order.index(clip.animation)
         clips[clip.id] = ClipEntry(
             clip.id, clip.name, document.glb, take, clip.sha256, clip.frames, clip.fps, motion
         )

@@ -18,7 +18,7 @@ from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.bvh_space import USUAL, stand, unit, z_up
 from metagraph.formats.gltf_skeleton import MOST_JOINTS
-from metagraph.formats.takes import UNIT, UP, repaired, without_bind_pose
+from metagraph.formats.takes import UNIT, UP, repaired, without_stray_poses
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip, Repair
 from metagraph.motion.roles import find_roles
@@ -442,7 +442,7 @@ def _clip(
     clip = Clip(path.stem, skeleton, fps, rotations, translations, tuple(moving), notes=tuple(notes))
     for repair in repairs:
         clip = repaired(clip, repair)
-    return without_bind_pose(clip, as_is)
+    return without_stray_poses(clip, as_is)
 
 
 def write_bvh(clip: Clip, path: str | Path) -> None:

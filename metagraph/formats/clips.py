@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from metagraph.errors import FileError
-from metagraph.formats.takes import ONE_FRAME, repaired
+from metagraph.formats.stray_poses import is_bind_pose
+from metagraph.formats.takes import NAME, ONE_FRAME, repaired
 from metagraph.motion.clip import Clip, ClipError, Repair
 
 SUFFIXES = (".bvh", ".glb", ".gltf", ".vrm", ".vrma", ".fbx")
@@ -35,12 +36,11 @@ class ImportReport:
 
 
 def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
-    """Return all takes of a file. Takes of one frame are skipped where others are longer, with a note on
-    those.
+    """Return all takes of a file, poses of one frame behind the others. A bind pose of one frame without a
+    name of its own is skipped where other takes are longer, with a note on those.
 
     The content decides what the file is, and must agree with its ending. as_is: repairs (`takes.REPAIRS`) not
-    to make; takes of one frame that are then not skipped stand behind the others, whose numbers stay. Raises
-    FileError.
+    to make; takes that are then not skipped stand behind the others, whose numbers stay. Raises FileError.
     """
     path = Path(path)
     suffix = path.suffix.lower()
@@ -79,21 +79,35 @@ def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
 
 
 def _without_junk(clips: list[Clip], as_is: Collection[str]) -> list[Clip]:
-    """Drop takes of a single frame beside longer ones: tools leave them behind."""
-    junk = [clip for clip in clips if clip.frames == 1]
-    if not junk or len(junk) == len(clips):
+    """Put poses of one frame behind the longer takes, and drop those that tools leave behind: bind poses
+    without a name of their own.
+    """
+    short = [clip for clip in clips if clip.frames == 1]
+    if not short or len(short) == len(clips):
         return clips
-    kept = [clip for clip in clips if clip.frames > 1]
+    junk = [clip for clip in short if _unnamed(clip) and is_bind_pose(clip)]
+    poses = [clip for clip in short if clip not in junk]
+    if poses:
+        told = f"{', '.join(repr(clip.name) for clip in poses)}: one frame only, a pose"
+        poses = [replace(clip, notes=(*clip.notes, told)) for clip in poses]
+    kept = [*(clip for clip in clips if clip.frames > 1), *poses]
+    if not junk:
+        return kept
     made = ONE_FRAME not in as_is
     skipped = tuple(
-        Repair(ONE_FRAME, f"skipped {c.name!r}: one frame only", made, n)
+        Repair(ONE_FRAME, f"skipped {c.name!r}: a bind pose of one frame", made, n)
         for n, c in enumerate(junk, len(kept))
     )
     if not made:
         return [*kept, *(repaired(clip, repair) for clip, repair in zip(junk, skipped, strict=True))]
-    told = f"skipped {', '.join(repr(clip.name) for clip in junk)}: one frame only"
+    told = f"skipped {', '.join(repr(clip.name) for clip in junk)}: a bind pose of one frame"
     kept[0] = replace(kept[0], notes=(*kept[0].notes, told))
     return [replace(clip, repairs=(*clip.repairs, *skipped)) for clip in kept]
+
+
+def _unnamed(clip: Clip) -> bool:
+    """Whether a take bears its file's name for want of one of its own."""
+    return any(repair.name == NAME for repair in clip.repairs)
 
 
 def _content(path: Path) -> str:

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from metagraph.formats.gltf_file import Animation, Gltf, extras
 from metagraph.formats.gltf_skeleton import GltfRig
-from metagraph.formats.takes import frame_rate, repaired, take_name, take_repair, without_bind_pose
+from metagraph.formats.takes import frame_rate, repaired, take_name, take_repair, without_stray_poses
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Pose
 
 Array = NDArray[Any]
 
@@ -126,7 +127,8 @@ def read_clip(gltf: Gltf, rig: GltfRig, number: int, as_is: Collection[str] = ()
     )
     for repair in (*rig.repairs, renaming):
         clip = repaired(clip, repair)
-    return without_bind_pose(clip, as_is)
+    nodes = Pose(rotation.multiply(rig.turn, rig.still_rotations), still)
+    return without_stray_poses(clip, as_is, [nodes])
 
 
 _Group = tuple[int, str, str]

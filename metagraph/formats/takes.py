@@ -1,4 +1,4 @@
-"""What every reader does to a take: its name, its frame rate, and a bind pose left on its first frame."""
+"""What every reader does to a take: its name, its frame rate, and poses that do not belong to it."""
 
 from __future__ import annotations
 
@@ -10,14 +10,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.formats.stray_poses import stray_poses
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip, Repair
+from metagraph.motion.skeleton import Pose
 
 Array = NDArray[Any]
 
 # What readers put right on their own and leave as it is when they are told to.
 BIND_POSE, UNIT, UP, NAME, ONE_FRAME = "bind_pose", "unit", "up_axis", "name", "one_frame"
-REPAIRS = (BIND_POSE, UNIT, UP, NAME, ONE_FRAME)
+LONE_FRAME = "lone_frame"
+REPAIRS = (BIND_POSE, UNIT, UP, NAME, ONE_FRAME, LONE_FRAME)
 
 # Names that tools give on their own; the file's name says more.
 _GENERIC = re.compile(
@@ -103,26 +106,48 @@ def frame_rate(keys: Sequence[Array], wanted: float | None = None) -> float:
     return rate if even else 60.0 if rate > 45 else 30.0
 
 
-def without_bind_pose(clip: Clip, as_is: Collection[str] = ()) -> Clip:
-    """Drop a first frame that is plainly the rest pose left there by a tool, and say so; only say so where
-    `as_is` names it.
+def without_stray_poses(clip: Clip, as_is: Collection[str] = (), bound: Sequence[Pose] = ()) -> Clip:
+    """Drop bind poses that a tool left at the clip's ends, mend frames unlike both their neighbours, and say
+    so; only say so where `as_is` names it.
 
-    Plainly: in that frame at least 60 % of the joints are in the rest pose within 0.5 degrees and all within
-    30, and the jump from it is over 15 degrees and over 8 times any other jump within the next second.
+    bound: poses besides the rest pose that a tool may have left there.
     """
-    if clip.frames < 4:
-        return clip
-    first, rest = clip.rotations[0].astype(float), clip.skeleton.rest_rotations
-    away = rotation.angle_between(first, rest)
-    if np.mean(away < np.radians(0.5)) < 0.6 or float(away.max()) > np.radians(30):
-        return clip
-    window = clip.rotations[: 2 + max(4, round(clip.fps))].astype(float)
-    jumps = rotation.angle_between(window[1:], window[:-1]).max(-1)
-    if jumps[0] < np.radians(15) or jumps[0] < 8 * float(jumps[1:].max()):
-        return clip
-    made = BIND_POSE not in as_is
-    repair = Repair(BIND_POSE, "its first frame was the bind pose and was dropped", made)
-    return repaired(clip.trimmed(1) if made else clip, repair)
+    found = stray_poses(clip, bound)
+    if found.first or found.last:
+        made = BIND_POSE not in as_is
+        told = [
+            f"its {end} frame was the bind pose and was dropped"
+            if count == 1
+            else f"its {end} {count} frames were the bind pose and the way {way} it and were dropped"
+            for end, way, count in (("first", "from", found.first), ("last", "to", found.last))
+            if count
+        ]
+        repair = Repair(BIND_POSE, "; ".join(told), made)
+    if found.lone:
+        mended = LONE_FRAME not in as_is
+        words = (
+            f"frame {found.lone[0] + 1} was unlike both its neighbours and was made anew between them"
+            if len(found.lone) == 1
+            else f"{len(found.lone)} frames (the first is {found.lone[0] + 1}) were unlike their neighbours "
+            "and were made anew between them"
+        )
+        clip = repaired(_mended(clip, found.lone) if mended else clip, Repair(LONE_FRAME, words, mended))
+    if found.first or found.last:
+        clip = repaired(clip.trimmed(found.first, clip.frames - found.last) if made else clip, repair)
+    return clip
+
+
+def _mended(clip: Clip, frames: Sequence[int]) -> Clip:
+    """Return the clip with these frames halfway between their neighbours."""
+    at = np.asarray(frames)
+    rotations, translations = clip.rotations.copy(), clip.translations.copy()
+    half = np.full((len(at), len(clip.skeleton)), 0.5, np.float32)
+    rotations[at] = rotation.nlerp(rotations[at - 1], rotations[at + 1], half)
+    translations[at] = (translations[at - 1] + translations[at + 1]) / 2
+    weights = None if clip.weights is None else clip.weights.copy()
+    if weights is not None:
+        weights[at] = (weights[at - 1] + weights[at + 1]) / 2
+    return replace(clip, rotations=rotation.continuous(rotations), translations=translations, weights=weights)
 
 
 def unique_takes(clips: Sequence[Clip]) -> list[Clip]:

@@ -2,16 +2,17 @@
 
 Names say what a joint is about, the hierarchy decides between them: an arm is the line of joints above a
 hand, so `LeftShoulder` is a collar bone in one skeleton and an upper arm in the next, and a twist or IK
-helper beside that line never wins. Where names say nothing, the shape of the rest pose does.
+helper beside that line never wins. Where names leave out what a figure needs, or contradict the tree, the
+shape of the rest pose decides (`roles_by_shape`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-
-import numpy as np
+from itertools import pairwise
 
 from metagraph.motion.joint_names import ARM, FACE, HELPERS, kind_of, take_apart
+from metagraph.motion.roles_by_shape import roles_by_shape
 from metagraph.motion.skeleton import Skeleton
 
 _CENTRE = ("hips", "spine", "chest", "upper_chest", "neck", "head", "jaw")
@@ -155,9 +156,12 @@ class _Reader:
         roles = self.roles
         legs = [roles[r] for r in ("left_upper_leg", "right_upper_leg") if r in roles]
         arms = [roles[r] for r in ("left_upper_arm", "right_upper_arm") if r in roles]
-        heads, necks = self.called("head"), self.called("neck")
+        heads, necks = self.called("head") or self.called("skull", "cranium"), self.called("neck")
+        shaped = roles_by_shape(self.skeleton).get("head") if not heads else None
         if heads:
             roles["head"] = self.biggest(heads)
+        elif shaped is not None and (not necks or self.biggest(necks) in self.above(shaped)):
+            roles["head"] = shaped  # the last joint called a neck need not be the last that turns
         if necks:
             roles["neck"] = self.biggest(necks)
             if "head" not in roles:  # the end of the neck, where the face hangs
@@ -256,10 +260,25 @@ class _Reader:
                         len(found) // 2
                     ]
 
+    def sound(self) -> bool:
+        """Whether the limbs' roles lie on lines, no joint has two, and what is on the left is not on the
+        right, too.
+        """
+        roles = self.roles
+        if len(set(roles.values())) < len(roles):
+            return False
+        for side in ("left", "right"):
+            for line in (("upper_arm", "lower_arm", "hand"), ("upper_leg", "lower_leg", "foot")):
+                known = [roles[r] for part in line if (r := f"{side}_{part}") in roles]
+                for upper, lower in pairwise(known):
+                    if upper in self.skeleton.descendants(lower):
+                        return False
+        return True
+
 
 def find_roles(skeleton: Skeleton) -> dict[str, int]:
-    """Return role -> joint for the ROLES that the skeleton has, by names first, by the rest pose's shape
-    where those fail.
+    """Return role -> joint for the ROLES that the skeleton has: by names where these agree with the tree and
+    leave no needed one out, else by the rest pose's shape.
     """
     reader = _Reader(skeleton)
     for side in ("left", "right"):
@@ -268,81 +287,16 @@ def find_roles(skeleton: Skeleton) -> dict[str, int]:
         reader.toes(side)
     reader.trunk()
     reader.face()
-    if len(reader.roles) < 4:
-        shaped = _by_shape(skeleton)
-        if len(shaped) > len(reader.roles):
-            return _ordered(shaped)
+    if missing_roles(reader.roles) or not reader.sound():
+        shaped = roles_by_shape(skeleton)
+        if len(missing_roles(shaped)) < len(missing_roles(reader.roles)) or (shaped and not reader.sound()):
+            reader.roles = shaped
+            reader.face()
     return _ordered(reader.roles)
 
 
 def _ordered(roles: Mapping[str, int]) -> dict[str, int]:
     return {role: roles[role] for role in ROLES if role in roles}
-
-
-def _by_shape(skeleton: Skeleton) -> dict[str, int]:
-    """Find a standing figure in a rest pose whose names say nothing: two mirrored legs down, arms out, a head
-    up.
-    """
-    _, positions = skeleton.globals(skeleton.rest)
-    children, height = skeleton.children, skeleton.height
-
-    def line(joint: int) -> list[int]:
-        out = [joint]
-        while len(children[out[-1]]) == 1:
-            out.append(children[out[-1]][0])
-        return out
-
-    def pair(joints: Sequence[int]) -> tuple[int, int] | None:
-        """Return two of the joints that mirror each other across x = 0, the one with larger x first."""
-        best, found = 0.03 * height, None
-        for a in joints:
-            for b in joints:
-                mirrored = positions[b] * [-1, 1, 1]
-                distance = float(
-                    np.linalg.norm(positions[line(a)[-1]] - positions[line(b)[-1]] * [-1, 1, 1])
-                    + np.linalg.norm(positions[a] - mirrored)
-                )
-                if positions[a, 0] > positions[b, 0] + 0.01 * height and distance < best:
-                    best, found = distance, (a, b)
-        return found
-
-    for hips in range(len(skeleton)):
-        down = [c for c in children[hips] if positions[line(c)[-1], 1] < positions[hips, 1] - 0.2 * height]
-        legs = pair(down)
-        up = [c for c in children[hips] if c not in (legs or ())]
-        if legs is None or not up or min(len(line(leg)) for leg in legs) < 3:
-            continue
-        trunk = line(max(up, key=lambda c: len(skeleton.descendants(c))))
-        arms = pair(children[trunk[-1]])
-        if arms is None or min(len(line(a)) for a in arms) < 3:
-            continue
-        rest = [c for c in children[trunk[-1]] if c not in arms]
-        roles = {"hips": hips, "spine": trunk[0]}
-        if len(trunk) > 1:
-            roles["chest"] = trunk[1]
-        if len(trunk) > 2:
-            roles["upper_chest"] = trunk[-1]
-        if rest:
-            neck = line(max(rest, key=lambda c: float(positions[line(c)[-1], 1])))
-            roles["head"] = neck[min(1, len(neck) - 1)]
-            if len(neck) > 1:
-                roles["neck"] = neck[0]
-        toe = line(legs[0])
-        ahead = positions[toe[min(3, len(toe) - 1)], 2] - positions[toe[2], 2]
-        sides = ("left", "right") if ahead >= -1e-6 else ("right", "left")
-        for k, side in enumerate(sides):
-            roles.update(
-                zip(
-                    (f"{side}_upper_leg", f"{side}_lower_leg", f"{side}_foot", f"{side}_toes"),
-                    line(legs[k]),
-                    strict=False,
-                )
-            )
-            arm = line(arms[k])
-            names = [f"{side}_shoulder", f"{side}_upper_arm", f"{side}_lower_arm", f"{side}_hand"]
-            roles.update(zip(names[-min(4, len(arm)) :], arm[:4], strict=False))
-        return roles
-    return {}
 
 
 def missing_roles(roles: Mapping[str, int]) -> tuple[str, ...]:

@@ -34,7 +34,9 @@ def bound(toy: Any, name: str) -> Clip:
 
 
 def still(clip: Clip, name: str) -> Clip:
-    return clip.trimmed(0, 1).renamed(name)
+    """A bind pose of one frame."""
+    rest = clip.skeleton.rest_rotations[None]
+    return replace(clip.trimmed(0, 1), rotations=rest, name=name)
 
 
 def imported(folder: Path, *names: str) -> Project:
@@ -105,16 +107,16 @@ def test_a_skipped_take_is_brought_in_keeps_the_others_numbers_and_can_go_again(
     toy: Any, tmp_path: Path
 ) -> None:
     walk, nod = toy.clip("walk", 0.5), toy.clip("nod", 0.4)
-    write_glb(tmp_path / "a.glb", [still(walk, "t-pose"), walk, still(walk, "a-pose"), nod])
+    write_glb(tmp_path / "a.glb", [still(walk, "Take 001"), walk, still(walk, "default"), nod])
     project = imported(tmp_path, "a.glb")
     assert [e.name for e in project.clips.values()] == ["walk", "nod"]
     found = repairs_of(project, project.clips)
     assert [r.repair.words for r in found] == [
-        "skipped 't-pose': one frame only",
-        "skipped 'a-pose': one frame only",
+        "skipped 'a': a bind pose of one frame",
+        "skipped 'a_2': a bind pose of one frame",
     ]
     after = reread(project, tmp_path, [(found[1], False)]).into(project)
-    assert [(e.name, e.take) for e in after.clips.values()] == [("walk", 0), ("nod", 1), ("a-pose", 3)]
+    assert [(e.name, e.take) for e in after.clips.values()] == [("walk", 0), ("nod", 1), ("a_2", 3)]
     path = tmp_path / "p.metagraph.yaml"
     save_project(after, path, path)
     assert open_project(path).project == after
@@ -122,16 +124,35 @@ def test_a_skipped_take_is_brought_in_keeps_the_others_numbers_and_can_go_again(
     gone = reread(after, tmp_path, [(repairs_of(after, project.clips)[1], True)])
     assert gone.into(after).clips == project.clips
     placed = edits.add_stance(after, "arms", "rest", [list(after.clips)[-1]])
-    with pytest.raises(EditError, match="'a-pose' is placed"):
+    with pytest.raises(EditError, match="'a_2' is placed"):
         gone.into(placed)
+
+
+def test_poses_of_one_frame_with_a_name_or_a_pose_of_their_own_are_kept_behind_the_others(
+    toy: Any, tmp_path: Path
+) -> None:
+    walk = toy.clip("walk", 0.5)
+    sitting = replace(toy.clip("Take 001", 0.5, 1.3).trimmed(5, 6))
+    write_glb(tmp_path / "a.glb", [still(walk, "T-Pose"), sitting, walk, still(walk, "Take 002")])
+    result = import_files(Project(), tmp_path, [tmp_path / "a.glb"])
+    project = result.into(Project())
+    assert [(e.name, e.take, e.frames) for e in project.clips.values()] == [
+        ("walk", 0, 16),
+        ("T-Pose", 1, 1),
+        ("a", 2, 1),
+    ]
+    assert [n for n in result.notes if "one frame" in n] == [
+        "a.glb: skipped 'a_2': a bind pose of one frame",
+        "a.glb: 'T-Pose', 'a': one frame only, a pose",
+    ]
 
 
 def test_a_skipped_take_brought_in_is_refreshed_with_its_file(toy: Any, tmp_path: Path) -> None:
     walk = toy.clip("walk", 0.5)
-    write_glb(tmp_path / "a.glb", [still(walk, "t-pose"), walk])
+    write_glb(tmp_path / "a.glb", [still(walk, "Take 001"), walk])
     project = imported(tmp_path, "a.glb")
     project = reread(project, tmp_path, [(by_name(project, ONE_FRAME), False)]).into(project)
-    write_glb(tmp_path / "a.glb", [still(walk, "t-pose"), toy.clip("walk", 0.9)])
+    write_glb(tmp_path / "a.glb", [still(walk, "Take 001"), toy.clip("walk", 0.9)])
     result = import_files(project, tmp_path, [tmp_path / "a.glb"])
     assert len(result.loaded) == 2
     after = result.into(project)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from metagraph.formats.clips import read_clips
 from metagraph.motion import rotation
 from metagraph.motion.roles import (
     PARTS,
@@ -287,6 +289,93 @@ def test_a_skeleton_without_telling_names_is_known_by_its_shape() -> None:
     assert {role: named[role] for role in REQUIRED} == {role: shaped[role] for role in REQUIRED}
 
 
+def renamed(skeleton: Skeleton, names: Sequence[str]) -> Skeleton:
+    return Skeleton(tuple(names), skeleton.parents, skeleton.rest_rotations, skeleton.rest_translations)
+
+
+def with_twists(skeleton: Skeleton) -> Skeleton:
+    """Return the figure with a joint halfway along the bones of its limbs, under names that say nothing but
+    where they were: `12`, and `12.5` for what lies in the bone above it.
+    """
+    ends = ("lower_arm", "hand", "lower_leg", "foot")
+    limbs = {joint for role, joint in find_roles(skeleton).items() if role.endswith(ends)}
+    names, parents, rotations, offsets = [], [], [], []
+    place: dict[int, int] = {}
+    for j in range(len(skeleton)):
+        above = int(skeleton.parents[j])
+        parent, offset = place.get(above, -1), skeleton.rest_translations[j]
+        if j in limbs:
+            names.append(f"{j}.5")
+            parents.append(parent)
+            rotations.append(rotation.identity())
+            offsets.append(offset / 2)
+            parent, offset = len(names) - 1, offset / 2
+        place[j] = len(names)
+        names.append(str(j))
+        parents.append(parent)
+        rotations.append(skeleton.rest_rotations[j])
+        offsets.append(offset)
+    return Skeleton(tuple(names), np.array(parents), np.stack(rotations), np.stack(offsets))
+
+
+@pytest.mark.parametrize("name", ANIMALS)
+def test_the_zoo_is_known_by_its_shape_alone(zoo_files: dict[str, Path], name: str) -> None:
+    skeleton = read_clips(zoo_files[name])[0].skeleton
+    named = find_roles(skeleton)
+    assert find_roles(renamed(skeleton, [f"joint{n}" for n in range(len(skeleton))])) == named
+    twisted = with_twists(skeleton)
+    found = {role: twisted.names[joint] for role, joint in find_roles(twisted).items()}
+    assert {r: found.get(r) for r in REQUIRED} == {r: str(named[r]) for r in REQUIRED}
+
+
+@pytest.mark.parametrize(
+    "file",
+    [
+        "smartbody-brad/ChrBrad@Idle03.bvh",
+        "kaykit-rogue/Rogue.glb",
+        "mesh2motion-cmu/human-addon-animations.glb",
+        "edge-bvh/bvh_example.bvh",
+        "edge-bvh/bvh_test3.bvh",
+        "edge-bvh/AV_8Walk_Meredith_HVHA_Rep1.bvh",
+        "edge-bvh/Geno_bind.bvh",
+        "sumerian-hosts/glTF/animations/adult_female/blink.glb",
+        "sumerian-hosts/glTF/animations/adult_male/blink.glb",
+        "sumerian-hosts/glTF/animations/alien/blink.glb",
+    ],
+)
+def test_real_people_are_known_by_their_shape_alone(shared_data: Path, file: str) -> None:
+    skeleton = read_clips(shared_data / file)[0].skeleton
+    named = find_roles(skeleton)
+    found = find_roles(renamed(skeleton, [f"joint{n}" for n in range(len(skeleton))]))
+    body = [role for role in named if not role.endswith(("jaw", "eye", "lid"))]
+    assert {r: found.get(r) for r in body} == {r: named[r] for r in body}
+
+
+def test_a_skull_under_two_joints_of_the_neck_is_the_head(shared_data: Path) -> None:
+    skeleton = read_clips(shared_data / "smartbody-brad/ChrBrad@Idle03.bvh")[0].skeleton
+    assert skeleton.names[find_roles(skeleton)["head"]] == "JtSkullA"
+    other = renamed(skeleton, [n.replace("Skull", "Cabeza") for n in skeleton.names])
+    assert other.names[find_roles(other)["head"]] == "JtCabezaA"
+
+
+def test_names_in_a_language_nobody_knows_here_leave_the_shape_to_decide() -> None:
+    real = mannequin_skeleton()
+    words = {
+        "Left": "Vasen",
+        "Right": "Oikea",
+        "Hips": "Lantio",
+        "Head": "Paa",
+        "Neck": "Kaula",
+        "Arm": "Varsi",
+    }
+    words |= {"Leg": "Jalka", "Hand": "Kasi", "Foot": "Tera", "Shoulder": "Hartia", "Toes": "Varpaat"}
+    names = list(real.names)
+    for word, other in words.items():
+        names = [name.replace(word, other) for name in names]
+    found, named = find_roles(renamed(real, names)), find_roles(real)
+    assert {r: found.get(r) for r in REQUIRED} == {r: named[r] for r in REQUIRED}
+
+
 def test_a_bare_stick_figure_is_known_by_its_shape_and_its_toes_tell_left_from_right() -> None:
     places = {
         0: (-1, (0, 1, 0)),
@@ -367,8 +456,6 @@ PEOPLE = {
 
 @pytest.mark.parametrize("file", PEOPLE)
 def test_real_people_have_the_roles_one_would_point_at(shared_data: Path, file: str) -> None:
-    from metagraph.formats.clips import read_clips
-
     if file.endswith(".fbx"):
         pytest.importorskip("ufbx", reason="the extra metagraph[fbx] is not installed")
     skeleton = read_clips(shared_data / file)[0].skeleton
@@ -387,8 +474,6 @@ def test_real_people_have_the_roles_one_would_point_at(shared_data: Path, file: 
 
 @pytest.mark.parametrize("name", ANIMALS)
 def test_joints_of_the_zoo_have_the_roles_they_are_named_for(zoo_files: dict[str, Path], name: str) -> None:
-    from metagraph.formats.clips import read_clips
-
     skeleton = read_clips(zoo_files[name])[0].skeleton
     roles = find_roles(skeleton)
     assert is_humanoid(roles), missing_roles(roles)
@@ -401,6 +486,4 @@ def test_joints_of_the_zoo_have_the_roles_they_are_named_for(zoo_files: dict[str
 
 @pytest.mark.parametrize("file", ["bird-animations.glb", "quad-creature-animations.glb"])
 def test_real_animals_are_told_apart_from_people(shared_data: Path, file: str) -> None:
-    from metagraph.formats.clips import read_clips
-
     assert not is_humanoid(find_roles(read_clips(shared_data / "mesh2motion-cmu" / file)[0].skeleton))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from pathlib import PurePath
 
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
@@ -22,15 +23,16 @@ from app.project.jobs import Job, Jobs
 from app.widgets.making import make_widget
 from app.widgets.tree_items import items_below, top_items
 from metagraph.formats.repairs import Repaired, Reread, repairs_of, reread
-from metagraph.formats.takes import BIND_POSE, NAME, ONE_FRAME, UNIT, UP
+from metagraph.formats.takes import BIND_POSE, LONE_FRAME, NAME, ONE_FRAME, UNIT, UP
 from metagraph.graph.edits import EditError
 
 PLACE = Qt.ItemDataRole.UserRole
 TITLES = {
-    BIND_POSE: "Drop a bind pose on the first frame",
+    BIND_POSE: "Drop bind poses at the ends",
+    LONE_FRAME: "Mend frames unlike both their neighbours",
     UNIT: "Find the unit of length",
     UP: "Turn from Z up to Y up",
-    ONE_FRAME: "Skip takes of one frame",
+    ONE_FRAME: "Skip bind poses of one frame",
     NAME: "Clean names",
 }
 TICKED, OPEN = Qt.CheckState.Checked, Qt.CheckState.Unchecked
@@ -101,9 +103,12 @@ class RepairsDialog(QDialog):
             font.setBold(True)
             top.setFont(0, font)
             for n in mine:
-                item = QTreeWidgetItem(top, [project.clips[found[n].clip].name, found[n].repair.words])
+                entry, repair = project.clips[found[n].clip], found[n].repair
+                # A skipped take is none of the clips; its words name it, its file is what it has.
+                whose = entry.name if repair.take is None else PurePath(entry.path).name
+                item = QTreeWidgetItem(top, [whose, repair.words])
                 item.setData(0, PLACE, n)
-                item.setToolTip(0, project.clips[found[n].clip].path)
+                item.setToolTip(0, entry.path)
                 item.setCheckState(0, TICKED if found[n].repair.made else OPEN)
             top.setExpanded(len(mine) <= 12)
         self.tree.blockSignals(False)

@@ -13,7 +13,7 @@ pytestmark = [pytest.mark.window, pytest.mark.gl]
 
 @pytest.fixture
 def folder(toy, tmp_path):
-    """Two clips with a bind pose on their first frame, and a file with a pose beside a walk."""
+    """Two clips with a bind pose on their first frame, and a file with one of one frame beside a walk."""
     from metagraph.formats.gltf_writer import write_glb
 
     for name in ("a", "b"):
@@ -22,7 +22,8 @@ def folder(toy, tmp_path):
         rotations[0] = toy.skeleton.rest_rotations
         write_glb(tmp_path / f"{name}.glb", [replace(clip, rotations=rotations)])
     walk = toy.clip("walk", 0.5)
-    write_glb(tmp_path / "c.glb", [walk.trimmed(0, 1).renamed("pose"), walk])
+    bind = replace(walk.trimmed(0, 1).renamed("Take 001"), rotations=toy.skeleton.rest_rotations[None])
+    write_glb(tmp_path / "c.glb", [bind, walk])
     return tmp_path
 
 
@@ -67,7 +68,7 @@ def apply(drive, dialog):
 def test_an_import_tells_each_repair_and_one_is_left_out_in_one_step(drive, folder, dialog):
     assert dialog.headline.text() == "Imported 3 clips"
     groups = [dialog.tree.topLevelItem(n).text(0) for n in range(dialog.tree.topLevelItemCount())]
-    assert groups == ["Drop a bind pose on the first frame (2)", "Skip takes of one frame (1)"]
+    assert groups == ["Drop bind poses at the ends (2)", "Skip bind poses of one frame (1)"]
     assert not dialog.go.isEnabled()
     before = drive.document.project.clips["c1"].frames
     tick(dialog, "Drop", 0)
@@ -83,9 +84,11 @@ def test_an_import_tells_each_repair_and_one_is_left_out_in_one_step(drive, fold
 
 
 def test_a_skipped_pose_is_brought_in_and_skipped_again(drive, dialog):
+    top = dialog.tree.topLevelItem(1)
+    assert [top.child(0).text(n) for n in (0, 1)] == ["c.glb", "skipped 'c': a bind pose of one frame"]
     tick(dialog, "Skip", 0)
     apply(drive, dialog)
-    assert [e.name for e in drive.document.project.clips.values()] == ["a", "b", "walk", "pose"]
+    assert [e.name for e in drive.document.project.clips.values()] == ["a", "b", "walk", "c"]
     tick(dialog, "Skip", 0)
     apply(drive, dialog)
     assert [e.name for e in drive.document.project.clips.values()] == ["a", "b", "walk"]

@@ -1,0 +1,253 @@
+"""Poses that do not belong to a take: a bind pose left at an end, a frame unlike both its neighbours.
+
+Poses are compared whole, by where their joints are: joints count as much as their bones are long, so fingers
+and helpers decide nothing. A stray pose both looks like one (the rest pose, or arms held straight out as in a
+T- or A-pose) and is left by a step unlike the take's own motion; either alone is no reason.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
+from metagraph.motion.roles import find_roles
+from metagraph.motion.skeleton import Pose
+
+Array = NDArray[Any]
+
+# Lengths are told in the body's spread: the mean distance of its joints from their middle, about 0.5 m.
+AFTER = 0.2  # seconds of motion that a step is compared with
+RAMP = 0.15  # seconds that a tool's resampling, or a first key set late, may spread the step over
+HOLD = 0.5  # seconds that a stray pose may be held
+VISIBLE = 0.007  # of the spread: a smaller step is not seen
+# How near a pose is to the rest pose, and how many times any step after it the step from it must then be:
+# real clips, which begin or end anywhere, stay below 2.
+LIKENESS = ((0.05, 3.0), (0.15, 4.0))
+ARMS_OUT = 4.0  # the same for a pose that is a T- or an A-pose by its shape alone
+CERTAIN = 12.0  # the same where the clip moves as quickly elsewhere
+OWN = 1.5  # times the clip's 95 % step that the step must be: a clip that jumps all along is no other
+LONE, LONE_BOUND = 6.0, 4.0  # how many times any step around it those to and from a lone frame are
+LONE_STEP = 0.05  # of the spread
+SLOWEST = 18.0  # frames a second: with fewer a whole movement may fall on one frame
+FEWEST = 5  # frames: a shorter take is a pose with what it is told from, or too short to tell
+BROKEN = 0.75  # how much a step that breaks off counts against one that is only quick
+SOON = 0.3  # the same for one that only the next three steps fall short of
+STILL = 5e-4  # of the spread: less is noise
+
+
+@dataclass(frozen=True)
+class StrayPoses:
+    """first, last: how many frames at the ends are bind poses or ways from and to them. lone: frames between
+    that are unlike both their neighbours.
+    """
+
+    first: int = 0
+    last: int = 0
+    lone: tuple[int, ...] = ()
+
+
+class _Take:
+    """A clip's poses as places `[F, J, 3]`, of any origin."""
+
+    def __init__(self, clip: Clip, bound: Sequence[Pose]) -> None:
+        self.clip = clip
+        skeleton = clip.skeleton
+        lengths = np.linalg.norm(skeleton.rest_translations, axis=-1)
+        inner = np.flatnonzero(skeleton.parents >= 0)
+        lengths[skeleton.parents < 0] = 0
+        below = np.ones(len(skeleton))
+        for joint in reversed(inner.tolist()):
+            below[skeleton.parents[joint]] += below[joint]
+        moved = list(clip.translated)  # the way from a root on the ground to the hips is no part of the body
+        lengths[moved] *= below[moved] <= len(skeleton) / 2
+        np.add.at(lengths, skeleton.parents[inner], lengths[inner].copy())
+        total = float(lengths.sum())
+        self.weights = lengths / total if total > 0 else np.full(len(lengths), 1 / len(lengths))
+        _, places = skeleton.globals(clip.poses())
+        self.middles = np.einsum("fji,j->fi", places, self.weights, dtype=np.float64)
+        self.places = places - self.middles[:, None].astype(places.dtype)
+        self.spread = max(1e-6, float(np.median(self.size(self.places))))
+        turned = self.size(np.diff(self.places, axis=0)) / self.spread
+        gone = np.linalg.norm(np.diff(self.middles, axis=0), axis=-1) / self.spread
+        self.steps = (turned, np.hypot(turned, gone))
+        self.bound = [self.centred(skeleton.globals(pose)[1]) for pose in (skeleton.rest, *bound)]
+        self.roles: dict[str, int] | None = None
+
+    def size(self, ways: Array) -> Array:
+        """Return the weighted root mean square `[...]` of ways `[..., J, 3]`."""
+        return np.asarray(np.sqrt(np.einsum("...ji,...ji,j->...", ways, ways, self.weights)))
+
+    def centred(self, places: Array) -> Array:
+        return np.asarray(places - np.einsum("ji,j->i", places, self.weights))
+
+    def factor(self, frame: int) -> float:
+        """Return how many times the motion's own the step from this pose must be; infinite for a pose that is
+        no bind pose.
+        """
+        away = min(self.apart(self.places[frame], pose) for pose in self.bound)
+        for near, factor in LIKENESS:
+            if away <= near:
+                return factor
+        return ARMS_OUT if self.arms_out(frame) else np.inf
+
+    def apart(self, one: Array, other: Array) -> float:
+        """Return how far two poses are apart, whichever way either faces or lies."""
+        u, _, v = np.linalg.svd(np.einsum("ja,jb,j->ab", one, other, self.weights))
+        u[:, -1] *= np.sign(np.linalg.det(u @ v))
+        return float(self.size(one @ (u @ v) - other)) / self.spread
+
+    def arms_out(self, frame: int) -> bool:
+        """Whether a figure stands upright, both arms straight and alike out to its sides."""
+        if self.roles is None:
+            self.roles = find_roles(self.clip.skeleton)
+        needed = [
+            f"{s}_{r}"
+            for s in ("left", "right")
+            for r in ("upper_arm", "lower_arm", "hand", "upper_leg", "lower_leg", "foot")
+        ]
+        if any(r not in self.roles for r in (*needed, "hips", "head")):
+            return False
+        at = {r: self.places[frame, j].astype(float) for r, j in self.roles.items()}
+
+        def way(a: str, b: str) -> Array:
+            line = at[b] - at[a]
+            return np.asarray(line / max(1e-9, float(np.linalg.norm(line))))
+
+        up = way("hips", "head")
+        across = at["left_upper_arm"] - at["right_upper_arm"]
+        across -= up * (up @ across)
+        across /= max(1e-9, float(np.linalg.norm(across)))
+        ahead = np.cross(across, up)
+        arms = []
+        for side, sign in (("left", 1), ("right", -1)):
+            arm = way(f"{side}_upper_arm", f"{side}_hand")
+            leg = way(f"{side}_upper_leg", f"{side}_foot")
+            elbow = way(f"{side}_upper_arm", f"{side}_lower_arm") @ way(f"{side}_lower_arm", f"{side}_hand")
+            out = np.array([sign * (arm @ across), arm @ up, arm @ ahead])
+            # Straight to 25 degrees, up to 65 below the level, 25 ahead; a leg within 40 of the way down.
+            if elbow < 0.906 or out[0] < 0.42 or abs(out[2]) > 0.42 or -(leg @ up) < 0.766:
+                return False
+            arms.append(out)
+        return bool(arms[0] @ arms[1] > 0.966)
+
+
+def stray_poses(clip: Clip, bound: Sequence[Pose] = ()) -> StrayPoses:
+    """Return which of a clip's frames do not belong to it. bound: poses besides the rest pose that a tool may
+    have left there.
+    """
+    if clip.frames < FEWEST:
+        return StrayPoses()
+    take = _Take(clip, bound)
+    last = _leading(take, True)
+    first = _leading(take, False)
+    if first + last > clip.frames - 2:
+        return StrayPoses()
+    lone = _lone(take, first, clip.frames - last) if clip.fps >= SLOWEST else ()
+    return StrayPoses(first, last, lone)
+
+
+def is_bind_pose(clip: Clip) -> bool:
+    """Whether a clip's first frame is the rest pose, a T- or an A-pose."""
+    return bool(np.isfinite(_Take(clip, ()).factor(0)))
+
+
+def _leading(take: _Take, backwards: bool) -> int:
+    """Return how many frames of a take's beginning, or its end, belong to a stray pose."""
+    way = slice(None, None, -1 if backwards else 1)
+    fps, frames = take.clip.fps, take.clip.frames
+    return max(_run(take, steps[way], way, fps, frames) for steps in take.steps)
+
+
+def _run(take: _Take, steps: Array, way: slice, fps: float, frames: int) -> int:
+    count = len(steps)
+    held = 0  # steps of a pose that is held
+    most = min(round(HOLD * fps), frames // 4)
+    while (
+        held < most and held + 1 < count and steps[held] < max(STILL, 0.02 * steps[held + 1 : held + 3].max())
+    ):
+        held += 1
+    window = max(3, round(AFTER * fps))
+    longest = max(3, round(RAMP * fps))
+    for start in dict.fromkeys((held, 0)):
+        for length in range(min(longest, count - 1 - start), 0, -1):
+            end = start + length
+            following = steps[end : end + window]
+            after = max(STILL, float(following.max()))
+            own = float(np.quantile(steps[end:], 0.95)) if count - end > 8 else 0.0
+            peak = float(steps[start:end].max())
+            if peak < VISIBLE or peak < OWN * after:
+                continue
+            # Either much quicker than what follows, or broken off as nothing after it is.
+            smooth = max(STILL, float(np.abs(np.diff(following)).max(initial=0)))
+            next_ones = max(STILL, float(following[:3].max()))
+            odds = max(peak / after, BROKEN * (peak - float(steps[end])) / smooth, SOON * peak / next_ones)
+            if odds < (LIKENESS[0][1] if peak > OWN * own else CERTAIN):
+                continue
+            # A ramp runs at one speed from its first frame on and stops short; its last step may be a part.
+            if steps[end - 1] < max(min(2.5 * after, 0.7 * peak), 0.03 * peak) or steps[start] < 0.7 * peak:
+                continue
+            if length > 2 and steps[start : end - 1].min() < 0.7 * peak:
+                continue
+            inner = steps[end : count - longest]
+            beside = np.maximum(inner[2:], inner[:-2]) if len(inner) > 2 else np.zeros(0)
+            if (inner[1:-1] > np.maximum(0.5 * peak, LIKENESS[-1][1] * beside)).any():
+                continue  # a take that jumps elsewhere, too, is made of poses
+            first = range(frames)[way][start]
+            if odds < take.factor(first):
+                continue
+            if length == 1 or _straight(take.clip, np.arange(frames)[way][start : end + 1]):
+                return end
+    return 0
+
+
+def _straight(clip: Clip, frames: Array) -> bool:
+    """Whether the poses between the first and the last frame lie on the straight way between those."""
+    turns = clip.rotations[frames].astype(float)
+    far = rotation.angle_between(turns[-1], turns[0])
+    moving = far > np.radians(5)
+    if not moving.any():
+        return True
+    far = np.where(moving, far, 1.0)
+    parts = rotation.angle_between(turns[1:-1], turns[0]) / far
+    for pose, part in zip(turns[1:-1], parts, strict=True):
+        share = float(np.median(part[moving]))
+        between = rotation.slerp(turns[0], turns[-1], np.full(len(far), share))
+        off = rotation.angle_between(pose, between)[moving] / far[moving]
+        if share > 1.05 or float(np.median(off)) > 0.03:
+            return False
+    return True
+
+
+def _lone(take: _Take, first: int, stop: int) -> tuple[int, ...]:
+    """Return frames inside `first + 1 .. stop - 2` whose neighbours follow each other as if they were not
+    there.
+    """
+    steps = take.steps[0]
+    if stop - first < 5:
+        return ()
+    inside = np.arange(first + 1, stop - 1)
+    both = np.minimum(steps[inside - 1], steps[inside])
+    skipping = take.places[inside + 1] - take.places[inside - 1]
+    over = take.size(skipping) / take.spread
+    out: list[int] = []
+    for frame, step, across in zip(inside.tolist(), both.tolist(), over.tolist(), strict=True):
+        if step < LONE_STEP or step < LONE_BOUND * across:
+            continue
+        around = np.concatenate(
+            [steps[max(first, frame - 4) : frame - 1], steps[frame + 1 : min(frame + 4, stop - 1)]]
+        )
+        usual = max(across, float(around.max(initial=STILL)))
+        if step < LONE_BOUND * usual:
+            continue
+        # A blow of one arm may be as quick; of a stray pose most of the body has gone elsewhere.
+        away = np.linalg.norm(take.places[frame] - take.places[[frame - 1, frame + 1]].mean(0), axis=-1)
+        share = float(take.weights[away > 0.05 * take.spread].sum())
+        if share > 0.5 and (step >= LONE * usual or step >= take.factor(frame) * usual):
+            out.append(frame)
+    return tuple(out)
