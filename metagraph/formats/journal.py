@@ -50,6 +50,8 @@ def changes(before: Project, after: Project) -> Data:
     for key in ("name", "character", "next_id", "base", "settings", "roles", "parts"):
         if getattr(before, key) is not getattr(after, key) and getattr(before, key) != getattr(after, key):
             out[key] = to_data(_bare(after))[key]
+    if before.hidden != after.hidden:
+        out["hidden"] = list(after.hidden)
     for key in STRUCTS:
         if getattr(before, key) is not getattr(after, key) and getattr(before, key) != getattr(after, key):
             out[key] = struct_data(getattr(after, key))

@@ -51,6 +51,8 @@ class _Replay:
 
     def data(self) -> Data:
         out = {**_closed(self.top), "layers": {layer: _closed(part) for layer, part in self.layers.items()}}
+        if not out.get("hidden", True):
+            del out["hidden"]  # as a project without any is written
         return (
             {**out, "manual": {layer: _closed(part) for layer, part in self.manual.items()}}
             if self.manual
