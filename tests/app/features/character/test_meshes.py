@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from metagraph.formats.gltf_writer import write_glb
@@ -62,8 +62,10 @@ def test_a_mesh_is_hidden_by_a_click_saved_and_shown_again_by_undo(drive, scene)
     drive.do("meshes")
     (dialog,) = drive.window.findChildren(MeshesDialog)
     (item,) = [dialog.list.item(n) for n in range(dialog.list.count())]
-    dialog.list.setCurrentItem(item)
-    QTest.keyClick(dialog.list, Qt.Key.Key_Space)
+    drive.wait(lambda: dialog.windowHandle().isExposed())
+    row = dialog.list.visualItemRect(item)
+    box = QPoint(row.left() + 10, row.center().y())
+    QTest.mouseClick(dialog.list.viewport(), Qt.MouseButton.LeftButton, pos=box)
     assert drive.document.project.hidden == (item.text(),)
     assert drive.document.undo_stack.undoText() == f"Hide '{item.text()}'"
     drive.wait(lambda: isinstance(shown(drive), StickFigure))
