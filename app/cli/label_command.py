@@ -58,7 +58,7 @@ def run(options: Namespace) -> int:
     from metagraph.errors import FileError
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.store import SUFFIX, save_project
-    from metagraph.graph.check import check
+    from metagraph.graph.check import check, grave
     from metagraph.suggest.propose import SOURCES, accept, propose
 
     began = time.perf_counter()
@@ -84,7 +84,7 @@ def run(options: Namespace) -> int:
     drawn = {} if options.no_pictures else _pictures(taken.project, path.resolve().parent, [*found.proposals])
     write_atomically(place, report(taken.project, found, taken, drawn, notes).encode())
     look = [p for p in found.doubtful if needs_a_look(p, taken)]
-    errors = [p.message for p in check(taken.project) if p.severity == "error"]
+    errors = [p.message for p in grave(check(taken.project))]
     seconds = time.perf_counter() - began
     for note in notes:
         print(f"note: {note}", file=sys.stderr)
@@ -93,6 +93,8 @@ def run(options: Namespace) -> int:
             print(f"held: {made.name}: {rest.reason}", file=sys.stderr)
     for clip, why in taken.left.items():
         print(f"left: {project.clips[clip].name}: {why}", file=sys.stderr)
+    for message in errors:
+        print(f"problem: {message}", file=sys.stderr)
     words = (
         f"{path}: {len(taken.placed)} of {len(found.proposals)} clips labelled in {seconds:.1f} s, "
         f"{len(look)} need a look\n{place}"

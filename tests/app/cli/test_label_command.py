@@ -101,6 +101,21 @@ def test_a_project_is_labelled_on_from_where_it_is(
     assert first + second["labelled"] == len(list(folder.glob("*.glb")))
 
 
+def test_a_stance_that_nothing_leads_to_is_told_as_check_tells_it(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for path in folder.glob("*__to_*.glb"):
+        path.unlink()
+    assert main(["label", str(folder), "--no-pictures", "--json"]) == 3
+    shown = capsys.readouterr()
+    data = json.loads(shown.out)
+    assert not data["left"]
+    assert [e for e in data["errors"] if "cannot be reached" in e]
+    assert "problem: stance " in shown.err and "cannot be reached" in shown.err
+    assert main(["check", data["project"]]) == 3
+    assert "cannot be reached" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize("given", ["nothing", "empty"])
 def test_a_folder_that_is_not_there_or_empty_is_told(
     tmp_path: Path, given: str, capsys: pytest.CaptureFixture[str]
