@@ -33,13 +33,14 @@ class Strangers:
     """Clips of one other skeleton, which can be retargeted.
 
     clips: on their own skeleton. why: how it differs, in words. joint_map: what is proposed, or what the user
-    made of the same two skeletons before (`remembered`).
+    made of the same two skeletons before (`remembered`). told: the failures by which they were left out.
     """
 
     clips: tuple[Loaded, ...]
     why: str
     joint_map: JointMap
     remembered: bool = False
+    told: tuple[str, ...] = ()
 
     @property
     def skeleton(self) -> Skeleton:
@@ -77,7 +78,8 @@ class Imported:
     character: the first of the files that also holds a character, for a project that draws none yet.
     stand_ins: those whose mesh is none, where there is no character. strangers: clips of other skeletons that
     wait to be retargeted. joint_maps: those by which clips were retargeted, to be kept in the project.
-    retargeted: how many of the loaded clips were. left: how many the user left out.
+    retargeted: how many of the loaded clips were. apart: clips of other skeletons that were left out, by the
+    user or with a reason among the failures.
     """
 
     loaded: tuple[Loaded, ...]
@@ -89,7 +91,7 @@ class Imported:
     strangers: tuple[Strangers, ...] = ()
     joint_maps: Mapping[str, JointMap] = field(default_factory=dict)
     retargeted: int = 0
-    left: int = 0
+    apart: tuple[Strangers, ...] = ()
 
     def into(self, project: Project) -> Project:
         """The edit: `project` with the clips added, and with the character that came with them if it had
@@ -213,7 +215,11 @@ def _with_strangers(result: Imported, bringing: Bringing, strangers: Strangers, 
             f"{text[: text.index(_ALONE)]}It cannot be retargeted: {strangers.joint_map.missing[0]}. {_ALONE}"
             for text in failures
         )
-    return replace(result, failures=(*result.failures, *failures))
+    return replace(
+        result,
+        failures=(*result.failures, *failures),
+        apart=(*result.apart, replace(strangers, told=failures)),
+    )
 
 
 def bring_over(

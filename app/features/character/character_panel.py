@@ -205,8 +205,13 @@ class PreviewPanel(QWidget):
         if not self.scrub.isSliderDown():
             self.scrub.setValue(round(10000 * min(1.0, seconds / length)))
         self.caption.setText(self._words())
+        self._tell_mesh()
+
+    def _tell_mesh(self) -> None:
+        """Say over the view why a stick figure is drawn, where one is."""
         figure = self._last[0] if self._last is not None else None
-        sticks = figure is not None and not isinstance(figure, SkinnedFigure)
+        empty = self.performance.document.project.skeleton is None
+        sticks = figure is not None and not empty and not isinstance(figure, SkinnedFigure)
         self.no_mesh.tell(_why(figure.instead) if figure is not None and sticks else None)
 
     def _words(self) -> str:
@@ -284,6 +289,8 @@ class PreviewPanel(QWidget):
         else:
             self.base.setText(f"Base pose: {entry.name}, frame {base.frame}")
         self.base.setToolTip(f"{self.base.text()}\n{BASE_TIP}")
+        if after.skeleton is None:
+            self._tell_mesh()
         self.view.update()
 
 
