@@ -296,4 +296,4 @@ class PreviewPanel(QWidget):
 
 def _why(instead: str) -> str:
     """Say why a stick figure is drawn."""
-    return f"{instead[0].upper()}{instead[1:]}." if instead else "No character is chosen."
+    return f"{instead[0].upper()}{instead[1:]}." if instead else ""

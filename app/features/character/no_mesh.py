@@ -26,9 +26,11 @@ class NoMesh(QFrame):
         self._view, self._may = view, may
         self.setProperty("card", True)
         row = QHBoxLayout(self)
-        row.setContentsMargins(10, 4, 4, 4)
+        row.setContentsMargins(4, 4, 4, 4)
         row.setSpacing(8)
         self.words = QLabel(self, wordWrap=True)
+        self.words.setContentsMargins(6, 0, 0, 0)
+        self.words.hide()
         self.button = make_widget(
             QToolButton, self, text="Choose character…", toolTip="The GLB, glTF or VRM that is drawn"
         )
@@ -40,13 +42,14 @@ class NoMesh(QFrame):
         self.hide()
 
     def tell(self, words: str | None) -> None:
-        """Show why a stick figure is drawn, hide for None."""
+        """Show why a stick figure is drawn, "" where no character is chosen; hide for None."""
         shown = words is not None and self._may()
         if words is not None and self.words.text() != words:
             self.words.setText(words)
+            self.words.setVisible(bool(words))
         if shown:
-            text = self.words.fontMetrics().horizontalAdvance(words or "")
-            wide = min(self._view.width() - 2 * EDGE, text + self.button.sizeHint().width() + 40)
+            text = self.words.fontMetrics().horizontalAdvance(words) + 16 if words else 0
+            wide = min(self._view.width() - 2 * EDGE, text + self.button.sizeHint().width() + 20)
             high = self.heightForWidth(wide)
             self.setGeometry(EDGE, self._view.height() - high - EDGE, wide, high)
         if shown == self.isHidden():

@@ -7,8 +7,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QToolBar, QToolButton, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSizePolicy, QToolBar, QToolButton, QWidget
 
+from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.importing import Importing
 from app.widgets.making import make_widget
@@ -36,7 +37,7 @@ class ImportLine(QToolBar):
         self.setMovable(False)
         self.toggleViewAction().setVisible(False)
         self.result: Imported | None = None
-        self.offered: list[QToolButton] = []  # the remedies, in order
+        self.offered: list[QPushButton] = []  # the remedies, in order
         held = QWidget(self)
         row = QHBoxLayout(held)
         row.setContentsMargins(8, 2, 2, 2)
@@ -71,7 +72,8 @@ class ImportLine(QToolBar):
         self.words.setToolTip(words)
         self.why.setVisible(bool(result.failures or result.notes))
         for remedy in remedies(result):
-            button = make_widget(QToolButton, self, text=remedy.label)
+            button = make_widget(QPushButton, self, text=remedy.label)
+            strengthen(button)
             button.clicked.connect(lambda _=False, r=remedy: self._mend(r))
             self.buttons.addWidget(button)
             self.offered.append(button)

@@ -44,7 +44,8 @@ def test_a_folder_becomes_a_project_and_a_report(folder: Path, capsys: pytest.Ca
     assert {s.name for s in project.graphs["arms"].stances.values()} == {"hands at sides", "on hips"}
     assert not [p for p in check(project) if p.severity == "error"]
     page = Path(data["report"]).read_text()
-    assert page.count("data:image/jpeg") == len(project.clips)
+    stances = sum(len(graph.stances) for graph in project.graphs.values())
+    assert page.count("data:image/jpeg") == len(project.clips) + stances
     assert "http" not in re.sub(r"data:[^'\"]*", "", page)  # nothing is fetched from anywhere
     assert "name begins with" in page and "hands at sides" in page
 
