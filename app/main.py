@@ -44,13 +44,15 @@ def make_window() -> Window:
     return Window(import_module(f"app.features.{name}").contribute for name in FEATURES)
 
 
-def open_window(path: Path | None, sample: bool = False) -> Window:
-    """Show a window on a project, the sample project, or nothing."""
+def open_window(path: Path | None, sample: bool = False, clip: str | None = None) -> Window:
+    """Show a window on a project, the sample project, or nothing. clip: name or id of one to select then."""
     from app.project.files import SAMPLE
 
     window = make_window()
     window.show()
     files = window.shell.files
+    if clip is not None:
+        files.opened.connect(lambda: _select(window, clip), Qt.ConnectionType.SingleShotConnection)
     if path is not None:
         files.open(path)
     else:
@@ -59,8 +61,20 @@ def open_window(path: Path | None, sample: bool = False) -> Window:
     return window
 
 
-def run_window(path: Path | None, sample: bool = False) -> int:
+def _select(window: Window, clip: str) -> None:
+    """Select a clip by its id or name, and play it alone."""
+    shell = window.shell
+    entries = shell.document.project.clips.values()
+    found = next((e.id for e in entries if clip in (e.id, e.name)), None)
+    if found is None:
+        shell.tell(f"There is no clip '{clip}' in {shell.document.project.name}.")
+        return
+    shell.stage.session.selection.select_clips((found,))
+    shell.stage.session.transport.show_clip(found)
+
+
+def run_window(path: Path | None, sample: bool = False, clip: str | None = None) -> int:
     """Open the window and stay until it is closed; return the exit status."""
     app = prepare()
-    window = open_window(path, sample)  # noqa: F841 - lives as long as the program
+    window = open_window(path, sample, clip)  # noqa: F841 - lives as long as the program
     return app.exec()

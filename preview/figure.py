@@ -31,10 +31,13 @@ class Figure:
 
     skeleton: whose global transforms the figure takes. mesh: in its rest pose. sources: `[M]`, for each
     matrix of the palette the joint of `skeleton` it follows (-1: none). shadow: joints `[S]` and radii `[S]`
-    that darken the ground.
+    that darken the ground. meshes: the names of the character's meshes, hidden ones too. instead: why this
+    figure stands in for the character's mesh, in words; "" where it does not.
     """
 
     morphs: tuple[str, ...] = ()  # names of the mesh's morph targets
+    meshes: tuple[str, ...] = ()
+    instead: str = ""
 
     def __init__(self, skeleton: Skeleton, mesh: Mesh, sources: Array) -> None:
         self.skeleton, self.mesh, self.sources = skeleton, mesh, sources
@@ -167,7 +170,7 @@ class SkinnedFigure(Figure):
         self._inverse_rotations = rotation.conjugate(rest_r)[follow].astype(np.float32)
         self._rest_positions = rest_p[follow].astype(np.float32)
         super().__init__(skeleton, _character_mesh(character), found[follow])
-        self.character, self.morphs = character, character.morphs
+        self.character, self.morphs, self.meshes = character, character.morphs, character.meshes
 
     def palette(self, rotations: Array, positions: Array) -> Array:
         sources = np.maximum(self.sources, 0)

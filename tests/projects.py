@@ -232,6 +232,7 @@ def _rest(draw: Any, project: Project) -> Project:
                     p, [draw(st.sampled_from(SKELETON.names))], draw(st.none() | st.sampled_from(PARTS))
                 ),
                 lambda p: edits.set_character(p, draw(st.none() | words)),
+                lambda p: edits.hide_meshes(p, draw(st.lists(names, max_size=3))),
                 lambda p: edits.rename_project(p, draw(names)),
                 lambda p: edits.set_base(
                     p, draw(st.sampled_from([None, *p.clips])), draw(st.integers(0, 40))

@@ -8,6 +8,7 @@ from collections import Counter
 
 from app.cli.command_output import opened
 from metagraph.graph.check import check as find_problems
+from metagraph.graph.check import grave
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -27,4 +28,4 @@ def run(options: Namespace) -> int:
         for p in problems:
             print(f"{p.severity:8}{f'{p.layer}: ' if p.layer else ''}{p.message}\n        {p.remedy}")
         print(f"{counts['error']} errors, {counts['warning']} warnings, {counts['hint']} hints")
-    return 3 if counts["error"] or (options.strict and counts["warning"]) else 0
+    return 3 if grave(problems, options.strict) else 0

@@ -7,6 +7,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from app.cli.command_output import opened, say
+from metagraph.formats.import_words import counted, remedies, said
 from metagraph.formats.imports import import_files
 from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph.model import Project
@@ -41,10 +42,10 @@ def run(options: Namespace) -> int:
     )
     if show:
         print(file=sys.stderr)
-    for failure in result.failures:
+    for failure in counted(result.failures):
         print(f"left out: {failure}", file=sys.stderr)
     if not options.json:
-        for note in result.notes:
+        for note in counted(result.notes):
             print(f"note: {note}", file=sys.stderr)
     if result.loaded:
         project = result.into(project)
@@ -55,13 +56,9 @@ def run(options: Namespace) -> int:
         "retargeted": result.retargeted,
         "failures": list(result.failures),
         "notes": list(result.notes),
+        "remedies": [remedy.command for remedy in remedies(result)],
     }
-    brought = f" ({result.retargeted} retargeted)" if result.retargeted else ""
-    say(
-        options,
-        f"{path}: {len(result.loaded)} clips imported{brought}, {len(result.failures)} files left out",
-        data,
-    )
+    say(options, f"{path}: {said(result, window=False)}", data)
     if not result.loaded and result.failures:
         return 1
     return 3 if result.failures else 0

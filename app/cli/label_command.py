@@ -8,7 +8,7 @@ import argparse
 import sys
 import time
 from argparse import Namespace
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -55,11 +55,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Label a folder or project; write the project and an HTML report beside it."""
     from app.cli.command_output import say
+    from app.cli.label_pictures import pictures
     from app.cli.label_report import needs_a_look, report
     from metagraph.errors import FileError
     from metagraph.formats.atomic import write_atomically
+    from metagraph.formats.import_words import counted
     from metagraph.formats.store import SUFFIX, save_project
-    from metagraph.graph.check import check
+    from metagraph.graph.check import check, grave
     from metagraph.suggest.bridges import bridged, told
     from metagraph.suggest.propose import SOURCES, accept, propose
 
@@ -85,15 +87,15 @@ def run(options: Namespace) -> int:
     taken = replace(taken, project=labelled)
     save_project(taken.project, path, source if source.is_file() else path)
     place = path.with_name(path.name.removesuffix(SUFFIX) + ".labels.html")
-    drawn = {} if options.no_pictures else _pictures(taken.project, path.resolve().parent, [*found.proposals])
-    write_atomically(place, report(taken.project, found, taken, drawn, notes).encode())
+    drawn = {} if options.no_pictures else pictures(taken.project, path.resolve().parent, [*found.proposals])
+    write_atomically(place, report(taken.project, found, taken, drawn, notes, path).encode())
     look = [p for p in found.doubtful if needs_a_look(p, taken)]
-    errors = [p.message for p in check(taken.project) if p.severity == "error"]
+    errors = [p.message for p in grave(check(taken.project))]
     seconds = time.perf_counter() - began
     aside: dict[str, list[str]] = {}
     for clip, why in found.aside.items():
         aside.setdefault(why, []).append(project.clips[clip].name)
-    for note in notes:
+    for note in counted(notes):
         print(f"note: {note}", file=sys.stderr)
     for stance, rest in taken.held.items():
         if (made := taken.project.stance(stance)) is not None:
@@ -104,6 +106,8 @@ def run(options: Namespace) -> int:
         print(f"aside: {_several(clips)}: {why}", file=sys.stderr)
     for clip, why in taken.left.items():
         print(f"left: {project.clips[clip].name}: {why}", file=sys.stderr)
+    for message in errors:
+        print(f"problem: {message}", file=sys.stderr)
     words = (
         f"{path}: {len(taken.placed)} of {len(found.proposals)} clips labelled in {seconds:.1f} s, "
         f"{len(look)} need a look\n{place}"
@@ -177,23 +181,3 @@ def _project(source: Path, path: Path) -> tuple[Project, list[str]]:
             source, why, "on importing it", "Clips are BVH, GLB, glTF, VRM animation or FBX files."
         )
     return result.into(empty), [*result.failures, *result.notes]
-
-
-def _pictures(project: Project, folder: Path, clips: list[str]) -> Mapping[str, Any]:
-    """Return a picture of each clip's most telling pose; none where nothing can be drawn here."""
-    from app.cli.render_command import figure_of
-    from metagraph.errors import FileError
-    from preview.offscreen import Offscreen, OpenGLError
-    from preview.thumbnail import clip_thumbnail
-
-    try:
-        figure = figure_of(project, folder)
-        with Offscreen(192, 192) as stage:
-            return {
-                c: clip_thumbnail(stage, figure, m, size=192, scale=1)
-                for c in clips
-                if (m := project.clips[c].motion) is not None
-            }
-    except (OpenGLError, FileError) as error:
-        print(f"note: the report has no pictures: {error}", file=sys.stderr)
-        return {}

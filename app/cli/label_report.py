@@ -5,12 +5,19 @@ all the rest by stance.
 from __future__ import annotations
 
 import base64
+import os
+import shlex
+import subprocess
 from collections.abc import Iterable, Mapping
 from html import escape
 from io import BytesIO
+from pathlib import Path
 from typing import Any
 
-from metagraph.graph.model import LAYERS, Project
+from app.cli.label_page import SCRIPT, STYLE
+from app.look.plural import many
+from metagraph.formats.import_words import counted
+from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.propose import Proposal, Proposals, Taken
 
@@ -22,33 +29,20 @@ KIND_MARKS = {
 }  # as in the window; its module needs Qt
 SURE = 0.9  # from here on a proposal needs no second look
 
-STYLE = """
-:root { color-scheme: dark light; --ground: #17181b; --card: #25282d; --line: #34383f; --text: #dfe3e8; --dim: #9aa1ab; --warn: #e8c24a;
-  --stance: #3fb8a6; --gesture: #f0a63c; --fidget: #a98bf0; --transition: #5aa3f0; }
-@media (prefers-color-scheme: light) {
-  :root { --ground: #f6f7f8; --card: #fff; --line: #cdd2d8; --text: #1d2126; --dim: #59616b; --warn: #7d5b00;
-    --stance: #127065; --gesture: #8f5a00; --fidget: #6a45c4; --transition: #1a63b8; }
-}
-body { margin: 0 auto; max-width: 1180px; padding: 24px; background: var(--ground); color: var(--text);
-  font: 14px/1.45 system-ui, sans-serif; }
-h1 { font-size: 22px; } h2 { font-size: 17px; margin-top: 36px; } h3 { font-size: 14px; color: var(--dim); margin: 22px 0 8px; }
-.cards { display: grid; grid-template-columns: repeat(auto-fill, minmax(360px, 1fr)); gap: 10px; }
-.card { display: grid; grid-template-columns: 96px 1fr; gap: 12px; padding: 10px;
-  background: var(--card); border: 1px solid var(--line); border-radius: 8px; }
-.card img, .card .none { width: 96px; height: 96px; border-radius: 6px; }
-.card b { overflow-wrap: anywhere; } .dim { color: var(--dim); } .warn { color: var(--warn); }
-.stance { color: var(--stance); } .gesture { color: var(--gesture); }
-.fidget { color: var(--fidget); } .transition { color: var(--transition); }
-ul { margin: 4px 0 0; padding-left: 18px; font-size: 13px; }
-"""
-
 
 def report(
-    project: Project, found: Proposals, taken: Taken, pictures: Mapping[str, Any], notes: Iterable[str] = ()
+    project: Project,
+    found: Proposals,
+    taken: Taken,
+    pictures: Mapping[str, Any],
+    notes: Iterable[str] = (),
+    path: Path | None = None,
 ) -> str:
-    """Return the page. pictures: clip -> `[H, W, 4]` uint8, of those that could be drawn."""
+    """Return the page. pictures: clip, or stance of the labelled project -> `[H, W, 4]` uint8, of those that
+    could be drawn. path: the project's file, which the page says how to open.
+    """
     doubtful = [p for p in found.doubtful if needs_a_look(p, taken)]
-    told = [f"<li>{escape(note)}</li>" for note in notes]
+    told = [f"<li>{escape(note)}</li>" for note in counted(notes)]
     stances = {i: s.name for i in taken.held if (s := taken.project.stance(i)) is not None}
     held = [
         f"<li>{escape(stances[i])}: {escape(rest.reason)}</li>"
@@ -61,27 +55,29 @@ def report(
         "sure that is, and why.</p>",
         f"<h2>Stances that no clip rests in</h2><ul>{''.join(held)}</ul>" if held else "",
         f"<h2>While importing</h2><ul>{''.join(told)}</ul>" if told else "",
-        f"<h2>Needs a look ({len(doubtful)})</h2>" if doubtful else "<h2>Nothing needs a look</h2>",
-        _cards(project, found, doubtful, taken, pictures),
+        _overview(taken.project, pictures),
+        _bar(),
+        _section(
+            f"<h2>Needs a look ({len(doubtful)})</h2>",
+            _cards(project, found, doubtful, taken, pictures, path),
+        )
+        if doubtful
+        else "<h2>Nothing needs a look</h2>",
     ]
     for layer in LAYERS:
         mine = [p for p in found.proposals.values() if p.layer.value == layer]
-        if not mine:
-            continue
-        parts.append(f"<h2>{layer.capitalize()}</h2>")
         for key, place in found.places.items():
             there = [p for p in mine if p.stance is not None and p.stance.value == key and p not in doubtful]
             if there:
-                parts.append(
-                    f"<h3>{escape(place.name)} "
-                    f"({len(there)})</h3>{_cards(project, found, there, taken, pictures)}"
-                )
+                title = f"<h2>{layer.capitalize()}: {escape(place.name)} ({len(there)})</h2>"
+                parts.append(_section(title, _cards(project, found, there, taken, pictures, path)))
     body = "\n".join(parts)
     head = (
         f"<meta charset='utf-8'><link rel='icon' href='data:,'><title>{escape(project.name)}: "
         f"labels</title><style>{STYLE}</style>"
     )
-    return f"<!doctype html><html lang='en'><head>{head}</head><body>\n{body}\n</body></html>\n"
+    body += f"\n<script>{SCRIPT}</script>"
+    return f"<!doctype html><html lang='en'><head>{head}</head><body>\n{body}</body></html>\n"
 
 
 def needs_a_look(p: Proposal, taken: Taken) -> bool:
@@ -91,17 +87,96 @@ def needs_a_look(p: Proposal, taken: Taken) -> bool:
     return p.confidence < SURE or bool(p.conflicts) or p.good is False or p.clip in taken.left
 
 
+def _section(title: str, cards: str) -> str:
+    return f"<section>{title}{cards}</section>"
+
+
+def _bar() -> str:
+    """What filters and sorts."""
+
+    def options(first: str, values: Iterable[str]) -> str:
+        return f"<option value=''>{first}</option>" + "".join(f"<option>{v}</option>" for v in values)
+
+    return (
+        "<h2>Clips</h2><div class='bar'><input id='find' type='search' placeholder='Filter by words' "
+        f"aria-label='Filter by words'><select id='kind' aria-label='Kind'>{options('Every kind', KINDS)}"
+        f"</select><select id='layer' aria-label='Layer'>{options('Every layer', LAYERS)}</select>"
+        "<label><input id='look' type='checkbox'> needs a look</label><select id='sort' aria-label='Order'>"
+        "<option value=''>As found</option><option value='sure'>Least sure first</option>"
+        "<option value='name'>By name</option><option value='kind'>By kind</option></select>"
+        "<button id='all'>Show all</button><span class='dim' id='count'></span></div>"
+    )
+
+
+def _overview(project: Project, pictures: Mapping[str, Any]) -> str:
+    """Every stance: what it looks like, and what there is of it."""
+    out = []
+    for layer in LAYERS:
+        graph = project.graphs[layer]
+        for stance in graph.stances.values():
+            count = {kind: len(graph.of(stance.id, kind)) for kind in KINDS}
+            into = sum(a.end_stance == stance.id for a in graph.actions.values() if a.kind == "transition")
+            clips = {a.clip for a in graph.actions.values() if stance.id in (a.stance, a.end_stance)}
+            lines = (
+                f"{layer}, {many(len(clips), 'clip')}",
+                f"{KIND_MARKS['gesture']} {many(count['gesture'], 'gesture')}, "
+                f"{KIND_MARKS['fidget']} {many(count['fidget'], 'fidget')}",
+                f"{KIND_MARKS['transition']} {count['transition']} out, {into} in",
+            )
+            said = "".join(f"<span class='dim'>{line}</span>" for line in lines)
+            key = escape(f"{layer}/{stance.name}", quote=True)
+            out.append(
+                f"<button data-stance='{key}' title='Show its clips alone'>"
+                f"{_picture(pictures.get(stance.id))}<b>{escape(stance.name)}</b>{said}</button>"
+            )
+    return f"<h2>Stances ({len(out)})</h2><div class='stances'>{''.join(out)}</div>" if out else ""
+
+
 def _cards(
     project: Project,
     found: Proposals,
     proposals: Iterable[Proposal],
     taken: Taken,
     pictures: Mapping[str, Any],
+    path: Path | None,
 ) -> str:
-    return f"<div class='cards'>{''.join(_card(project, found, p, taken, pictures) for p in proposals)}</div>"
+    made = "".join(_card(project, found, p, taken, pictures, path) for p in proposals)
+    return f"<div class='cards'>{made}</div>"
 
 
-def _card(project: Project, found: Proposals, p: Proposal, taken: Taken, pictures: Mapping[str, Any]) -> str:
+def open_command(project: Project, clip: str, path: Path) -> str:
+    """Return what to type in a terminal to see a clip in the window."""
+    name = project.clips[clip].name
+    if name.startswith("-") or sum(entry.name == name for entry in project.clips.values()) > 1:
+        name = clip
+    words = ["metagraph", "window", str(path.resolve()), "--clip", name]
+    return subprocess.list2cmdline(words) if os.name == "nt" else shlex.join(words)
+
+
+def _data_of(project: Project, found: Proposals, p: Proposal, taken: Taken) -> str:
+    """What the page's script filters and sorts a card by."""
+    stance = f"{p.layer.value}/{found.places[p.stance.value].name}" if p.stance is not None else ""
+    end = f"{p.layer.value}/{found.places[p.end_stance.value].name}" if p.end_stance is not None else ""
+    values = {
+        "name": project.clips[p.clip].name.lower(),
+        "kind": p.kind.value,
+        "layer": p.layer.value,
+        "stance": stance,
+        "end": end,
+        "sure": f"{p.confidence:.3f}",
+        "look": "1" if needs_a_look(p, taken) else "0",
+    }
+    return " ".join(f"data-{key}='{escape(value, quote=True)}'" for key, value in values.items())
+
+
+def _card(
+    project: Project,
+    found: Proposals,
+    p: Proposal,
+    taken: Taken,
+    pictures: Mapping[str, Any],
+    path: Path | None,
+) -> str:
     kind = p.kind.value
     where = found.places[p.stance.value].name if p.stance is not None else "no stance"
     if p.end_stance is not None:
@@ -135,17 +210,23 @@ def _card(project: Project, found: Proposals, p: Proposal, taken: Taken, picture
         *([taken.left[p.clip]] if p.clip in taken.left else []),
     ]
     reasons = [f"<li class='warn'>{escape(words)}</li>" for words in warnings] + reasons
-    picture = (
-        f"<img alt='' src='{_data(pictures[p.clip])}'>" if p.clip in pictures else "<div class='none'></div>"
-    )
     title = (
         f"<b>{escape(project.clips[p.clip].name)}</b><br><span class='{kind}'>{KIND_MARKS[kind]} "
         f"{kind}</span>"
     )
+    opening = ""
+    if path is not None:
+        command = escape(open_command(taken.project, p.clip, path))
+        opening = f"<button class='open'>Open in the window</button><code hidden>{command}</code>"
     return (
-        f"<div class='card'>{picture}<div>{title} <span "
-        f"class='dim'>{escape(where)}{limb}</span><ul>{''.join(reasons)}</ul></div></div>"
+        f"<div class='card' {_data_of(project, found, p, taken)}>{_picture(pictures.get(p.clip))}"
+        f"<div>{title} <span class='dim'>{escape(where)}{limb}</span><ul>{''.join(reasons)}</ul>{opening}"
+        "</div></div>"
     )
+
+
+def _picture(picture: Any) -> str:
+    return f"<img alt='' src='{_data(picture)}'>" if picture is not None else "<div class='none'></div>"
 
 
 def _said(name: str, value: Any) -> str:

@@ -37,14 +37,17 @@ def arguments(parser: ArgumentParser) -> None:
 
 
 def figure_of(project: Project, folder: Path) -> Any:
-    from preview.figure import SkinnedFigure, StickFigure
+    """Return the figure that draws a project, and say where it is not its character's mesh. Raises
+    FileError.
+    """
+    from preview.character_file import figure_of as drawn
 
     assert project.skeleton is not None
-    if project.character is not None:
-        from metagraph.formats.gltf import read_character
-
-        return SkinnedFigure(read_character(folder / project.character), project.skeleton)
-    return StickFigure(project.skeleton)
+    path = folder / project.character if project.character is not None else None
+    figure = drawn(path, project.skeleton, project.hidden)
+    if figure.instead:
+        print(f"note: {figure.instead}; a stick figure is drawn", file=sys.stderr)
+    return figure
 
 
 def size_of(text: str) -> tuple[int, int]:
@@ -242,8 +245,8 @@ def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path) -
         if project.character is not None:
             from metagraph.formats.gltf import read_character
 
-            body = read_character(folder / project.character)
-            if body.skeleton != project.skeleton:
+            body = read_character(folder / project.character).without(project.hidden)
+            if body.skeleton != project.skeleton or not len(body.triangles):
                 body = None  # it would not move with this motion
         write_glb(out, [motion], body)
 

@@ -16,6 +16,7 @@ def arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument("project", type=Path, nargs="?", help="a project file")
     parser.add_argument("--sample", action="store_true", help="open the sample project")
+    parser.add_argument("--clip", metavar="NAME", help="select this clip of the project, and play it alone")
 
 
 def has_screen() -> bool:
@@ -50,4 +51,4 @@ def run(options: Namespace) -> int:
         )
     from app.main import run_window
 
-    return run_window(options.project, options.sample)
+    return run_window(options.project, options.sample, options.clip)

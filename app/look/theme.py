@@ -192,6 +192,7 @@ def style_sheet(look: Theme) -> str:
     QTabWidget::pane {{ border: none; }}
     QSlider::groove:horizontal {{ height: 4px; background: {t.line}; border-radius: 2px; }}
     QSlider::handle:horizontal {{ width: 14px; margin: -5px 0; border-radius: 7px; background: {t.text}; }}
+    QFrame[card="true"] {{ background: {t.card}; border: 1px solid {t.line}; border-radius: 8px; }}
     QLabel[dim="true"] {{ color: {t.dim}; }}
     QLabel[heading="true"] {{ font-size: 16px; font-weight: 600; }}
     QDialogButtonBox {{ dialogbuttonbox-buttons-have-icons: 0; }}

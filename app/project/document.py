@@ -6,7 +6,7 @@ same object.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -16,7 +16,8 @@ from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.project.writing import Writing, project_name
 from metagraph.errors import FileError
-from metagraph.formats.journal import Journal, journal_path
+from metagraph.formats.history import Step
+from metagraph.formats.journal import How, Journal, journal_path
 from metagraph.formats.locking import Lock, new_owner
 from metagraph.formats.store import file_digest, moved
 from metagraph.graph.model import Project
@@ -33,12 +34,27 @@ class _Change(QUndoCommand):
         super().__init__(text)
         self.document, self.before, self.after, self.merge = document, before, after, merge
         self.cancelled = False
+        self._how: How = "done"
 
     def redo(self) -> None:
-        self.document._set(self.after)
+        if self._how == "done" and self._goes_on():
+            self._how = "merged"
+        self.document._set(self.after, self.text(), self._how)
+        self._how = "redone"  # the next time
+
+    def _goes_on(self) -> bool:
+        """Whether the stack will merge it with the step before."""
+        stack = self.document.undo_stack
+        top = stack.command(stack.index() - 1) if stack.index() else None
+        return (
+            self.merge is not None
+            and isinstance(top, _Change)
+            and top.merge == self.merge
+            and stack.index() != stack.cleanIndex()
+        )
 
     def undo(self) -> None:
-        self.document._set(self.before)
+        self.document._set(self.before, self.text(), "undone")
         self.setObsolete(self.cancelled)  # then it leaves no step to redo
 
     def id(self) -> int:
@@ -84,6 +100,7 @@ class Document(QObject):
         self._journal: Journal | None = None
         self._unsafe = False  # no journal can be written; that was told
         self._returned = False  # motion came back that earlier steps do not have
+        self._restored: Project | None = None  # while steps are: what the next one begins with
 
     # --- editing
 
@@ -125,18 +142,24 @@ class Document(QObject):
             self.common = after if self.common is before else self.common
             self.changed.emit(before, after)
 
-    def _set(self, project: Project) -> None:
+    def _set(self, project: Project, text: str, how: How) -> None:
+        if self._restored is not None:  # a step of before a crash
+            self._write_edit(self._restored, project, text, how)
+            return
         if self._returned:
             project = _with_motion(project, self.project)
         before, self.project = self.project, project
         if self._journal is None and not self._unsafe:  # the first edit of a window that opened nothing
             self._begin_journal(before if self.path is None or self.read_only else None)
+        self._write_edit(before, project, text, how)
+        self.changed.emit(before, project)
+
+    def _write_edit(self, before: Project, after: Project, text: str, how: How) -> None:
         if self._journal is not None:
             try:
-                self._journal.edit(before, project)
+                self._journal.edit(before, after, text, how)
             except (FileError, OSError) as error:
                 self.failed.emit(f"This edit was not autosaved: {error}")
-        self.changed.emit(before, project)
 
     def undo(self) -> None:
         self.undo_stack.undo()
@@ -163,13 +186,15 @@ class Document(QObject):
         path: Path | None,
         recovered: int = 0,
         *,
+        steps: Sequence[Step] = (),
         common: Project | None = None,
         digest: str | None = None,
         lock: Lock | None = None,
         read_only: bool = False,
     ) -> None:
         """Show another project; without a path its clip paths are absolute. recovered: how many edits it
-        holds that are not in its file.
+        holds that are not in its file. steps: those that can be undone, the last leading to `project`;
+        `recovered` counts the edits before them then.
 
         common, digest: what its file holds, and that file's (as it is now, when left out). lock: of that
         file.
@@ -178,14 +203,25 @@ class Document(QObject):
         before, self.project = self.project, project
         self.path, self.lock, self.read_only, self._returned = path, lock, read_only, False
         self.digest = digest or self._digest_now()
-        self.common = common if recovered else project
+        first = steps[0].before if steps else project
+        self.common = common if recovered else first
         self.undo_stack.clear()
         if recovered:
             self.undo_stack.resetClean()
-        self._begin_journal(project if recovered or path is None else None, recovered)
+        self._begin_journal(first if recovered or steps or path is None else None, recovered)
+        self._restore(steps)
         self.loaded.emit()
         self.changed.emit(before, project)
         self.state_changed.emit()
+
+    def _restore(self, steps: Sequence[Step]) -> None:
+        """Put steps on the stack that were made before a crash, and into this sitting's journal."""
+        self.undo_stack.blockSignals(True)  # the views follow once, in the end
+        for step in steps:
+            self._restored = step.before
+            self.undo_stack.push(_Change(self, step.text, step.before, step.after, None))
+        self._restored = None
+        self.undo_stack.blockSignals(False)
 
     def reload(self, project: Project, digest: str) -> None:
         """Take over what another program has made of the file: one step, which can be undone, to the saved
@@ -297,8 +333,18 @@ class Document(QObject):
 
     def keep_all(self) -> None:
         """Write the whole project into the journal, since the file it builds on is another one now."""
-        if self.dirty:
-            self._begin_journal(self.project, max(1, self.undo_stack.count()))
+        if not self.dirty:
+            return
+        stack = self.undo_stack
+        clean = stack.cleanIndex()
+        made = [stack.command(n) for n in range(max(0, clean), stack.index())]
+        steps = [c for c in made if isinstance(c, _Change)]
+        if not steps:  # what was saved has been undone
+            self._begin_journal(self.project, 1)
+            return
+        self._begin_journal(steps[0].before, int(clean < 0))
+        for step in steps:
+            self._write_edit(step.before, step.after, step.text(), "done")
 
     def touch_journal(self) -> None:
         """See `Journal.touch`."""

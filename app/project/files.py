@@ -23,12 +23,13 @@ from app.project.leftovers import (
     read_untitled,
     untitled_journals,
 )
-from app.project.opening import load_whole, open_whole
+from app.project.opening import load_recovered, load_whole, open_whole
 from app.project.questions import ask_changed, ask_held, ask_keep, ask_recover, holder_words
 from app.project.saver import Saver
 from app.project.writing import FileChangedError, file_changed
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
+from metagraph.formats.history import Step
 from metagraph.formats.locking import Lock
 from metagraph.formats.recovery import Left
 from metagraph.formats.store import SUFFIX, Opened, absolute, read_project
@@ -154,34 +155,31 @@ class Files(QObject):
         """
         lock = found.lock if found is not None and found.lock is not None and found.lock.held else None
 
-        def work(job: Job) -> tuple[Opened, Project | None, list[Path]]:
+        def work(job: Job) -> tuple[Opened, Project | None, list[Path], tuple[Step, ...]]:
             kept = [keep_as_copy(other, path) for other in copies]
             if chosen is None:
-                return open_whole(path, job.tell), None, kept
+                return open_whole(path, job.tell), None, kept, ()
             common = None if chosen.behind else read_project(path)
-            return (
-                replace(load_whole(chosen.project, path.parent, job.tell), digest=chosen.digest),
-                common,
-                kept,
-            )
+            opened, steps = load_recovered(chosen, path.parent, job.tell)
+            return replace(opened, digest=chosen.digest), common, kept, steps
 
         def release() -> None:
             if lock is not None and (self.document.lock is None or self.document.lock.path != lock.path):
                 lock.release()
 
-        def done(result: tuple[Opened, Project | None, list[Path]]) -> None:
-            opened, common, kept = result
+        def done(result: tuple[Opened, Project | None, list[Path], tuple[Step, ...]]) -> None:
+            opened, common, kept, steps = result
             if self.document.project is not before and not self.may_leave():
                 release()
                 return  # it was edited meanwhile
             if template:
                 self.document.load(absolute(opened.project, path.parent), None)
             else:
-                edits = chosen.edits if chosen is not None else 0
                 self.document.load(
                     opened.project,
                     path,
-                    edits,
+                    _not_steps(chosen, steps) if chosen is not None else 0,
+                    steps=steps,
                     common=common,
                     digest=opened.digest,
                     lock=lock,
@@ -227,10 +225,11 @@ class Files(QObject):
             return
         era = self._era
 
-        def done(opened: Opened) -> None:
+        def done(result: tuple[Opened, tuple[Step, ...]]) -> None:
             if era != self._era or self.document.dirty:
                 return  # it is offered again another time
-            self.document.load(opened.project, None, left.edits)
+            opened, steps = result
+            self.document.load(opened.project, None, _not_steps(left, steps), steps=steps)
             forget(left.path)
             self.opened.emit()
             rest = len(found.left) - n - 1
@@ -238,7 +237,7 @@ class Files(QObject):
                 self.told.emit(f"{rest} more will be offered when Metagraph is started again.")
 
         self.jobs.start(
-            "Recovering", lambda job: load_whole(left.project, Path("/"), job.tell), done, self.show_failure
+            "Recovering", lambda job: load_recovered(left, Path("/"), job.tell), done, self.show_failure
         )
 
     def show_failure(self, error: Exception) -> None:
@@ -375,3 +374,8 @@ class Files(QObject):
             write_atomically(state_folder() / "recent.json", json.dumps(names[:RECENT]).encode())
         except (FileError, OSError):
             self.told.emit("The list of recent projects could not be written.")
+
+
+def _not_steps(left: Left, steps: Sequence[Step]) -> int:
+    """Return how many of a journal's edits are in no file and can no longer be undone one by one."""
+    return left.unsaved if steps else left.edits

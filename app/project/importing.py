@@ -19,6 +19,7 @@ from app.project.kept_maps import kept_maps
 from app.project.load import Load
 from app.project.opening import take_over
 from metagraph.formats.clips import SUFFIXES
+from metagraph.formats.import_words import Remedy, counted, head, said
 from metagraph.formats.imports import Imported, Strangers, import_files
 from metagraph.formats.repairs import repairs_of
 from metagraph.formats.store import Opened, load_returned
@@ -42,15 +43,16 @@ class FileDrop:
 
 class Importing(QObject):
     """told: words for the status bar. report: (title, lines) to read. imported: (Imported, what was given
-    with it to place them). repaired: (title, ids of clips, lines) to look through; the lines say what else is
-    to be read. noticed: the same, with nothing that has to be read. drops: who takes what is no clip.
-    retarget: asks about clips of other skeletons; without it they are left out.
+    with it to place them). ended: an Imported, once nothing is asked about it any more. noticed: (title, ids
+    of clips, lines), clips that were repaired; the lines say what else there is to read. drops: who takes
+    what is no clip. retarget: asks about clips of other skeletons; without it they are left out. bring:
+    retargets them unasked.
     """
 
     told = Signal(str)
     report = Signal(str, object)
     imported = Signal(object, object)
-    repaired = Signal(str, object, object)
+    ended = Signal(object)
     noticed = Signal(str, object, object)
 
     def __init__(self, document: Document, jobs: Jobs, files: Files, widget: QWidget) -> None:
@@ -58,6 +60,7 @@ class Importing(QObject):
         self.document, self.jobs, self.files, self.widget = document, jobs, files, widget
         self.drops: tuple[FileDrop, ...] = ()
         self.retarget: Retarget | None = None
+        self.bring: Retarget | None = None
         self._era = 0  # counts the projects that were shown
         document.loaded.connect(self._next_era)
 
@@ -124,8 +127,14 @@ class Importing(QObject):
         self.imported.emit(result, drop)
         if not result.strangers or self.retarget is None:
             self._tell_imported(result)
-            return
-        parts, groups = [replace(result, strangers=())], len(result.strangers)
+        else:
+            self._collect(self.retarget, result.strangers, replace(result, strangers=()), drop)
+
+    def _collect(
+        self, retarget: Retarget, strangers: Sequence[Strangers], result: Imported, drop: object
+    ) -> None:
+        """Bring strangers in, and tell of all together with `result` in the end."""
+        parts, groups = [result], len(strangers)
 
         def then(brought: Imported) -> None:
             if brought.loaded:
@@ -135,19 +144,31 @@ class Importing(QObject):
             if len(parts) > groups:
                 self._tell_imported(_together(parts))
 
-        self.retarget(result.strangers, then)
+        retarget(strangers, then)
+
+    def remedy(self, result: Imported, remedy: Remedy) -> None:
+        """Do what an import's report offers about clips of other skeletons."""
+        retarget = self.bring if remedy.do == "retarget" else self.retarget
+        if retarget is None or self.files.refuse():
+            return
+        told = {line for group in remedy.strangers for line in group.told}
+        rest = replace(
+            result,
+            apart=tuple(group for group in result.apart if group not in remedy.strangers),
+            failures=tuple(line for line in result.failures if line not in told),
+        )
+        self._collect(retarget, remedy.strangers, rest, None)
 
     def _tell_imported(self, result: Imported) -> None:
-        """Say what came of an import: in the status bar, or to read where something was left out or
-        repaired.
-        """
-        count, files = len(result.loaded), len(result.failures)
-        words = f"Imported {clips_words(count)}"
-        if result.retargeted:
-            words += f", {result.retargeted} of them retargeted"
-        if result.left:
-            out = f"left out {clips_words(result.left)} of another skeleton"
-            words = f"{words}, {out}" if count else out.capitalize()
+        """Say what came of an import."""
+        if not result.loaded and not result.apart and not result.failures:
+            self.report.emit(
+                "Nothing was imported",
+                ["No clip was found there. Clips are BVH, GLB, glTF, VRM animation or FBX files."],
+            )
+            return
+        before = [note for note in result.notes if note.endswith("retargeted as before")]
+        self.told.emit(". ".join([said(result), *before]))
         clips = self.load_for(result).clips
         repairs = repairs_of(self.document.project, clips)
         if any(
@@ -155,26 +176,8 @@ class Importing(QObject):
         ):  # a name is plain to see, and no reason to interrupt
             told = {found.repair.words for found in repairs}
             notes = [note for note in result.notes if note.split(": ", 1)[-1] not in told]
-            (self.repaired if files else self.noticed).emit(words, clips, [*result.failures, *notes])
-            self.told.emit(words)
-        elif files:
-            self.report.emit(
-                f"{words}; {files} file{'s' if files != 1 else ''} could not be read",
-                [*result.failures, *result.notes],
-            )
-        elif not count and not result.left:
-            self.report.emit(
-                "Nothing was imported",
-                ["No clip was found there. Clips are BVH, GLB, glTF, VRM animation or FBX files."],
-            )
-        else:
-            before = [note for note in result.notes if note.endswith("retargeted as before")]
-            more = [note for note in result.notes if note not in before]
-            words = ". ".join([words, *before])
-            self.told.emit(
-                words
-                + (f" ({len(more)} note{'s' if len(more) != 1 else ''}, see the tooltips)" if more else "")
-            )
+            self.noticed.emit(head(result), clips, counted([*result.failures, *notes]))
+        self.ended.emit(result)
 
     def load_for(self, result: Imported) -> Load:
         """Return the imported clips as something that can be dropped."""
@@ -245,5 +248,5 @@ def _together(parts: Sequence[Imported]) -> Imported:
         failures=tuple(x for part in parts for x in part.failures),
         notes=tuple(x for part in parts for x in part.notes),
         retargeted=sum(part.retargeted for part in parts),
-        left=sum(part.left for part in parts),
+        apart=tuple(x for part in parts for x in part.apart),
     )

@@ -7,6 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from metagraph.errors import FileError
+from metagraph.formats.history import Step, history, with_motion
+from metagraph.formats.recovery import Left
 from metagraph.formats.store import Opened, load_motions, open_project
 from metagraph.graph.face import with_morphs
 from metagraph.graph.model import Project
@@ -24,6 +26,17 @@ def open_whole(path: Path, progress: Progress | None = None) -> Opened:
 def load_whole(project: Project, folder: Path, progress: Progress | None = None) -> Opened:
     """Read the clips and voices of a project that is there already."""
     return _voiced(load_motions(project, folder, progress), folder)
+
+
+def load_recovered(
+    left: Left, folder: Path, progress: Progress | None = None
+) -> tuple[Opened, tuple[Step, ...]]:
+    """Read the clips and voices of a journal's project, and the steps that lead to it."""
+    opened = load_whole(left.project, folder, progress)
+    steps = history(left)
+    if not steps:
+        return opened, ()
+    return opened, with_motion(steps, left.project, opened.project, lambda p: load_motions(p, folder).project)
 
 
 def take_over(project: Project, found: Project) -> Project:

@@ -12,9 +12,10 @@ from app.stage.playback_source import Shown
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Skeleton
-from preview.figure import Figure, SkinnedFigure, StickFigure
+from preview.character_file import figure_of
+from preview.figure import Figure
 
-Key = tuple[str, str]  # the character's file, the skeleton it is bound to
+Key = tuple[str, str, tuple[str, ...]]  # the character's file, the skeleton it is bound to, what is hidden
 
 
 class Figures(QObject):
@@ -36,7 +37,7 @@ class Figures(QObject):
         if project.character is None or project.skeleton is None:
             return None
         path = (self.document.folder or Path()) / project.character
-        return str(path), project.skeleton.fingerprint
+        return str(path), project.skeleton.fingerprint, project.hidden
 
     def _follow(self, before: Project, after: Project) -> None:
         key = self._key(after)
@@ -49,7 +50,7 @@ class Figures(QObject):
         skeleton = after.skeleton
         self.jobs.start(
             "character",
-            lambda _: (key, load_figure(Path(key[0]), skeleton)),
+            lambda _: (key, _ready(figure_of(Path(key[0]), skeleton, key[2]))),
             self._read,
             lambda error: self._refused(key, error),
             quick=True,
@@ -58,6 +59,8 @@ class Figures(QObject):
     def _read(self, result: tuple[Key, Figure]) -> None:
         if result[0] == self._wanted:
             self._skinned = result
+            if result[1].instead:
+                self.document.failed.emit(f"A stick figure is drawn: {result[1].instead}")
             self.changed.emit()
 
     def _refused(self, key: Key, error: Exception) -> None:
@@ -75,10 +78,11 @@ class Figures(QObject):
         project = self.document.project
         key = self._key(project)
         if key is not None and key != self._unreadable and skeleton == project.skeleton:
-            return self._skinned[1] if self._skinned is not None and self._skinned[0] == key else None
+            # Until meshes are shown or hidden, what was drawn stays.
+            return self._skinned[1] if self._skinned is not None and self._skinned[0][:2] == key[:2] else None
         if skeleton.fingerprint not in self._sticks:
             self._sticks[skeleton.fingerprint] = None
-            self.jobs.start("figure", lambda _: _ready(StickFigure(skeleton)), self._built, quick=True)
+            self.jobs.start("figure", lambda _: _ready(figure_of(None, skeleton)), self._built, quick=True)
         return self._sticks[skeleton.fingerprint]
 
     def of(self, shown: Shown) -> Figure | None:
@@ -90,7 +94,7 @@ class Figures(QObject):
             return None
         if shown.folder is None or character is None or shown.clip is not None:
             return self.figure(skeleton)
-        key = (str(shown.folder / character), skeleton.fingerprint)
+        key = (str(shown.folder / character), skeleton.fingerprint, shown.project.hidden)
         if key == self._key(self.document.project):
             return self.figure(skeleton)
         if key not in self._guests:
@@ -98,9 +102,9 @@ class Figures(QObject):
 
             def work(_: object) -> tuple[Key, Figure]:
                 try:
-                    return key, load_figure(Path(key[0]), skeleton)
+                    return key, _ready(figure_of(Path(key[0]), skeleton, key[2]))
                 except FileError:  # it moves all the same
-                    return key, _ready(StickFigure(skeleton))
+                    return key, _ready(figure_of(None, skeleton))
 
             self.jobs.start("character", work, self._came, quick=True)
         return self._guests[key]
@@ -112,13 +116,6 @@ class Figures(QObject):
     def _built(self, figure: Figure) -> None:
         self._sticks[figure.skeleton.fingerprint] = figure
         self.changed.emit()
-
-
-def load_figure(path: Path, skeleton: Skeleton) -> Figure:
-    """Return a character's figure bound to a skeleton. Raises FileError."""
-    from metagraph.formats.gltf import read_character
-
-    return _ready(SkinnedFigure(read_character(path), skeleton))
 
 
 def _ready(figure: Figure) -> Figure:

@@ -29,7 +29,7 @@ MOVING_SIZE, MOVING_RATE, MOVING_MOST = (
 @dataclass(frozen=True)
 class PictureOrder:
     """what: "card", "bare" or "moving". paper: sRGB 0..1 behind the figure, None for transparent. character:
-    its file.
+    its file. hidden: its meshes that are not drawn.
     """
 
     number: int
@@ -38,6 +38,7 @@ class PictureOrder:
     theme: str
     paper: tuple[float, float, float] | None
     character: Path | None
+    hidden: tuple[str, ...] = ()
 
 
 _Waiting = queue.PriorityQueue[tuple[bool, float, PictureOrder | None]]
@@ -76,16 +77,16 @@ def serve(orders: BinaryIO, results: BinaryIO) -> None:
         offscreen = Offscreen(SIZE * SCALE, SIZE * SCALE)
     except OpenGLError:
         return
-    figures: dict[tuple[str, Path | None], Any] = {}
+    figures: dict[tuple[str, Path | None, tuple[str, ...]], Any] = {}
     with offscreen:
         while (order := waiting.get()[2]) is not None:
             pickle.dump(
                 (order.number, None), results
             )  # begun: whoever waits knows what it was if this process ends
             results.flush()
-            key = (order.clip.skeleton.fingerprint, order.character)
+            key = (order.clip.skeleton.fingerprint, order.character, order.hidden)
             if key not in figures:
-                figures[key] = _figure(order.clip.skeleton, order.character)
+                figures[key] = _figure(order.clip.skeleton, order.character, order.hidden)
             pickle.dump((order.number, draw(offscreen, figures[key], order)), results)
             results.flush()
 
@@ -99,17 +100,14 @@ def _read(orders: BinaryIO, waiting: _Waiting) -> None:
         waiting.put((False, -math.inf, None))
 
 
-def _figure(skeleton: Skeleton, character: Path | None) -> Any:
+def _figure(skeleton: Skeleton, character: Path | None, hidden: tuple[str, ...]) -> Any:
     from metagraph.errors import FileError
-    from metagraph.formats.gltf import read_character
-    from preview.figure import SkinnedFigure, StickFigure
+    from preview.character_file import figure_of
 
-    if character is not None:
-        try:
-            return SkinnedFigure(read_character(character), skeleton)
-        except FileError:
-            pass  # the preview says so
-    return StickFigure(skeleton)
+    try:
+        return figure_of(character, skeleton, hidden)
+    except FileError:  # the preview says so
+        return figure_of(None, skeleton)
 
 
 if __name__ == "__main__":

@@ -142,7 +142,13 @@ class Thumbnails(QObject):
         self._orders[self._number] = (key, motion)
         self._queue.put(
             PictureOrder(
-                self._number, motion, key[1], key[2], (r, g, b) if key[1] == "card" else None, character
+                self._number,
+                motion,
+                key[1],
+                key[2],
+                (r, g, b) if key[1] == "card" else None,
+                character,
+                project.hidden,
             )
         )
 

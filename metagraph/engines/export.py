@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -107,7 +107,7 @@ def write(
     names = unique_names([entry.name for entry in used])
     tell(0, 3, "clips")
     clips = [e.motion.renamed(name) for e, name in zip(used, names, strict=True) if e.motion is not None]
-    notes = _write_glb(glb, clips, project.skeleton, character)
+    notes = _write_glb(glb, clips, project.skeleton, character, project.hidden)
     tell(1, 3, "graph")
     document = to_document(project, glb.name, names, expanded)
     sounds, missing = _sounds(document, target, base) if base is not None else ((), ())
@@ -160,9 +160,13 @@ def _channel(source: Path, channel: int) -> bytes:
 
 
 def _write_glb(
-    path: Path, clips: list[Clip], skeleton: Skeleton, character: Path | Character | None
+    path: Path,
+    clips: list[Clip],
+    skeleton: Skeleton,
+    character: Path | Character | None,
+    hidden: Collection[str] = (),
 ) -> list[str]:
-    """Write the GLB; return what is not in it, in words."""
+    """Write the GLB, without the meshes that are hidden; return what is not in it, in words."""
     from metagraph.formats.gltf import read_character
     from metagraph.formats.gltf_writer import write_glb
 
@@ -180,7 +184,10 @@ def _write_glb(
     if body is not None and character is not None and body.skeleton != skeleton:
         body = None  # it would not move with these clips
         notes.append(f"the mesh of '{character.name}' is left out: it has another skeleton than the clips")
-    write_glb(path, [replace(clip, skeleton=skeleton) for clip in clips], body)
+    shown = body.without(hidden) if body is not None else None
+    if shown is not None and not len(shown.triangles):
+        shown = None
+    write_glb(path, [replace(clip, skeleton=skeleton) for clip in clips], shown)
     return notes
 
 

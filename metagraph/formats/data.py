@@ -27,6 +27,7 @@ from metagraph.formats.fields import (
     one_of,
     plain,
     sparse,
+    texts,
 )
 from metagraph.formats.manual_data import manual_data, manual_from
 from metagraph.formats.takes import REPAIRS
@@ -121,6 +122,7 @@ def to_data(project: Project) -> Data:
         "metagraph": FORMAT,
         "name": project.name,
         "character": project.character,
+        **({"hidden": list(project.hidden)} if project.hidden else {}),
         "next_id": project.next_id,
         "base": sparse(project.base),
         "settings": sparse(project.settings),
@@ -333,6 +335,7 @@ def from_data(data: Any, notes: list[str] | None = None) -> Project:
         joint_maps=_joint_maps_from(data, notes),
         manual=manual,
         character=get(data, "character", str, "", None),
+        hidden=texts(data, "hidden"),
         next_id=max(get(data, "next_id", int, "", 1), above(*clips, *stance_ids, *action_ids, *manual_ids)),
     )
 

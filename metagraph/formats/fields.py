@@ -200,3 +200,12 @@ def floats(values: list[Any], count: int, where: str, largest: float = LARGEST) 
     if not len(numbers) == len(values) == count:
         raise DataError(where, f"should be {count} numbers")
     return [float(x) for x in values]
+
+
+def texts(data: Data, key: str) -> tuple[str, ...]:
+    """Return a list of texts at the top of the data, empty where it is missing."""
+    values = get(data, key, list, "", [])
+    for n, value in enumerate(values):
+        if not isinstance(value, str):
+            raise DataError(f"{key}[{n}]", f"should be text, found {named(value)}")
+    return tuple(values)

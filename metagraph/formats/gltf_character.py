@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -26,6 +27,7 @@ class _Part:
     weights: Array
     mirrored: bool
     morphs: dict[str, Array] = field(default_factory=dict)
+    held: int = -1  # the joint that carries it whole
 
 
 def character_of(gltf: Gltf, rig: GltfRig) -> Character:
@@ -34,13 +36,15 @@ def character_of(gltf: Gltf, rig: GltfRig) -> Character:
     notes = [*rig.notes, *(repair.words for repair in rig.repairs)]
     parts: list[_Part] = []
     runs: list[
-        tuple[int, Array, int]
-    ] = []  # (part, triangles, material): primitives may share their vertices
+        tuple[int, Array, int, str]
+    ] = []  # (part, triangles, material, mesh): primitives may share their vertices
+    names_of: dict[str, None] = {}
     for node in _scene_nodes(gltf, rig):
         index = doc.nodes[node].mesh
         if index is None:
             continue
         mesh = gltf.item(doc.meshes, index, "mesh", f"node {node} '{doc.nodes[node].name}'")
+        called = _free(doc.nodes[node].name or mesh.name or f"mesh {index}", names_of)
         shared: dict[tuple[Any, ...], int | None] = {}
         for p, primitive in enumerate(mesh.primitives):
             where = f"mesh {index} '{mesh.name}', primitive {p}"
@@ -63,7 +67,9 @@ def character_of(gltf: Gltf, rig: GltfRig) -> Character:
             place = shared[key]
             if place is not None:
                 turned = triangles[:, ::-1] if parts[place].mirrored else triangles
-                runs.append((place, turned, -1 if primitive.material is None else primitive.material))
+                names_of[called] = None
+                material = -1 if primitive.material is None else primitive.material
+                runs.append((place, turned, material, called))
     if not parts:
         gltf.fail(
             "it holds no mesh", "its meshes", "Choose a file with a character, or import this one as clips."
@@ -77,10 +83,10 @@ def character_of(gltf: Gltf, rig: GltfRig) -> Character:
         for part, start in zip(parts, starts, strict=False):
             for name, offsets in part.morphs.items():
                 morphs[names.index(name), start : start + len(offsets)] = offsets
-    materials, places = _materials(gltf, [material for _, _, material in runs], notes)
+    materials, places = _materials(gltf, [material for _, _, material, _ in runs], notes)
     surfaces, first = [], 0
-    for _, triangles, material in runs:
-        surfaces.append(Surface(first, len(triangles), places[material]))
+    for place, triangles, material, called in runs:
+        surfaces.append(Surface(first, len(triangles), places[material], called, parts[place].held))
         first += len(triangles)
     return Character(
         gltf.path.stem,
@@ -90,13 +96,23 @@ def character_of(gltf: Gltf, rig: GltfRig) -> Character:
         np.concatenate([p.uvs for p in parts]).astype(np.float32),
         np.concatenate([p.joints for p in parts]).astype(np.uint16),
         np.concatenate([p.weights for p in parts]).astype(np.float32),
-        np.concatenate([triangles + starts[place] for place, triangles, _ in runs]).astype(np.uint32),
+        np.concatenate([triangles + starts[place] for place, triangles, _, _ in runs]).astype(np.uint32),
         materials,
         tuple(surfaces),
         names,
         morphs,
         tuple(dict.fromkeys(notes)),
+        tuple(names_of),
     )
+
+
+def _free(name: str, taken: Container[str]) -> str:
+    """Return a name that is not taken: hidden meshes are kept by name."""
+    number, found = 1, name
+    while found in taken:
+        number += 1
+        found = f"{name} ({number})"
+    return found
 
 
 def _scene_nodes(gltf: Gltf, rig: GltfRig) -> list[int]:
@@ -135,7 +151,7 @@ def _part(
         if "TEXCOORD_0" in attributes
         else np.zeros((count, 2))
     )
-    skin = gltf.json.nodes[node].skin
+    skin, held = gltf.json.nodes[node].skin, -1
     if skin is not None and "JOINTS_0" in attributes and "WEIGHTS_0" in attributes:
         matrices, joints, weights = _skinned(gltf, rig, skin, attributes, count, where)
     else:
@@ -143,10 +159,10 @@ def _part(
         if placed is None:
             notes.append(f"{where} is scaled to nothing and was left out")
             return None
-        matrix, joint = placed
+        matrix, held = placed
         matrices = np.broadcast_to(matrix, (count, 4, 4))
         joints = np.zeros((count, 4), np.int64)
-        joints[:, 0] = joint
+        joints[:, 0] = held
         weights = np.tile([1.0, 0, 0, 0], (count, 1))
     linear = matrices[:, :3, :3]
     mirrored = bool(np.linalg.det(linear[0]) < 0)
@@ -170,7 +186,7 @@ def _part(
         or np.abs(moved).max() > 1e9
     ):
         gltf.fail("it holds a value that is not a sensible number", where)
-    return _Part(moved, normals, uvs, joints, weights, mirrored, morphs)
+    return _Part(moved, normals, uvs, joints, weights, mirrored, morphs, held)
 
 
 def _floats(gltf: Gltf, accessor: int, kind: str, count: int | None, where: str) -> Array:

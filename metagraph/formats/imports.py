@@ -10,11 +10,10 @@ from pathlib import Path
 from typing import Literal
 
 from metagraph.errors import FileError
+from metagraph.formats.characters import CharacterFile, character_among
 from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
-from metagraph.formats.gltf import has_skinned_mesh, morph_targets
 from metagraph.formats.store import relative
-from metagraph.graph.edits import add_clips, set_character
-from metagraph.graph.face import with_morphs
+from metagraph.graph.edits import add_clips
 from metagraph.graph.model import Project
 from metagraph.graph.project_retargeting import Bringing
 from metagraph.motion.adopt import SkeletonMismatchError, adopt, difference
@@ -34,13 +33,14 @@ class Strangers:
     """Clips of one other skeleton, which can be retargeted.
 
     clips: on their own skeleton. why: how it differs, in words. joint_map: what is proposed, or what the user
-    made of the same two skeletons before (`remembered`).
+    made of the same two skeletons before (`remembered`). told: the failures by which they were left out.
     """
 
     clips: tuple[Loaded, ...]
     why: str
     joint_map: JointMap
     remembered: bool = False
+    told: tuple[str, ...] = ()
 
     @property
     def skeleton(self) -> Skeleton:
@@ -75,22 +75,23 @@ class Imported:
     """loaded: what `add_clips` takes. failures: why files were left out, in words. notes: what readers
     changed.
 
-    character: the first of the files that also holds a mesh, written as clip paths are, for a project that
-    draws none yet. morphs: its morph targets. strangers: clips of other skeletons that wait to be retargeted.
-    joint_maps: those by which clips were retargeted, to be kept in the project. retargeted: how many of the
-    loaded clips were. left: how many the user left out.
+    character: the first of the files that also holds a character, for a project that draws none yet.
+    stand_ins: those whose mesh is none, where there is no character. strangers: clips of other skeletons that
+    wait to be retargeted. joint_maps: those by which clips were retargeted, to be kept in the project.
+    retargeted: how many of the loaded clips were. apart: clips of other skeletons that were left out, by the
+    user or with a reason among the failures.
     """
 
     loaded: tuple[Loaded, ...]
     failures: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     cancelled: bool = False
-    character: str | None = None
-    morphs: tuple[str, ...] = ()
+    character: CharacterFile | None = None
+    stand_ins: tuple[CharacterFile, ...] = ()
     strangers: tuple[Strangers, ...] = ()
     joint_maps: Mapping[str, JointMap] = field(default_factory=dict)
     retargeted: int = 0
-    left: int = 0
+    apart: tuple[Strangers, ...] = ()
 
     def into(self, project: Project) -> Project:
         """The edit: `project` with the clips added, and with the character that came with them if it had
@@ -99,9 +100,9 @@ class Imported:
         project = add_clips(project, self.loaded)
         if any(project.joint_maps.get(key) != value for key, value in self.joint_maps.items()):
             project = replace(project, joint_maps={**project.joint_maps, **self.joint_maps})
-        if project.character is not None or not self.character:
+        if project.character is not None or self.character is None:
             return project
-        return with_morphs(set_character(project, self.character), self.morphs)
+        return self.character.into(project)
 
 
 def gather(paths: Iterable[str | Path]) -> list[Path]:
@@ -156,11 +157,17 @@ def import_files(
             key = fingerprint(clip.skeleton)
             foreign.setdefault(key, []).append((name, take, digests[path], clip))
             reasons.setdefault(key, str(error))
-    character = _character(loaded, folder) if project.character is None else None
-    morphs = _morphs(character, folder)
-    result = Imported(
-        tuple(loaded), tuple(failures), _together(report.clips), report.cancelled, character, morphs
-    )
+    character: CharacterFile | None = None
+    stand_ins: tuple[CharacterFile, ...] = ()
+    if project.character is None and skeleton is not None:
+        still = {_name(e.path, folder): e for e in report.failures}
+        character, stand_ins = character_among([name for name, *_ in loaded], still, folder, skeleton)
+        if character is not None and character.path in still:  # it is of use without a motion
+            failures.remove(str(still[character.path]))
+    notes = _together(report.clips)
+    if character is not None:
+        notes = (*notes, *character.notes)
+    result = Imported(tuple(loaded), tuple(failures), notes, report.cancelled, character, stand_ins)
     if foreign:
         bringing = Bringing(add_clips(project, loaded))
         for key, clips in foreign.items():
@@ -208,7 +215,11 @@ def _with_strangers(result: Imported, bringing: Bringing, strangers: Strangers, 
             f"{text[: text.index(_ALONE)]}It cannot be retargeted: {strangers.joint_map.missing[0]}. {_ALONE}"
             for text in failures
         )
-    return replace(result, failures=(*result.failures, *failures))
+    return replace(
+        result,
+        failures=(*result.failures, *failures),
+        apart=(*result.apart, replace(strangers, told=failures)),
+    )
 
 
 def bring_over(
@@ -300,24 +311,6 @@ def _together(clips: Iterable[tuple[Path, int, Clip]]) -> tuple[str, ...]:
         first = next(iter(names))
         out.append(f"{first if len(names) == 1 else f'{len(names)} files ({first} ...)'}: {note}")
     return tuple(out)
-
-
-def _character(loaded: Sequence[tuple[str, int, str, Clip]], folder: Path | None) -> str | None:
-    """Return the first imported file that holds a skinned mesh."""
-    for name in dict.fromkeys(name for name, _, _, _ in loaded):
-        path = (folder or Path()) / name
-        if path.suffix.lower() in (".glb", ".gltf", ".vrm"):
-            try:
-                if has_skinned_mesh(path):
-                    return name
-            except FileError:
-                # its clips were read; what is wrong with its meshes the preview says if it is chosen
-                continue
-    return None
-
-
-def _morphs(character: str | None, folder: Path | None) -> tuple[str, ...]:
-    return morph_targets((folder or Path()) / character) if character is not None else ()
 
 
 def _skeleton_of_most(clips: Sequence[Clip]) -> Skeleton | None:

@@ -15,7 +15,7 @@ import threading
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, Literal
 
 import msgspec
 
@@ -39,6 +39,8 @@ from metagraph.graph.manual import Manual
 from metagraph.graph.model import LAYERS, Layer, MetaGraph, Project
 
 KEYED = ("clips", "stances", "actions", "states", "links")
+ABOUT = ("step", "how")  # what a record says of its edit, beside what changed
+How = Literal["done", "merged", "undone", "redone"]
 
 
 # --- what changed
@@ -50,6 +52,8 @@ def changes(before: Project, after: Project) -> Data:
     for key in ("name", "character", "next_id", "base", "settings", "roles", "parts"):
         if getattr(before, key) is not getattr(after, key) and getattr(before, key) != getattr(after, key):
             out[key] = to_data(_bare(after))[key]
+    if before.hidden != after.hidden:
+        out["hidden"] = list(after.hidden)
     for key in STRUCTS:
         if getattr(before, key) is not getattr(after, key) and getattr(before, key) != getattr(after, key):
             out[key] = struct_data(getattr(after, key))
@@ -186,9 +190,12 @@ class Journal:
                     "Save the project now and then.",
                 ) from None
 
-    def edit(self, before: Project, after: Project) -> None:
+    def edit(self, before: Project, after: Project, step: str = "", how: How = "done") -> None:
         """Append one finished edit. Raises FileError when it cannot be written; the edit itself stands, and
         is written with the next.
+
+        step: what was done, to be read. how: whether it is a step of its own, goes on with the one before,
+        or takes that back.
         """
         before = self._behind or before
         self._behind = before
@@ -201,7 +208,7 @@ class Journal:
         if change:
             if self._file is None:
                 self.begin()
-            self._write(change)
+            self._write(change | ({"step": step} if step else {}) | ({"how": how} if how != "done" else {}))
         self._behind = None
 
     def mark(self) -> int | None:

@@ -15,7 +15,7 @@ import msgspec
 from metagraph.errors import FileError
 from metagraph.formats.data import from_data, to_data
 from metagraph.formats.fields import Data, DataError
-from metagraph.formats.journal import KEYED
+from metagraph.formats.journal import ABOUT, KEYED
 from metagraph.formats.locking import Owner, is_gone
 from metagraph.formats.store import file_digest, read_project
 from metagraph.graph.model import LAYERS, Project
@@ -27,7 +27,7 @@ _ANOTHER = "belongs to another state of the project file"
 # --- changes worked in
 
 
-class _Replay:
+class Replay:
     """Project data that changes are worked into; lists are held by id, so that a change costs what it is
     large.
     """
@@ -47,10 +47,13 @@ class _Replay:
                 _work_in(self.manual[layer], part)
             else:
                 self.manual[layer] = _opened(part)
-        _work_in(self.top, {key: value for key, value in change.items() if key not in ("layers", "manual")})
+        others = {k: v for k, v in change.items() if k not in ("layers", "manual", *ABOUT)}
+        _work_in(self.top, others)
 
     def data(self) -> Data:
         out = {**_closed(self.top), "layers": {layer: _closed(part) for layer, part in self.layers.items()}}
+        if not out.get("hidden", True):
+            del out["hidden"]  # as a project without any is written
         return (
             {**out, "manual": {layer: _closed(part) for layer, part in self.manual.items()}}
             if self.manual
@@ -112,7 +115,7 @@ def apply(data: Data, change: Data) -> Data:
     """Return project data with one change worked in. Raises KeyError, TypeError or AttributeError when they
     do not fit.
     """
-    replay = _Replay(data)
+    replay = Replay(data)
     replay.apply(change)
     return replay.data()
 
@@ -124,7 +127,8 @@ def apply(data: Data, change: Data) -> Data:
 class Left:
     """A journal somebody left. project: with its edits worked in, without motion; edits: how many. written:
     when the last one was, in seconds since 1970. digest: of the file the edits build on. behind: the project
-    file has changed since; the edits are whole, but not in step with it.
+    file has changed since; the edits are whole, but not in step with it. base: what the edits begin with, as
+    plain data, of which `unsaved` edits are in no file; records: the edits after it.
     """
 
     path: Path
@@ -134,6 +138,9 @@ class Left:
     written: float
     digest: str | None
     behind: bool
+    base: Data
+    unsaved: int
+    records: tuple[Data, ...]
 
 
 def recover(journal: Path, saved: Path | None) -> tuple[Project, int] | None:
@@ -198,7 +205,16 @@ def read_journal(journal: Path, saved: Path | None) -> Left | None:
     if found is None:
         raise FileError(journal, "is damaged", "line 2", _KEPT)
     return Left(
-        journal, found, good + before, _owner(head), written, head["saved"] if behind else now, behind
+        journal,
+        found,
+        good + before,
+        _owner(head),
+        written,
+        head["saved"] if behind else now,
+        behind,
+        base,
+        before,
+        tuple(edits[:good]),
     )
 
 
@@ -228,7 +244,7 @@ def _owner(head: Data) -> Owner | None:
 
 def _replayed(base: Data, records: Sequence[Data]) -> Project | None:
     try:
-        replay = _Replay(base)
+        replay = Replay(base)
         for record in records:
             replay.apply(record)
         return from_data(replay.data(), [])

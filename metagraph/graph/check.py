@@ -4,7 +4,7 @@ anything.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
 from typing import Any
 from weakref import ref
@@ -47,6 +47,17 @@ def check(project: Project) -> list[Problem]:
         )
     order = {"error": 0, "warning": 1, "hint": 2}
     return sorted(found, key=lambda p: order[p.severity])
+
+
+def grave(problems: Iterable[Problem], strict: bool = False) -> list[Problem]:
+    """Return the problems for which a command line says that a project is not in order: errors, and stances
+    that nobody will ever see; warnings, too, where they count.
+    """
+    return [
+        p
+        for p in problems
+        if p.severity == "error" or p.code == "unreachable" or (strict and p.severity == "warning")
+    ]
 
 
 def _clips(project: Project) -> Iterator[Problem]:

@@ -22,6 +22,7 @@ _NAMED = {
 _REST = (
     "name",
     "character",
+    "hidden",
     "base",
     "roles",
     "parts",

@@ -378,7 +378,13 @@ def reset_markov(project: Project, layer: Layer) -> Project:
 
 
 def set_character(project: Project, path: str | None) -> Project:
-    return replace(project, character=path)
+    """Draw another character, or None for a stick figure; what was hidden of the one before is forgotten."""
+    return replace(project, character=path, hidden=()) if path != project.character else project
+
+
+def hide_meshes(project: Project, meshes: Iterable[str]) -> Project:
+    """Draw the character without the meshes of these names, and with all others."""
+    return replace(project, hidden=tuple(dict.fromkeys(meshes)))
 
 
 def rename_project(project: Project, name: str) -> Project:

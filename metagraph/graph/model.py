@@ -344,7 +344,8 @@ class Project:
     """Everything that is saved. roles: corrections, role -> joint name. parts: corrections, joint name ->
     body part.
 
-    character: path of the GLB to draw, relative to the project file, or None for a stick figure. points:
+    character: path of the GLB to draw, relative to the project file, or None for a stick figure. hidden:
+    names of its meshes that are not drawn. points:
     named places to look at, metres. lines: the dialogue an agent calls by id. performances, conversations:
     those kept, by id. tiers: annotation tier -> what it was last read as. joint_maps: how clips of other
     skeletons are retargeted, by `joint_map.fingerprint` of theirs. manual: state machines drawn by hand, of
@@ -363,6 +364,7 @@ class Project:
     markov: Mapping[Layer, Markov] = field(default_factory=dict)
     settings: Settings = Settings()
     character: str | None = None
+    hidden: tuple[str, ...] = ()
     life: Life = field(default_factory=Life)
     face: Face = field(default_factory=Face)
     points: Mapping[str, Point] = field(default_factory=dict)

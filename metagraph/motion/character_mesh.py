@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,10 @@ from numpy.typing import NDArray
 from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
+
+FEWEST = 12  # triangles of a character's mesh: exporters put one or two into a file that has to have a mesh
+SMALL = 0.2  # of the skeleton's height: below that a mesh must be where the joints are
+INSIDE = 0.25  # share of the joints that are within a small mesh that is a part of a body
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,18 +31,23 @@ class Material:
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """A run of triangles with one material: `first` and `count` are in triangles."""
+    """A run of triangles with one material: `first` and `count` are in triangles. mesh: the name of the mesh
+    it is of. held: the joint that carries it whole, -1 where its vertices follow several.
+    """
 
     first: int
     count: int
     material: int
+    mesh: str = ""
+    held: int = -1
 
 
 @dataclass(frozen=True, eq=False)
 class Character:
     """positions, normals `[V, 3]` in model space in the skeleton's rest pose, metres; uvs `[V, 2]`;
     joints `[V, 4]` and weights `[V, 4]` summing to 1; triangles `[N, 3]`;
-    morph_positions `[K, V, 3]` are offsets for the morph targets named in `morphs`.
+    morph_positions `[K, V, 3]` are offsets for the morph targets named in `morphs`. meshes: the names of all
+    its meshes, of those that were left out, too.
     """
 
     name: str
@@ -53,6 +63,7 @@ class Character:
     morphs: tuple[str, ...] = ()
     morph_positions: Array | None = None
     notes: tuple[str, ...] = ()
+    meshes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         count = len(self.positions)
@@ -77,3 +88,61 @@ class Character:
                 f"character '{self.name}': a vertex names joint {int(np.max(self.joints))} of "
                 f"{len(self.skeleton)}"
             )
+
+    def without(self, meshes: Collection[str]) -> Character:
+        """Return the character without the meshes of some names; names that it has not are passed over."""
+        kept = [surface for surface in self.surfaces if surface.mesh not in meshes]
+        if len(kept) == len(self.surfaces):
+            return self
+        runs = [self.triangles[s.first : s.first + s.count] for s in kept]
+        starts = np.cumsum([0, *(len(run) for run in runs)])
+        return replace(
+            self,
+            triangles=np.concatenate(runs) if runs else self.triangles[:0],
+            surfaces=tuple(replace(s, first=int(at)) for s, at in zip(kept, starts, strict=False)),
+        )
+
+
+def no_character(body: Character, skeleton: Skeleton | None = None) -> str | None:
+    """Return why a mesh is no character to draw on a skeleton (its own, if none is given), in words that
+    follow "its mesh"; None where it is one.
+
+    Files of animations often hold a stand-in, since a skin needs a mesh. What is asked is whether there is
+    something to see, of the size of the skeleton or where its joints are, that moves with it; not what it is
+    called.
+    """
+    skeleton = body.skeleton if skeleton is None else skeleton
+    count = len(body.triangles)
+    if count < FEWEST:
+        return "has no surface" if not count else f"is {count} triangle{'s' if count > 1 else ''}, a stand-in"
+    corners = body.positions[body.triangles].astype(float)
+    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    low, high = corners.reshape(-1, 3).min(0), corners.reshape(-1, 3).max(0)
+    size, height = float((high - low).max()), body.skeleton.height
+    if not areas.sum() > 1e-6 * size * size:
+        return "has no surface"
+    used = np.unique(body.triangles)
+    own = np.unique(body.joints[used][body.weights[used] > 0])
+    if size < SMALL * height:
+        _, rest = body.skeleton.globals(body.skeleton.rest)
+        room = 0.1 * size
+        inside = ((rest >= low - room) & (rest <= high + room)).all(1)
+        if inside.mean() < INSIDE and not inside[own].all():
+            return f"is {size:.2g} m large on a skeleton of {height:.2g} m, a stand-in"
+    followed = {_followed(body.skeleton, skeleton, int(joint)) for joint in own} - {-1}
+    if not followed:
+        return "is bound to none of the skeleton's joints"
+    if len(followed) == 1 and len(skeleton) > 2 and not body.morphs:
+        return "moves with one joint alone"
+    return None
+
+
+def _followed(own: Skeleton, skeleton: Skeleton, joint: int) -> int:
+    """Return the joint of a skeleton that has the name of one's own joint, or of its nearest ancestor that
+    there is one for; -1 for none.
+    """
+    while joint >= 0:
+        if own.names[joint] in skeleton:
+            return skeleton.index(own.names[joint])
+        joint = int(own.parents[joint])
+    return -1

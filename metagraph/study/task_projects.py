@@ -49,6 +49,7 @@ def make(study: Study, clips: str | tuple[str, ...], name: str, reference: Path 
         project = edits.set_base(project, here, right.base.frame)
     if right.character is not None and (reference.parent / right.character).is_file():
         project = edits.set_character(project, (reference.parent / right.character).resolve().as_posix())
+        project = edits.hide_meshes(project, right.hidden)
     return project
 
 

@@ -132,6 +132,7 @@ DIALOGS: dict[str, Open] = {
     "compatibility": _command("compatibility"),
     "motion graph": _command("motion_graph"),
     "skeleton": _command("skeleton"),
+    "meshes": _command("meshes"),
     "render": _command("render"),
     "repairs": _command("repairs"),
     "keys": _command("keys"),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from PySide6.QtWidgets import QFileDialog
@@ -21,7 +20,15 @@ def contribute(shell: Shell) -> Contribution:
     session, document, stage = shell.stage.session, shell.document, shell.stage
 
     def make() -> PreviewPanel:
-        panel = PreviewPanel(session, stage.performance, stage.playhead, stage.figures, shell.widget)
+        panel = PreviewPanel(
+            session,
+            stage.performance,
+            stage.playhead,
+            stage.figures,
+            shell.widget,
+            lambda: shell.actions["character"].trigger(),
+            lambda: shell.actions["character"].isEnabled(),
+        )
         panel.view.failed.connect(shell.tell)
         panel.view.painted.connect(lambda _: stage.painted.emit())
         return panel
@@ -54,6 +61,11 @@ def contribute(shell: Shell) -> Contribution:
         if ident is not None:
             session.show_context(ident)
 
+    def show_meshes() -> None:
+        from app.features.character.meshes_dialog import MeshesDialog
+
+        MeshesDialog(document, stage.figures, shell.widget).show()
+
     shell.services[Files].opened.connect(lambda: preview().frame_all())
     some = lambda: bool(session.selection.clips or session.selection.actions)  # noqa: E731
     sound, play, view = stage.sound, "&Play", "&View"
@@ -67,6 +79,15 @@ def contribute(shell: Shell) -> Contribution:
                 "Choose &character…",
                 lambda: choose_character(shell),
                 tip="The GLB that is drawn",
+            ),
+            Command(
+                "meshes",
+                "&File",
+                "character",
+                "&Meshes of the character…",
+                show_meshes,
+                tip="Which of its meshes are drawn",
+                enabled=lambda: document.project.character is not None,
             ),
             Command(
                 "no_character",
@@ -199,21 +220,26 @@ def choose_character(shell: Shell) -> None:
     )
     if not name:
         return
-    from metagraph.formats.gltf import morph_targets
+    from metagraph.formats.characters import CharacterFile, look_at
     from metagraph.formats.store import relative
-    from metagraph.graph.face import with_morphs
 
     folder = document.folder
     path = relative(Path(name), folder) if folder is not None else Path(name).as_posix()
-    left = document.project.character
+    left, skeleton = document.project.character, document.project.skeleton
 
-    def done(morphs: Sequence[str]) -> None:
-        if document.folder == folder and document.project.character == left:
-            document.edit("Choose character", lambda p: with_morphs(edits.set_character(p, path), morphs))
+    def done(found: CharacterFile) -> None:
+        if document.folder != folder or document.project.character != left:
+            return
+        if found.why_not is not None:
+            shell.tell(f"{Path(name).name} is no character to draw: its mesh {found.why_not}.")
+            return
+        document.edit("Choose character", found.into)
+        for note in found.notes:
+            shell.tell(note)
 
     shell.jobs.start(
         f"Reading {Path(name).name}",
-        lambda _: morph_targets(name),
+        lambda _: look_at(path, folder, skeleton),
         done,
         lambda error: shell.tell(str(error)),
     )

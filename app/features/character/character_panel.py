@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from PySide6.QtCore import QElapsedTimer, Qt, QTimer
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
+from app.features.character.no_mesh import NoMesh
 from app.look import icons
 from app.look.theme import theme
 from app.stage.figures import Figures
@@ -19,7 +22,7 @@ from app.widgets.quiet_fields import ComboBox, Scrub
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
 from preview.camera import close_up, whole_figure
-from preview.figure import Figure
+from preview.figure import Figure, SkinnedFigure
 from preview.scene import THEMES, Actor, Scene
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
@@ -37,6 +40,8 @@ class PreviewPanel(QWidget):
         playhead: Playhead,
         figures: Figures,
         parent: QWidget | None = None,
+        choose: Callable[[], object] = lambda: None,
+        may_choose: Callable[[], bool] = lambda: False,
     ) -> None:
         super().__init__(parent)
         self.session, self.performance, self.playhead, self.figures = session, performance, playhead, figures
@@ -47,6 +52,7 @@ class PreviewPanel(QWidget):
         self.view.frame_wanted.connect(self.frame_all)
         self.view.setMinimumSize(240, 200)
         self.view.setToolTip("Drag to orbit, right-drag to pan, wheel to zoom, double-click to frame")
+        self.no_mesh = NoMesh(self.view, choose, may_choose)
         self.frames = 0
         self.view.painted.connect(self._painted)
         layout = QVBoxLayout(self)
@@ -199,6 +205,14 @@ class PreviewPanel(QWidget):
         if not self.scrub.isSliderDown():
             self.scrub.setValue(round(10000 * min(1.0, seconds / length)))
         self.caption.setText(self._words())
+        self._tell_mesh()
+
+    def _tell_mesh(self) -> None:
+        """Say over the view why a stick figure is drawn, where one is."""
+        figure = self._last[0] if self._last is not None else None
+        empty = self.performance.document.project.skeleton is None
+        sticks = figure is not None and not empty and not isinstance(figure, SkinnedFigure)
+        self.no_mesh.tell(_why(figure.instead) if figure is not None and sticks else None)
 
     def _words(self) -> str:
         """Say what plays: the clip alone, or each layer's action and when the next begins."""
@@ -275,4 +289,11 @@ class PreviewPanel(QWidget):
         else:
             self.base.setText(f"Base pose: {entry.name}, frame {base.frame}")
         self.base.setToolTip(f"{self.base.text()}\n{BASE_TIP}")
+        if after.skeleton is None:
+            self._tell_mesh()
         self.view.update()
+
+
+def _why(instead: str) -> str:
+    """Say why a stick figure is drawn."""
+    return f"{instead[0].upper()}{instead[1:]}." if instead else ""

@@ -8,6 +8,7 @@ from functools import partial
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QMenu, QMessageBox
 
+from app.features.files.import_line import ImportLine
 from app.project.files import PRACTICE, SAMPLE, Files
 from app.project.importing import Importing
 from app.project.watching import Watcher
@@ -43,6 +44,15 @@ def contribute(shell: Shell) -> Contribution:
     files.report.connect(lambda title, lines: _report(shell, title, lines))
     importing.report.connect(lambda title, lines: _report(shell, title, lines))
     importing.imported.connect(imported)
+    line = ImportLine(
+        shell.document,
+        importing,
+        lambda command: shell.actions[command].trigger(),
+        lambda title, lines: _report(shell, title, lines),
+        shell.widget,
+    )
+    shell.widget.addToolBar(Qt.ToolBarArea.BottomToolBarArea, line)
+    line.hide()
     menu = "&File"
     return Contribution(
         commands=(

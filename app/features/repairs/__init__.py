@@ -39,7 +39,6 @@ def contribute(shell: Shell) -> Contribution:
             lambda: show(title, clips, tuple(lines)),
         )
 
-    importing.repaired.connect(show)
     importing.noticed.connect(noticed)
     return Contribution(
         commands=(

@@ -15,6 +15,7 @@ def contribute(shell: Shell) -> Contribution:
     retargeting.told.connect(shell.tell)
     retargeting.failed.connect(shell.services[Files].show_failure)
     shell.services[Importing].retarget = retargeting.ask
+    shell.services[Importing].bring = retargeting.bring
     return Contribution(
         commands=(
             Command(

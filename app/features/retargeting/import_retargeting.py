@@ -46,6 +46,11 @@ class Retargeting(QObject):
         if not self._asking:
             self._next()
 
+    def bring(self, groups: Iterable[Strangers], then: Then) -> None:
+        """Retarget each group by the joint map that is offered for it, unasked; `then` as of `ask`."""
+        for group in groups:
+            self._bring(group, group.joint_map, then)
+
     def change_maps(self, clips: Iterable[str]) -> None:
         """Let the joint maps be corrected by which clips of the project were retargeted, those of `clips` or
         all.
@@ -77,7 +82,8 @@ class Retargeting(QObject):
 
         group, then = self._waiting.pop(0)
         if self.document.project.skeleton is None:
-            self._end(lambda: then(Imported((), group.failures)))
+            told = replace(group, told=group.failures)
+            self._end(lambda: then(Imported((), group.failures, apart=(told,))))
             return
         self._asking = True
         dialog = JointMapDialog(group, Bringing(self.document.project), self.jobs, self.window)
@@ -86,7 +92,7 @@ class Retargeting(QObject):
         dialog.open()
 
     def _leave(self, group: Strangers, then: Then) -> None:
-        self._end(lambda: then(Imported((), left=len(group.clips))))
+        self._end(lambda: then(Imported((), apart=(group,))))
 
     def _bring(self, group: Strangers, joint_map: JointMap, then: Then) -> None:
         bringing = Bringing(self.document.project)

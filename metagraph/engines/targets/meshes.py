@@ -16,4 +16,5 @@ def mesh_of(order: ExportOrder) -> tuple[Character | None, tuple[str, ...]]:
     body = read_character(given) if isinstance(given, Path) else given
     if body is not None and given is not None and body.skeleton != order.project.skeleton:
         return None, (f"the mesh of '{given.name}' is left out: it has another skeleton than the clips",)
-    return body, ()
+    shown = body.without(order.project.hidden) if body is not None else None
+    return shown if shown is not None and len(shown.triangles) else None, ()

@@ -44,7 +44,8 @@ def test_a_folder_becomes_a_project_and_a_report(folder: Path, capsys: pytest.Ca
     assert {s.name for s in project.graphs["arms"].stances.values()} == {"hands at sides", "on hips"}
     assert not [p for p in check(project) if p.severity == "error"]
     page = Path(data["report"]).read_text()
-    assert page.count("data:image/jpeg") == len(project.clips)
+    stances = sum(len(graph.stances) for graph in project.graphs.values())
+    assert page.count("data:image/jpeg") == len(project.clips) + stances
     assert "http" not in re.sub(r"data:[^'\"]*", "", page)  # nothing is fetched from anywhere
     assert "name begins with" in page and "hands at sides" in page
 
@@ -99,6 +100,21 @@ def test_a_project_is_labelled_on_from_where_it_is(
     main(["label", str(out), "--no-pictures", "--json"])
     second = json.loads(capsys.readouterr().out)
     assert first + second["labelled"] == len(list(folder.glob("*.glb")))
+
+
+def test_a_stance_that_nothing_leads_to_is_told_as_check_tells_it(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for path in folder.glob("*__to_*.glb"):
+        path.unlink()
+    assert main(["label", str(folder), "--no-pictures", "--json"]) == 3
+    shown = capsys.readouterr()
+    data = json.loads(shown.out)
+    assert not data["left"]
+    assert [e for e in data["errors"] if "cannot be reached" in e]
+    assert "problem: stance " in shown.err and "cannot be reached" in shown.err
+    assert main(["check", data["project"]]) == 3
+    assert "cannot be reached" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("given", ["nothing", "empty"])

@@ -175,7 +175,7 @@ def test_import_with_a_bad_file_is_exit_code_3_and_the_rest_comes_in(
     path = clips.parent / f"p{SUFFIX}"
     assert main(["import", str(path), str(clips)]) == 3
     out, err = capsys.readouterr()
-    assert "3 clips imported, 1 files left out" in out
+    assert "Imported 3 clips. Left out: 1 file that cannot be used\n" in out
     assert "left out: bad.bvh, " in err
     assert len(read_project(path).clips) == 3
 
@@ -193,7 +193,7 @@ def test_import_retargets_clips_of_another_skeleton_when_told_to(
     assert "import it with --retarget" in capsys.readouterr().err
     assert main(["import", str(path), str(clips / "other.glb"), "--retarget"]) == 0
     out, err = capsys.readouterr()
-    assert "1 clips imported (1 retargeted), 0 files left out" in out
+    assert "Imported 1 clip, 1 of them retargeted" in out
     assert "note: other.glb: its clip was retargeted from a skeleton of 61 joints" in err
     assert len(read_project(path).joint_maps) == 1
 
@@ -301,7 +301,7 @@ def test_export_of_a_project_with_errors_says_what_to_mend(
 def test_a_whole_day_from_the_command_line_on_real_clips(shared_data: Path, tmp_path: Path) -> None:
     path = tmp_path / f"bandai{SUFFIX}"
     made = run("import", path, shared_data / "bandai-namco-1")
-    assert (made.returncode, made.stdout) == (0, f"{path}: 63 clips imported, 0 files left out\n")
+    assert (made.returncode, made.stdout) == (0, f"{path}: Imported 63 clips. 1 note\n")
     project = open_project(path).project
     by_name = {e.name.removeprefix("dataset-1_"): e.id for e in project.clips.values()}
     project = edits.add_stance(project, "body", "ready", [by_name["call_normal_001"]])

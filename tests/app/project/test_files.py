@@ -289,11 +289,12 @@ def test_a_journal_of_another_state_of_the_file_is_kept_aside(desk, person, save
 def test_a_folder_with_a_bad_file_brings_in_the_rest_and_says_what_failed(desk, clips, qtbot):
     (clips / "broken.bvh").write_text("HIERARCHY\nROOT Hips\n{\n")
     desk.importing.import_paths([str(clips)])
-    qtbot.waitUntil(lambda: bool(desk.reports))
+    ended = []
+    desk.importing.ended.connect(ended.append)
+    qtbot.waitUntil(lambda: bool(ended))
     assert sorted(e.name for e in desk.document.project.clips.values()) == ["idle", "nod", "wave"]
-    title, lines = desk.reports[0]
-    assert title == "Imported 3 clips; 1 file could not be read"
-    assert "broken.bvh" in lines[0]
+    assert "Imported 3 clips. 1 note. Left out: 1 file that cannot be used" in desk.words
+    assert "broken.bvh" in ended[0].failures[0] and not desk.reports
     assert desk.document.undo_stack.count() == 1, "one import is one step"
     desk.document.undo()
     assert not desk.document.project.clips

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -11,7 +12,8 @@ from PySide6.QtWidgets import QFileDialog
 from app.features.character import choose_character
 from app.project.document import Document
 from app.project.jobs import Jobs
-from metagraph.formats import gltf
+from metagraph.formats import characters
+from metagraph.formats.characters import CharacterFile
 from metagraph.graph.model import Project
 
 
@@ -29,11 +31,11 @@ def shell(qapp, toy, tmp_path, monkeypatch):
 def test_a_characters_morph_targets_are_read_beside_the_window(shell, qtbot, monkeypatch):
     threads = []
 
-    def read(path):
+    def read(path, folder, skeleton):
         threads.append(threading.current_thread())
-        return ("jawOpen",)
+        return CharacterFile(path, ("jawOpen",))
 
-    monkeypatch.setattr(gltf, "morph_targets", read)
+    monkeypatch.setattr(characters, "look_at", read)
     choose_character(shell)
     qtbot.waitUntil(lambda: shell.document.project.character is not None)
     assert shell.document.project.character.endswith("somebody.glb")
@@ -48,8 +50,28 @@ def test_a_file_that_is_no_character_is_told_and_none_is_chosen(shell, qtbot):
     assert shell.document.project.character is None
 
 
+def test_a_stand_in_is_told_and_not_chosen(shell, qtbot, monkeypatch):
+    found = CharacterFile("x", why_not="is 1 triangle, a stand-in")
+    monkeypatch.setattr(characters, "look_at", lambda *_: found)
+    choose_character(shell)
+    qtbot.waitUntil(lambda: bool(shell.told))
+    assert shell.told == ["somebody.glb is no character to draw: its mesh is 1 triangle, a stand-in."]
+    assert shell.document.project.character is None
+
+
+def test_what_the_hands_cannot_all_hold_is_hidden_with_the_choice_in_one_step(shell, qtbot, monkeypatch):
+    found = CharacterFile("x", hidden=("sword", "bow"))
+    monkeypatch.setattr(characters, "look_at", lambda path, *_: replace(found, path=path))
+    choose_character(shell)
+    qtbot.waitUntil(lambda: bool(shell.told))
+    assert "2 meshes in the hands are hidden (sword, bow)" in shell.told[0]
+    assert shell.document.project.hidden == ("sword", "bow")
+    shell.document.undo()
+    assert shell.document.project.hidden == () and shell.document.project.character is None
+
+
 def test_a_character_chosen_for_a_project_that_was_left_is_dropped(shell, qtbot, monkeypatch, tmp_path):
-    monkeypatch.setattr(gltf, "morph_targets", lambda path: ())
+    monkeypatch.setattr(characters, "look_at", lambda path, *_: CharacterFile(path))
     choose_character(shell)
     shell.document.load(Project(), tmp_path / "other.metagraph.yaml")
     qtbot.waitUntil(lambda: not shell.jobs.running)

@@ -128,7 +128,9 @@ def test_a_file_that_went_away_is_told_in_the_dialog(drive, folder, dialog):
 def test_a_file_that_could_not_be_read_is_told_in_the_same_dialog(drive, folder):
     (folder / "bad.bvh").write_text("noise")
     drive.importing.import_paths([str(folder)])
-    drive.wait(lambda: bool(shown(drive)))
+    drive.wait(drive.notice.isVisible)
+    assert not shown(drive)
+    QTest.mouseClick(drive.notice, Qt.MouseButton.LeftButton)
     (dialog,) = shown(drive)
     assert "bad.bvh" in dialog.lines.toPlainText()
 

@@ -1,0 +1,42 @@
+"""The pictures of the label report: each clip at its most telling pose, each stance as it rests."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from metagraph.graph.model import Project
+
+SIZE = 192  # pixels
+
+
+def pictures(project: Project, folder: Path, clips: Iterable[str]) -> Mapping[str, Any]:
+    """Return clip or stance -> `[H, W, 4]` uint8; none where nothing can be drawn here."""
+    from app.cli.render_command import figure_of
+    from metagraph.errors import FileError
+    from preview.offscreen import Offscreen, OpenGLError
+    from preview.thumbnail import clip_thumbnail, thumbnail
+
+    out: dict[str, Any] = {}
+    try:
+        figure = figure_of(project, folder)
+        with Offscreen(SIZE, SIZE) as stage:
+            for clip in clips:
+                if (motion := project.clips[clip].motion) is not None:
+                    out[clip] = clip_thumbnail(stage, figure, motion, size=SIZE, scale=1)
+            for graph in project.graphs.values():
+                for stance in graph.stances:
+                    rest = next(iter(graph.of(stance, "stance")), None)
+                    motion = project.clips[rest.clip].motion if rest is not None else None
+                    if rest is None or motion is None:
+                        continue
+                    start, end = project.span(rest)
+                    frame = min(motion.frames - 1, round((start + end) / 2 * motion.fps))
+                    pose = motion.skeleton.globals(motion.poses()[frame])
+                    out[stance] = thumbnail(stage, figure, *pose, size=SIZE, scale=1)
+    except (OpenGLError, FileError) as error:
+        print(f"note: the report has no pictures: {error}", file=sys.stderr)
+        return {}
+    return out

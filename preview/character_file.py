@@ -1,0 +1,31 @@
+"""The figure of a character's file: its mesh, or what is drawn where that is none."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from pathlib import Path
+
+from metagraph.formats.gltf import read_character
+from metagraph.motion.character_mesh import no_character
+from metagraph.motion.skeleton import Skeleton
+from preview.figure import Figure, SkinnedFigure, StickFigure
+
+
+def figure_of(path: Path | None, skeleton: Skeleton, hidden: Collection[str] = ()) -> Figure:
+    """Return the figure that is drawn for a skeleton; its `instead` says why where it is not the file's mesh.
+
+    path: the character's file, None for a project without one. hidden: names of meshes that are not drawn.
+    Raises FileError.
+    """
+    if path is None:
+        return StickFigure(skeleton)
+    body = read_character(path)
+    why = no_character(body, skeleton)
+    shown = body.without(hidden)
+    if why is None and not len(shown.triangles):
+        why = "is hidden"
+    if why is None:
+        return SkinnedFigure(shown, skeleton)
+    figure = StickFigure(skeleton)
+    figure.instead, figure.meshes = f"the mesh of {path.name} {why}", body.meshes
+    return figure

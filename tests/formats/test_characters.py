@@ -1,0 +1,103 @@
+"""Which of the imported files a character is drawn from, and what of it is hidden at first."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from metagraph.formats.characters import held_meshes
+from metagraph.formats.gltf import read_character
+from metagraph.formats.gltf_writer import write_glb
+from metagraph.formats.imports import import_files
+from metagraph.graph.model import Project
+from metagraph.motion.character_mesh import Character, Surface
+from tests.bodies import body, column, everywhere
+from tests.projects import SKELETON, clip
+
+
+def proxy(character: Character) -> Character:
+    """The character's first triangle, as exporters leave one."""
+    return replace(character, triangles=character.triangles[:1], surfaces=(Surface(0, 1, 0),))
+
+
+def whole() -> Character:
+    return body(SKELETON, dict.fromkeys(range(len(SKELETON)), 0.12))
+
+
+def test_a_stand_in_is_passed_over_for_the_character_behind_it(tmp_path: Path) -> None:
+    write_glb(tmp_path / "a.glb", [clip("a")], proxy(whole()))
+    write_glb(tmp_path / "b.glb", [clip("b")], whole())
+    result = import_files(Project(), tmp_path, [tmp_path])
+    assert result.character is not None and result.character.path == "b.glb"
+    assert result.into(Project()).character == "b.glb"
+
+
+def test_stand_ins_alone_give_no_character_and_say_why(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        write_glb(tmp_path / f"{name}.glb", [clip(name)], proxy(whole()))
+    result = import_files(Project(), tmp_path, [tmp_path])
+    assert result.character is None and result.into(Project()).character is None
+    assert [(s.path, s.why_not) for s in result.stand_ins] == [
+        ("a.glb", "is 1 triangle, a stand-in"),
+        ("b.glb", "is 1 triangle, a stand-in"),
+    ]
+
+
+def test_a_file_without_motion_is_the_character_of_the_clips_beside_it(tmp_path: Path) -> None:
+    write_glb(tmp_path / "a.glb", [clip("a")], proxy(whole()))
+    write_glb(tmp_path / "body.glb", [], whole())
+    result = import_files(Project(), tmp_path, [tmp_path])
+    assert result.character is not None and result.character.path == "body.glb"
+    assert result.failures == (), "it was of use"
+
+
+def test_a_file_without_motion_of_somebody_else_stays_a_failure(tmp_path: Path) -> None:
+    write_glb(tmp_path / "a.glb", [clip("a")])
+    write_glb(tmp_path / "body.glb", [], everywhere(column()))
+    result = import_files(Project(), tmp_path, [tmp_path])
+    assert result.character is None and len(result.failures) == 1
+
+
+def test_a_project_with_a_character_keeps_it_and_looks_at_no_other(tmp_path: Path) -> None:
+    write_glb(tmp_path / "a.glb", [clip("a")], whole())
+    result = import_files(Project(character="mine.glb"), tmp_path, [tmp_path])
+    assert result.character is None and result.into(Project(character="mine.glb")).character == "mine.glb"
+
+
+@pytest.fixture
+def rogue(shared_data: Path) -> Character:
+    return read_character(shared_data / "kaykit-rogue/Rogue.glb")
+
+
+def test_weapons_that_one_hand_cannot_all_hold_are_hidden_and_that_is_told(
+    shared_data: Path, tmp_path: Path
+) -> None:
+    shutil.copy(shared_data / "kaykit-rogue/Rogue.glb", tmp_path / "Rogue.glb")
+    result = import_files(Project(), tmp_path, [tmp_path])
+    project = result.into(Project())
+    assert set(project.hidden) == {"Knife_Offhand", "1H_Crossbow", "2H_Crossbow", "Knife", "Throwable"}
+    assert any("5 meshes in the hands are hidden" in note for note in result.notes)
+
+
+def test_what_one_hand_holds_alone_stays_in_sight(rogue: Character) -> None:
+    one = rogue.without({"1H_Crossbow", "2H_Crossbow", "Knife"})
+    assert held_meshes(one) == ()
+
+
+def test_what_hangs_elsewhere_than_in_a_hand_stays_in_sight(rogue: Character) -> None:
+    assert "Rogue_Cape" not in held_meshes(rogue)
+    chest = rogue.skeleton.index("chest")
+    worn = tuple(replace(s, held=chest) if s.held >= 0 else s for s in rogue.surfaces)
+    assert held_meshes(replace(rogue, surfaces=worn)) == ()
+
+
+def test_a_robots_hand_of_plates_is_no_prop(shared_data: Path) -> None:
+    robot = read_character(shared_data / "robot-expressive/RobotExpressive.glb")
+    assert held_meshes(robot) == ()
+
+
+def test_a_body_made_of_nothing_but_plates_holds_nothing() -> None:
+    assert held_meshes(whole()) == ()

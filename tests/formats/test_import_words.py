@@ -1,0 +1,86 @@
+"""One line on an import, and many notes as one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from metagraph.formats.characters import CharacterFile
+from metagraph.formats.gltf_writer import write_glb
+from metagraph.formats.import_words import counted, remedies, said
+from metagraph.formats.imports import Imported, import_files
+from metagraph.graph.model import Project
+from metagraph.motion.clip import Repair
+from tests.projects import clip
+
+
+def loaded(*repairs: Repair) -> Imported:
+    return Imported((("a.glb", 0, "", replace(clip("a"), repairs=repairs)),))
+
+
+def test_a_whole_import_says_how_many_came_in() -> None:
+    assert said(loaded()) == "Imported 1 clip"
+    assert said(Imported(())) == "Imported 0 clips"
+
+
+def test_what_was_put_right_is_counted_each_skipped_take_once_and_names_not() -> None:
+    repairs = (Repair("unit", "…"), Repair("name", "…"), Repair("up_axis", "…", made=False))
+    take = Repair("one_frame", "…", take=1)
+    one = replace(clip("a"), repairs=(*repairs, take))
+    two = replace(clip("b"), repairs=(take,))
+    result = Imported((("a.glb", 0, "", one), ("a.glb", 2, "", two)))
+    assert said(result) == "Imported 2 clips. Put right: units of length (1), takes of one frame (1)"
+
+
+def test_no_character_and_hidden_meshes_are_told() -> None:
+    none = CharacterFile("idle.glb", why_not="is 1 triangle, a stand-in")
+    words = said(replace(loaded(), stand_ins=(none, none)), window=False)
+    assert words == (
+        "Imported 1 clip. No character: the mesh of idle.glb and 1 more is 1 triangle, a stand-in. "
+        "To do: choose a character in the window"
+    )
+    hidden = CharacterFile("me.glb", hidden=("sword", "bow"))
+    assert said(replace(loaded(), character=hidden)) == "Imported 1 clip. Hidden: 2 meshes in the hands"
+
+
+def test_strangers_are_told_once_not_as_files_that_cannot_be_used_too(tmp_path: Path) -> None:
+    from tests.formats.test_imports import stranger
+
+    write_glb(tmp_path / "a.glb", [clip("a")])
+    write_glb(tmp_path / "b.glb", [clip("b")])
+    write_glb(tmp_path / "odd.glb", [stranger("x")])
+    (tmp_path / "bad.glb").write_bytes(b"noise")
+    result = import_files(Project(), tmp_path, [tmp_path])
+    assert said(result, window=False) == (
+        "Imported 2 clips. Left out: 1 clip of another skeleton, 1 file that cannot be used. "
+        "To do: map joints of 1 clip in the window"
+    )
+    assert [r.do for r in remedies(result)] == ["map"]
+
+
+@pytest.mark.parametrize(
+    ("lines", "wanted"),
+    [
+        ([], []),
+        (["one.bvh: empty"], ["one.bvh: empty"]),
+        (["a: x", "a: x"], ["a and 1 more: x"]),
+        (
+            ["a.glb: scale of 8 joints", "b.glb: scale of 1 joints", "c.glb: other"],
+            ["a.glb and 1 more: scale of 1 to 8 joints", "c.glb: other"],
+        ),
+        (["a: 'x' lost 2", "b: 'y' lost 10"], ["a and 1 more: 'x' lost 2 to 10"]),
+        (["no subject", "no subject"], ["no subject"]),
+        (["no subject 1", "no subject 2"], ["no subject 1", "no subject 2"]),
+    ],
+)
+def test_lines_that_say_the_same_of_several_files_are_one(lines: list[str], wanted: list[str]) -> None:
+    assert counted(lines) == wanted
+
+
+def test_the_notes_of_a_real_set_are_few(shared_data: Path) -> None:
+    result = import_files(Project(), None, [shared_data / "sumerian-hosts/glTF/animations/adult_female"])
+    lines = counted(result.notes)
+    assert len(result.notes) > 5 and len(lines) == 2
+    assert any("the scale of 1 to 15 joints is animated" in line for line in lines)
