@@ -22,7 +22,7 @@ MIXED = (Whole(), Whole("sit"), Whole("lean_wall", "arms_crossed"), Whole("lean_
 ARMED = (Whole(), Whole(arms="hands_clasped"), Whole(arms="hand_to_chin"), Whole(arms="on_hips"))
 CLOSE = (Whole(), Whole(near=1, apart=0.07), Whole(near=2, apart=0.06))
 CLOSE_BODIES = (Whole(), Whole("weight_left"), Whole("weight_right"))
-MOCAP = Recording(fps=60, noise=0.5, drift=0.05, warp=0.6, sizes=(0.7, 1.3), trim=4, strewn=True)
+MOCAP = Recording(fps=60, noise=0.3, drift=0.05, warp=0.6, sizes=(0.7, 1.3), trim=4, strewn=True)
 STUDIO = Grammar("ChrX@", style="camel", numbered="Idle", together=True)
 SEATS = Grammar("ChrX@", style="camel", numbered="IdleSeated", together=True)
 TALL = (("arms", 1.15), ("legs", 1.2), ("trunk", 1.05))
@@ -46,12 +46,12 @@ RECIPES: Mapping[str, Recipe] = {
     "japanese joints": Recipe(FEW, figure=Figure("japanese", axes="none", missing=("face",))),
     "a hundred times too large": Recipe(FEW, recording=Recording(size=100.0)),
     "film rate": Recipe(FEW, recording=Recording(fps=24, trim=2)),
-    "cameras at 120": Recipe(FEW, recording=Recording(fps=120, noise=0.6)),
+    "cameras at 120": Recipe(FEW, recording=Recording(fps=120, noise=0.4)),
     "bind keys at both ends": Recipe(
         FEW, figure=Figure("mixamo", rest="T"), recording=Recording(bind=("before", "after"))
     ),
     # The recording
-    "trembling": Recipe(ALL, recording=Recording(noise=1.0)),
+    "trembling": Recipe(ALL, recording=Recording(noise=0.7)),
     "gestures that do not return": Recipe(FEW, recording=Recording(drift=0.06)),
     "large and slow, small and fast": Recipe(FEW, recording=Recording(sizes=(0.6, 1.5), warp=1.0)),
     "mirrored": Recipe(ALL, recording=Recording(mirrored=True)),
@@ -179,9 +179,7 @@ def drawn(seed: int, number: int) -> Recipe:
         accents=draw.random() < 0.6,
     )
     figure = Figure(
-        names=one(
-            "sample", "mixamo", "biped", "unreal", "blender", "letters", "lower", "japanese", "numbers"
-        ),
+        names=one("sample", "mixamo", "biped", "unreal", "blender", "letters", "lower"),
         limbs=tuple(
             (limb, float(draw.uniform(0.75, 1.3))) for limb in ("arms", "legs", "trunk", "shoulders")
         ),
@@ -198,7 +196,7 @@ def drawn(seed: int, number: int) -> Recipe:
     )
     recording = Recording(
         fps=one(24.0, 25.0, 30.0, 30.0, 60.0, 120.0),
-        noise=maybe(0.5, float(draw.uniform(0.2, 1.0)), 0.0),
+        noise=maybe(0.5, float(draw.uniform(0.1, 0.6)), 0.0),
         drift=maybe(0.5, float(draw.uniform(0.01, 0.06)), 0.0),
         warp=maybe(0.4, float(draw.uniform(0.2, 1.0)), 0.0),
         sizes=maybe(0.5, (0.6, 1.5), (1.0, 1.0)),

@@ -125,12 +125,18 @@ def _drifted(turns: Array, most: float, draw: np.random.Generator) -> Array:
 
 
 def _trembling(turns: Array, degrees: float, draw: np.random.Generator) -> Array:
-    """Return a movement with the noise of cameras: smooth over about a tenth of a second."""
-    shape = (len(turns) + 8, turns.shape[1], 3)
-    raw = draw.normal(size=shape)
-    smooth = np.mean([raw[k : k + len(turns)] for k in range(4)], axis=0) * 2  # of variance 1 again
-    fingers = np.array([0.5 if n[-1].isdigit() else 1.0 for n in skeleton().names])
-    tremble = rotation.exp(np.radians(degrees) / np.sqrt(3) * smooth * fingers[None, :, None])
+    """Return a movement with what is left of the noise of cameras: smooth over about a quarter of a second,
+    less in the hips and legs, whose feet stay, and in the fingers.
+    """
+    shares = np.exp(-0.5 * (np.arange(-9, 10) / 3.5) ** 2)
+    shares /= np.linalg.norm(shares)  # so that it stays as large
+    raw = draw.normal(size=(len(turns) + len(shares), turns.shape[1], 3))
+    smooth = np.zeros((len(turns), turns.shape[1], 3))
+    for k, part in enumerate(shares):
+        smooth += part * raw[k : k + len(turns)]
+    names = skeleton().names
+    share = [0.3 if "Leg" in n or n == "Hips" else 0.5 if n[-1].isdigit() else 1.0 for n in names]
+    tremble = rotation.exp(np.radians(degrees) / np.sqrt(3) * smooth * np.array(share)[None, :, None])
     return rotation.normalize(rotation.multiply(tremble, turns))
 
 

@@ -205,7 +205,8 @@ def _whole_cuts(recipe: Recipe, draw: np.random.Generator) -> list[_Cut]:
     for n, whole in enumerate(wholes):
         key = str(n)
         motion = bodies.resting(whole, int(draw.integers(120, 330)), draw)
-        out.append(_Cut(motion, "stance", carrier, key, "", None, ""))
+        # Where only arms or heads tell stances apart, a loop of the whole body may rest on any layer.
+        out.append(_Cut(motion, "stance", "body" if carrier == "body" else None, key, "", None, ""))
         for take in takes():
             at = {"arms": whole.arms, "head": whole.head, "body": whole.body}[take.layer or "arms"]
             seated = take.layer == "body" and whole.body in bodies.MADE and take.action in UPPER
@@ -213,7 +214,9 @@ def _whole_cuts(recipe: Recipe, draw: np.random.Generator) -> list[_Cut]:
                 own = bodies.upper_only(take.motion) if seated else take.motion
                 layer = take.layer or "arms"
                 moved = bodies.over(whole, own, "seat" if seated else layer, draw)
-                out.append(_Cut(moved, take.kind, layer, key, "", take.limb, take.action))
+                # Who sits and only bends the trunk does so with body, arms or head, as one likes.
+                of = None if seated else layer
+                out.append(_Cut(moved, take.kind, of, key, "", take.limb, take.action))
     for a, b in permutations(range(len(wholes)), 2):
         one, two = wholes[a], wholes[b]
         arms = [t for t in takes() if t.layer == "arms" and (t.stance, t.end) == (one.arms, two.arms)]

@@ -17,9 +17,9 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles, is_humanoid
 from tests.label_zoo import bodies, rigs
 from tests.label_zoo.bodies import Whole
-from tests.label_zoo.catalogue import FEW, RECIPES, STANDING, made_sets, named
+from tests.label_zoo.catalogue import FEW, RECIPES, STANDING, drawn, made_sets, named
 from tests.label_zoo.grammar import LANGUAGES, SIDES, Grammar, Namer, words
-from tests.label_zoo.motions import Recording
+from tests.label_zoo.motions import Recording, recorded
 from tests.label_zoo.rigs import Figure
 from tests.label_zoo.sets import MadeSet, Recipe, make
 from tests.label_zoo.source import Motion, clip_of, loop, skeleton, takes
@@ -118,9 +118,8 @@ def test_clips_begin_and_end_in_the_stances_that_they_are_told_to(name: str) -> 
     for entry in made.project.clips.values():
         row, clip = made.truth[entry.name], entry.motion
         assert clip is not None
-        if row["kind"] is not None and row["layer"] is not None:
-            whole = "whole body" in made.what
-            layer = "body" if whole else row["layer"]
+        if row["kind"] is not None:
+            layer = "body" if "whole body" in made.what else str(row["layer"])
             poses[layer][str(row["stance"])].append((vector(clip, 0, layer), entry.name))
             end = row["end_stance"] or row["stance"]
             poses[layer][str(end)].append((vector(clip, -1, layer), entry.name))
@@ -145,7 +144,7 @@ def test_the_hand_that_is_told_moves_the_most(name: str) -> None:
             at = posed(clip)
             far = {s: float(np.ptp(at[f"{s}_hand"], axis=0).max()) for s in ("left", "right")}
             right, count = right + (far[limb] == max(far.values())), count + 1
-    assert count >= 3 and right >= 0.9 * count, (right, count)
+    assert count >= 3 and right >= 0.85 * count, (right, count)  # drift may outdo a tapping finger
 
 
 @pytest.mark.parametrize("name", [n for n in SOME if n != "proportions of a child"])
@@ -155,7 +154,7 @@ def test_a_transition_goes_farther_than_an_action_comes_back(name: str) -> None:
     for entry in made.project.clips.values():
         row, clip = made.truth[entry.name], entry.motion
         if clip is not None and row["kind"] is not None and row["layer"] != "head":
-            layer = str(row["layer"])
+            layer = str(row["layer"] or "body")
             gap = float(np.abs(vector(clip, 0, layer) - vector(clip, -1, layer)).max())
             gaps[row["kind"] == "transition"].append(gap)
     assert np.median(gaps[True]) > 2 * np.median(gaps[False]), (gaps[True], np.median(gaps[False]))
@@ -203,6 +202,23 @@ def test_the_figures_of_named_sets_are_people(name: str) -> None:
         assert "left_hand" in find_roles(rig.skeleton) and "left_foot" not in find_roles(rig.skeleton)
     else:
         assert is_humanoid(find_roles(rig.skeleton))
+
+
+def test_the_figures_of_drawn_sets_are_people() -> None:
+    for recipe in (drawn(0, n) for n in range(40)):
+        rig = rigs.on(clip_of("x", loop("hands_at_sides").motion), recipe.figure)
+        assert is_humanoid(find_roles(rig.skeleton)) or "legs" in recipe.figure.missing, recipe.figure
+
+
+def test_a_stance_that_trembles_hardly_moves() -> None:
+    clip = clip_of("x", loop("hands_at_sides").motion)
+    draw = np.random.default_rng(0)
+    tremble = recorded(clip, Recording(noise=0.7), draw)
+    hands = [bodies.hands(Motion(c.rotations.astype(float), c.root)) for c in (clip, tremble)]
+    away = np.linalg.norm(hands[1] - hands[0], axis=-1)
+    assert 0.002 < float(away.mean()) < 0.02
+    speed = np.linalg.norm(np.diff(hands[1], axis=0), axis=-1) * clip.fps
+    assert float(np.median(speed)) < 0.1
 
 
 def test_variants_of_a_stance_are_as_far_apart_as_told() -> None:
