@@ -7,7 +7,9 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from app.cli.command_output import opened, say
-from metagraph.formats.imports import import_files
+from metagraph.errors import FileError
+from metagraph.formats.clips import SUFFIXES
+from metagraph.formats.imports import import_files, summed
 from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph.model import Project
 
@@ -41,10 +43,15 @@ def run(options: Namespace) -> int:
     )
     if show:
         print(file=sys.stderr)
-    for failure in result.failures:
+    if not result.loaded and not result.failures:
+        place = ", ".join(str(p) for p in options.paths)
+        raise FileError(
+            place, "no clip was found in it", "on importing it", f"Clips are {', '.join(SUFFIXES)} files."
+        )
+    for failure in summed(result.failures):
         print(f"left out: {failure}", file=sys.stderr)
     if not options.json:
-        for note in result.notes:
+        for note in summed(result.notes):
             print(f"note: {note}", file=sys.stderr)
     if result.loaded:
         project = result.into(project)

@@ -4,20 +4,21 @@ alone.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
 
 from metagraph.errors import FileError
-from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
+from metagraph.formats.clips import SUFFIXES, digest, find_clip_files, import_clips, read_clips
 from metagraph.formats.gltf import has_skinned_mesh, morph_targets
 from metagraph.formats.store import relative
 from metagraph.graph.edits import add_clips, set_character
 from metagraph.graph.face import with_morphs
 from metagraph.graph.model import Project
 from metagraph.graph.project_retargeting import Bringing
-from metagraph.motion.adopt import SkeletonMismatchError, adopt, difference
+from metagraph.motion.adopt import SkeletonMismatchError, adopt, bone_difference, difference
 from metagraph.motion.clip import Clip, ClipError
 from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint
 from metagraph.motion.skeleton import Skeleton
@@ -27,6 +28,8 @@ Maps = Callable[
     [str, str], JointMap | None
 ]  # fingerprints of a source and a target skeleton -> the map kept for them
 _ALONE = "Import it into a project of its own."
+_LONGER = 0.025  # share by which bones may differ from the project's without a word
+_NAMED = re.compile(rf"(.+?(?:{'|'.join(map(re.escape, SUFFIXES))}))([:,] )(.+)", re.IGNORECASE | re.DOTALL)
 
 
 @dataclass(frozen=True)
@@ -137,6 +140,7 @@ def import_files(
     foreign: dict[str, list[Loaded]] = {}
     reasons: dict[str, str] = {}
     digests: dict[Path, str] = {}
+    apart: dict[str, tuple[float, list[str]]] = {}  # by skeleton
     for path, take, clip in _as_known(report.clips, project, folder):
         assert skeleton is not None
         try:
@@ -152,6 +156,10 @@ def import_files(
         name = _name(path, folder)
         try:
             loaded.append((name, take, digests[path], adopt(clip, skeleton)))
+            key = clip.skeleton.fingerprint
+            if key not in apart:
+                apart[key] = (bone_difference(clip.skeleton, skeleton), [])
+            apart[key][1].append(clip.name)
         except SkeletonMismatchError as error:
             key = fingerprint(clip.skeleton)
             foreign.setdefault(key, []).append((name, take, digests[path], clip))
@@ -159,7 +167,12 @@ def import_files(
     character = _character(loaded, folder) if project.character is None else None
     morphs = _morphs(character, folder)
     result = Imported(
-        tuple(loaded), tuple(failures), _together(report.clips), report.cancelled, character, morphs
+        tuple(loaded),
+        tuple(failures),
+        (*_together(report.clips), *_other_bones(list(apart.values()))),
+        report.cancelled,
+        character,
+        morphs,
     )
     if foreign:
         bringing = Bringing(add_clips(project, loaded))
@@ -299,6 +312,37 @@ def _together(clips: Iterable[tuple[Path, int, Clip]]) -> tuple[str, ...]:
     for note, names in files.items():
         first = next(iter(names))
         out.append(f"{first if len(names) == 1 else f'{len(names)} files ({first} ...)'}: {note}")
+    return tuple(out)
+
+
+def _other_bones(groups: Sequence[tuple[float, list[str]]]) -> tuple[str, ...]:
+    """Return one note on clips whose bones are not as long as the project's."""
+    odd = [(share, names) for share, names in groups if share > _LONGER]
+    names = [name for _, some in odd for name in some]
+    if not names:
+        return ()
+    whose = f"'{names[0]}' has" if len(names) == 1 else f"{len(names)} clips ('{names[0]}' ...) have"
+    most = max(share for share, _ in odd)
+    return (
+        f"{whose} bones up to {most:.0%} longer or shorter than the project's character, and keep "
+        "them. Retarget them if hands or feet miss their places.",
+    )
+
+
+def summed(texts: Iterable[str]) -> tuple[str, ...]:
+    """Return failures or notes, those that say the same of several files as one with their count."""
+    groups: dict[str, list[str]] = {}
+    for text in texts:
+        found = _NAMED.fullmatch(text)
+        what = found[2] + re.sub(r"^(its clip is|\d+ clips are) ", "\0", found[3]) if found else text
+        groups.setdefault(what, []).append(text)
+    out: list[str] = []
+    for what, same in groups.items():
+        found = _NAMED.fullmatch(same[0])
+        if len(same) == 1 or found is None:
+            out.extend(dict.fromkeys(same))
+        else:
+            out.append(f"{len(same)} files ({found[1]} ...){what.replace(chr(0), 'its clips are ', 1)}")
     return tuple(out)
 
 
