@@ -187,3 +187,18 @@ def test_a_stance_that_no_clip_rests_in_is_held_and_told(
         and "likelihood 1 80%" in page
         and "timing, joints, likelihood" in page
     )
+
+
+def test_clips_of_another_skeleton_are_left_out_or_retargeted_as_asked(
+    folder: Path, capsys: pytest.CaptureFixture[str], zoo_files: dict[str, Path]
+) -> None:
+    shutil.copy(zoo_files["mixamo"], folder / "other.glb")
+    shutil.copy(zoo_files["mixamo"], folder / "another.glb")
+    out = folder.parent / "p"
+    main(["label", str(folder), "-o", str(out), "--no-pictures"])
+    told = [line for line in capsys.readouterr().err.splitlines() if "another character" in line]
+    assert len(told) == 1 and "2 files" in told[0]
+    main(["label", str(folder), "-o", str(out), "--no-pictures", "--retarget"])
+    assert "another character" not in capsys.readouterr().err
+    project = open_project(out.with_name("p.metagraph.yaml")).project
+    assert sum(bool(e.brought_from) for e in project.clips.values()) == 6
