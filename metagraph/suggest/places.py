@@ -24,6 +24,7 @@ from metagraph.suggest.proposal import Place, plain
 from metagraph.suggest.stances import Shape
 from metagraph.suggest.traits import LayerTraits, Traits
 from metagraph.suggest.vote_fusion import Agreed, combine
+from metagraph.suggest.whole_body import CARRIER, SCALE
 
 Array = NDArray[Any]
 
@@ -150,7 +151,8 @@ class Places:
 
     def _named(self, layer: Layer, shape: Shape, shapes: Sequence[Shape]) -> str:
         """Return what a stance is called that no name speaks of: as its pose looks."""
-        words = pose_words(shape, shapes[0] if shapes and shapes[0] is not shape else None)
+        whole = SCALE if layer == CARRIER and "hips" in shape.names else None
+        words = pose_words(shape, shapes[0] if shapes and shapes[0] is not shape else None, whole)
         there = {place.name for place in self.by_key.values() if place.layer == layer}
         n, name = 1, words
         while name in there:
