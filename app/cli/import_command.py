@@ -7,6 +7,8 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from app.cli.command_output import opened, say
+from metagraph.errors import FileError
+from metagraph.formats.clips import SUFFIXES
 from metagraph.formats.import_words import counted, remedies, said
 from metagraph.formats.imports import import_files
 from metagraph.formats.store import SUFFIX, save_project
@@ -42,6 +44,11 @@ def run(options: Namespace) -> int:
     )
     if show:
         print(file=sys.stderr)
+    if not result.loaded and not result.failures:
+        place = ", ".join(str(p) for p in options.paths)
+        raise FileError(
+            place, "no clip was found in it", "on importing it", f"Clips are {', '.join(SUFFIXES)} files."
+        )
     for failure in counted(result.failures):
         print(f"left out: {failure}", file=sys.stderr)
     if not options.json:

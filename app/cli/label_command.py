@@ -49,6 +49,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--patterns", type=Path, metavar="FILE", help="name patterns exported from the window (Graph menu)"
     )
+    parser.add_argument(
+        "--retarget", action="store_true", help="bring clips of other skeletons onto that of most clips"
+    )
+    parser.add_argument(
+        "--no-bridges",
+        action="store_true",
+        help="leave stances that no clip leads to or from as they are, instead of blending to them",
+    )
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
 
 
@@ -80,10 +88,10 @@ def run(options: Namespace) -> int:
     if path.suffix not in (".yaml", ".yml"):
         path = path.with_name(path.name + SUFFIX)
     patterns, examples = _taught(options, path)
-    project, notes = _project(source, path)
+    project, notes = _project(source, path, options.retarget)
     found = propose(project, patterns=patterns, examples=examples, sources=tuple(options.sources or SOURCES))
     taken = accept(project, found, options.above)
-    labelled, bridges = bridged(taken.project)
+    labelled, bridges = (taken.project, ()) if options.no_bridges else bridged(taken.project)
     taken = replace(taken, project=labelled)
     save_project(taken.project, path, source if source.is_file() else path)
     place = path.with_name(path.name.removesuffix(SUFFIX) + ".labels.html")
@@ -163,7 +171,7 @@ def _taught(options: Namespace, path: Path) -> tuple[Patterns | None, list[Examp
     return merged(patterns, given) if given is not None else patterns, learned.examples_beside(path)
 
 
-def _project(source: Path, path: Path) -> tuple[Project, list[str]]:
+def _project(source: Path, path: Path, retarget: bool) -> tuple[Project, list[str]]:
     """Return the project to label, and what there is to say about what was read."""
     from app.cli.command_output import opened
     from metagraph.errors import FileError
@@ -174,7 +182,7 @@ def _project(source: Path, path: Path) -> tuple[Project, list[str]]:
     if source.is_file():
         return opened(source), []
     empty = Project(name=path.name.removesuffix(SUFFIX))
-    result = import_files(empty, path.resolve().parent, [source])
+    result = import_files(empty, path.resolve().parent, [source], retarget="yes" if retarget else "no")
     if not result.loaded:
         why = result.failures[0] if result.failures else "no clip was found in it"
         raise FileError(

@@ -216,8 +216,9 @@ def _card(
     )
     opening = ""
     if path is not None:
-        command = escape(open_command(taken.project, p.clip, path))
-        opening = f"<button class='open'>Open in the window</button><code hidden>{command}</code>"
+        command = escape(open_command(taken.project, p.clip, path), quote=True)
+        opening = f"<button class='open' title='{command}'>Open in the window…</button>"
+        opening += f"<code hidden>{command}</code>"
     return (
         f"<div class='card' {_data_of(project, found, p, taken)}>{_picture(pictures.get(p.clip))}"
         f"<div>{title} <span class='dim'>{escape(where)}{limb}</span><ul>{''.join(reasons)}</ul>{opening}"

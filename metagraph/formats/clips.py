@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable, Collection, Iterable
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -164,18 +165,44 @@ def import_clips(
 
     progress: called before each file with how many are done, how many there are, and the file. cancelled:
     asked before each file. Files whose skeletons are the same share one Skeleton object. FBX files are read a
-    few at a time, each being 0.3 s of another process's work; the other formats take a few milliseconds of
+    few at a time, by processes that are started once; the other formats take a few milliseconds of
     Python's own, where threads gain nothing.
     """
     files = [Path(p) for p in paths]
+    with reading_together(files) as begun:
+        return _import_clips(files, begun, progress, cancelled)
+
+
+@contextmanager
+def reading_together(paths: Iterable[Path]) -> Iterator[Mapping[Path, Future[list[Clip]]]]:
+    """Begin to read those of many files that another process reads, a few at a time; what is not wanted any
+    more at the end is not read.
+    """
+    fbx = [path for path in paths if path.suffix.lower() == ".fbx"]
+    if len(fbx) < 2:
+        yield {}
+        return
+    from metagraph.formats.fbx_readers import batch
+
+    with batch():
+        pool = ThreadPoolExecutor(min(4, os.cpu_count() or 1))
+        try:
+            yield {path: pool.submit(read_clips, path) for path in fbx}
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+def _import_clips(
+    files: list[Path],
+    begun: Mapping[Path, Future[list[Clip]]],
+    progress: Callable[[int, int, Path], None] | None,
+    cancelled: Callable[[], bool] | None,
+) -> ImportReport:
     clips: list[tuple[Path, int, Clip]] = []
     failures: list[FileError] = []
     notes: list[str] = []
     skeletons: dict[str, Clip] = {}
     stopped = False
-    fbx = [path for path in files if path.suffix.lower() == ".fbx"]
-    pool = ThreadPoolExecutor(min(4, os.cpu_count() or 1)) if len(fbx) > 1 else None
-    begun = {path: pool.submit(read_clips, path) for path in fbx} if pool is not None else {}
     for done, path in enumerate(files):
         if cancelled is not None and cancelled():
             stopped = True
@@ -207,8 +234,6 @@ def import_clips(
                 )
             )
             notes += [f"{path.name}: {note}" for note in clip.notes]
-    if pool is not None:
-        pool.shutdown(cancel_futures=True)
     if progress is not None and not stopped and files:
         progress(len(files), len(files), files[-1])
     return ImportReport(tuple(clips), tuple(failures), tuple(dict.fromkeys(notes)), stopped)

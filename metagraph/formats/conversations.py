@@ -103,6 +103,7 @@ def _voices(reading: _Reading, audio: list[Path], worded: bool) -> tuple[Voice, 
     path = audio[0]
     reading.go_on()
     read = read_recording(path, LONGEST, RATE)
+    _tell_kind(reading, path, read.really)
     channels = len(read.samples)
     if channels > 2:
         raise FileError(
@@ -165,11 +166,20 @@ def _one_sounds(samples: Array) -> int | None:
     return None if loud.min() > least or loud.max() <= least else int(loud.argmax())
 
 
+def _tell_kind(reading: _Reading, path: Path, really: str) -> None:
+    if really:
+        reading.notes.append(
+            f"{path.name} is {really} in spite of its ending; it was read as that. Other programs may refuse "
+            "it: rename it."
+        )
+
+
 def _two_files(reading: _Reading, audio: list[Path]) -> tuple[Voice, Voice]:
     out, rates = [], []
     for path in audio:
         reading.go_on()
         read = read_recording(path, LONGEST, RATE)
+        _tell_kind(reading, path, read.really)
         channels = len(read.samples)
         if channels > 1:
             reading.notes.append(

@@ -1,13 +1,8 @@
-"""Read FBX motion through the optional ufbx library, in a process of its own: one file a process, so a crash
-costs one file.
-"""
+"""Read FBX motion through the optional ufbx library, in processes of their own, so a crash costs one file."""
 
 from __future__ import annotations
 
 import importlib.util
-import os
-import subprocess
-import sys
 from collections.abc import Collection
 from pathlib import Path
 
@@ -15,6 +10,7 @@ import numpy as np
 
 from metagraph.errors import FileError
 from metagraph.formats import fbx_child
+from metagraph.formats.fbx_readers import ReaderError, convert
 from metagraph.formats.gltf_clips import read_clip
 from metagraph.formats.gltf_file import parse_gltf
 from metagraph.formats.gltf_skeleton import build_rig
@@ -71,28 +67,9 @@ def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT, as_is: Collection
 
 
 def _converted(path: Path, timeout: float) -> bytes:
-    """Return the file as binary glTF, made by a child process."""
-    root = str(Path(__file__).resolve().parents[2])
-    known = os.environ.get("PYTHONPATH")
-    environment = {
-        **os.environ,
-        "PYTHONPATH": root if not known else os.pathsep.join((root, known)),
-        "OMP_NUM_THREADS": "1",
-    }
-    command = [sys.executable, "-m", fbx_child.__name__, str(path.resolve())]
+    """Return the file as binary glTF, made by another process."""
     try:
-        done = subprocess.run(
-            command,
-            capture_output=True,
-            timeout=timeout,
-            env=environment,
-            stdin=subprocess.DEVNULL,
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        raise FileError(
-            path, f"it could not be read within {timeout:.0f} s", "on reading it", _AGAIN
-        ) from None
+        return convert(path, timeout)
     except OSError as error:
         raise FileError(
             path,
@@ -100,27 +77,23 @@ def _converted(path: Path, timeout: float) -> bytes:
             "on opening it",
             "Install Metagraph again.",
         ) from error
-    if done.returncode == 0:
-        return done.stdout
-    said = done.stderr.decode("utf-8", "replace").strip().splitlines()
-    if done.returncode == fbx_child.MISSING:
-        raise FileError(
+    except ReaderError as error:
+        raise _told(path, error, timeout) from None
+
+
+def _told(path: Path, error: ReaderError, timeout: float) -> FileError:
+    code, words = error.code, error.words or "no reason given"
+    if code is None:
+        return FileError(path, f"it could not be read within {timeout:.0f} s", "on reading it", _AGAIN)
+    if code == fbx_child.MISSING:
+        return FileError(
             path,
             "the ufbx library is installed but does not load",
             "on opening it",
             "Run: pip install --force-reinstall metagraph[fbx]",
         )
-    if done.returncode == fbx_child.REFUSED:
-        raise FileError(
-            path,
-            f"it is not a sound FBX file ({said[-1].strip(chr(34)) if said else 'no reason given'})",
-            "its content",
-            _AGAIN,
-        )
-    if done.returncode < 0:
-        raise FileError(
-            path, f"the FBX library crashed on it (signal {-done.returncode})", "its content", _AGAIN
-        )
-    raise FileError(
-        path, f"it could not be converted ({said[-1] if said else 'no reason given'})", "its content", _AGAIN
-    )
+    if code == fbx_child.REFUSED:
+        return FileError(path, f"it is not a sound FBX file ({words})", "its content", _AGAIN)
+    if code < 0:
+        return FileError(path, f"the FBX library crashed on it (signal {-code})", "its content", _AGAIN)
+    return FileError(path, f"it could not be converted ({words})", "its content", _AGAIN)

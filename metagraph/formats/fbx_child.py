@@ -1,13 +1,16 @@
-"""Run as a process of its own: read one FBX file with ufbx and write it to standard output as binary glTF.
+"""Run as a process of its own: read FBX files with ufbx, one after another, as binary glTF.
 
-A broken file, or a slip in the use of the library's handles, ends this process and nothing else. ufbx frees a
-scene while its nodes are still in use unless every list is kept, so all of them are made at once and held to
-the end.
+Paths come in as lines of JSON; out go a code, a length and either the glTF or why there is none. A broken
+file, or a slip in the use of the library's handles, ends this process and nothing else. ufbx frees a scene
+while its nodes are still in use unless every list is kept, so all of them are made at once and held to the
+end: that of the process, which reads a limited number of files.
 """
 
 from __future__ import annotations
 
 import json
+import os
+import struct
 import sys
 from typing import Any
 
@@ -16,29 +19,37 @@ import numpy as np
 from metagraph.formats.gltf_writer import BinaryChunk, glb_bytes
 
 FPS = 30.0
-MISSING, REFUSED = 4, 3  # exit codes
+MISSING, REFUSED = 4, 3  # exit code; code of an answer
 _BONE, _CAMERAS = 5, (3, 4, 18, 19)  # ufbx element types: bone; light, camera, camera switcher, stereo camera
 
 
-def main(path: str) -> int:
-    """Convert one file; return the exit code."""
+_held: list[Any] = []  # every scene and list of one, to the end of the process
+
+
+def main() -> int:
+    """Convert the files that are asked for; return the exit code."""
     try:
         import ufbx
     except ImportError:
         return MISSING
-    try:
-        scene = ufbx.load_file(
-            path,
-            target_unit_meters=1.0,
-            target_axes=ufbx.axes_right_handed_y_up,
-            space_conversion=ufbx.SpaceConversion.MODIFY_GEOMETRY,
-        )
-        sys.stdout.buffer.write(_convert(ufbx, scene))
-        sys.stdout.buffer.flush()
-        return 0
-    except (ufbx.UfbxError, ValueError) as error:
-        print(json.dumps(str(error)[:500]), file=sys.stderr)
-        return REFUSED
+    out = sys.stdout.buffer
+    sys.stdout = sys.stderr  # what a library prints is no answer
+    for line in sys.stdin.buffer:
+        code = 0
+        try:
+            scene = ufbx.load_file(
+                json.loads(line),
+                target_unit_meters=1.0,
+                target_axes=ufbx.axes_right_handed_y_up,
+                space_conversion=ufbx.SpaceConversion.MODIFY_GEOMETRY,
+            )
+            _held.append(scene)
+            answer = _convert(ufbx, scene)
+        except (ufbx.UfbxError, ValueError) as error:
+            code, answer = REFUSED, str(error)[:500].encode("utf-8", "replace")
+        out.write(struct.pack("<Bq", code, len(answer)) + answer)
+        out.flush()
+    return 0
 
 
 def _matrix(m: Any) -> Any:
@@ -57,6 +68,7 @@ def _convert(ufbx: Any, scene: Any) -> bytes:
     nodes = list(scene.nodes)
     stacks = list(scene.anim_stacks)
     clusters = list(scene.skin_clusters)
+    _held.append((nodes, stacks, clusters))
     bones = [i for i, node in enumerate(nodes) if node.bone is not None]
     parents = [node.parent.typed_id if node.parent is not None else -1 for node in nodes]
     still = np.array([_transform(node.local_transform) for node in nodes])
@@ -143,4 +155,6 @@ def _convert(ufbx: Any, scene: Any) -> bytes:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1]))
+    code = main()
+    sys.stderr.flush()
+    os._exit(code)  # the library's handles are not taken apart

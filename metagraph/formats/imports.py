@@ -16,7 +16,7 @@ from metagraph.formats.store import relative
 from metagraph.graph.edits import add_clips
 from metagraph.graph.model import Project
 from metagraph.graph.project_retargeting import Bringing
-from metagraph.motion.adopt import SkeletonMismatchError, adopt, difference
+from metagraph.motion.adopt import SkeletonMismatchError, adopt, bone_difference, difference
 from metagraph.motion.clip import Clip, ClipError
 from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint
 from metagraph.motion.skeleton import Skeleton
@@ -26,6 +26,7 @@ Maps = Callable[
     [str, str], JointMap | None
 ]  # fingerprints of a source and a target skeleton -> the map kept for them
 _ALONE = "Import it into a project of its own."
+_LONGER = 0.025  # share by which bones may differ from the project's without a word
 
 
 @dataclass(frozen=True)
@@ -138,6 +139,7 @@ def import_files(
     foreign: dict[str, list[Loaded]] = {}
     reasons: dict[str, str] = {}
     digests: dict[Path, str] = {}
+    apart: dict[str, tuple[float, list[str]]] = {}  # by skeleton
     for path, take, clip in _as_known(report.clips, project, folder):
         assert skeleton is not None
         try:
@@ -153,6 +155,10 @@ def import_files(
         name = _name(path, folder)
         try:
             loaded.append((name, take, digests[path], adopt(clip, skeleton)))
+            key = clip.skeleton.fingerprint
+            if key not in apart:
+                apart[key] = (bone_difference(clip.skeleton, skeleton), [])
+            apart[key][1].append(clip.name)
         except SkeletonMismatchError as error:
             key = fingerprint(clip.skeleton)
             foreign.setdefault(key, []).append((name, take, digests[path], clip))
@@ -164,7 +170,7 @@ def import_files(
         character, stand_ins = character_among([name for name, *_ in loaded], still, folder, skeleton)
         if character is not None and character.path in still:  # it is of use without a motion
             failures.remove(str(still[character.path]))
-    notes = _together(report.clips)
+    notes = (*_together(report.clips), *_other_bones(list(apart.values())))
     if character is not None:
         notes = (*notes, *character.notes)
     result = Imported(tuple(loaded), tuple(failures), notes, report.cancelled, character, stand_ins)
@@ -311,6 +317,20 @@ def _together(clips: Iterable[tuple[Path, int, Clip]]) -> tuple[str, ...]:
         first = next(iter(names))
         out.append(f"{first if len(names) == 1 else f'{len(names)} files ({first} ...)'}: {note}")
     return tuple(out)
+
+
+def _other_bones(groups: Sequence[tuple[float, list[str]]]) -> tuple[str, ...]:
+    """Return one note on clips whose bones are not as long as the project's."""
+    odd = [(share, names) for share, names in groups if share > _LONGER]
+    names = [name for _, some in odd for name in some]
+    if not names:
+        return ()
+    whose = f"'{names[0]}' has" if len(names) == 1 else f"{len(names)} clips ('{names[0]}' ...) have"
+    most = max(share for share, _ in odd)
+    return (
+        f"{whose} bones up to {most:.0%} longer or shorter than the project's character, and keep "
+        "them. Retarget them if hands or feet miss their places.",
+    )
 
 
 def _skeleton_of_most(clips: Sequence[Clip]) -> Skeleton | None:

@@ -20,6 +20,7 @@ from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.data import FORMAT, from_data, to_data
+from metagraph.formats.fbx_readers import batch
 from metagraph.formats.fields import Data, DataError
 from metagraph.formats.text import TextError, parse, to_text
 from metagraph.graph.conversation import Conversation, Side
@@ -304,6 +305,7 @@ def _lost(project: Project, folder: Path | None) -> dict[str, list[ClipEntry]]:
     return out
 
 
+@batch()
 def _load(
     project: Project,
     folder: Path | None,

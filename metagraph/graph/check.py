@@ -356,6 +356,24 @@ def _ends(
             )
 
 
+def stance_gaps(project: Project, action: Action) -> tuple[float, float]:
+    """Return how far a clip's first and last pose are from the stances it leaves and enters, metres of the
+    farthest joint its layer moves; 0 where that is not known.
+    """
+    graph, motion = project.graphs[action.layer], _motion(project, action)
+    if motion is None or project.skeleton is None:
+        return 0.0, 0.0
+    joints, out = _reached(project, graph, action), []
+    for stance, moment in zip((action.stance, ends_in(action)), project.span(action), strict=True):
+        loop = next(iter(graph.of(stance, "stance")), None) if stance else None
+        target = _motion(project, loop) if loop is not None else None
+        if loop is None or target is None:
+            out.append(0.0)
+        else:
+            out.append(_gap(ref(motion), moment, ref(target), project.span(loop)[0], joints))
+    return out[0], out[1]
+
+
 def _reached(project: Project, graph: MetaGraph, action: Action) -> tuple[int, ...]:
     moved = anatomy.mask(project, action)
     parts = anatomy.parts(project)

@@ -4,6 +4,8 @@ not.
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +15,7 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 
 MOVED = 1e-4  # metres: below this a joint keeps its rest translation
+_NOTABLE = 0.03  # of the figure's size: shorter bones are fingers and faces
 
 
 class SkeletonMismatchError(ValueError):
@@ -23,7 +26,9 @@ def difference(clip: Skeleton, project: Skeleton) -> str | None:
     """Return in words why a clip on skeleton `clip` cannot play on `project`, or None when it can.
 
     A clip may lack joints (a face-only file), but not bring its own, and the bones it shares must be as long.
+    Names may differ by what all joints of a file bear before or behind them (`mixamorig1:`).
     """
+    clip = _called_alike(clip, project)
     extra = [name for name in clip.names if name not in project]
     shared = [name for name in clip.names if name in project]
     if len(shared) < max(1, len(clip) // 2):
@@ -55,6 +60,55 @@ def difference(clip: Skeleton, project: Skeleton) -> str | None:
     return None
 
 
+def _called_alike(clip: Skeleton, project: Skeleton) -> Skeleton:
+    """Return the clip's skeleton with the project's names where these differ only by a namespace, or by what
+    all of either's joints bear before or behind them; else as it is.
+    """
+    if all(name in project for name in clip.names):
+        return clip
+    for bare in (_without_namespace, _without_common):
+        ours, theirs = bare(project.names), bare(clip.names)
+        known = dict(zip(ours, project.names, strict=True))
+        if len(known) == len(ours) and len(set(theirs)) == len(theirs) and all(n in known for n in theirs):
+            names = tuple(known[name] for name in theirs)
+            return Skeleton(names, clip.parents, clip.rest_rotations, clip.rest_translations)
+    return clip
+
+
+def _without_namespace(names: Sequence[str]) -> list[str]:
+    return [re.split(r"[:|]", name)[-1] for name in names]
+
+
+def _without_common(names: Sequence[str]) -> list[str]:
+    """Return names without what all of them begin and end with."""
+    bare = _without_namespace(names)
+    if len(bare) < 3:
+        return bare
+    before = _shared(bare)
+    behind = _shared([name[before:][::-1] for name in bare])
+    return [name[before : len(name) - behind] for name in bare]
+
+
+def _shared(names: Sequence[str]) -> int:
+    """Return how many characters all names begin with alike."""
+    first, last = min(names), max(names)
+    return next(
+        (n for n, (a, b) in enumerate(zip(first, last, strict=False)) if a != b), min(map(len, names))
+    )
+
+
+def bone_difference(clip: Skeleton, project: Skeleton) -> float:
+    """Return by which share, 0 or more, the longer bones of a clip's skeleton differ most from the project's,
+    for skeletons between which there is no `difference`.
+    """
+    clip = _called_alike(clip, project)
+    ours = np.linalg.norm(project.rest_translations[[project.index(n) for n in clip.names]], axis=-1)
+    theirs = np.linalg.norm(clip.rest_translations, axis=-1)
+    below = np.array([len(clip.descendants(j)) for j in range(len(clip))])
+    bones = (clip.parents >= 0) & (ours > _NOTABLE * project.height) & (below <= len(clip) / 2)
+    return float(np.abs(theirs[bones] / ours[bones] - 1).max(initial=0.0))
+
+
 def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
     """Return the clip expressed on `skeleton`: joints reordered by name, missing ones at rest, bones as the
     clip has them.
@@ -68,7 +122,8 @@ def adopt(clip: Clip, skeleton: Skeleton) -> Clip:
     why = difference(clip.skeleton, skeleton)
     if why is not None:
         raise SkeletonMismatchError(why)
-    places = np.array([skeleton.index(name) for name in clip.skeleton.names])
+    alike = _called_alike(clip.skeleton, skeleton)
+    places = np.array([skeleton.index(name) for name in alike.names])
     source = clip.poses()
     rotations = np.broadcast_to(skeleton.rest_rotations, (clip.frames, len(skeleton), 4)).astype(np.float32)
     translations = np.broadcast_to(skeleton.rest_translations, (clip.frames, len(skeleton), 3)).astype(

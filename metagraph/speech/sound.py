@@ -8,7 +8,7 @@ matters.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +33,26 @@ _LEAST_RANGE = 9.0  # dB between the loudest and the softest of anything spoken
 _HUSH = -84.0  # dB of full scale: softer than this is silence
 _BURST = 6.0  # dB a hiss stands out by
 _SUFFIXES = "WAV, FLAC, OGG or MP3"
+_KINDS = (
+    (b"ID3", "an MP3 file"),
+    (b"fLaC", "a FLAC file"),
+    (b"OggS", "an OGG file"),
+    (b"caff", "a Core Audio file"),
+    (b".snd", "an AU file"),
+    (b"\x1aE\xdf\xa3", "a Matroska or WebM file"),
+    (b"\x30\x26\xb2\x75", "a Windows Media file"),
+    (b"version https://git-lfs", "a Git LFS pointer whose content was never fetched"),
+    (b"<", "a web page or XML file"),
+)
+_ENDINGS = {
+    "a WAV file": (".wav", ".wave", ".bwf", ".rf64"),
+    "an MP3 file": (".mp3", ".mpga", ".mp2"),
+    "a FLAC file": (".flac", ".fla"),
+    "an OGG file": (".ogg", ".oga", ".opus", ".ogx"),
+    "an AIFF file": (".aif", ".aiff", ".aifc"),
+    "a Core Audio file": (".caf",),
+    "an AU file": (".au", ".snd"),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,13 +76,15 @@ class HeardSound:
 @dataclass(frozen=True, eq=False)
 class Recording:
     """A sound file, channels apart: samples `[C, N]`, about -1..1, `rate` a second; `original`: how many the
-    file has. clipped: share of each channel's samples that were cut off at full scale, 0..1 `[C]`.
+    file has. clipped: share of each channel's samples that were cut off at full scale, 0..1 `[C]`. really:
+    what the file is where its ending says another thing, in words, else "".
     """
 
     samples: Array
     rate: int
     clipped: tuple[float, ...]
     original: int
+    really: str = ""
 
     @property
     def duration(self) -> float:
@@ -119,12 +141,43 @@ def read_recording(path: str | Path, longest: float = LONGEST, most: int | None 
                     path, why, remedy=f"Save it as {_SUFFIXES}, with 16000 samples a second or more."
                 )
             every = 1 if most is None else max(1, -(-rate // most))
-            return _read_blocks(file, rate, every)
+            return replace(_read_blocks(file, rate, every), really=misnamed(path))
     except (soundfile.LibsndfileError, RuntimeError, TypeError, MemoryError, OSError) as error:
         cause = str(getattr(error, "error_string", error)).strip().rstrip(".") or type(error).__name__
+        if (kind := sound_kind(path)) and not kind.startswith("a WAV"):
+            cause = f"it is {kind}"
         raise FileError(
             path, f"cannot be read as sound: {cause}", remedy=f"Save it as {_SUFFIXES}."
         ) from error
+
+
+def sound_kind(path: str | Path) -> str:
+    """Return what a file is by its first bytes, in words ("an MP3 file"), "" where they do not tell."""
+    try:
+        with Path(path).open("rb") as file:
+            head = file.read(64)
+    except OSError:
+        return ""
+    if head[4:8] == b"ftyp":
+        return "an MPEG-4 file (M4A, MP4)"
+    if head[:4] == b"FORM" and head[8:11] == b"AIF":
+        return "an AIFF file"
+    if head[:4] in (b"RIFF", b"RF64", b"RIFX"):
+        return {b"WAVE": "a WAV file", b"AVI ": "an AVI video"}.get(head[8:12], "")
+    for start, kind in _KINDS:
+        if head.startswith(start):
+            return kind
+    if len(head) > 2 and head[0] == 0xFF and head[1] & 0xE0 == 0xE0:
+        return "an AAC file" if head[1] & 0xF6 == 0xF0 else "an MP3 file"
+    return ""
+
+
+def misnamed(path: str | Path) -> str:
+    """Return in words what a file is whose ending says it is another kind of sound, else ""."""
+    kind = sound_kind(path)
+    endings = next((e for words, e in _ENDINGS.items() if words == kind), None)
+    suffix = Path(path).suffix.lower()
+    return kind if endings is not None and suffix not in endings and suffix else ""
 
 
 def _read_blocks(file: Any, rate: int, every: int) -> Recording:

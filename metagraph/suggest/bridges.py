@@ -19,6 +19,7 @@ from metagraph.motion.skeleton import Pose
 
 SPEED = 0.6  # metres a second that the farthest joint goes on a bridge, on average: an unhurried movement
 SHORTEST, LONGEST = 0.6, 1.6  # seconds of a bridge
+CAREFUL = 0.9  # seconds of a bridge to a stance that is held in a moment shorter than the bridge, at least
 NOTICED = 0.3  # metres that a joint goes on a bridge, from which on a clip would look better
 FADE = 0.25  # of a bridge, that it takes to blend out into the loop at its end
 
@@ -104,6 +105,10 @@ def _bridge(project: Project, start: str, end: str, metres: float) -> tuple[Proj
     assert loop is not None
     entry = project.clips[loop.clip]
     seconds = float(np.clip(metres / SPEED, SHORTEST, LONGEST))
+    held = (entry.duration if loop.timing.end is None else loop.timing.end) - loop.timing.start
+    fade = FADE
+    if held < seconds:  # a moment of a clip that goes on to move: it is never shown alone
+        seconds, fade = max(seconds, CAREFUL), 0.5
     first = min(loop.timing.start, max(0.0, entry.duration - seconds))
     last = min(first + seconds, entry.duration)
     project = edits.place(project, [entry.id], stance.layer, "transition", start, end)
@@ -111,8 +116,8 @@ def _bridge(project: Project, start: str, end: str, metres: float) -> tuple[Proj
     timing = {
         "start": round(first, 3),
         "end": round(last, 3),
-        "blend_in": round((last - first) * (1 - FADE), 3),
-        "blend_out": round((last - first) * FADE, 3),
+        "blend_in": round((last - first) * (1 - fade), 3),
+        "blend_out": round((last - first) * fade, 3),
     }
     project = edits.update_actions(project, [made], timing=timing, name=f"to {stance.name}, blended")
     return project, Bridge(made, start, end, metres, last - first)

@@ -4,11 +4,12 @@ word, not forced into what a talking character does.
 
 from __future__ import annotations
 
-from metagraph.suggest.clip_measures import walks
+from metagraph.suggest.clip_measures import nothing, walks
 from metagraph.suggest.motion_guess import MotionGuess
 from metagraph.suggest.name_words import NameGuess
 from metagraph.suggest.traits import Traits
 
+POSE = 0.2  # seconds, below which a clip is a pose and no movement
 FAR = 0.5  # heights over the ground, from which on a clip that goes to no other stance goes away
 ROUND = 50.0  # degrees that one who goes to no other stance turns round
 EXERCISE = 0.14  # heights the hips go up and down, while the legs move fast
@@ -16,8 +17,23 @@ FAST = 0.25  # heights a second the legs move
 PASSES = 0.8  # of the chance that a clip passes between two stances, from which on that is why it moves so
 
 
+def _shared(traits: Traits, motion: MotionGuess | None) -> bool:
+    """Whether a pose is one that other clips begin or end in, so that it may be a stance. Without motion
+    nobody knows.
+    """
+    if motion is None:
+        return True
+    chance, shape = next(iter(motion.begins), (0.0, None))
+    return (
+        nothing(traits) and traits.face == 0 and shape is not None and chance > 0.5 and len(shape.members) > 1
+    )
+
+
 def left_aside(said: NameGuess, traits: Traits | None, motion: MotionGuess | None) -> str:
     """Return why a clip is none of the four kinds, "" where it may be one."""
+    if traits is not None and traits.duration < POSE and not _shared(traits, motion):
+        frames = "a single frame" if traits.frames == 1 else f"only {traits.duration:.2f} s long"
+        return f"is {frames}: a pose in which no other clip begins or ends, not a movement"
     if said.kind is not None:
         return ""
     if said.other is not None:

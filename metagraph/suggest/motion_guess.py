@@ -26,6 +26,7 @@ LIFE = (
     0.11  # of all movement of a resting clip that hips and legs make, from which on the whole body breathes
 )
 SMALL = 0.12  # heights the hands go, below which they tell little
+ONLY = 0.85  # how sure the stance is at least where there is only one
 CLEAREST = 0.99  # how sure the stance is of a pose that lies in it
 ALONE = 0.5  # of the arms' energy on one side more than on the other, from which it is one-armed
 
@@ -150,9 +151,10 @@ def _beside(
     near = next(away for away, other in found if other is shape)
     second = min((away for away, other in found if other is not shape), default=None)
     more = "" if second is None else f"; next nearest {_cm(second * cm)}"
+    sure = max(chance, ONLY) if second is None else chance  # where there is only one, all are in it
     return Belief(
         shape,
-        min(CLEAREST * chance, layer.confidence),
+        min(CLEAREST * sure, layer.confidence),
         f'{verb} {_cm(near * cm)} from "{shape.name}"{more}',
     )
 

@@ -30,6 +30,7 @@ from metagraph.suggest.words_tokens import (
 __all__ = ["NameGuess", "Patterns", "PatternsError", "forget", "learn", "merged", "read_names"]
 
 T = TypeVar("T")
+EXPLICIT: Final = 0.98  # how often a word for what is done, after its stance, says the kind rightly
 _UP: Final = frozenset(("up", "stand", "rise", "get"))
 
 
@@ -302,7 +303,9 @@ class _Reader:
             if any(p.meaning != best.meaning and p.end - p.start == best.end - best.start for p in said):
                 both = " and ".join(dict.fromkeys(f"'{p.text}'" for p in said))
                 return Belief(cast("Kind", best.meaning), 0.55, f"name says {both}")
-            return Belief(cast("Kind", best.meaning), 0.95 if parse.own else 0.85, f"name says '{best.text}'")
+            return Belief(
+                cast("Kind", best.meaning), EXPLICIT if parse.own else 0.93, f"name says '{best.text}'"
+            )
         if (
             stance and parse.own and any(len(w) > 2 for w in parse.act)
         ):  # shorter ones are directions: "head_dl"

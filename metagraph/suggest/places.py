@@ -24,6 +24,7 @@ from metagraph.suggest.proposal import Place, plain
 from metagraph.suggest.stances import Shape
 from metagraph.suggest.traits import LayerTraits, Traits
 from metagraph.suggest.vote_fusion import Agreed, combine
+from metagraph.suggest.whole_body import CARRIER, SCALE
 
 Array = NDArray[Any]
 
@@ -109,7 +110,7 @@ class Places:
 
     def _joined(self, layer: Layer, shapes: Sequence[Shape], heard: Sequence[Heard]) -> None:
         """Join the words and the shapes of a layer."""
-        votes = _votes(heard)
+        votes, spoken = _votes(heard)
         free = dict(enumerate(shapes))
         for n, shape in enumerate(shapes):  # the project's own are called as they are
             if shape.id:
@@ -117,7 +118,6 @@ class Places:
                 self.by_key[shape.id] = replace(old, shape=shape)
                 self._of_shape[id(shape)] = shape.id
                 del free[n]
-        spoken = {word: sum(mine.values()) for word, mine in votes.items()}
         pairs = sorted(
             (
                 (-count * count / spoken[word], word, n)
@@ -150,7 +150,8 @@ class Places:
 
     def _named(self, layer: Layer, shape: Shape, shapes: Sequence[Shape]) -> str:
         """Return what a stance is called that no name speaks of: as its pose looks."""
-        words = pose_words(shape, shapes[0] if shapes and shapes[0] is not shape else None)
+        whole = SCALE if layer == CARRIER and "hips" in shape.names else None
+        words = pose_words(shape, shapes[0] if shapes and shapes[0] is not shape else None, whole)
         there = {place.name for place in self.by_key.values() if place.layer == layer}
         n, name = 1, words
         while name in there:
@@ -184,11 +185,16 @@ def _lies(places: Places, told: tuple[Layer, str], free: Mapping[int, Shape]) ->
     return places.by_key[places._of_word[told]].shape is not None
 
 
-def _votes(heard: Sequence[Heard]) -> dict[str, dict[int, float]]:
-    """Return word -> shape -> how many clips of the word are in it."""
+def _votes(heard: Sequence[Heard]) -> tuple[dict[str, dict[int, float]], dict[str, float]]:
+    """Return word -> shape -> how many ends that the word names are of it; and word -> how many it names,
+    those that are of no shape among them.
+    """
     out: dict[str, dict[int, float]] = defaultdict(lambda: defaultdict(float))
+    spoken: dict[str, float] = defaultdict(float)
     for each in heard:
         for word, likely, weight, _ in each.called():
+            if likely:
+                spoken[word] += weight
             for chance, shape in likely:
                 out[word][id(shape)] += weight * chance
-    return {word: dict(mine) for word, mine in out.items()}
+    return {word: dict(mine) for word, mine in out.items()}, dict(spoken)

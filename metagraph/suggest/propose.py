@@ -25,7 +25,7 @@ from metagraph.suggest.motion_guess import guess
 from metagraph.suggest.name_words import NameGuess, Patterns, read_names
 from metagraph.suggest.places import Heard, Places
 from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, plain, words_of
-from metagraph.suggest.stances import Shape, discover, discovered, known, parted
+from metagraph.suggest.stances import Shape, discover, discovered, known, nearest, parted, settled
 from metagraph.suggest.traits import Traits, traits_of
 from metagraph.suggest.vote_fusion import Agreed, combine
 from metagraph.suggest.whole_body import CARRIER, carried, recorded_whole, whole_of
@@ -117,7 +117,9 @@ def propose(
     """
     chosen = waiting(project) if clips is None else [c for c in clips if c in project.clips]
     traits = traits_of(project, cancelled, progress) if {"motion", "learned"} & set(sources) else {}
-    names = read_names([project.clips[c].name for c in chosen], patterns) if "name" in sources else {}
+    # All names together tell the stances, also those of clips that are placed: what a number means is not
+    # forgotten while somebody goes through them.
+    names = read_names([x.name for x in project.clips.values()], patterns) if "name" in sources else {}
     moving = "motion" in sources
     mine = {c: traits[c] for c in chosen if c in traits}
     called = {c: names.get(project.clips[c].name, NameGuess()) for c in mine}
@@ -128,7 +130,8 @@ def propose(
     }
     fresh = not any(True for _ in project.actions())
     whole = moving and (carried(project) or (fresh and recorded_whole(mine, begun)))
-    shapes = _shapes(project, traits, mine, whole, called) if moving else {}
+    standing = {c: t for c, t in mine.items() if called[c].other is None}  # where fights begin nobody stands
+    shapes = _shapes(project, traits, standing, whole, called) if moving else {}
     alike = Alike([*examples_of(project, traits), *examples]) if "learned" in sources else Alike([])
     heard, aside = list[Heard](), dict[str, str]()
     for c in chosen:
@@ -183,8 +186,24 @@ def _shapes(
         there, found = known(project, traits), discovered(mine)
     for layer, shapes in found.items():
         if shapes:
-            found[layer] = parted(shapes, _ends({c: every[c] for c in mine}, layer, called, whole))
-    return {layer: there.get(layer) or found.get(layer, ()) for layer in LAYERS}
+            moves = [every[c].layers[layer] for c in mine if whole or layer_of(every[c]).value == layer]
+            ends = _ends({c: every[c] for c in mine}, layer, called, whole)
+            if len({word for *_, word in ends}) < 2:
+                shapes = settled(shapes, [(x.names, pose) for x in moves for pose in (x.first, x.last)])
+            found[layer] = parted(shapes, ends)
+    return {
+        layer: (*there.get(layer, ()), *_unknown(there.get(layer, ()), found.get(layer, ())))
+        for layer in LAYERS
+    }
+
+
+def _unknown(there: Sequence[Shape], found: Sequence[Shape]) -> list[Shape]:
+    """Return the discovered stances that the project does not have yet."""
+    return [
+        shape
+        for shape in found
+        if not any(away <= known_.scale() for away, known_ in nearest(there, shape.names, shape.poses[0]))
+    ]
 
 
 def _ends(

@@ -62,7 +62,13 @@ class Review:
         not among them keep theirs.
         """
         mine = {c: p for c, p in self.found.proposals.items() if c not in found.proposals}
-        found = Proposals({**mine, **found.proposals}, {**self.found.places, **found.places})
+        found = replace(
+            found,
+            proposals={**mine, **found.proposals},
+            places={**self.found.places, **found.places},
+            aside={**{c: x for c, x in self.found.aside.items() if c not in found.proposals}, **found.aside},
+            whole=self.found.whole or found.whole,
+        )
         for clip, said in self.said.items():
             if clip in found.proposals:
                 found = _corrected(found, clip, said)
@@ -95,7 +101,7 @@ class Review:
             clip: replace(p, stance=_moved(p.stance, moved), end_stance=_moved(p.end_stance, moved))
             for clip, p in self.found.proposals.items()
         }  # fmt: skip
-        return Review(Proposals(proposals, places), self.said)
+        return Review(replace(self.found, proposals=proposals, places=places), self.said)
 
     def order(self) -> list[str]:
         """Return the clips in the order they are best looked at: stances first, the most used before the
@@ -279,7 +285,7 @@ def _corrected(found: Proposals, clip: str, said: Mapping[Field, Any]) -> Propos
     # What sources disagreed about is decided.
     conflicts = () if {"kind", "stance", "end_stance", "layer"} & set(said) else p.conflicts
     p = replace(p, stance=stance, end_stance=end, conflicts=conflicts)
-    return Proposals({**found.proposals, clip: p}, places)
+    return replace(found, proposals={**found.proposals, clip: p}, places=places)
 
 
 def _decides(p: Proposal) -> tuple[Any, ...]:

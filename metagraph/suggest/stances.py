@@ -31,7 +31,10 @@ STRAY = 0.002  # of the weight an end has that lies in a stance, of one that lie
 FINGERTIP = 0.5  # how much a fingertip's place counts beside the hand's
 MOST = 400  # poses joined at once; more are thinned out first
 EXACT = 0.5  # of the limits within which ends are of one stance, where they meet exactly
+STANDS = 0.3  # of the usual way from stance to stance, within which an end is of one
+SETTLED = 0.4  # of all ends that are of a stance, below which there are no stances to speak of
 FEW = 3  # clips that begin and end in a pose, from which on the quietest of them is taken for its loop
+SCARCE = 0.05  # of all clips, below which a pose that some begin and end in is no stance but theirs alone
 QUIET = 0.6  # of their median energy
 # heights a second, of all parts together, that the only clip which stays in a pose moves at most to be its
 # loop
@@ -198,7 +201,7 @@ def discover(traits: Mapping[str, Traits], layer: Layer, together: bool = False)
     for rows in groups:
         members = list(dict.fromkeys(found[i][0] for i in rows))
         loops = [i for i in rows if found[i][3]]
-        if len(members) < 2 and not loops:
+        if not loops and len(members) < (2 if _passed(rows, groups, found) else max(2, SCARCE * len(mine))):
             continue
         middle = np.median(poses[rows], axis=0)
         best = min(loops or rows, key=lambda i: (float(np.linalg.norm(poses[i] - middle)), i))
@@ -241,6 +244,19 @@ def discover(traits: Mapping[str, Traits], layer: Layer, together: bool = False)
 
 
 Ends = Sequence[tuple[str, float, Array, str]]  # clip, second, pose there, and what its name says of it
+
+
+def settled(shapes: Sequence[Shape], ends: Sequence[tuple[tuple[str, ...], Array]]) -> tuple[Shape, ...]:
+    """Return the discovered stances; only the first where clips begin and end anywhere, as those do that are
+    cut from longer takes: then there is nothing to tell stances by. ends: names and poses.
+    """
+    if len(shapes) < 2:
+        return tuple(shapes)
+    weights = _weights(shapes[0].names)
+    apart = _apart(np.array([shape.poses[0] for shape in shapes]), weights)
+    usual = float(np.median(apart[np.triu_indices(len(shapes), 1)]))
+    near = [found[0][0] < STANDS * usual for names, pose in ends if (found := nearest(shapes, names, pose))]
+    return tuple(shapes) if sum(near) >= SETTLED * len(near) else tuple(shapes[:1])
 
 
 def parted(shapes: Sequence[Shape], ends: Ends) -> tuple[Shape, ...]:
@@ -288,6 +304,18 @@ def parted(shapes: Sequence[Shape], ends: Ends) -> tuple[Shape, ...]:
                 )
             )
     return tuple(out)
+
+
+def _passed(
+    rows: Sequence[int], groups: Sequence[Sequence[int]], found: Sequence[tuple[str, float, Array, bool]]
+) -> bool:
+    """Whether a clip comes to a group of ends from another one, or leaves for it: then somebody stands there
+    for a while, though few clips show it.
+    """
+    here = {found[i][0] for i in rows}
+    return any(
+        len(other) > 1 and here & {found[i][0] for i in other} for other in groups if other is not rows
+    )
 
 
 def _far(x: LayerTraits, pose: str, middle: Array, names: tuple[str, ...]) -> float:

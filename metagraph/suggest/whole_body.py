@@ -20,7 +20,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.words import LAYERS, Layer
 from metagraph.suggest.body_points import NAMES
 from metagraph.suggest.clip_measures import TYPICAL, layer_of, nothing
-from metagraph.suggest.stances import Shape, discover, likely
+from metagraph.suggest.stances import SETTLED, Shape, discover, likely
 from metagraph.suggest.traits import LayerTraits, Traits
 
 Array = NDArray[Any]
@@ -33,7 +33,6 @@ SCALE: Mapping[Layer, float] = {layer: TYPICAL[CARRIER] / TYPICAL[layer] for lay
 TOGETHER = 0.3
 FEW = 3  # clips of one stance, from which on its name tells what is done in it
 MIXED = 0.2  # of those clips that move another layer than most of their stance
-SETTLED = 0.4  # of all clips that begin and end in a stance, below which there are no stances to speak of
 APART: Mapping[Layer, float] = {"arms": 0.02, "head": 0.012, "body": 0.01}  # heights; less is the same pose
 WIDER = 4.0  # times the spread of its clips' ends that a stance of a layer is away at least
 

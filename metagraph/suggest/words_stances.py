@@ -117,6 +117,7 @@ class Stances:
         self.found: dict[Words, FoundStance] = {}
         self._bares: dict[Words, Words] = {}
         distinct = sorted({t for t in batch if t.words}, key=lambda t: (t.words, t.splits))
+        self._distinct = [t.words for t in distinct]
         followers = _followers(distinct)
         for taken in distinct:
             self._announced(taken.words)
@@ -230,16 +231,22 @@ class Stances:
     def _clip_that_others_continue(self, words: Words, followers: Mapping[Words, int]) -> None:
         count = followers.get(words, 0)
         core = words[: len(words) - variant(words)]
-        if (
-            not core
-            or self._acts(core)
-            or self._other(core)
-            or core in self.found
-            or any(w in self._joins for w in core)
-        ):
+        if not core or self._other(core) or core in self.found or any(w in self._joins for w in core):
+            return
+        if self._acts(core) and not (self._poses(core) and self._goes_on(words)):
             return
         if count >= 2 and not any(p.meaning == "transition" for p in phrases(core, self._kinds)):
             self._add(core, 0.85, f"{count} names begin with it", words, core)
+
+    def _poses(self, words: Words) -> bool:
+        """Whether words may be a posture, though they may be an act as well: "head tilt left"."""
+        return bool(phrases(words, self._patterns.meanings["postures"]))
+
+    def _goes_on(self, words: Words) -> bool:
+        """Whether other names say after these words what is done: then these say where."""
+        rests = [w[len(words) :] for w in self._distinct if w[: len(words)] == words and len(w) > len(words)]
+        doing = [r for r in rests if self._acts(r) or r[0] in self._joins]
+        return len(doing) > 1 and 2 * len(doing) >= len(rests)
 
     def _heads(self, distinct: Sequence[Taken]) -> None:
         """Beginnings before a double underscore, and beginnings that tell a posture."""
@@ -302,7 +309,7 @@ class Stances:
         for (start, end), joined in sorted(pairs.items()):
             if (
                 (start in known or (end, start) in pairs)
-                and not self._acts(end)
+                and (not self._acts(end) or self._poses(end))
                 and not self._other(end)
                 and not self._sister(end)
             ):

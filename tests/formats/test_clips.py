@@ -33,11 +33,14 @@ def test_every_format_reads_through_one_door(tmp_path: Path) -> None:
     assert [c.name for c in read_clips(tmp_path / "b.bvh")] == ["b"]
 
 
-def test_takes_of_one_frame_beside_longer_ones_are_skipped_with_a_note(tmp_path: Path) -> None:
-    write_glb(tmp_path / "a.glb", [clip("walk"), clip("junk", 1)])
+def test_nameless_bind_poses_of_one_frame_are_skipped_with_a_note_and_others_kept_last(
+    tmp_path: Path,
+) -> None:
+    write_glb(tmp_path / "a.glb", [clip("sit", 1), clip("walk"), clip("Take 001", 1)])
     clips = read_clips(tmp_path / "a.glb")
-    assert [c.name for c in clips] == ["walk"]
-    assert any("'junk'" in note for note in clips[0].notes)
+    assert [c.name for c in clips] == ["walk", "sit"]
+    assert any("skipped 'a'" in note for note in clips[0].notes)
+    assert any("'sit'" in note for note in clips[1].notes)
 
 
 def test_a_file_of_nothing_but_poses_keeps_them(tmp_path: Path) -> None:

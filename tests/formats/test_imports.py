@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -206,7 +207,7 @@ def test_a_bvh_and_a_glb_of_one_character_go_together(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("name", "pattern", "clips", "joints"),
-    [("sumerian-hosts", "alien", 60, 93), ("kaykit-rogue", "", 69, 0), ("bandai-namco-1", "", 63, 22)],
+    [("sumerian-hosts", "alien", 60, 93), ("kaykit-rogue", "", 76, 0), ("bandai-namco-1", "", 63, 22)],
 )
 def test_real_characters_come_in_whole(
     shared_data: Path, name: str, pattern: str, clips: int, joints: int
@@ -219,3 +220,24 @@ def test_real_characters_come_in_whole(
     if joints:
         assert len(project.skeleton) == joints
     assert all(e.motion is not None and e.motion.skeleton is project.skeleton for e in project.clips.values())
+
+
+def test_bones_of_another_length_are_told_once_with_a_count(tmp_path: Path) -> None:
+    offsets = SKELETON.rest_translations.copy()
+    offsets[-3:] *= 1.08
+    longer = Skeleton(SKELETON.names, SKELETON.parents, SKELETON.rest_rotations, offsets)
+    write_glb(tmp_path / "a.glb", [clip("one", 20), clip("two", 20), clip("three", 20)])
+    write_glb(tmp_path / "b.glb", [replace(clip(n, 20), skeleton=longer) for n in ("long", "longer")])
+    result = import_files(Project(), tmp_path, [tmp_path])
+    assert len(result.loaded) == 5
+    (told,) = (n for n in result.notes if "bones" in n)
+    assert told.startswith("2 clips ('long' ...) have bones up to 8%")
+
+
+def test_a_files_prefix_on_the_joints_names_makes_no_stranger(tmp_path: Path) -> None:
+    names = tuple(f"mixamorig7:{n}" for n in SKELETON.names)
+    other = Skeleton(names, SKELETON.parents, SKELETON.rest_rotations, SKELETON.rest_translations)
+    write_glb(tmp_path / "a.glb", [clip("one", 20), clip("two", 20)])
+    write_glb(tmp_path / "b.glb", [replace(clip("three", 20), skeleton=other)])
+    result = import_files(Project(), tmp_path, [tmp_path])
+    assert not result.failures and len({c.skeleton.fingerprint for _, _, _, c in result.loaded}) == 1

@@ -173,6 +173,8 @@ def measured(project: Project, truth: Truth, found: Proposals) -> Tally:
         if none_of_the_four(row):
             out.there["none"] += 1
             out.right["none"] += said_none(p)
+            if said_none(p):
+                continue
         else:
             out.there["clip"] += 1
             out.right["clip"] += right
@@ -258,7 +260,7 @@ def corrected(project: Project, truth: Truth, review: Review, clip: str) -> Revi
     for name in ("layer", "kind", "stance", "end_stance", "limb"):
         p = review.found.proposals[clip]
         meant = read(project, truth, review.found)
-        if name not in row or row[name] is None or verdict(p, row, meant)[name]:
+        if name not in row or row[name] is None or verdict(p, row, meant, review.found.whole)[name]:
             continue
         value = row[name]
         if name in ("stance", "end_stance"):
@@ -286,7 +288,7 @@ def _state(project: Project, truth: Truth, review: Review, seen: set[str], told:
         row = truth.get(entry.name)
         if row is None or none_of_the_four(row):
             continue
-        right = right_clip(review.found.proposals.get(ident), row, meant)
+        right = right_clip(review.found.proposals.get(ident), row, meant, review.found.whole)
         out.update({"all": 1, "all right": right})
         if ident not in seen:
             out.update({"rest": 1, "rest right": right})

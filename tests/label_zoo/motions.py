@@ -7,7 +7,7 @@ from functools import cache, lru_cache
 
 import numpy as np
 
-from metagraph.formats.takes import without_bind_pose
+from metagraph.formats.takes import without_stray_poses
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.mirror import mirror, pairs_of
@@ -79,7 +79,7 @@ def with_bind(clip: Clip, how: Recording) -> Clip:
     if "after" in how.bind:
         turns, places = np.concatenate([turns, pose]), np.concatenate([places, rest[None]])
     turns = rotation.continuous(np.asarray(turns, np.float64))
-    return without_bind_pose(replace(clip, rotations=turns, translations=places, weights=None))
+    return without_stray_poses(replace(clip, rotations=turns, translations=places, weights=None))
 
 
 def scaled(clip: Clip, size: float) -> Clip:

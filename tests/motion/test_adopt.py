@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from metagraph.motion import rotation
-from metagraph.motion.adopt import SkeletonMismatchError, adopt, difference
+from metagraph.motion.adopt import SkeletonMismatchError, adopt, bone_difference, difference
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 
@@ -115,3 +115,37 @@ def test_both_signs_of_a_rotation_stay_on_one_side() -> None:
     flipped = replace(c, rotations=c.rotations * np.array([1, -1, 1, -1], np.float32)[:, None, None])
     adopted = adopt(flipped, skeleton())
     assert np.all(np.einsum("fji,fji->fj", adopted.rotations[1:], adopted.rotations[:-1]) > 0)
+
+
+@pytest.mark.parametrize(
+    ("ours", "theirs"),
+    [
+        ("mixamorig:{}", "{}"),
+        ("{}", "mixamorig1:{}"),
+        ("a:{}", "b|c:{}"),
+        ("Bip01 {}", "Bip02 {}"),
+        ("{}_jnt", "x_{}"),
+    ],
+)
+def test_names_that_differ_by_what_all_joints_bear_are_the_same_skeleton(ours: str, theirs: str) -> None:
+    project = skeleton(tuple(ours.format(n) for n in NAMES))
+    own = clip(skeleton(tuple(theirs.format(n) for n in NAMES)))
+    assert difference(own.skeleton, project) is None
+    adopted = adopt(own, project)
+    assert adopted.skeleton is project
+    np.testing.assert_array_equal(adopted.rotations, own.rotations)
+
+
+def test_a_prefix_does_not_make_another_tree_or_other_joints_the_same() -> None:
+    project = skeleton()
+    other = skeleton(tuple(f"x:{n}" for n in NAMES), [-1, 0, 1, 1, 0, 3])
+    assert "hangs on" in str(difference(other, project))
+    assert difference(skeleton(("x:hips", "x:spine", "x:tail"), PARENTS[:3]), project) is not None
+
+
+def test_how_far_bones_differ_is_told_by_the_longest_share() -> None:
+    longer = OFFSETS.copy()
+    longer[4] *= 1.05
+    assert bone_difference(skeleton(), skeleton()) == 0
+    assert bone_difference(skeleton(offsets=longer), skeleton()) == pytest.approx(0.05)
+    assert bone_difference(skeleton(tuple(f"x:{n}" for n in NAMES), offsets=longer), skeleton()) > 0.04

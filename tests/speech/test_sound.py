@@ -18,7 +18,7 @@ from metagraph.graph.face import OPENING
 from metagraph.graph.face_names import VISEMES
 from metagraph.speech.lines import read_voice
 from metagraph.speech.phones import pieces_of
-from metagraph.speech.sound import hear, read_sound, shapes_heard, syllables
+from metagraph.speech.sound import hear, read_recording, read_sound, shapes_heard, syllables
 from metagraph.speech.textgrid import read_textgrid
 
 Array = np.ndarray[Any, Any]
@@ -256,3 +256,35 @@ def test_a_damaged_sound_is_read_or_refused(tmp_path: Path, data: st.DataObject)
         assert path.name in str(error)
     else:
         assert np.isfinite(voice.weights).all() and np.isfinite(voice.peaks).all()
+
+
+def test_a_sound_under_another_kinds_ending_is_read_and_told_for_what_it_is(tmp_path: Path) -> None:
+    samples = 0.1 * np.sin(np.arange(16000) / 10)
+    for kind, ending, really in (
+        ("MP3", "wav", "an MP3 file"),
+        ("FLAC", "wav", "a FLAC file"),
+        ("OGG", "mp3", "an OGG file"),
+        ("WAV", "flac", "a WAV file"),
+        ("WAV", "wav", ""),
+        ("MP3", "mp3", ""),
+    ):
+        path = tmp_path / f"a.{ending}"
+        soundfile.write(path, samples, 16000, format=kind)
+        assert read_recording(path).really == really, (kind, ending)
+
+
+@pytest.mark.parametrize(
+    ("head", "words"),
+    [
+        (b"\x00\x00\x00\x20ftypM4A \x00\x00\x00\x00", "an MPEG-4 file"),
+        (b"\x1aE\xdf\xa3" + bytes(60), "a Matroska or WebM file"),
+        (b"version https://git-lfs.github.com/spec/v1\n", "a Git LFS pointer"),
+        (b"<!DOCTYPE html>", "a web page"),
+    ],
+)
+def test_what_is_no_sound_that_can_be_read_is_named_for_what_it_is(
+    tmp_path: Path, head: bytes, words: str
+) -> None:
+    (tmp_path / "a.wav").write_bytes(head)
+    with pytest.raises(FileError, match=words):
+        read_recording(tmp_path / "a.wav")

@@ -50,7 +50,7 @@ class NoMesh(QFrame):
         if shown:
             text = self.words.fontMetrics().horizontalAdvance(words) + 16 if words else 0
             wide = min(self._view.width() - 2 * EDGE, text + self.button.sizeHint().width() + 20)
-            high = self.heightForWidth(wide)
+            high = max(self.heightForWidth(wide), self.button.sizeHint().height() + 8)
             self.setGeometry(EDGE, self._view.height() - high - EDGE, wide, high)
         if shown == self.isHidden():
             self.setVisible(shown)

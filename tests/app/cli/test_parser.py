@@ -405,6 +405,15 @@ def test_a_reader_that_has_read_enough_is_no_error() -> None:
     assert len(made.stdout.splitlines()) == 1
 
 
+def test_importing_a_folder_without_clips_is_an_error_that_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "empty").mkdir()
+    assert main(["import", str(tmp_path / "p"), str(tmp_path / "empty")]) == 1
+    assert "no clip was found in it" in capsys.readouterr().err
+    assert not list(tmp_path.glob("*.yaml"))
+
+
 HEAVY = ("numba", "scipy", "trimesh", "torch", "pyqtgraph", "PIL", "av", "jsonschema")
 
 

@@ -239,6 +239,15 @@ def test_edits_since_the_last_save_are_offered(desk, person, saved, qtbot, answe
     taken = answer == BUTTON.Yes
     assert desk.document.project.settings.seed == (8 if taken else 1)
     assert desk.document.dirty is taken
+    assert desk.document.undo_stack.count() == (2 if taken else 0)
+    if taken:
+        desk.document.undo()
+        assert desk.document.project.settings.seed == 7
+        assert all(e.motion is not None for e in desk.document.project.clips.values())
+        desk.document.undo()
+        assert desk.document.project.settings.seed == 1 and not desk.document.dirty
+        desk.document.redo()
+        desk.document.redo()
     assert all(e.motion is not None for e in desk.document.project.clips.values())
     change_seed(desk, 5)
     assert list(saved.parent.glob(".*.journal")) == [desk.document.journal_place], (

@@ -40,7 +40,8 @@ def test_a_stand_in_is_drawn_as_sticks_and_a_button_in_the_view_asks_for_a_chara
     drive.importing.import_paths([str(scene / "proxy.glb")])
     drive.wait(lambda: isinstance(shown(drive), StickFigure))
     over = drive.shell.panel("character").no_mesh
-    drive.wait(over.isVisible)
+    drive.wait(lambda: over.isVisible() and over.height() >= over.button.height() > 10)
+    assert over.parentWidget().rect().contains(over.geometry())
     assert drive.document.project.character is None
     asked = []
     monkeypatch.setattr(character, "choose_character", asked.append)

@@ -1,0 +1,45 @@
+"""Blends long enough for the way they go: clips that begin or end away from their stance come from it, and go
+back, at the pace of a movement instead of jumping.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from metagraph.graph import edits
+from metagraph.graph.check import stance_gaps
+from metagraph.graph.model import LAYERS, Project
+
+PACE = 1.0  # metres a second that the farthest joint of a figure of 1.6 m goes in a blend, on average
+NEAR = 0.05  # metres that nobody sees a blend go
+SHARE = 0.45  # of a clip that a blend may take
+
+
+def softened(project: Project, but: Collection[str] = ()) -> Project:
+    """Return the project with longer blends where gestures, fidgets and transitions begin or end far from
+    their stances. None becomes shorter. but: ids of actions that stay as they are.
+    """
+    if project.skeleton is None:
+        return project
+    pace, near = (x * project.skeleton.height / 1.6 for x in (PACE, NEAR))
+    changes = {}
+    for layer in LAYERS:
+        for action in project.graphs[layer].actions.values():
+            if action.kind == "stance" or action.clip not in project.clips or action.id in but:
+                continue
+            start, end = project.span(action)
+            most, timing = SHARE * (end - start), action.timing
+            into, out = (
+                0.0 if gap <= near else min(most, gap / pace) for gap in stance_gaps(project, action)
+            )
+            longer = {
+                name: round(value, 3)
+                for name, value, now in (
+                    ("blend_in", into, timing.blend_in),
+                    ("blend_out", out, timing.blend_out),
+                )
+                if value > now
+            }
+            if longer:
+                changes[action.id] = {"timing": longer}
+    return edits.update_each(project, changes) if changes else project
