@@ -17,6 +17,11 @@ from metagraph.suggest.words_folded import is_run_together, plain, spellings
 # what follows the stance it is about (Japanese, Korean).
 NOTHING, MAYBE_TO, MAYBE_FROM, AFTER_TO, AFTER_FROM = "-", "?to", "?from", "@to", "@from"
 MARKS: Final = (NOTHING, MAYBE_TO, MAYBE_FROM, AFTER_TO, AFTER_FROM)
+# Words of English that other languages have too, with another meaning.
+_ENGLISH_TOO = frozenset(
+    "balancer comparer confusion designer enumeration gross human installer joint joints linker negation nose "
+    "observer pointer regard replacer replies responder salutation telephone main front sale chat pain coin".split()
+)
 _SURE = 4  # Latin letters of a word from which on it may tell a language
 _ROOT = 4  # letters that are left where an ending goes
 
@@ -47,7 +52,7 @@ class Source:
         return MappingProxyType(out)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Language:
     """Words of a language as they are looked up. exact: letters of a phrase -> English. stemmed: the same of
     words without endings, joined by blanks. doubtful: those of `exact` that tell no language.
@@ -104,7 +109,7 @@ def _language(source: Source) -> Language:
     for key, meaning in turned.items():
         exact.setdefault(key, meaning)
     doubtful = frozenset(s for w in source.doubtful.split(",") if w.strip() for s in spellings(w))
-    return Language(source.name, exact, stemmed, doubtful, endings, bare.links)
+    return Language(source.name, exact, stemmed, doubtful | _ENGLISH_TOO, endings, bare.links)
 
 
 @lru_cache(maxsize=1)

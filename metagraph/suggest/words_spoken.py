@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from metagraph.suggest.words_folded import folded, is_run_together, spellings
@@ -21,6 +21,8 @@ from metagraph.suggest.words_languages import (
 )
 
 _PIECES = re.compile(r"\d+[hH](?![^\W_])|\d+|[^\W\d_]+|[\W_]+")
+_ARROW = re.compile("[→⇒➔➜]|[-=]+>")
+ARROW: Final = "→"  # as a token, whatever arrow it is: "to"
 _ELIDED = frozenset("l d n m t s j c qu un all dell nell sull dall coll".split())
 _LOANED = frozenset(  # words of English that people say in any language
     "idle idling stance loop pose base stop ok gesture transition trans neutral normal hold start end default "
@@ -89,7 +91,12 @@ def tokens(text: str, offset: int = 0, whole: str | None = None) -> list[Token |
     for piece in _PIECES.finditer(letters):
         said, at = piece[0], piece.start()
         if not (said[0].isalpha() or said[0].isdecimal()):
-            out.append(Break(said))
+            arrow = _ARROW.search(said)
+            if arrow is not None and out and piece.end() < len(letters):
+                start, stop = (places[at + k] + offset for k in arrow.span())
+                out.append(Token(ARROW, letters[slice(*(at + k for k in arrow.span()))], start, stop))
+            else:
+                out.append(Break(said))
             continue
         for part in _camel(said) if said[0].isalpha() else [said]:
             end = at + len(part)
@@ -183,7 +190,7 @@ class Spoken:
         """
         bold = self.leading or (self._telling(said) and not any(is_english(t.text, meanings) for t in said))
         items = self._items(said, english, meanings, bold)
-        items = _joined(items, meanings)
+        items = _joined(_chosen(items), meanings)
         out: list[str] = []
         kinds = meanings["kinds"]
         alone = False  # whether the word before stands for one of another language by itself
@@ -273,7 +280,7 @@ class Spoken:
                 return None
             return meaning
         if found is not None:
-            if len(some[0].text) == 1 and some[0].alone:
+            if any(t.alone for t in some):
                 return None
             return found[0] if found[1] or bold else None
         if len(some) == 1 and (in_english(some[0].text, meanings) or len(some[0].text) < 5):
@@ -296,6 +303,8 @@ def is_english(word: str, meanings: Any) -> bool:
 
 def english_words(token: Token, english: Callable[[str], tuple[str, ...]]) -> tuple[str, ...]:
     """Return a token that no other language knows: its letters folded where English knows them so."""
+    if token.text == ARROW:
+        return (Word("to", token.shown, token.start, token.end),)
     if token.text == token.shown:
         return english(token.text)
     known = english(token.text)
@@ -357,6 +366,16 @@ def _compound(word: str, tongue: Language) -> tuple[str, ...]:
 
 
 # --- what joins stances
+
+
+def _chosen(items: list[_Said]) -> list[_Said]:
+    """Choose of two meanings: the first where a name or an end begins, else the second ("sit|left": zuo)."""
+    out: list[_Said] = []
+    for item in items:
+        first, _, second = item.meaning.partition("|")
+        begins = not out or out[-1].meaning in (*MARKS, "to", "from") or not out[-1].known
+        out.append(replace(item, meaning=first if begins else second) if second else item)
+    return out
 
 
 def _posture(item: _Said, meanings: Any) -> bool:
@@ -445,9 +464,8 @@ def spoken(batch: Sequence[Sequence[Token]], patterns: Any) -> Spoken | None:
             rest = [{at: n for at, n in one.items() if at not in gone} for one, gone in zip(told, spent, strict=True)]
             names = sum(1 for one in rest if one)
             weight = sum(sum(one.values()) for one in rest)
-            strong = names > 1 or any(
-                len(one) > 1 or any(n >= _ALONE for n in one.values()) for one in rest
-            ) or 2 * names >= len(distinct)
+            words = {name[at].text: n for name, one in zip(distinct, rest, strict=True) for at, n in one.items()}
+            strong = len(words) > 1 or max(words.values(), default=0) >= _ALONE or 2 * names >= len(distinct) > 0
             if names and strong and (weight, names) > most:
                 best, most = tongue, (weight, names)
         if best is None:
@@ -498,8 +516,10 @@ def _told(
             key = "".join(t.text for t in some)
             if key in own or key not in tongue.exact or not tongue.sure(key):
                 continue
-            if n == 1 and in_english(key, meanings) or all(in_english(t.text, meanings) for t in some):
+            if n == 1 and in_english(key, meanings) or any(t.alone for t in some):
                 continue
+            if n > 1 and any(in_english(t.text, meanings) for t in some) and len(key) < 2 * _ALONE:
+                continue  # "sit a" is no word of Japanese
             for k in range(at, at + n):
                 out[k] = max(out.get(k, 0), len(key) // n)
             break
