@@ -329,7 +329,7 @@ knee = 膝盖, xigai, 膝, xi
 foot = 脚, 足
 toe = 脚尖, jiaojian
 heel = 脚跟
-hip = 腰, 腰部
+hips = 腰, 腰部
 spine = 背, bei, 后背
 chair = 椅子, yizi, 凳子, dengzi, 椅, 沙发
 floor = 地板, 地面
@@ -340,8 +340,6 @@ down = 下, xia, 向下, xiangxia
 side = 侧, ce, 侧面
 anim = 动画, donghua, 动作, dongzuo
 character = 角色, juese, 人物, renwu
-male = 男, nan
-female = 女, nv
 """,
     doubtful="you, li, tang, pa, wo, gui, dun, zhan, zuo, kao, qian, hou, dao, zhi, zhuan, bian, jie, cong, you, de, zhe, le, "
     "zai, yu, he, ba, yong, gei, yao, dou, huang, shuai, shi, bu, ting, zan, di, qing, shu, wen, xiang, nu, xiao, ku, "

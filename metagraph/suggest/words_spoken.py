@@ -159,6 +159,8 @@ class Spoken:
 
     def stemmed(self, parts: Sequence[str]) -> str | None:
         """Return what words mean whose endings differ from those of a known phrase."""
+        if "".join(parts) in self.own:
+            return None
         for tongue in self.tongues:
             if tongue.endings and (found := tongue.stemmed.get(" ".join(map(tongue.stem, parts)))) is not None:
                 return found
@@ -168,7 +170,7 @@ class Spoken:
         """Return the parts of a word, each of which is known; () where there are none."""
         if word not in self._compounds:
             cut: tuple[str, ...] = ()
-            if len(word) in _COMPOUND:
+            if len(word) in _COMPOUND and word not in self.own:
                 cut = next((c for t in self.tongues if (c := _compound(word, t))), ())
             self._compounds[word] = cut
         return self._compounds[word]
@@ -305,7 +307,7 @@ def english_words(token: Token, english: Callable[[str], tuple[str, ...]]) -> tu
     """Return a token that no other language knows: its letters folded where English knows them so."""
     if token.text == ARROW:
         return (Word("to", token.shown, token.start, token.end),)
-    if token.text == token.shown:
+    if token.text == token.shown or unicodedata.normalize("NFKC", token.shown) == token.text:
         return english(token.text)
     known = english(token.text)
     return known if len(known) > 1 or known != (token.text,) or token.text.isdecimal() else english(token.shown)
