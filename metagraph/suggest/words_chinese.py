@@ -16,7 +16,7 @@ neutral = 中性, zhongxing, 中立, zhongli
 relaxed = 放松, fangsong, 轻松, qingsong
 loop = 循环, xunhuan
 hold = 保持, baochi, 持续, chixu
-stand = 站立, zhanli, 站, zhan, 站着, zhanzhe, 站姿, zhanzi, 立, li, 直立, zhili, 立姿, 站立姿势, 站定, 站直
+stand = 站立, zhanli, 站, zhan, 站着, zhanzhe, 站姿, zhanzi, 立, li, 直立, zhili, 立姿, 站立姿势, 站定
 sit|left = zuo
 sit = 坐, 坐着, zuozhe, 坐姿, zuozi, 坐立, 就坐, 坐姿势, 座, 端坐, duanzuo, 座姿
 lie = 躺, tang, 躺着, tangzhe, 躺姿, tangzi, 趴, pa, 趴着, 卧, wo, 平躺, pingtang, 侧卧, 卧姿
@@ -340,6 +340,18 @@ down = 下, xia, 向下, xiangxia
 side = 侧, ce, 侧面
 anim = 动画, donghua, 动作, dongzuo
 character = 角色, juese, 人物, renwu
+straighten = 站直, zhanzhi, 挺身, 直起身, 挺直身体, 坐直, zuozhi, 直腰, 挺直腰板, 挺起
+dip = 屈膝, quxi, 下沉, 弯膝, 弯曲膝盖
+precision = 精确, jingque, 捏指, 精准, 精细
+double take = 愣一下再看, 再看一眼, 回看
+heel lift = 抬脚跟, tai jiaogen, 提脚跟, 抬脚后跟, 踮脚跟, 提踵
+drop arm = 放下手臂, fangxia shoubi, 垂下手臂, 放下手, fangxia shou, 放手
+flick fingers = 弹指, tanzhi
+tap cheek = 点脸颊, 摸脸颊
+desperate = 绝望, juewang
+use item = 使用, shiyong, 使用物品
+roll head = 转动头部, 头部绕环
+fist pump = 握拳庆祝
 """,
     doubtful="you, li, tang, pa, wo, gui, dun, zhan, zuo, kao, qian, hou, dao, zhi, zhuan, bian, jie, cong, you, de, zhe, le, "
     "zai, yu, he, ba, yong, gei, yao, dou, huang, shuai, shi, bu, ting, zan, di, qing, shu, wen, xiang, nu, xiao, ku, "

@@ -349,6 +349,22 @@ in = dedans
 anim = animé, animation
 character = personnage
 take = prise
+straighten = se tenir droit, redresser le dos, redresser
+dip = fléchir, flexion, plier les genoux
+precision = précision, précis, préciser
+double take = double regard, regarder deux fois
+heel lift = lever le talon, talon levé, soulever le talon
+drop arm = laisser tomber le bras, baisser le bras, baisser les bras, baisser bras
+flick fingers = pichenette
+tap cheek = tapoter la joue, tapoter joue
+desperate = désespéré, désespoir
+hesitate = hésitant
+beat = cadence, scander
+roll head = rotation de tête circulaire
+use item = utiliser, manipuler
+raise hand = main en l'air
+relieved = soulagée
+push away = pousser
 """,
     doubtful="a, de, d, du, la, le, les, un, une, des, son, sa, ses, se, et, au, aux, en, main, mains, bras, pied, dos, "
     "non, oui, point, pointe, tic, pour, front, sol, montre, table, tables, droit, large, court, posture, passage, "

@@ -38,7 +38,7 @@ at sides = 気をつけ, きをつけ, 腕下ろし, 両手下ろし
 hand on chin = 顎に手, あごにて, あごに手, 顎に手を当てる, 頬杖, ほおづえ, 顎手
 tilt = 傾き, かたむき, 傾く, かたむく, 傾ける, かたむける
 slouched = 猫背, ねこぜ
-upright = 背筋, 背筋を伸ばす
+upright = 背筋
 weight = 重心, じゅうしん, 体重, たいじゅう
 forward = 前, まえ, 前方
 back = 後ろ, うしろ, 後方
@@ -318,6 +318,18 @@ up = 上, うえ
 down = 下, した
 side = 横, よこ
 anim = モーション, アニメ, アニメーション, もーしょん
+straighten = 姿勢を正す, しせいをただす, 背筋を伸ばし, 背を伸ばす, せをのばす, 姿勢を整える
+dip = 膝を曲げる, ひざをまげる, 膝曲げ, 腰を落とす, こしをおとす
+precision = 精密, 正確, 細かい
+double take = 二度見, にどみ
+heel lift = かかとあげ, 踵上げ, 踵を上げる
+drop arm = 腕を下ろす, うでをおろす, 腕を下げる, 腕下げ
+flick fingers = 指を弾く, 指はじき
+tap cheek = 頬を叩く, 頬に手, ほほにて
+desperate = 必死, ひっし, 絶望, ぜつぼう
+use item = 使う, つかう, 使用
+touch ear = 耳を触る, みみをさわる
+roll head = 頭を回す, あたまをまわす
 """,
     doubtful="e, he, ni, de, no, mo, wa, ga, wo, made, te, suru, shite, kara, tatsu, tachi, machi, mae, hima, kaku, "
     "kiku, naku, kage, uta, mimi, hana, kami, kuchi, kata, kao, ago, shita, ue, yoko, iki, ya, yaa, un, rei, iya, "

@@ -282,7 +282,7 @@ land = aterrissar, pousar, aterrar
 death = morte, morrer
 dead = morto
 attack = atacar, ataque
-punch = soco, socar, golpear, golpe
+punch = soco, socar, golpear
 kick = chute, chutar, pontapé
 shoot = atirar, disparar, tiro
 aim = mirar
@@ -354,6 +354,17 @@ side = lado
 anim = animação, ação
 character = personagem
 take = cena, tomada
+straighten = endireitar-se, endireitar, aprumar-se, aprumar
+dip = flexionar, flexão, dobrar os joelhos, dobrar joelhos
+precision = precisão, preciso, precisar
+double take = olhar duas vezes, duplo olhar
+heel lift = levantar o calcanhar, levantar calcanhar, erguer calcanhar
+drop arm = baixar o braço, abaixar o braço, soltar o braço, baixar braço, abaixar braço
+flick fingers = sacudir os dedos
+tap cheek = tocar a bochecha, tocar bochecha
+desperate = desesperado, desespero
+beat = golpe, acento, marcação
+use item = usar, utilizar
 """,
     doubtful="a, à, ao, aos, de, do, da, dos, das, o, os, as, um, uma, se, seu, sua, com, e, na, no, nos, nas, por, que, "
     "em, tu, eu, pé, de pé, em pé, mão, mãos, pare, alto, cara, dar, dir, esq, sim, oi, ver, rir, papo, pulo, manga, "

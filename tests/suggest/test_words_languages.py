@@ -13,10 +13,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.suggest.name_words import Patterns, learn, read_names
+from metagraph.suggest.words_cut import Token, tokens
 from metagraph.suggest.words_defaults import DEFAULTS
 from metagraph.suggest.words_folded import folded, romaji, spellings
 from metagraph.suggest.words_languages import MARKS, languages, sources
-from metagraph.suggest.words_spoken import Token, tokens
 
 Row = tuple[str, str | None, str | None, str | None]
 SETS: dict[str, list[Row]] = {
@@ -168,14 +168,21 @@ def test_names_of_a_language_are_read_as_english_ones_are(language: str) -> None
 
 
 def test_one_name_alone_tells_its_language_by_a_word_that_is_no_english_one() -> None:
-    assert told(["Schulterzucken"]) == {"kind": "gesture", "limb": "both", "layer": "arms", "tags": ("unsure",)}
+    assert told(["Schulterzucken"]) == {
+        "kind": "gesture",
+        "limb": "both",
+        "layer": "arms",
+        "tags": ("unsure",),
+    }
     assert told(["点头"])["kind"] == "gesture" and "kind" not in told(["Hoppeln"])
 
 
 def test_accents_umlauts_and_letters_taken_apart_do_not_matter() -> None:
     for word in ("kopfschütteln", "kopfschuetteln", "kopfschutteln", "KOPFSCHÜTTELN", "Kopf-Schütteln"):
         for form in ("NFC", "NFD"):
-            assert told([unicodedata.normalize(form, f"Sitzen_{word}"), "Sitzen_Ruhe"])["layer"] == "head", word
+            assert told([unicodedata.normalize(form, f"Sitzen_{word}"), "Sitzen_Ruhe"])["layer"] == "head", (
+                word
+            )
     assert told(["座り_ｳﾅｽﾞｷ", "座り待機"])["kind"] == "gesture"
     assert told(["ｓｉｔ＿ｎｏｄ０２"]) | {"stance": ""} == told(["sit_nod02"]) | {"stance": ""}
 
@@ -192,10 +199,13 @@ def test_reasons_quote_names_as_they_are_written() -> None:
 
 def test_a_letter_that_is_a_word_of_spanish_still_tells_stances_apart() -> None:
     names = ["Sit_A", "Sit_B", "Sit_A_To_Sit_B", "Sit_A_Nod", "Sit_B_Nod"]
-    assert told(names, "Sit_A_To_Sit_B")["end_stance"] == "sit b" and told(names, "Sit_B_Nod")["stance"] == "sit b"
+    assert (
+        told(names, "Sit_A_To_Sit_B")["end_stance"] == "sit b"
+        and told(names, "Sit_B_Nod")["stance"] == "sit b"
+    )
     names = ["Sentado_A_reposo", "Sentado_B_reposo", "Sentado_A_asentir", "Sentado_B_asentir"]
     assert told(names, "Sentado_B_asentir")["stance"] == "sentado b"
-    assert told(names, "Sentado_A_asentir") ["kind"] == "gesture"
+    assert told(names, "Sentado_A_asentir")["kind"] == "gesture"
 
 
 def test_english_words_keep_their_meaning_in_english_batches() -> None:
@@ -229,7 +239,7 @@ def test_zuo_is_sitting_where_a_name_begins_and_left_where_it_goes_on() -> None:
 
 def test_the_order_of_names_does_not_matter() -> None:
     names = [row[0] for rows in SETS.values() for row in rows]
-    assert read_names(names) == {n: g for n, g in read_names(names[::-1]).items()}
+    assert read_names(names) == read_names(names[::-1])
 
 
 @settings(max_examples=60, deadline=None)
@@ -246,12 +256,17 @@ def test_words_of_a_language_are_changed_and_taken_away() -> None:
     mine = Patterns().with_pattern("kinds", "schulterzucken", "fidget")
     changed = told(names, names[2], mine)
     assert changed["kind"] == "fidget" and changed["limb"] == "both", "what was not changed holds"
-    gone = Patterns().with_pattern("synonyms", "schulterzucken", None).with_pattern("synonyms", "nicken", None)
+    gone = (
+        Patterns().with_pattern("synonyms", "schulterzucken", None).with_pattern("synonyms", "nicken", None)
+    )
     assert told(names, names[2], gone).get("tags") is None
     assert told(names, names[1], gone).get("layer") != "head"
-    assert gone.with_pattern("synonyms", "nicken", "nod").with_pattern("synonyms", "schulterzucken", "shrug").changes[
-        "synonyms"
-    ] == {}
+    assert (
+        gone.with_pattern("synonyms", "nicken", "nod")
+        .with_pattern("synonyms", "schulterzucken", "shrug")
+        .changes["synonyms"]
+        == {}
+    )
 
 
 def test_words_of_a_house_stand_for_english_ones() -> None:
