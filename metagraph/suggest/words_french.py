@@ -375,5 +375,6 @@ push away = pousser
     "portable, course, fatigue, prise, boxer, bureau, perdu, inactive, accord, mort, statique, hausse, voir, tire, "
     "par, sous, avec, ce, offre, appel, approche, accent, demande, rotation, remuer, jouer, cycle de marche, exposer, "
     "invitation, celebration, affirmer, confirmer, stopper, accuser, insulte, parler, danger, marche, sortie, assise",
+    sides="g d",
     endings="er ez ent ant ante ants é ée és ées ement ements it is ir es e s",
 )

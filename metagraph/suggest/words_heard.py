@@ -74,7 +74,12 @@ def spoken(batch: Sequence[Sequence[Token]], patterns: Any) -> Spoken | None:
             for at, t in enumerate(name)
         )
     )
-    return Spoken(tuple(tongues), theirs >= english, own)
+    ends = {name[-1].text for name in distinct if len(name) > 1}
+    sides: dict[str, str] = {}
+    if len(tongues[0].sides) == 2 and ends.issuperset(tongues[0].sides):
+        # Both stand at ends, or it may be a letter that counts ("a", "b", "c", "d").
+        sides = dict(zip(tongues[0].sides, ("left", "right"), strict=True)) if not {"a", "b"} <= ends else {}
+    return Spoken(tuple(tongues), theirs >= english, own, sides)
 
 
 def _shared(word: str, tongues: Sequence[Language]) -> bool:

@@ -373,5 +373,6 @@ push away = spingere
     "salto, conta, tasca, motto, basta, alto, mento, offerta, mostra, scusa, calcio, dita, verso, consegna, danza, "
     "boh, battuta, pugni, busto, pianto, peso, cenno, lato, pose, meditare, invitare, accettare, contrasto, indica, "
     "tirare, parare, saltare, parlare, immobile, statico, pensa, parla, pensando, parlando, declinare, celebrare",
+    sides="s d",
     endings="are ando ato ata ati ate arsi andosi ere endo uto uta uti ute ersi ire ito ita irsi isce a e i o",
 )

@@ -40,6 +40,7 @@ class Source:
     doubtful: str = ""
     endings: str = ""
     links: str = ""
+    sides: str = ""  # the letters that stand for left and for right where names end
     swaps: str = ""  # letters and what else they may be written as: simplified and traditional hanzi
 
     @cached_property
@@ -66,6 +67,7 @@ class Language:
     doubtful: frozenset[str]
     endings: tuple[str, ...]
     links: tuple[str, ...]
+    sides: tuple[str, ...] = ()
 
     def stem(self, word: str) -> str:
         """Return a word without its ending."""
@@ -115,7 +117,9 @@ def _language(source: Source) -> Language:
     for key, meaning in turned.items():
         exact.setdefault(key, meaning)
     doubtful = frozenset(s for w in source.doubtful.split(",") if w.strip() for s in spellings(w))
-    return Language(source.name, exact, stemmed, doubtful | _ENGLISH_TOO, endings, bare.links)
+    return Language(
+        source.name, exact, stemmed, doubtful | _ENGLISH_TOO, endings, bare.links, tuple(source.sides.split())
+    )
 
 
 @lru_cache(maxsize=1)

@@ -216,5 +216,6 @@ anim = animacja
 """,
     doubtful="do, z, od, ze, i, na, o, w, po, tak, nie, poza, gest, gesty, atak, opis, nos, ruch, bieg, noga, salut, kark, "
     "stopa, tak, marsz, serce, spacer, broda, telefon, akcent, brawa, prawo, lewo, zgoda, transition",
+    sides="l p",
     endings="anie enie ania enia ący ąca ąc ać ić yć eć a e i y ą ę u em ami ów",
 )

@@ -372,5 +372,6 @@ use item = usar, utilizar
     "soco, cima, base, voo, sair, manter, imovel, cair, grande, largo, pouco, tosse, riso, dois, duas, lado, peso, "
     "quieto, triste, parado, parada, neutro, pose base, postura, palma, palmas, ginga, entrada, salto, corpo, rosto, "
     "polegar, pensar, falar, olhar, olha, mirar, mover, para, pra, desde, animar, cruzado, acordo, acenar, reto",
+    sides="e d",
     endings="ar ando ado ada ados adas er endo ido ida ir indo imento amento ação ções o a os as es e",
 )

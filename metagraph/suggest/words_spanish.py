@@ -376,5 +376,6 @@ push away = empujar
     "shh, contrast, animal, contar, entrada, salida, talón, pulgar, presenta, sostener, para, sobre, insist, orar, "
     "posición, palma, peso, aprobar, lado, parada, rotar, rostro, codo, corte, derecho, celebrar, conducir, "
     "invitar, confirmar, comparar, preguntar, recoil, refutar, aviso, salta, venir, hola, muestra, tender",
+    sides="i d",
     endings="ar ando ado ada ados adas arse ándose er iendo ido ida idos idas erse ir irse iéndose o a os as es e",
 )

@@ -44,12 +44,13 @@ class _Said:
 class Spoken:
     """The languages that a batch speaks, the one most spoken first. leading: more than English. own: letters
     of phrases -> what the user says they mean in English, None for nothing; a phrase with a meaning of its
-    own stands for itself.
+    own stands for itself. sides: letters that names end in -> left or right.
     """
 
     tongues: tuple[Language, ...]
     leading: bool
     own: Mapping[str, str | None] = field(default_factory=dict)
+    sides: Mapping[str, str] = field(default_factory=dict)
     _runs: dict[str, tuple[tuple[str, int, int], ...]] = field(default_factory=dict)
     _compounds: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
@@ -103,6 +104,11 @@ class Spoken:
         """
         bold = self.leading or (self._telling(said) and not any(is_english(t.text, meanings) for t in said))
         items = self._items(said, english, meanings, bold)
+        if self.sides and bold:
+            last = next((k for k in range(len(items) - 1, 0, -1) if not _number(items[k])), 0)
+            ends = items[last].token if items else None
+            if last and ends is not None and ends.text in self.sides:
+                items[last] = _Said(self.sides[ends.text], ends.shown, ends.start, ends.end)
         items = _joined(_chosen(items, meanings), meanings)
         out: list[str] = []
         kinds = meanings["kinds"]

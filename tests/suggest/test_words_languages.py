@@ -237,6 +237,13 @@ def test_zuo_is_sitting_where_a_name_begins_and_left_where_it_goes_on() -> None:
     assert told(names, "zhan_dao_zuo")["end_stance"] == "zuo"
 
 
+def test_letters_are_sides_where_both_stand_at_ends_and_none_counts() -> None:
+    names = ["Seduto_riposo", "Seduto_saluto_S", "Seduto_indicare_D", "Seduto_indicare_S_02"]
+    assert [told(names, n).get("limb") for n in names] == [None, "left", "right", "left"]
+    names = ["Seduto_riposo", *(f"Seduto_saluto_{letter}" for letter in "ABCDS")]
+    assert all(told(names, n).get("limb") is None for n in names)
+
+
 def test_the_order_of_names_does_not_matter() -> None:
     names = [row[0] for rows in SETS.values() for row in rows]
     assert read_names(names) == read_names(names[::-1])
