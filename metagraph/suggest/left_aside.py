@@ -9,12 +9,28 @@ from metagraph.suggest.motion_guess import MotionGuess
 from metagraph.suggest.name_words import NameGuess
 from metagraph.suggest.traits import Traits
 
+# Words that mean nothing else; others may be a beat in another language, or in another mouth
+SURELY = frozenset(
+    ("walk", "walking", "run", "running", "jog", "jogging", "sprint", "strafe", "jump", "climb", "swim")
+    + ("crawl", "fly", "fall", "death", "die", "dying", "dead", "locomotion", "dance", "dancing", "t pose")
+    + ("a pose", "tpose", "apose", "bind pose", "turn in place")
+)
+MANY = 0.2  # of a set's names that say so, from which on it is a game's
 POSE = 0.2  # seconds, below which a clip is a pose and no movement
 FAR = 0.5  # heights over the ground, from which on a clip that goes to no other stance goes away
 ROUND = 50.0  # degrees that one who goes to no other stance turns round
 EXERCISE = 0.14  # heights the hips go up and down, while the legs move fast
 FAST = 0.25  # heights a second the legs move
 PASSES = 0.8  # of the chance that a clip passes between two stances, from which on that is why it moves so
+
+
+def _talks(traits: Traits | None, motion: MotionGuess | None) -> bool:
+    """Whether a clip moves as talkers do: from a stance and back, on the spot."""
+    if traits is None or motion is None or not motion.begins or not motion.ends:
+        return False
+    (begins, one), (ends, other) = motion.begins[0], motion.ends[0]
+    stays = one is other and min(begins, ends) > 0.5
+    return stays and traits.travel < FAR and traits.turned < ROUND and not walks(traits)
 
 
 def _shared(traits: Traits, motion: MotionGuess | None) -> bool:
@@ -29,14 +45,16 @@ def _shared(traits: Traits, motion: MotionGuess | None) -> bool:
     )
 
 
-def left_aside(said: NameGuess, traits: Traits | None, motion: MotionGuess | None) -> str:
-    """Return why a clip is none of the four kinds, "" where it may be one."""
+def left_aside(said: NameGuess, traits: Traits | None, motion: MotionGuess | None, usual: bool = True) -> str:
+    """Return why a clip is none of the four kinds, "" where it may be one. usual: whether many names of the
+    set speak of what talkers do not do, as those of a game do.
+    """
     if traits is not None and traits.duration < POSE and not _shared(traits, motion):
         frames = "a single frame" if traits.frames == 1 else f"only {traits.duration:.2f} s long"
         return f"is {frames}: a pose in which no other clip begins or ends, not a movement"
     if said.kind is not None:
         return ""
-    if said.other is not None:
+    if said.other is not None and (usual or said.other.value in SURELY or not _talks(traits, motion)):
         return said.other.reason
     if traits is None or motion is None or motion.chances is None:
         return ""

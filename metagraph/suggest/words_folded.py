@@ -8,10 +8,20 @@ import unicodedata
 from functools import lru_cache
 
 _BASES = {"ł": "l", "ø": "o", "đ": "d", "ð": "d", "æ": "ae", "œ": "oe", "ı": "i", "ß": "ss", "þ": "th"}
-_UMLAUTS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ø": "oe", "å": "aa", "Ä": "Ae", "Ö": "Oe", "Ü": "Ue"})
+_UMLAUTS = str.maketrans(
+    {"ä": "ae", "ö": "oe", "ü": "ue", "ø": "oe", "å": "aa", "Ä": "Ae", "Ö": "Oe", "Ü": "Ue"}
+)
 _HALVES = "\uff9e\uff9f"  # voicing marks of halfwidth kana
 # By what romaji other than Hepburn's writes; long vowels are often written short.
-_ROMAJI_AS = (("shi", "si"), ("chi", "ti"), ("tsu", "tu"), ("fu", "hu"), ("ji", "zi"), ("sh", "sy"), ("ch", "ty"))
+_ROMAJI_AS = (
+    ("shi", "si"),
+    ("chi", "ti"),
+    ("tsu", "tu"),
+    ("fu", "hu"),
+    ("ji", "zi"),
+    ("sh", "sy"),
+    ("ch", "ty"),
+)
 _LONG = (("ou", "o"), ("oo", "o"), ("uu", "u"), ("aa", "a"), ("ii", "i"), ("ei", "e"))
 _VOWELS = "aiueo"
 
@@ -107,7 +117,9 @@ def _kana() -> dict[str, str]:
         "h": "はひふへほ", "m": "まみむめも", "r": "らりるれろ", "g": "がぎぐげご", "z": "ざじずぜぞ",
         "d": "だぢづでど", "b": "ばびぶべぼ", "p": "ぱぴぷぺぽ",
     }  # fmt: skip
-    out = {kana: sound + vowel for sound, row in rows.items() for kana, vowel in zip(row, _VOWELS, strict=True)}
+    out = {
+        kana: sound + vowel for sound, row in rows.items() for kana, vowel in zip(row, _VOWELS, strict=True)
+    }
     out |= {"し": "shi", "ち": "chi", "つ": "tsu", "ふ": "fu", "じ": "ji", "ぢ": "ji", "づ": "zu"}
     out |= {"や": "ya", "ゆ": "yu", "よ": "yo", "わ": "wa", "を": "wo", "ん": "n"}
     out |= {"ぁ": "a", "ぃ": "i", "ぅ": "u", "ぇ": "e", "ぉ": "o", "ゔ": "vu"}
@@ -125,4 +137,9 @@ def _kana() -> dict[str, str]:
 def is_run_together(letter: str) -> bool:
     """Whether a letter is of a writing without blanks between words: kana, hanzi, hangul."""
     code = ord(letter)
-    return 0x3005 <= code <= 0x30FF or 0x3400 <= code <= 0x9FFF or 0xAC00 <= code <= 0xD7A3 or 0xF900 <= code <= 0xFAFF
+    return (
+        0x3005 <= code <= 0x30FF
+        or 0x3400 <= code <= 0x9FFF
+        or 0xAC00 <= code <= 0xD7A3
+        or 0xF900 <= code <= 0xFAFF
+    )

@@ -19,8 +19,35 @@ NOTHING, MAYBE_TO, MAYBE_FROM, AFTER_TO, AFTER_FROM = "-", "?to", "?from", "@to"
 MARKS: Final = (NOTHING, MAYBE_TO, MAYBE_FROM, AFTER_TO, AFTER_FROM)
 # Words of English that other languages have too, with another meaning.
 _ENGLISH_TOO = frozenset(
-    "balancer comparer confusion designer enumeration gross human installer joint joints linker negation nose "
-    "observer pointer regard replacer replies responder salutation telephone main front sale chat pain coin".split()
+    [
+        "balancer",
+        "comparer",
+        "confusion",
+        "designer",
+        "enumeration",
+        "gross",
+        "human",
+        "installer",
+        "joint",
+        "joints",
+        "linker",
+        "negation",
+        "nose",
+        "observer",
+        "pointer",
+        "regard",
+        "replacer",
+        "replies",
+        "responder",
+        "salutation",
+        "telephone",
+        "main",
+        "front",
+        "sale",
+        "chat",
+        "pain",
+        "coin",
+    ]
 )
 _SURE = 4  # Latin letters of a word from which on it may tell a language
 _ROOT = 4  # letters that are left where an ending goes
@@ -74,8 +101,10 @@ class Language:
 
     def sure(self, key: str) -> bool:
         """Whether letters that are in `exact` tell that this language is spoken."""
-        return key not in self.doubtful and self.exact[key] not in MARKS and (
-            len(key) >= _SURE or not key.isascii()
+        return (
+            key not in self.doubtful
+            and self.exact[key] not in MARKS
+            and (len(key) >= _SURE or not key.isascii())
         )
 
     @cached_property
@@ -97,7 +126,7 @@ def _language(source: Source) -> Language:
             if swaps and (other := "".join(swaps.get(c, c) for c in key)) != key:
                 exact.setdefault(other, meaning)
         parts = phrase.split()
-        if not phrase[0].isascii() and is_run_together(phrase[0]) or len(parts) > 3:
+        if (not phrase[0].isascii() and is_run_together(phrase[0])) or len(parts) > 3:
             continue
         for order in permutations(parts) if len(parts) < 4 and meaning not in MARKS else (tuple(parts),):
             for key in spellings("".join(order)) if len(parts) == 2 else ():

@@ -71,7 +71,11 @@ class Patterns:
     def vocabulary(self) -> frozenset[str]:
         """Every single word that means something."""
         return frozenset(
-            w for name in FIELDS if name not in ("junk", "synonyms") for phrase in self.meanings[name] for w in phrase.split()
+            w
+            for name in FIELDS
+            if name not in ("junk", "synonyms")
+            for phrase in self.meanings[name]
+            for w in phrase.split()
         )
 
     def with_pattern(self, name: Field, phrase: str, meaning: str | None) -> Patterns:

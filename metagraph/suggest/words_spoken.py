@@ -23,10 +23,39 @@ from metagraph.suggest.words_languages import (
 _PIECES = re.compile(r"\d+[hH](?![^\W_])|\d+|[^\W\d_]+|[\W_]+")
 _ARROW = re.compile("[→⇒➔➜]|[-=]+>")
 ARROW: Final = "→"  # as a token, whatever arrow it is: "to"
-_ELIDED = frozenset("l d n m t s j c qu un all dell nell sull dall coll".split())
+_ELIDED = frozenset(
+    ["l", "d", "n", "m", "t", "s", "j", "c", "qu", "un", "all", "dell", "nell", "sull", "dall", "coll"]
+)
 _LOANED = frozenset(  # words of English that people say in any language
-    "idle idling stance loop pose base stop ok gesture transition trans neutral normal hold start end default "
-    "shrug facepalm dab selfie walk run jump beat talk mocap".split()
+    [
+        "idle",
+        "idling",
+        "stance",
+        "loop",
+        "pose",
+        "base",
+        "stop",
+        "ok",
+        "gesture",
+        "transition",
+        "trans",
+        "neutral",
+        "normal",
+        "hold",
+        "start",
+        "end",
+        "default",
+        "shrug",
+        "facepalm",
+        "dab",
+        "selfie",
+        "walk",
+        "run",
+        "jump",
+        "beat",
+        "talk",
+        "mocap",
+    ]
 )
 _PARTS_AT_MOST = 4  # tokens of a phrase
 _ALONE = 7  # letters of a word that tells its language though no other does
@@ -160,7 +189,10 @@ class Spoken:
     def stemmed(self, parts: Sequence[str]) -> str | None:
         """Return what words mean whose endings differ from those of a known phrase."""
         for tongue in self.tongues:
-            if tongue.endings and (found := tongue.stemmed.get(" ".join(map(tongue.stem, parts)))) is not None:
+            if (
+                tongue.endings
+                and (found := tongue.stemmed.get(" ".join(map(tongue.stem, parts)))) is not None
+            ):
                 return found
         return None
 
@@ -184,7 +216,9 @@ class Spoken:
 
     # -- reading
 
-    def read(self, said: Sequence[Token], english: Callable[[str], tuple[str, ...]], meanings: Any) -> list[str]:
+    def read(
+        self, said: Sequence[Token], english: Callable[[str], tuple[str, ...]], meanings: Any
+    ) -> list[str]:
         """Return the words of tokens that stand together, in English where a language knows them, else as
         `english` has them.
         """
@@ -235,7 +269,9 @@ class Spoken:
                 some = [u[0] for u in units[at : at + n]]
                 meaning_of = self._meaning(some, english, meanings, bold)
                 if meaning_of is not None:
-                    shown = " ".join(t.shown for t in some) if not some[0].run else "".join(t.shown for t in some)
+                    shown = (
+                        " ".join(t.shown for t in some) if not some[0].run else "".join(t.shown for t in some)
+                    )
                     token = some[0] if n == 1 else None
                     out.append(_Said(meaning_of, shown, some[0].start, some[-1].end, token=token))
                     at += n
@@ -308,7 +344,9 @@ def english_words(token: Token, english: Callable[[str], tuple[str, ...]]) -> tu
     if token.text == token.shown:
         return english(token.text)
     known = english(token.text)
-    return known if len(known) > 1 or known != (token.text,) or token.text.isdecimal() else english(token.shown)
+    return (
+        known if len(known) > 1 or known != (token.text,) or token.text.isdecimal() else english(token.shown)
+    )
 
 
 def _numeral(text: str) -> str:
@@ -317,7 +355,13 @@ def _numeral(text: str) -> str:
     values = [_NUMERALS.index(c) for c in text]
     if len(values) == 1:
         return str(values[0])
-    return str(10 + values[1] if values[0] == 10 else 10 * values[0] if values[1] == 10 else values[0] * 10 + values[1])
+    return str(
+        10 + values[1]
+        if values[0] == 10
+        else 10 * values[0]
+        if values[1] == 10
+        else values[0] * 10 + values[1]
+    )
 
 
 def cut_run(
@@ -392,6 +436,7 @@ def _posture(item: _Said, meanings: Any) -> bool:
 
 def _joined(items: list[_Said], meanings: Any) -> list[_Said]:
     """Tell what joins stances from what only looks like it, and put it before the stance it leads to."""
+
     def again(item: _Said, meaning: str) -> _Said:
         return _Said(meaning, item.written, item.start, item.end)
 
@@ -399,15 +444,20 @@ def _joined(items: list[_Said], meanings: Any) -> list[_Said]:
     for at, item in enumerate(items):
         after = items[at + 1] if at + 1 < len(items) else None
         if item.meaning == MAYBE_TO:
-            if after is not None and _posture(after, meanings) and (
-                not out or any(_posture(o, meanings) for o in out) or not any(o.known for o in out)
+            if (
+                after is not None
+                and _posture(after, meanings)
+                and (not out or any(_posture(o, meanings) for o in out) or not any(o.known for o in out))
             ):
                 out.append(again(item, "to"))
         elif item.meaning == MAYBE_FROM:
             later = any(i.meaning in (MAYBE_TO, "to") for i in items[at + 2 :])
-            if after is not None and not (out and not _posture(out[-1], meanings)) and (
-                later or (out and _posture(after, meanings))
-            ) and _posture(after, meanings):
+            if (
+                after is not None
+                and not (out and not _posture(out[-1], meanings))
+                and (later or (out and _posture(after, meanings)))
+                and _posture(after, meanings)
+            ):
                 out.append(again(item, "from"))
         elif item.meaning == AFTER_FROM:
             told = [o for o in out if not _number(o)]
@@ -461,11 +511,18 @@ def spoken(batch: Sequence[Sequence[Token]], patterns: Any) -> Spoken | None:
         for tongue, told in found.items():
             if tongue in tongues:
                 continue
-            rest = [{at: n for at, n in one.items() if at not in gone} for one, gone in zip(told, spent, strict=True)]
+            rest = [
+                {at: n for at, n in one.items() if at not in gone}
+                for one, gone in zip(told, spent, strict=True)
+            ]
             names = sum(1 for one in rest if one)
             weight = sum(sum(one.values()) for one in rest)
-            words = {name[at].text: n for name, one in zip(distinct, rest, strict=True) for at, n in one.items()}
-            strong = len(words) > 1 or max(words.values(), default=0) >= _ALONE or 2 * names >= len(distinct) > 0
+            words = {
+                name[at].text: n for name, one in zip(distinct, rest, strict=True) for at, n in one.items()
+            }
+            strong = (
+                len(words) > 1 or max(words.values(), default=0) >= _ALONE or 2 * names >= len(distinct) > 0
+            )
             if names and strong and (weight, names) > most:
                 best, most = tongue, (weight, names)
         if best is None:
@@ -480,8 +537,10 @@ def spoken(batch: Sequence[Sequence[Token]], patterns: Any) -> Spoken | None:
     english = sum(
         1
         for name, gone in zip(distinct, spent, strict=True)
-        if any(at not in gone and is_english(t.text, meanings) and not _shared(t.text, tongues)
-               for at, t in enumerate(name))
+        if any(
+            at not in gone and is_english(t.text, meanings) and not _shared(t.text, tongues)
+            for at, t in enumerate(name)
+        )
     )
     return Spoken(tuple(tongues), theirs >= english, own)
 
@@ -516,7 +575,7 @@ def _told(
             key = "".join(t.text for t in some)
             if key in own or key not in tongue.exact or not tongue.sure(key):
                 continue
-            if n == 1 and in_english(key, meanings) or any(t.alone for t in some):
+            if (n == 1 and in_english(key, meanings)) or any(t.alone for t in some):
                 continue
             if n > 1 and any(in_english(t.text, meanings) for t in some) and len(key) < 2 * _ALONE:
                 continue  # "sit a" is no word of Japanese

@@ -72,7 +72,10 @@ def _parts(name: str) -> list[tuple[str, int]]:
 def speech_of(names: Sequence[str], patterns: Patterns) -> Spoken | None:
     """Return what languages names speak beside English, None where they are English alone."""
     return spoken(
-        [[t for part, at in _parts(name) for t in tokens(part, at) if isinstance(t, Token)] for name in names],
+        [
+            [t for part, at in _parts(name) for t in tokens(part, at) if isinstance(t, Token)]
+            for name in names
+        ],
         patterns,
     )
 
