@@ -9,15 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from metagraph.graph import edits
 from metagraph.graph.end_gaps import TALL, motion_of
 from metagraph.graph.expand import reachable
 from metagraph.graph.model import LAYERS, Action, Layer, MetaGraph, Project
-from metagraph.motion.features import pose_distance
-from metagraph.motion.skeleton import Pose
+
+Array = NDArray[Any]
 
 # Of a figure TALL metres high:
 SPEED = 0.6  # metres a second that the farthest joint goes on a bridge, on average: an unhurried movement
@@ -125,13 +127,11 @@ def _parted(graph: MetaGraph, start: str, poses: Collection[str], there: bool) -
 
 
 def _nearest(
-    project: Project, poses: Mapping[str, Pose], home: Iterable[str], lost: Collection[str], there: bool
+    project: Project, poses: Mapping[str, Array], home: Iterable[str], lost: Collection[str], there: bool
 ) -> tuple[Project, Bridge | None]:
     """Bridge the shortest way between stances at home and lost ones: there, or back; None where none can."""
     moving = {s for s in poses if _length(project, s) >= STILL}
-    ways = [
-        (_metres(project, poses[a], poses[b]), a, b) for a in home for b in lost if a in moving or b in moving
-    ]
+    ways = [(_metres(poses[a], poses[b]), a, b) for a in home for b in lost if a in moving or b in moving]
     if not ways:
         return project, None
     metres, one, other = min(ways)
@@ -149,20 +149,22 @@ def _loop(project: Project, graph: MetaGraph, stance: str) -> Action | None:
     return next((a for a in graph.of(stance, "stance") if motion_of(project, a) is not None), None)
 
 
-def _poses(project: Project, graph: MetaGraph) -> dict[str, Pose]:
-    """Return stance -> the pose its loop begins in, of those that have one that is there."""
+def _poses(project: Project, graph: MetaGraph) -> dict[str, Array]:
+    """Return stance -> where the joints are `[J, 3]` as its loop begins, metres from the first of them; of
+    those that have a loop that is there.
+    """
     out = {}
     for stance in graph.stances:
         loop = _loop(project, graph, stance)
         motion = motion_of(project, loop)
         if loop is not None and motion is not None:
-            out[stance] = motion.pose_at(project.span(loop)[0])
+            _, places = motion.skeleton.globals(motion.pose_at(project.span(loop)[0]))
+            out[stance] = places - places[:1]
     return out
 
 
-def _metres(project: Project, one: Pose, other: Pose) -> float:
-    assert project.skeleton is not None
-    return float(pose_distance(project.skeleton, one, other))
+def _metres(one: Array, other: Array) -> float:
+    return float(np.linalg.norm(one - other, axis=-1).max())
 
 
 def _size(project: Project) -> float:
