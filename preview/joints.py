@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton
 
 _CONTROL = re.compile(
@@ -61,14 +63,15 @@ def sides(skeleton: Skeleton) -> NDArray[Any]:
     return out
 
 
+@lru_cache(maxsize=64)
 def head(skeleton: Skeleton) -> int | None:
-    """Return the head's joint by name; None where no joint is called a head."""
+    """Return the head's joint by name, else by its role ("JtSkullA"); None where there is none."""
     found = [
         i
         for i, n in enumerate(skeleton.names)
         if re.search(r"(^|[^a-z])head([^a-z]|$)", re.sub(r"\d+", "", words(n))) and not is_control(n)
     ]
-    return found[0] if found else None
+    return found[0] if found else find_roles(skeleton).get("head")
 
 
 def drawn(skeleton: Skeleton) -> NDArray[Any]:

@@ -52,6 +52,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--retarget", action="store_true", help="bring clips of other skeletons onto that of most clips"
     )
+    parser.add_argument(
+        "--no-bridges",
+        action="store_true",
+        help="leave stances that no clip leads to or from as they are, instead of blending to them",
+    )
     parser.add_argument("--no-pictures", action="store_true", help="leave the pictures out of the report")
 
 
@@ -86,7 +91,7 @@ def run(options: Namespace) -> int:
     project, notes = _project(source, path, options.retarget)
     found = propose(project, patterns=patterns, examples=examples, sources=tuple(options.sources or SOURCES))
     taken = accept(project, found, options.above)
-    labelled, bridges = bridged(taken.project)
+    labelled, bridges = (taken.project, ()) if options.no_bridges else bridged(taken.project)
     taken = replace(taken, project=labelled)
     save_project(taken.project, path, source if source.is_file() else path)
     place = path.with_name(path.name.removesuffix(SUFFIX) + ".labels.html")

@@ -25,7 +25,7 @@ TALL = 1.6  # metres of the figure that the others are for
 FAR = 0.08  # metres a joint may be from the stance at a clip's ends before it shows
 OPEN_LOOP = 0.05  # metres a loop may be open where its seam is not blended
 LONG = 0.4  # seconds of blending, from which on it is a movement of its own and no hidden seam
-UNHURRIED = 0.9  # metres a second, on average, that the farthest joint may go on such a blend
+UNHURRIED = 1.0  # metres a second, on average, that the farthest joint may go on such a blend
 
 
 @dataclass(frozen=True)

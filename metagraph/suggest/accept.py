@@ -12,6 +12,7 @@ from metagraph.graph.edits import EditError
 from metagraph.graph.model import LAYERS, Kind, Layer, Project
 from metagraph.playback.phases import phases
 from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, plain
+from metagraph.suggest.soft_blends import softened
 from metagraph.suggest.whole_body import CARRIER
 
 
@@ -62,7 +63,8 @@ def accept(
             placed.append(p.clip)
         except EditError as error:
             left[p.clip] = str(error)
-    return Taken(_begun(before, project), tuple(placed), left, held)
+    project = softened(_begun(before, project), {action.id for action in before.actions()})
+    return Taken(project, tuple(placed), left, held)
 
 
 def _begun(before: Project, project: Project) -> Project:

@@ -26,6 +26,7 @@ SPEED = 0.6  # metres a second that the farthest joint goes on a bridge, on aver
 NOTICED = 0.3  # metres that a joint goes on a bridge, from which on a clip would look better
 SHORTEST, LONGEST = 0.6, 1.6  # seconds of a bridge
 FADE = 0.25  # of a bridge, that it takes to blend into or out of the loop that it is of
+CAREFUL = 0.9  # seconds of a bridge by a moment of a clip that moves before and after it, at least
 STILL = 0.2  # seconds, below which a clip is too short to be blended over
 
 
@@ -172,24 +173,23 @@ def _size(project: Project) -> float:
 
 
 def _bridge(project: Project, start: str, end: str, metres: float) -> tuple[Project, Bridge]:
-    stance, seconds = (
-        project.stance(end),
-        float(np.clip(metres / (SPEED * _size(project)), SHORTEST, LONGEST)),
-    )
+    stance = project.stance(end)
     assert stance is not None
     graph = project.graphs[stance.layer]
     leaving = _length(project, end) < STILL
     loop = _loop(project, graph, start if leaving else end)
     assert loop is not None
     entry = project.clips[loop.clip]
-    # What plays is the loop itself as long as it lasts, else also what leads up to it: that is hardly seen.
+    seconds, fade = float(np.clip(metres / (SPEED * _size(project)), SHORTEST, LONGEST)), FADE
     begins, ends = project.span(loop)
-    last = min(begins + seconds, ends)
-    first = max(0.0, last - seconds)
+    if ends - begins < min(seconds, entry.duration):  # the moment itself is where neither blend is
+        seconds, fade = max(seconds * (1 - FADE) / 0.5, CAREFUL), 0.5
+        begins = max(0.0, (begins + ends - seconds) / 2)
+    first = max(0.0, min(begins, entry.duration - seconds))
     last = min(first + seconds, entry.duration)
     project = edits.place(project, [entry.id], stance.layer, "transition", start, end)
     made = list(project.graphs[stance.layer].actions)[-1]
-    long, short = round((last - first) * (1 - FADE), 3), round((last - first) * FADE, 3)
+    long, short = round((last - first) * (1 - fade), 3), round((last - first) * fade, 3)
     timing = {
         "start": round(first, 3),
         "end": round(last, 3),

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from math import exp, log
 
 from metagraph.graph.words import LAYERS, Kind, Layer, Limb
-from metagraph.suggest.clip_measures import SUREST, TYPICAL, energy, layer_of, resting, walks
+from metagraph.suggest.clip_measures import SUREST, TYPICAL, energy, layer_of, moves_most, resting, walks
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.stances import Shape, Stances, distance, likely, nearest
 from metagraph.suggest.traits import LayerTraits, Traits
@@ -72,7 +72,7 @@ def guess(
     calm = starts[0][1].calm if starts and starts[0][0] < 0.5 * TYPICAL[layer.value] else 0.0
     walking = walks(traits)
     rests = 1.0 if walking else resting(traits) + (3.0 if energy(traits) <= 1.05 * calm else 0.0)
-    moves = layer if posture is None else layer_of(traits)
+    moves = layer if posture is None else moves_most(traits)
     x = traits.layers[moves.value]
     rest, gesture = _sigmoid(rests), _gesturing(traits, moves)
     chances: dict[Kind, float] = {

@@ -110,7 +110,7 @@ class Places:
 
     def _joined(self, layer: Layer, shapes: Sequence[Shape], heard: Sequence[Heard]) -> None:
         """Join the words and the shapes of a layer."""
-        votes = _votes(heard)
+        votes, spoken = _votes(heard)
         free = dict(enumerate(shapes))
         for n, shape in enumerate(shapes):  # the project's own are called as they are
             if shape.id:
@@ -118,7 +118,6 @@ class Places:
                 self.by_key[shape.id] = replace(old, shape=shape)
                 self._of_shape[id(shape)] = shape.id
                 del free[n]
-        spoken = {word: sum(mine.values()) for word, mine in votes.items()}
         pairs = sorted(
             (
                 (-count * count / spoken[word], word, n)
@@ -186,11 +185,16 @@ def _lies(places: Places, told: tuple[Layer, str], free: Mapping[int, Shape]) ->
     return places.by_key[places._of_word[told]].shape is not None
 
 
-def _votes(heard: Sequence[Heard]) -> dict[str, dict[int, float]]:
-    """Return word -> shape -> how many clips of the word are in it."""
+def _votes(heard: Sequence[Heard]) -> tuple[dict[str, dict[int, float]], dict[str, float]]:
+    """Return word -> shape -> how many ends that the word names are of it; and word -> how many it names,
+    those that are of no shape among them.
+    """
     out: dict[str, dict[int, float]] = defaultdict(lambda: defaultdict(float))
+    spoken: dict[str, float] = defaultdict(float)
     for each in heard:
         for word, likely, weight, _ in each.called():
+            if likely:
+                spoken[word] += weight
             for chance, shape in likely:
                 out[word][id(shape)] += weight * chance
-    return {word: dict(mine) for word, mine in out.items()}
+    return {word: dict(mine) for word, mine in out.items()}, dict(spoken)

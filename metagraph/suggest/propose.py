@@ -130,7 +130,8 @@ def propose(
     }
     fresh = not any(True for _ in project.actions())
     whole = moving and (carried(project) or (fresh and recorded_whole(mine, begun)))
-    shapes = _shapes(project, traits, mine, whole, called) if moving else {}
+    standing = {c: t for c, t in mine.items() if called[c].other is None}  # where fights begin nobody stands
+    shapes = _shapes(project, traits, standing, whole, called) if moving else {}
     alike = Alike([*examples_of(project, traits), *examples]) if "learned" in sources else Alike([])
     heard, aside = list[Heard](), dict[str, str]()
     for c in chosen:

@@ -34,6 +34,7 @@ EXACT = 0.5  # of the limits within which ends are of one stance, where they mee
 STANDS = 0.3  # of the usual way from stance to stance, within which an end is of one
 SETTLED = 0.4  # of all ends that are of a stance, below which there are no stances to speak of
 FEW = 3  # clips that begin and end in a pose, from which on the quietest of them is taken for its loop
+SCARCE = 0.05  # of all clips, below which a pose that some begin and end in is no stance but theirs alone
 QUIET = 0.6  # of their median energy
 # heights a second, of all parts together, that the only clip which stays in a pose moves at most to be its
 # loop
@@ -200,7 +201,7 @@ def discover(traits: Mapping[str, Traits], layer: Layer, together: bool = False)
     for rows in groups:
         members = list(dict.fromkeys(found[i][0] for i in rows))
         loops = [i for i in rows if found[i][3]]
-        if len(members) < 2 and not loops:
+        if not loops and len(members) < (2 if _passed(rows, groups, found) else max(2, SCARCE * len(mine))):
             continue
         middle = np.median(poses[rows], axis=0)
         best = min(loops or rows, key=lambda i: (float(np.linalg.norm(poses[i] - middle)), i))
@@ -303,6 +304,18 @@ def parted(shapes: Sequence[Shape], ends: Ends) -> tuple[Shape, ...]:
                 )
             )
     return tuple(out)
+
+
+def _passed(
+    rows: Sequence[int], groups: Sequence[Sequence[int]], found: Sequence[tuple[str, float, Array, bool]]
+) -> bool:
+    """Whether a clip comes to a group of ends from another one, or leaves for it: then somebody stands there
+    for a while, though few clips show it.
+    """
+    here = {found[i][0] for i in rows}
+    return any(
+        len(other) > 1 and here & {found[i][0] for i in other} for other in groups if other is not rows
+    )
 
 
 def _far(x: LayerTraits, pose: str, middle: Array, names: tuple[str, ...]) -> float:

@@ -67,3 +67,10 @@ def test_the_mannequins_face_is_left_to_its_head():
     assert not any("Eye" in n or "Lid" in n or "Brow" in n or n == "Jaw" for n in shown)
     assert {"Hips", "Head", "LeftIndex2", "RightToes"} <= shown
     assert skeleton.names[joints.head(skeleton) or 0] == "Head"
+
+
+def test_a_head_that_is_not_called_one_is_drawn_by_its_role():
+    skeleton = mannequin_skeleton()
+    names = tuple(n.replace("Head", "JtSkullA").replace("Neck", "JtNeckB") for n in skeleton.names)
+    renamed = Skeleton(names, skeleton.parents, skeleton.rest_rotations, skeleton.rest_translations)
+    assert joints.head(renamed) == skeleton.names.index("Head")

@@ -107,7 +107,7 @@ def test_a_stance_that_nothing_leads_to_is_told_as_check_tells_it(
 ) -> None:
     for path in folder.glob("*__to_*.glb"):
         path.unlink()
-    assert main(["label", str(folder), "--no-pictures", "--json"]) == 3
+    assert main(["label", str(folder), "--no-pictures", "--no-bridges", "--json"]) == 3
     shown = capsys.readouterr()
     data = json.loads(shown.out)
     assert not data["left"]
@@ -115,6 +115,19 @@ def test_a_stance_that_nothing_leads_to_is_told_as_check_tells_it(
     assert "problem: stance " in shown.err and "cannot be reached" in shown.err
     assert main(["check", data["project"]]) == 3
     assert "cannot be reached" in capsys.readouterr().out
+
+
+def test_such_a_stance_is_reached_by_blending_and_that_is_told(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for path in folder.glob("*__to_*.glb"):
+        path.unlink()
+    assert main(["label", str(folder), "--no-pictures", "--json"]) == 0
+    shown = capsys.readouterr()
+    data = json.loads(shown.out)
+    assert data["bridged"] and not data["errors"]
+    assert "bridged: no clip leads from " in shown.err
+    assert main(["check", data["project"]]) == 0
 
 
 @pytest.mark.parametrize("given", ["nothing", "empty"])
@@ -197,7 +210,7 @@ def test_clips_of_another_skeleton_are_left_out_or_retargeted_as_asked(
     out = folder.parent / "p"
     main(["label", str(folder), "-o", str(out), "--no-pictures"])
     told = [line for line in capsys.readouterr().err.splitlines() if "another character" in line]
-    assert len(told) == 1 and "2 files" in told[0]
+    assert len(told) == 1 and "another.glb and 1 more: 3 clips" in told[0]
     main(["label", str(folder), "-o", str(out), "--no-pictures", "--retarget"])
     assert "another character" not in capsys.readouterr().err
     project = open_project(out.with_name("p.metagraph.yaml")).project
