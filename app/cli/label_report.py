@@ -19,6 +19,7 @@ from app.look.plural import many
 from metagraph.formats.import_words import counted
 from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.suggest.estimate import Belief
+from metagraph.suggest.flags import chance_wrong, doubt, gain, needs_a_look
 from metagraph.suggest.propose import Proposal, Proposals, Taken
 
 KIND_MARKS = {
@@ -27,7 +28,6 @@ KIND_MARKS = {
     "fidget": "◆",
     "transition": "➜",
 }  # as in the window; its module needs Qt
-SURE = 0.9  # from here on a proposal needs no second look
 
 
 def report(
@@ -41,7 +41,7 @@ def report(
     """Return the page. pictures: clip, or stance of the labelled project -> `[H, W, 4]` uint8, of those that
     could be drawn. path: the project's file, which the page says how to open.
     """
-    doubtful = [p for p in found.doubtful if needs_a_look(p, taken)]
+    doubtful = sorted((p for p in found.doubtful if needs_a_look(p, taken.left)), key=lambda p: -gain(p))
     told = [f"<li>{escape(note)}</li>" for note in counted(notes)]
     stances = {i: s.name for i in taken.held if (s := taken.project.stance(i)) is not None}
     held = [
@@ -78,13 +78,6 @@ def report(
     )
     body += f"\n<script>{SCRIPT}</script>"
     return f"<!doctype html><html lang='en'><head>{head}</head><body>\n{body}</body></html>\n"
-
-
-def needs_a_look(p: Proposal, taken: Taken) -> bool:
-    """Whether somebody should look at a proposal: it is unsure, its sources disagree, it would jump, or it
-    was not placed.
-    """
-    return p.confidence < SURE or bool(p.conflicts) or p.good is False or p.clip in taken.left
 
 
 def _section(title: str, cards: str) -> str:
@@ -163,8 +156,8 @@ def _data_of(project: Project, found: Proposals, p: Proposal, taken: Taken) -> s
         "layer": p.layer.value,
         "stance": stance,
         "end": end,
-        "sure": f"{p.confidence:.3f}",
-        "look": "1" if needs_a_look(p, taken) else "0",
+        "sure": f"{1 - chance_wrong(p):.3f}",
+        "look": "1" if needs_a_look(p, taken.left) else "0",
     }
     return " ".join(f"data-{key}='{escape(value, quote=True)}'" for key, value in values.items())
 
@@ -205,7 +198,7 @@ def _card(
             f"likelihood</summary><ul>{''.join(details)}</ul></details></li>"
         )
     warnings = [
-        *p.conflicts,
+        *([doubt(p)] if needs_a_look(p) else p.conflicts),
         *([p.timing_reason] if p.good is False else []),
         *([taken.left[p.clip]] if p.clip in taken.left else []),
     ]

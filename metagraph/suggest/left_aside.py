@@ -4,9 +4,15 @@ word, not forced into what a talking character does.
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
 from metagraph.suggest.clip_measures import nothing, walks
+from metagraph.suggest.estimate import Belief
 from metagraph.suggest.motion_guess import MotionGuess
 from metagraph.suggest.name_words import NameGuess
+from metagraph.suggest.proposal import Place, Proposals, plain
 from metagraph.suggest.traits import Traits
 
 # Words that mean nothing else; others may be a beat in another language, or in another mouth
@@ -21,6 +27,7 @@ FAR = 0.5  # heights over the ground, from which on a clip that goes to no other
 ROUND = 50.0  # degrees that one who goes to no other stance turns round
 EXERCISE = 0.14  # heights the hips go up and down, while the legs move fast
 FAST = 0.25  # heights a second the legs move
+_NUMBER = re.compile(r"\d+(?:\.\d+)?")
 PASSES = 0.8  # of the chance that a clip passes between two stances, from which on that is why it moves so
 
 
@@ -79,3 +86,50 @@ def left_aside(said: NameGuess, traits: Traits | None, motion: MotionGuess | Non
     ):
         return f"goes up and down by {100 * traits.height * traits.rise:.0f} cm: an exercise"
     return ""
+
+
+def taken_up(found: Proposals, clip: str) -> Proposals:
+    """Return the proposals with one clip that was left aside among them. Its stances are those of the same
+    names that there are now.
+    """
+    spare = found.spare[clip]
+    places: dict[str, Place] = dict(found.places)
+
+    def moved(belief: Belief[str] | None) -> Belief[str] | None:
+        if belief is None:
+            return None
+        old = spare.places[belief.value]
+        same = [k for k, x in places.items() if (x.layer, plain(x.name)) == (old.layer, plain(old.name))]
+        key = belief.value if belief.value in same else next(iter(same), f"new {old.layer} {plain(old.name)}")
+        places.setdefault(key, replace(old, key=key, there=False))
+        return replace(belief, value=key)
+
+    p = spare.proposal
+    p = replace(p, stance=moved(p.stance), end_stance=moved(p.end_stance))
+    return replace(
+        found,
+        proposals={**found.proposals, clip: p},
+        places=places,
+        aside={c: why for c, why in found.aside.items() if c != clip},
+        spare={c: x for c, x in found.spare.items() if c != clip},
+    )
+
+
+def reasons(aside: Mapping[str, str]) -> list[tuple[str, list[str]]]:
+    """Return reasons in words with the clips they are of, the most frequent first; those that differ in
+    numbers alone are one, with the least and the greatest.
+    """
+    groups: dict[str, list[str]] = {}
+    for clip, why in aside.items():
+        groups.setdefault(_NUMBER.sub("#", why), []).append(clip)
+    out = []
+    for clips in groups.values():
+        found = zip(*(_NUMBER.findall(aside[c]) for c in clips), strict=True)
+        ranges = iter([(min(x, key=float), max(x, key=float)) for x in found])
+
+        def spoken(_: re.Match[str], ranges: Iterator[tuple[str, str]] = ranges) -> str:
+            least, most = next(ranges)
+            return least if least == most else f"{least} to {most}"
+
+        out.append((_NUMBER.sub(spoken, aside[clips[0]]), clips))
+    return sorted(out, key=lambda x: -len(x[1]))

@@ -1,7 +1,8 @@
 """A person going through proposals: what they correct, what is still open, and how long the rest will take.
 
-Stances come first, the most used before the others, since all else hangs on them; then those at which a look
-gains most. A correction is kept as it was meant - a stance by its name - so that it outlives proposals that are made anew.
+Stances come first, the most used before the others, since all else hangs on them; then those at which a
+look gains most. A correction is kept as it was meant - a stance by its name - so that it outlives proposals
+that are made anew.
 """
 
 from __future__ import annotations
