@@ -12,9 +12,9 @@ from typing import Final, TypeVar, cast
 
 from metagraph.graph.words import Kind, Layer, Limb
 from metagraph.suggest.estimate import Belief
+from metagraph.suggest.words_cut import written
 from metagraph.suggest.words_defaults import Field
 from metagraph.suggest.words_patterns import Patterns, PatternsError, forget, merged, recalled, remembered
-from metagraph.suggest.words_spoken import written
 from metagraph.suggest.words_stances import FoundStance, Stances, Words, is_low, label
 from metagraph.suggest.words_tokens import (
     Phrase,

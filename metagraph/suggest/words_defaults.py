@@ -15,7 +15,12 @@ Meanings = Mapping[str, str]
 def _table(meanings: Mapping[str, str]) -> Meanings:
     """Turn meaning -> "phrase, phrase, ..." around."""
     return MappingProxyType(
-        {p.strip(): meaning for meaning, phrases in meanings.items() for p in phrases.split(",") if p.strip()}
+        {
+            " ".join(p.split()): meaning
+            for meaning, some in meanings.items()
+            for p in some.split(",")
+            if p.strip()
+        }
     )
 
 
@@ -49,7 +54,7 @@ KINDS: Final = _table(
             leg bounce, adjust, adjusting, readjust, adjust sleeve, fix, fix hair, fix tie, yawn, yawning, sway, swaying, settle,
             resettle, regrip, rub, rubbing, rub hands, rub arm, tap, tapping, tap foot, tap fingers, foot tap, finger tap, tap cheek,
             twiddle, twiddle thumbs, stretch, stretching, neck stretch, roll shoulders, shoulder roll, neck roll, roll neck, heel lift,
-            swing arms, arm swing, flick fingers, touch neck, touch face, touch hair, touch, stroke chin, drop arm, crack knuckles,
+            swing arms, arm swing, raise heel, flick fingers, touch neck, touch face, touch hair, touch, stroke chin, drop arm, crack knuckles,
             knuckles, sniff, sneeze, cough, coughing, sigh, breathe, breath, wipe, wipe nose, wipe brow, dust off, bored, impatient,
             tug, pick, crack neck, play hair, hair twirl, roll head, head roll, shake arms, shake leg, shake legs, stretch arms, move,
             nervous, dust, wiggle, rock, rocking, twitch, blink""",

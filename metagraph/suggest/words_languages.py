@@ -18,37 +18,12 @@ from metagraph.suggest.words_folded import is_run_together, plain, spellings
 NOTHING, MAYBE_TO, MAYBE_FROM, AFTER_TO, AFTER_FROM = "-", "?to", "?from", "@to", "@from"
 MARKS: Final = (NOTHING, MAYBE_TO, MAYBE_FROM, AFTER_TO, AFTER_FROM)
 # Words of English that other languages have too, with another meaning.
-_ENGLISH_TOO = frozenset(
-    [
-        "balancer",
-        "comparer",
-        "confusion",
-        "designer",
-        "enumeration",
-        "gross",
-        "human",
-        "installer",
-        "joint",
-        "joints",
-        "linker",
-        "negation",
-        "nose",
-        "observer",
-        "pointer",
-        "regard",
-        "replacer",
-        "replies",
-        "responder",
-        "salutation",
-        "telephone",
-        "main",
-        "front",
-        "sale",
-        "chat",
-        "pain",
-        "coin",
-    ]
-)
+_ENGLISH_TOO = frozenset((
+    "balancer", "comparer", "confusion", "designer", "enumeration", "gross", "human", "installer",
+    "joint", "joints", "linker", "negation", "nose", "observer", "pointer", "regard", "replacer",
+    "replies", "responder", "salutation", "telephone", "main", "front", "sale", "chat", "pain",
+    "coin",
+))  # fmt: skip
 _SURE = 4  # Latin letters of a word from which on it may tell a language
 _ROOT = 4  # letters that are left where an ending goes
 
@@ -120,15 +95,17 @@ def _language(source: Source) -> Language:
     exact: dict[str, str] = {}
     turned: dict[str, str] = {}
     stemmed: dict[str, str] = {}
+    marks = {s for p, m in source.phrases.items() if m in MARKS for s in spellings(p)}
     for phrase, meaning in source.phrases.items():
         for key in spellings(phrase) | (spellings(phrase.replace("を", "")) if "を" in phrase[1:] else set()):
             exact.setdefault(key, meaning)
             if swaps and (other := "".join(swaps.get(c, c) for c in key)) != key:
                 exact.setdefault(other, meaning)
         parts = phrase.split()
-        if (not phrase[0].isascii() and is_run_together(phrase[0])) or len(parts) > 3:
+        if (not phrase[0].isascii() and is_run_together(phrase[0])) or len(parts) > 4:
             continue
-        for order in permutations(parts) if len(parts) < 4 and meaning not in MARKS else (tuple(parts),):
+        fixed = len(parts) > 3 or meaning in MARKS or any(spellings(p) & marks for p in parts)
+        for order in (tuple(parts),) if fixed else permutations(parts):  # "a sinistra", never "sinistra a"
             for key in spellings("".join(order)) if len(parts) == 2 else ():
                 turned.setdefault(key, meaning)
             for forms in zip(*(sorted(spellings(p)) for p in order), strict=False):

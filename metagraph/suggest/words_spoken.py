@@ -1,14 +1,13 @@
-"""Names in other languages than English: which ones a batch speaks, and what its words are in English."""
+"""Names in other languages than English: what their words are in English."""
 
 from __future__ import annotations
 
-import re
 import unicodedata
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Final
+from typing import Any
 
-from metagraph.suggest.words_folded import folded, is_run_together, spellings
+from metagraph.suggest.words_cut import ARROW, Token, Word
 from metagraph.suggest.words_languages import (
     AFTER_FROM,
     AFTER_TO,
@@ -17,138 +16,16 @@ from metagraph.suggest.words_languages import (
     MAYBE_TO,
     NOTHING,
     Language,
-    languages,
 )
 
-_PIECES = re.compile(r"\d+[hH](?![^\W_])|\d+|[^\W\d_]+|[\W_]+")
-_ARROW = re.compile("[→⇒➔➜]|[-=]+>")
-ARROW: Final = "→"  # as a token, whatever arrow it is: "to"
-_ELIDED = frozenset(
-    ["l", "d", "n", "m", "t", "s", "j", "c", "qu", "un", "all", "dell", "nell", "sull", "dall", "coll"]
-)
-_LOANED = frozenset(  # words of English that people say in any language
-    [
-        "idle",
-        "idling",
-        "stance",
-        "loop",
-        "pose",
-        "base",
-        "stop",
-        "ok",
-        "gesture",
-        "transition",
-        "trans",
-        "neutral",
-        "normal",
-        "hold",
-        "start",
-        "end",
-        "default",
-        "shrug",
-        "facepalm",
-        "dab",
-        "selfie",
-        "walk",
-        "run",
-        "jump",
-        "beat",
-        "talk",
-        "mocap",
-    ]
-)
-_PARTS_AT_MOST = 4  # tokens of a phrase
-_ALONE = 7  # letters of a word that tells its language though no other does
+_LOANED = frozenset((
+    "idle", "idling", "stance", "loop", "pose", "base", "stop", "ok", "gesture", "transition",
+    "trans", "neutral", "normal", "hold", "start", "end", "default", "shrug", "facepalm", "dab",
+    "selfie", "walk", "run", "jump", "beat", "talk", "mocap",
+))  # fmt: skip
+PARTS = 4  # tokens of a phrase
 _COMPOUND = range(6, 41)
 _NUMERALS = "零一二三四五六七八九十"
-
-
-class Word(str):
-    """A word of English that stands for what a name says in another language. written: what that is, small
-    letters; "" for all but the first of several that stand for it together. start, end: where in the name.
-    """
-
-    written: str
-    start: int
-    end: int
-
-    def __new__(cls, text: str, written: str = "", start: int = 0, end: int = 0) -> Word:
-        word = super().__new__(cls, text)
-        word.written, word.start, word.end = written, start, end
-        return word
-
-
-def written(words: Iterable[str]) -> tuple[str, ...]:
-    """Return words as their name has them."""
-    said = ((w.written if isinstance(w, Word) else w) for w in words)
-    return tuple(w for w in said if w)
-
-
-@dataclass(frozen=True, slots=True)
-class Token:
-    """A run of letters of a name, or a number. text: folded, small. shown: as written, small. alone: one
-    capital letter. elided: an apostrophe follows.
-    """
-
-    text: str
-    shown: str
-    start: int
-    end: int
-    alone: bool = False
-    elided: bool = False
-
-    @property
-    def run(self) -> bool:
-        """Whether it is of a writing without blanks between words."""
-        return is_run_together(self.text[0])
-
-
-@dataclass(frozen=True, slots=True)
-class Break:
-    """What stands between tokens."""
-
-    text: str
-
-
-def tokens(text: str, offset: int = 0, whole: str | None = None) -> list[Token | Break]:
-    """Take a text apart at separators, capitals, digits and where the writing changes. offset: of the text in
-    the name.
-    """
-    name = text if whole is None else whole
-    letters, places = folded(text)
-    out: list[Token | Break] = []
-    for piece in _PIECES.finditer(letters):
-        said, at = piece[0], piece.start()
-        if not (said[0].isalpha() or said[0].isdecimal()):
-            arrow = _ARROW.search(said)
-            if arrow is not None and out and piece.end() < len(letters):
-                start, stop = (places[at + k] + offset for k in arrow.span())
-                out.append(Token(ARROW, letters[slice(*(at + k for k in arrow.span()))], start, stop))
-            else:
-                out.append(Break(said))
-            continue
-        for part in _camel(said) if said[0].isalpha() else [said]:
-            end = at + len(part)
-            start, stop = places[at] + offset, places[end] + offset
-            small = part.lower()
-            shown = small if text.isascii() else unicodedata.normalize("NFC", name[start:stop]).lower()
-            follows = letters[end : end + 1]
-            out.append(Token(
-                small, shown, start, stop, len(part) == 1 and part.isupper(),
-                follows in ("'", "’") and small in _ELIDED,
-            ))  # fmt: skip
-            at = end
-    return out
-
-
-def _camel(run: str) -> list[str]:
-    cuts = [0]
-    for i in range(1, len(run)):
-        rises = run[i - 1].islower() and run[i].isupper()
-        ends = run[i - 1].isupper() and run[i].isupper() and i + 1 < len(run) and run[i + 1].islower()
-        if rises or ends or is_run_together(run[i - 1]) != is_run_together(run[i]):
-            cuts.append(i)
-    return [run[a:b] for a, b in zip(cuts, [*cuts[1:], len(run)], strict=True)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,6 +65,8 @@ class Spoken:
 
     def stemmed(self, parts: Sequence[str]) -> str | None:
         """Return what words mean whose endings differ from those of a known phrase."""
+        if "".join(parts) in self.own:
+            return None
         for tongue in self.tongues:
             if (
                 tongue.endings
@@ -200,8 +79,8 @@ class Spoken:
         """Return the parts of a word, each of which is known; () where there are none."""
         if word not in self._compounds:
             cut: tuple[str, ...] = ()
-            if len(word) in _COMPOUND:
-                cut = next((c for t in self.tongues if (c := _compound(word, t))), ())
+            if len(word) in _COMPOUND and word not in self.own:
+                cut = next((c for t in self.tongues if (c := compound_of(word, t))), ())
             self._compounds[word] = cut
         return self._compounds[word]
 
@@ -224,7 +103,7 @@ class Spoken:
         """
         bold = self.leading or (self._telling(said) and not any(is_english(t.text, meanings) for t in said))
         items = self._items(said, english, meanings, bold)
-        items = _joined(_chosen(items), meanings)
+        items = _joined(_chosen(items, meanings), meanings)
         out: list[str] = []
         kinds = meanings["kinds"]
         alone = False  # whether the word before stands for one of another language by itself
@@ -265,19 +144,19 @@ class Spoken:
         out: list[_Said] = []
         at = 0
         while at < len(units):
-            for n in range(min(_PARTS_AT_MOST, len(units) - at), 0, -1):
+            for n in range(min(PARTS, len(units) - at), 0, -1):
                 some = [u[0] for u in units[at : at + n]]
                 meaning_of = self._meaning(some, english, meanings, bold)
                 if meaning_of is not None:
                     shown = (
                         " ".join(t.shown for t in some) if not some[0].run else "".join(t.shown for t in some)
                     )
-                    token = some[0] if n == 1 else None
-                    out.append(_Said(meaning_of, shown, some[0].start, some[-1].end, token=token))
+                    alone = some[0] if n == 1 else None
+                    out.append(_Said(meaning_of, shown, some[0].start, some[-1].end, token=alone))
                     at += n
                     break
             else:
-                token = units[at][0]
+                token = units[at][0]  # known by no phrase
                 parts = () if token.run or token.text in meanings["kinds"] else self._parts(token, english)
                 if parts:
                     first = token.shown
@@ -312,6 +191,8 @@ class Spoken:
                 return None  # the same in English
             if (not sure and not bold) or (some[0].alone and meaning in MARKS):
                 return None
+            if meaning == NOTHING and some[0].text in meanings["joins"]:
+                return None  # "to" among Japanese words in Latin letters
             if not bold and in_english(some[0].text, meanings):
                 return None
             return meaning
@@ -341,7 +222,7 @@ def english_words(token: Token, english: Callable[[str], tuple[str, ...]]) -> tu
     """Return a token that no other language knows: its letters folded where English knows them so."""
     if token.text == ARROW:
         return (Word("to", token.shown, token.start, token.end),)
-    if token.text == token.shown:
+    if token.text == token.shown or unicodedata.normalize("NFKC", token.shown) == token.text:
         return english(token.text)
     known = english(token.text)
     return (
@@ -391,7 +272,7 @@ def cut_run(
     return tuple(out)
 
 
-def _compound(word: str, tongue: Language) -> tuple[str, ...]:
+def compound_of(word: str, tongue: Language) -> tuple[str, ...]:
     """Cut a word into parts that a language knows, into as few as possible."""
     best: dict[int, tuple[str, ...]] = {0: ()}
     for end in range(2, len(word) + 1):
@@ -412,13 +293,19 @@ def _compound(word: str, tongue: Language) -> tuple[str, ...]:
 # --- what joins stances
 
 
-def _chosen(items: list[_Said]) -> list[_Said]:
-    """Choose of two meanings: the first where a name or an end begins, else the second ("sit|left": zuo)."""
+def _chosen(items: list[_Said], meanings: Any) -> list[_Said]:
+    """Choose of two meanings ("sit|left": zuo): the second, a side, before a part of the body or where a name
+    goes no further; else the first.
+    """
     out: list[_Said] = []
-    for item in items:
+    for at, item in enumerate(items):
         first, _, second = item.meaning.partition("|")
-        begins = not out or out[-1].meaning in (*MARKS, "to", "from") or not out[-1].known
-        out.append(replace(item, meaning=first if begins else second) if second else item)
+        if second:
+            begins = not out or out[-1].meaning in (*MARKS, "to", "from")
+            after = next((i for i in items[at + 1 :] if not _number(i)), None)
+            part = after is not None and after.meaning in ("hand", "arm", "leg", "foot", "shoulder", "side")
+            item = replace(item, meaning=second if part or (after is None and not begins) else first)
+        out.append(item)
     return out
 
 
@@ -447,7 +334,7 @@ def _joined(items: list[_Said], meanings: Any) -> list[_Said]:
             if (
                 after is not None
                 and _posture(after, meanings)
-                and (not out or any(_posture(o, meanings) for o in out) or not any(o.known for o in out))
+                and (any(_posture(o, meanings) for o in out) or (out and not any(o.known for o in out)))
             ):
                 out.append(again(item, "to"))
         elif item.meaning == MAYBE_FROM:
@@ -481,113 +368,3 @@ def _number(item: _Said) -> bool:
 
 def _before_stance(out: list[_Said], join: _Said, meanings: Any) -> None:
     out.insert(len(out) - 1, join)
-
-
-# --- which languages
-
-
-def own_words(changes: Mapping[Any, Mapping[str, str | None]]) -> dict[str, str | None]:
-    """Return what a user says about words: letters -> English, themselves where they mean something of their
-    own, None for nothing any more.
-    """
-    own: dict[str, str | None] = {}
-    for name, mine in changes.items():
-        for phrase, meaning in mine.items():
-            for key in spellings(phrase):
-                own[key] = meaning if name == "synonyms" else own.get(key, phrase)
-    return own
-
-
-def spoken(batch: Sequence[Sequence[Token]], patterns: Any) -> Spoken | None:
-    """Return what languages a batch of names speaks beside English, None where it is English alone."""
-    meanings = patterns.meanings
-    own = own_words(patterns.changes)
-    distinct = list(dict.fromkeys(tuple(t for t in name if not t.text.isdecimal()) for name in batch))
-    found = {tongue: [_told(name, tongue, meanings, own) for name in distinct] for tongue in languages()}
-    tongues: list[Language] = []
-    spent: list[set[int]] = [set() for _ in distinct]
-    while True:
-        best, most = None, (0, 0)
-        for tongue, told in found.items():
-            if tongue in tongues:
-                continue
-            rest = [
-                {at: n for at, n in one.items() if at not in gone}
-                for one, gone in zip(told, spent, strict=True)
-            ]
-            names = sum(1 for one in rest if one)
-            weight = sum(sum(one.values()) for one in rest)
-            words = {
-                name[at].text: n for name, one in zip(distinct, rest, strict=True) for at, n in one.items()
-            }
-            strong = (
-                len(words) > 1 or max(words.values(), default=0) >= _ALONE or 2 * names >= len(distinct) > 0
-            )
-            if names and strong and (weight, names) > most:
-                best, most = tongue, (weight, names)
-        if best is None:
-            break
-        tongues.append(best)
-        for one, gone in zip(found[best], spent, strict=True):
-            gone.update(one)
-    mine = {k: v for k, v in own.items() if v != k}
-    if not tongues:
-        return Spoken((), False, own) if mine and "synonyms" in patterns.changes else None
-    theirs = sum(1 for gone in spent if gone)
-    english = sum(
-        1
-        for name, gone in zip(distinct, spent, strict=True)
-        if any(
-            at not in gone and is_english(t.text, meanings) and not _shared(t.text, tongues)
-            for at, t in enumerate(name)
-        )
-    )
-    return Spoken(tuple(tongues), theirs >= english, own)
-
-
-def _shared(word: str, tongues: Sequence[Language]) -> bool:
-    return any(word in tongue.exact for tongue in tongues)
-
-
-def _told(
-    name: Sequence[Token], tongue: Language, meanings: Any, own: Mapping[str, str | None]
-) -> dict[int, int]:
-    """Return the tokens of a name that a language knows and English does not, with how many letters of each."""
-    out: dict[int, int] = {}
-
-    def find(key: str) -> tuple[str, bool] | None:
-        meaning = tongue.exact.get(key) if key not in own else None
-        return (meaning, True) if meaning is not None else None
-
-    for at, token in enumerate(name):
-        if token.run:
-            if tongue.longest:
-                known = sum(
-                    b - a for m, a, b in cut_run(token.text, find, tongue.longest) if m and m not in MARKS
-                )
-                if 2 * known >= len(token.text):
-                    out[at] = 4 * known
-            continue
-        for n in range(min(_PARTS_AT_MOST, len(name) - at), 0, -1):
-            some = name[at : at + n]
-            if any(t.run for t in some):
-                continue
-            key = "".join(t.text for t in some)
-            if key in own or key not in tongue.exact or not tongue.sure(key):
-                continue
-            if (n == 1 and in_english(key, meanings)) or any(t.alone for t in some):
-                continue
-            if n > 1 and any(in_english(t.text, meanings) for t in some) and len(key) < 2 * _ALONE:
-                continue  # "sit a" is no word of Japanese
-            for k in range(at, at + n):
-                out[k] = max(out.get(k, 0), len(key) // n)
-            break
-        else:
-            word = token.text
-            if len(word) > 5 and at not in out and not in_english(word, meanings) and word not in own:
-                stem = tongue.stem(word)
-                if len(stem) > 4 and stem in tongue.stemmed and tongue.stemmed[stem] not in MARKS:
-                    out[at] = len(stem) - 1
-                elif len(word) > 8 and word.isascii() and len(cut := _compound(word, tongue)) > 1:
-                    out[at] = max(map(len, cut))
-    return out

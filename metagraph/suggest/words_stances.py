@@ -7,8 +7,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from metagraph.suggest.words_cut import written
 from metagraph.suggest.words_patterns import Patterns
-from metagraph.suggest.words_spoken import written
 from metagraph.suggest.words_tokens import (
     Taken,
     is_designator,

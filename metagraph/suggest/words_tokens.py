@@ -10,9 +10,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
+from metagraph.suggest.words_cut import Token, Word, tokens, written
 from metagraph.suggest.words_defaults import Meanings
+from metagraph.suggest.words_heard import spoken
 from metagraph.suggest.words_patterns import Patterns
-from metagraph.suggest.words_spoken import Spoken, Token, Word, english_words, spoken, tokens, written
+from metagraph.suggest.words_spoken import Spoken, english_words
 
 _EXTENSION = re.compile(r"\.(?:fbx|bvh|glb|gltf|anim|dae|c3d|ma|mb|blend|uasset)$", re.IGNORECASE)
 _LONGEST = 4  # words in a phrase

@@ -403,14 +403,14 @@ def test_patterns_are_changed_and_changed_back() -> None:
 
 
 def test_words_of_other_languages_can_be_taught() -> None:
-    german = (
+    finnish = (
         Patterns()
-        .with_pattern("joins", "nach", "to")
-        .with_pattern("limbs", "links", "left")
-        .with_pattern("kinds", "winken", "gesture")
+        .with_pattern("joins", "kohti", "to")
+        .with_pattern("limbs", "vasen", "left")
+        .with_pattern("kinds", "vilkutus", "gesture")
     )
-    assert told(["crossed_nach_idle", "crossed_idle", "idle"], patterns=german)["end_stance"] == "idle"
-    assert told(["winken_links"], patterns=german) == {"kind": "gesture", "limb": "left", "layer": "arms"}
+    assert told(["crossed_kohti_idle", "crossed_idle", "idle"], patterns=finnish)["end_stance"] == "idle"
+    assert told(["vilkutus_vasen"], patterns=finnish) == {"kind": "gesture", "limb": "left", "layer": "arms"}
 
 
 def test_patterns_survive_a_file() -> None:
