@@ -349,6 +349,9 @@ def test_clips_left_aside_stand_at_the_end_with_the_reason_and_are_labelled_all_
     assert dialog.current == aside[0]
     dialog.go_to(walks)
     drive.wait(lambda: dialog.stage.shown is not None and dialog.stage.shown.clip == walks)
+    drive.pause(100)
+    target, root = dialog.stage.view.camera.target, dialog.stage.shown.pose(dialog.stage.seconds).root
+    assert abs(root[0] - target[0]) < 0.6 and abs(root[2] - target[2]) < 0.6  # it is in the picture
     assert "Left aside" in dialog.stage.words.text() and "walk" in dialog.stage.words.text()
     assert [row.name for row in dialog.fields.rows] == ["kind"] and dialog.go.text() == "Leave aside"
     assert not dialog.tags.isEnabled()
