@@ -14,6 +14,7 @@ from metagraph.graph.words import Kind, Layer, Limb
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.words_defaults import Field
 from metagraph.suggest.words_patterns import Patterns, PatternsError, forget, merged, recalled, remembered
+from metagraph.suggest.words_spoken import written
 from metagraph.suggest.words_stances import FoundStance, Stances, Words, is_low, label
 from metagraph.suggest.words_tokens import (
     Phrase,
@@ -21,6 +22,7 @@ from metagraph.suggest.words_tokens import (
     is_number,
     phrases,
     quoted,
+    speech_of,
     take_apart,
     variant,
     without_numbers,
@@ -98,7 +100,8 @@ def _batch(
 ) -> tuple[dict[str, Taken], Stances]:
     """Return the distinct names taken apart, and the stances they have together."""
     patterns = Patterns({field: dict(mine) for field, mine in changes})
-    taken = without_shared([take_apart(name, patterns) for name in names], patterns)
+    speech = speech_of(names, patterns)
+    taken = without_shared([take_apart(name, patterns, speech) for name in names], patterns)
     return dict(zip(names, taken, strict=True)), Stances(taken, patterns)
 
 
@@ -173,7 +176,7 @@ class _Reader:
         if found is None or found[0].words != end:
             end = end[: len(end) - variant(end)] or end
             found = self._stances.named(end, stance.words if stance else ()) or found
-        shown = f"{joined} {label(end)}".strip()
+        shown = f"{label((joined,))} {label(end)}".strip()
         if found:
             return _Parse(words, stance, int(stance is not None), (), shown, found[0], end, found[1], sure)
         return _Parse(words, stance, int(stance is not None), (), shown, None, end, 0.6 if end else 0.0, sure)
@@ -243,8 +246,20 @@ class _Reader:
 
     # -- what it says
 
+    def _spelled(self, name: str, belief: Belief[T] | None) -> Belief[T] | None:
+        """Return the belief with what its reason quotes as the name writes it: 'ToCrossed'."""
+        if belief is None or "'" not in belief.reason:
+            return belief
+        reason = re.sub(
+            "'([^']+)'", lambda found: quoted(name, found[1].split(), self._taken[name]), belief.reason
+        )
+        return Belief(belief.value, belief.confidence, reason)
+
     def key(self, parse: _Parse, field: str) -> Words:
-        """Return the words a correction of a field is remembered by."""
+        """Return the words a correction of a field is remembered by, as the name has them."""
+        return written(self._key(parse, field))
+
+    def _key(self, parse: _Parse, field: str) -> Words:
         limbs = self._patterns.meanings["limbs"]
         if field == "stance" and parse.stance and parse.own:
             return without_numbers(parse.stance.words)
@@ -260,14 +275,14 @@ class _Reader:
             return NameGuess(number=self._number(words))
         kind = self._kind(parse)
         return NameGuess(
-            kind=_spelled(name, kind),
-            stance=_spelled(name, self._stance(parse, kind)),
-            end_stance=_spelled(name, self._end_stance(parse)),
-            layer=_spelled(name, self._layer(parse, kind)),
-            limb=_spelled(name, self._limb(parse)),
-            tags=_spelled(name, self._tags(parse)),
+            kind=self._spelled(name, kind),
+            stance=self._spelled(name, self._stance(parse, kind)),
+            end_stance=self._spelled(name, self._end_stance(parse)),
+            layer=self._spelled(name, self._layer(parse, kind)),
+            limb=self._spelled(name, self._limb(parse)),
+            tags=self._spelled(name, self._tags(parse)),
             number=self._number(words),
-            other=_spelled(name, self._other(words)) if kind is None else None,
+            other=self._spelled(name, self._other(words)) if kind is None else None,
         )
 
     def _other(self, words: Words) -> Belief[str] | None:
@@ -357,7 +372,7 @@ class _Reader:
 
     def _called(self, stance: FoundStance) -> str:
         """Return a stance's name, as the user corrected it where that happened."""
-        found = recalled(self._patterns, "stance", without_numbers(stance.words))
+        found = recalled(self._patterns, "stance", written(without_numbers(stance.words)))
         return found[0] if found else stance.text
 
     def _layer(self, parse: _Parse, kind: Belief[Kind] | None) -> Belief[Layer] | None:
@@ -429,17 +444,6 @@ class _Reader:
         if not words or not is_number(words[-1]) or len(words[-1]) > 9:
             return None
         return Belief(int(words[-1]), 0.95, f"name ends in '{words[-1]}'")
-
-
-def _spelled(name: str, belief: Belief[T] | None) -> Belief[T] | None:
-    """Return the belief with what its reason quotes as the name writes it: 'ToCrossed'."""
-    if belief is None or "'" not in belief.reason:
-        return belief
-    return Belief(
-        belief.value,
-        belief.confidence,
-        re.sub("'([^']+)'", lambda found: quoted(name, found[1].split()), belief.reason),
-    )
 
 
 def _layer(said: Phrase, confidence: float) -> Belief[Layer]:

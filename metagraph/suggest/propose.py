@@ -20,7 +20,7 @@ from metagraph.suggest.alike import Alike, Example
 from metagraph.suggest.clip_measures import layer_of
 from metagraph.suggest.details import masked, rest_of, stroked, timed, weighted
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.left_aside import left_aside
+from metagraph.suggest.left_aside import MANY, left_aside
 from metagraph.suggest.motion_guess import guess
 from metagraph.suggest.name_words import NameGuess, Patterns, read_names
 from metagraph.suggest.places import Heard, Places
@@ -133,6 +133,7 @@ def propose(
     standing = {c: t for c, t in mine.items() if called[c].other is None}  # where fights begin nobody stands
     shapes = _shapes(project, traits, standing, whole, called) if moving else {}
     alike = Alike([*examples_of(project, traits), *examples]) if "learned" in sources else Alike([])
+    odd = sum(1 for c in chosen if names.get(project.clips[c].name, NameGuess()).other is not None)
     heard, others, aside = list[Heard](), list[Heard](), dict[str, str]()
     for c in chosen:
         name = project.clips[c].name
@@ -143,7 +144,8 @@ def propose(
             each.motion = guess(each.traits, shapes, CARRIER if each.posture else None, each.posture)
         if alike.examples:
             each.learned = alike.guess(words_of(each.name), measures_of(each.traits))
-        why = left_aside(each.said, each.traits, each.motion)
+        usual, apart = odd >= MANY * len(chosen), shapes if each.posture is None else None
+        why = left_aside(each.said, each.traits, each.motion, usual, apart)
         layer = _layer_of(each)
         each.layer = layer.belief.value if layer is not None else "arms"
         each.beside = each.motion

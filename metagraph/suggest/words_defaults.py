@@ -1,14 +1,14 @@
 """The words animators name clips with, in English, and what they say. Data only; `words_patterns` lets users
-change it.
+change it. Words of other languages stand for English ones: `synonyms`, from `words_languages`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from types import MappingProxyType
-from typing import Final, Literal
+from typing import Final, Literal, get_args
 
-Field = Literal["kinds", "layers", "limbs", "tags", "postures", "joins", "junk"]
+Field = Literal["kinds", "layers", "limbs", "tags", "postures", "joins", "junk", "synonyms"]
 Meanings = Mapping[str, str]
 
 
@@ -146,7 +146,7 @@ JUNK: Final = _table(
             scene, mesh, character, char"""
     }
 )
-DEFAULTS: Final[Mapping[Field, Meanings]] = {
+_ENGLISH: Final[Mapping[str, Meanings]] = {
     "kinds": KINDS,
     "layers": LAYERS,
     "limbs": LIMBS,
@@ -155,3 +155,23 @@ DEFAULTS: Final[Mapping[Field, Meanings]] = {
     "joins": JOINS,
     "junk": JUNK,
 }
+
+
+class _Defaults(Mapping[Field, Meanings]):
+    """What is built in; words of other languages are read when they are first asked for."""
+
+    def __getitem__(self, name: Field) -> Meanings:
+        if name == "synonyms":
+            from metagraph.suggest.words_languages import synonyms
+
+            return synonyms()
+        return _ENGLISH[name]
+
+    def __iter__(self) -> Iterator[Field]:
+        return iter(get_args(Field))
+
+    def __len__(self) -> int:
+        return len(get_args(Field))
+
+
+DEFAULTS: Final[Mapping[Field, Meanings]] = _Defaults()

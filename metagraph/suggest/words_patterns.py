@@ -18,7 +18,7 @@ FIELDS: tuple[Field, ...] = get_args(Field)
 LEARNABLE: Final = ("kind", "layer", "limb", "tags", "stance", "end_stance")
 _ALLOWED: Final[Mapping[Field, tuple[str, ...] | None]] = {
     "kinds": (*KINDS, "other"), "layers": LAYERS, "limbs": LIMBS, "tags": None,
-    "postures": ("stance",), "joins": ("to", "from"), "junk": ("junk",),
+    "postures": ("stance",), "joins": ("to", "from"), "junk": ("junk",), "synonyms": None,
 }  # fmt: skip
 _OF_FIELD: Final[Mapping[str, tuple[str, ...] | None]] = {
     "kind": KINDS, "layer": LAYERS, "limb": LIMBS, "tags": None, "stance": None, "end_stance": None,
@@ -41,7 +41,8 @@ class Patterns:
     A phrase is lower-case words joined by blanks, as names are taken apart: "check watch". Fields: `kinds`
     (phrase -> kind, or "other" for what is no conversation), `layers`, `limbs`, `tags` (blanks between
     several), `postures` (words that stances are called by), `joins` (words between the two stances of a
-    transition), `junk` (words exporters leave).
+    transition), `junk` (words exporters leave), `synonyms` (words of other languages or of a house -> the
+    English words they stand for; "-" for none at all).
     """
 
     changes: Mapping[Field, Mapping[str, str | None]] = field(default_factory=dict)
@@ -53,14 +54,28 @@ class Patterns:
         out: dict[Field, Meanings] = {}
         for name in FIELDS:
             mixed = {**DEFAULTS[name], **self.changes.get(name, {})}
+            if name != "synonyms":  # of which one meaning was changed, the others stay
+                mixed = {**self._stood_for(name, mixed), **mixed}
             out[name] = MappingProxyType({k: v for k, v in mixed.items() if v is not None})
         return MappingProxyType(out)
+
+    def _stood_for(self, name: Field, mixed: Mapping[str, str | None]) -> dict[str, str | None]:
+        """Return what a field says of words of other languages that a user gave a meaning of their own."""
+        if not self.changes:
+            return {}
+        known = {**DEFAULTS["synonyms"], **self.changes.get("synonyms", {})}
+        own = {p for field_, mine in self.changes.items() if field_ != "synonyms" for p in mine}
+        return {p: mixed[meaning] for p in own if (meaning := known.get(p)) and meaning in mixed}
 
     @cached_property
     def vocabulary(self) -> frozenset[str]:
         """Every single word that means something."""
         return frozenset(
-            w for name in FIELDS if name != "junk" for phrase in self.meanings[name] for w in phrase.split()
+            w
+            for name in FIELDS
+            if name not in ("junk", "synonyms")
+            for phrase in self.meanings[name]
+            for w in phrase.split()
         )
 
     def with_pattern(self, name: Field, phrase: str, meaning: str | None) -> Patterns:

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from metagraph.suggest.words_patterns import Patterns
+from metagraph.suggest.words_spoken import written
 from metagraph.suggest.words_tokens import (
     Taken,
     is_designator,
@@ -103,7 +104,7 @@ class FoundStance:
 
 def label(words: Sequence[str]) -> str:
     """Return the stance as people write it: without a leading "body", numbers without zeros."""
-    told = words[1:] if len(words) > 1 and words[0] in _BARE else words
+    told = written(words[1:] if len(words) > 1 and words[0] in _BARE else words)
     return " ".join(str(int(w)) if is_number(w) and len(w) < 10 else w for w in told)
 
 
@@ -116,7 +117,7 @@ class Stances:
         self._joins = patterns.meanings["joins"]
         self.found: dict[Words, FoundStance] = {}
         self._bares: dict[Words, Words] = {}
-        distinct = sorted({t for t in batch if t.words}, key=lambda t: (t.words, t.splits))
+        distinct = sorted(dict.fromkeys(t for t in batch if t.words), key=lambda t: (t.words, t.splits))
         self._distinct = [t.words for t in distinct]
         followers = _followers(distinct)
         for taken in distinct:
@@ -195,7 +196,7 @@ class Stances:
         elif self._kinds.get(core[0]) == "stance" and not self._acts(core) and self.postural(core[1:]):
             self._add(core, 0.95, core[0], core, words)
         elif self.postural(core) and not self._acts(core):
-            self._add(core, 0.7, " ".join(core), core, words)
+            self._add(core, 0.7, " ".join(written(core)), core, words)
 
     def _passes_over(self, rest: Words) -> bool:
         """Whether words before "idle" tell a transition ("walk to idle") and not a stance ("hand to chin
@@ -279,7 +280,7 @@ class Stances:
                 or any(self._bare(run) == self._bare(s.words) for s in self.found.values())
             ):
                 bare = run[:-1] if len(run) > 1 and self._kinds.get(run[-1]) == "stance" else run
-                self._add(bare, 0.75, " ".join(run), run)
+                self._add(bare, 0.75, " ".join(written(run)), run)
 
     def _trimmed(self, run: Words) -> Words:
         """Leave out what belongs to the act that follows: numbers and body parts, "idle finger" of "idle
@@ -313,7 +314,7 @@ class Stances:
                 and not self._other(end)
                 and not self._sister(end)
             ):
-                self._add(end, 0.7, f"{joined} {' '.join(end)}", end)
+                self._add(end, 0.7, " ".join(written((joined, *end))), end)
 
     def _sister(self, end: Words) -> bool:
         """Whether an end is short for a stance that is known: "tilt left" for "head tilt left"."""
@@ -346,7 +347,7 @@ class Stances:
             if len(mine) < 2 or not any(mine.values()):
                 continue
             held = self.found.get(core)
-            confidence, why = (held.confidence, held.why) if held else (0.75, " ".join(core))
+            confidence, why = (held.confidence, held.why) if held else (0.75, " ".join(written(core)))
             for mark in mine:
                 if held is not None:
                     held.prefixes.discard((*core, mark))

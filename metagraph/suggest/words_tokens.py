@@ -12,9 +12,9 @@ from functools import lru_cache
 
 from metagraph.suggest.words_defaults import Meanings
 from metagraph.suggest.words_patterns import Patterns
+from metagraph.suggest.words_spoken import Spoken, Token, Word, english_words, spoken, tokens, written
 
 _EXTENSION = re.compile(r"\.(?:fbx|bvh|glb|gltf|anim|dae|c3d|ma|mb|blend|uasset)$", re.IGNORECASE)
-_PIECES = re.compile(r"\d+[hH](?![^\W_])|\d+|[^\W\d_]+|[\W_]+")
 _LONGEST = 4  # words in a phrase
 SEVERAL = 8  # names, from which on what nearly all of them begin with says nothing
 FEW = 3  # names at most that may share a word of the list because they are of one kind
@@ -50,11 +50,11 @@ class Phrase:
     meaning: str
 
 
-def take_apart(name: str, patterns: Patterns) -> Taken:
+def take_apart(name: str, patterns: Patterns, speech: Spoken | None = None) -> Taken:
     """Split a name into words, leaving out file endings and what exporters add ("Armature|mixamo.com|Layer0",
-    "Take 001").
+    "Take 001"). speech: the languages its batch speaks, None for English alone.
     """
-    segments = [_segment(part, patterns) for part in re.split(r"[|:]", _EXTENSION.sub("", name))]
+    segments = [_segment(part, patterns, speech, at) for part, at in _parts(name)]
     words: list[str] = []
     splits: list[int] = []
     for segment in [s for s in segments if any(not w.isdecimal() for w in s.words)] or segments:
@@ -63,20 +63,52 @@ def take_apart(name: str, patterns: Patterns) -> Taken:
     return Taken(tuple(words), tuple(splits))
 
 
+def _parts(name: str) -> list[tuple[str, int]]:
+    """Return what stands between a name's colons and bars, and from where on."""
+    bare = _EXTENSION.sub("", name)
+    return [(found[0], found.start()) for found in re.finditer(r"[^|:]+", bare)] or [(bare, 0)]
+
+
+def speech_of(names: Sequence[str], patterns: Patterns) -> Spoken | None:
+    """Return what languages names speak beside English, None where they are English alone."""
+    return spoken(
+        [
+            [t for part, at in _parts(name) for t in tokens(part, at) if isinstance(t, Token)]
+            for name in names
+        ],
+        patterns,
+    )
+
+
 def _number(piece: str) -> str:
     """Return digits without leading zeros: a stance called 1 here and 01 there is one. "2H" stays."""
     return str(int(piece)) if piece.isdecimal() and len(piece) < 10 else piece
 
 
-def _segment(text: str, patterns: Patterns) -> Taken:
+def _segment(text: str, patterns: Patterns, speech: Spoken | None = None, offset: int = 0) -> Taken:
     words: list[str] = []
     splits: list[int] = []
-    for piece in _PIECES.findall(text):
-        if piece[0].isalpha() or piece[0].isdecimal():
-            for word in _camel(piece) if piece[0].isalpha() else [_number(piece)]:
-                words += _known(word.lower(), patterns.vocabulary)
-        elif "__" in piece and words:
-            splits.append(len(words))
+    said: list[Token] = []
+
+    def english(word: str) -> tuple[str, ...]:
+        return (_number(word),) if word.isdecimal() else _known(word, patterns.vocabulary)
+
+    def read() -> None:
+        if speech is None:
+            for token in said:
+                words.extend(english_words(token, english))
+        else:
+            words.extend(speech.read(said, english, patterns.meanings))
+        said.clear()
+
+    for piece in tokens(text, offset):
+        if isinstance(piece, Token):
+            said.append(piece)
+        elif "__" in piece.text:
+            read()
+            if words:
+                splits.append(len(words))
+    read()
     junk, kinds = patterns.meanings["junk"], patterns.meanings["kinds"]
     while words and (n := _junk_at(words, junk, front=False)):
         del words[-n:]
@@ -102,16 +134,6 @@ def _junk_at(words: Sequence[str], junk: Meanings, *, front: bool) -> int:
         if len(words) >= n and " ".join(words[:n] if front else words[-n:]) in junk:
             return n
     return 0
-
-
-def _camel(run: str) -> list[str]:
-    cuts = [0]
-    for i in range(1, len(run)):
-        rises = run[i - 1].islower() and run[i].isupper()
-        ends = run[i - 1].isupper() and run[i].isupper() and i + 1 < len(run) and run[i + 1].islower()
-        if rises or ends:
-            cuts.append(i)
-    return [run[a:b] for a, b in zip(cuts, [*cuts[1:], len(run)], strict=True)]
 
 
 @lru_cache(maxsize=8192)
@@ -198,8 +220,20 @@ def phrases(words: Sequence[str], table: Meanings) -> list[Phrase]:
     return out
 
 
-def quoted(name: str, words: Sequence[str]) -> str:
-    """Return words in quotes as the name writes them, or plainly where they do not stand together in it."""
+def quoted(name: str, words: Sequence[str], taken: Taken | None = None) -> str:
+    """Return words in quotes as the name writes them, or plainly where they do not stand together in it.
+    taken: the name taken apart, to find words of other languages by the English ones they stand for.
+    """
+    there = taken.words if taken is not None else ()
+    n = len(words)
+    for at in range(len(there) - n, -1, -1) if n else ():
+        if tuple(words) != there[at : at + n]:
+            continue
+        some = [w for w in there[at : at + n] if isinstance(w, Word)]
+        if len(some) == n:
+            return f"'{name[min(w.start for w in some) : max(w.end for w in some)]}'"
+        words = written(there[at : at + n])
+        break
     parts = (f"0*{word}" if word.isdecimal() else re.escape(word) for word in words)
     found = list(re.finditer(r"[\W_]*".join(parts), name, re.IGNORECASE)) if words else []
     return f"'{found[-1][0]}'" if found else f"'{' '.join(words)}'"

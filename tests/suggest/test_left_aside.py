@@ -52,9 +52,11 @@ def test_a_single_frame_is_left_aside_unless_other_clips_begin_there(toy: Any) -
     assert alone.startswith("is a single frame")
     others = {f"up {n}": of(toy.clip(f"up {n}", 1.5, 0.8, swing=0.3 + 0.1 * n)) for n in range(4)}
     shapes = discovered({**others, "pose": pose})
-    assert left_aside(NameGuess(), pose, guess(pose, shapes)) == ""
+    assert left_aside(NameGuess(), pose, guess(pose, shapes), shapes=shapes) == ""
     far = of(toy.clip("far", 1.0, 2.4).trimmed(0, 1))
-    assert "a pose in which no other clip begins" in left_aside(NameGuess(), far, guess(far, shapes))
+    assert "a pose in which no other clip begins" in left_aside(
+        NameGuess(), far, guess(far, shapes), shapes=shapes
+    )
 
 
 def test_without_the_motion_a_short_clip_is_what_its_name_says(toy: Any) -> None:
@@ -94,7 +96,7 @@ def test_each_clip_that_is_left_aside_can_be_taken_up(exercises: MadeSet) -> Non
         assert p.stance is not None and after.places[p.stance.value].layer == p.layer.value
         assert set(after.proposals) == {*found.proposals, clip}
         if n < 3:
-            assert clip in accept(exercises.project, after, clips={clip}).placed
+            assert clip in accept(exercises.project, after).placed
     with pytest.raises(KeyError):
         taken_up(found, next(iter(found.proposals)))
 
