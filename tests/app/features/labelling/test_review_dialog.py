@@ -166,11 +166,11 @@ def watched(project) -> float:
     )
 
 
-def test_the_least_certain_stand_first_after_the_stances(practice):
+def test_clips_stand_in_the_order_of_the_review_stances_first(practice):
     dialog = begun(practice)
-    found = [dialog.review.found.proposals[c] for c in dialog.queue.clips]
-    rest = [p.confidence for p in found if p.kind.value != "stance"]
-    assert rest == sorted(rest) and len(found) == 152
+    assert list(dialog.queue.clips) == dialog.review.order() and len(dialog.queue.clips) == 152
+    rests = [dialog.review.found.proposals[c].kind.value == "stance" for c in dialog.queue.clips]
+    assert rests == sorted(rests, reverse=True)
     assert "0 of 152 placed" in dialog.queue.words.text() and "min left" in dialog.queue.words.text()
     dialog.close()
 
