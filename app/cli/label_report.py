@@ -20,6 +20,7 @@ from metagraph.formats.import_words import counted
 from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.flags import chance_wrong, doubt, gain, needs_a_look
+from metagraph.suggest.left_aside import reasons
 from metagraph.suggest.propose import Proposal, Proposals, Taken
 
 KIND_MARKS = {
@@ -71,6 +72,7 @@ def report(
             if there:
                 title = f"<h2>{layer.capitalize()}: {escape(place.name)} ({len(there)})</h2>"
                 parts.append(_section(title, _cards(project, found, there, taken, pictures, path)))
+    parts.append(_aside(project, found))
     body = "\n".join(parts)
     head = (
         f"<meta charset='utf-8'><link rel='icon' href='data:,'><title>{escape(project.name)}: "
@@ -78,6 +80,17 @@ def report(
     )
     body += f"\n<script>{SCRIPT}</script>"
     return f"<!doctype html><html lang='en'><head>{head}</head><body>\n{body}</body></html>\n"
+
+
+def _aside(project: Project, found: Proposals) -> str:
+    """The clips that were left aside, by reason, the most frequent first."""
+    lines = []
+    for why, clips in reasons(found.aside):
+        names = ", ".join(escape(project.clips[c].name) for c in clips)
+        lines.append(f"<li>{many(len(clips), 'clip')}: {escape(why)} <span class='dim'>({names})</span></li>")
+    if not lines:
+        return ""
+    return f"<h2 id='aside'>Left aside ({len(found.aside)})</h2><ul>{''.join(lines)}</ul>"
 
 
 def _section(title: str, cards: str) -> str:

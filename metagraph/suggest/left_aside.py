@@ -13,6 +13,7 @@ from metagraph.suggest.estimate import Belief
 from metagraph.suggest.motion_guess import MotionGuess
 from metagraph.suggest.name_words import NameGuess
 from metagraph.suggest.proposal import Place, Proposals, plain
+from metagraph.suggest.stances import Stances, likely
 from metagraph.suggest.traits import Traits
 
 # Words that mean nothing else; others may be a beat in another language, or in another mouth
@@ -40,23 +41,40 @@ def _talks(traits: Traits | None, motion: MotionGuess | None) -> bool:
     return stays and traits.travel < FAR and traits.turned < ROUND and not walks(traits)
 
 
-def _shared(traits: Traits, motion: MotionGuess | None) -> bool:
-    """Whether a pose is one that other clips begin or end in, so that it may be a stance. Without motion
-    nobody knows.
+def _shared(traits: Traits, motion: MotionGuess | None, shapes: Stances | None) -> bool:
+    """Return whether a pose is one that other clips begin or end in, so that it may be a stance: in each
+    layer that has such poses, where the layers were recorded apart. Without motion nobody knows.
     """
     if motion is None:
         return True
-    chance, shape = next(iter(motion.begins), (0.0, None))
-    return (
-        nothing(traits) and traits.face == 0 and shape is not None and chance > 0.5 and len(shape.members) > 1
+    if not nothing(traits) or traits.face > 0:
+        return False
+    told = [motion.begins]
+    if shapes is not None:
+        told = [
+            likely(some, x.names, x.first)
+            for layer, x in traits.layers.items()
+            if x.names and (some := [s for s in shapes.get(layer, ()) if s.id or len(s.members) > 1])
+        ]
+    firsts = [next(iter(some), (0.0, None)) for some in told]
+    return bool(firsts) and all(
+        shape is not None and chance > 0.5 and (shape.id != "" or len(shape.members) > 1)
+        for chance, shape in firsts
     )
 
 
-def left_aside(said: NameGuess, traits: Traits | None, motion: MotionGuess | None, usual: bool = True) -> str:
+def left_aside(
+    said: NameGuess,
+    traits: Traits | None,
+    motion: MotionGuess | None,
+    usual: bool = True,
+    shapes: Stances | None = None,
+) -> str:
     """Return why a clip is none of the four kinds, "" where it may be one. usual: whether many names of the
-    set speak of what talkers do not do, as those of a game do.
+    set speak of what talkers do not do, as those of a game do. shapes: the stances, where each layer was
+    recorded by itself.
     """
-    if traits is not None and traits.duration < POSE and not _shared(traits, motion):
+    if traits is not None and traits.duration < POSE and not _shared(traits, motion, shapes):
         frames = "a single frame" if traits.frames == 1 else f"only {traits.duration:.2f} s long"
         return f"is {frames}: a pose in which no other clip begins or ends, not a movement"
     if said.kind is not None:

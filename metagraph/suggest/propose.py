@@ -133,7 +133,7 @@ def propose(
     standing = {c: t for c, t in mine.items() if called[c].other is None}  # where fights begin nobody stands
     shapes = _shapes(project, traits, standing, whole, called) if moving else {}
     alike = Alike([*examples_of(project, traits), *examples]) if "learned" in sources else Alike([])
-    fights = sum(1 for c in chosen if names.get(project.clips[c].name, NameGuess()).other is not None)
+    odd = sum(1 for c in chosen if names.get(project.clips[c].name, NameGuess()).other is not None)
     heard, others, aside = list[Heard](), list[Heard](), dict[str, str]()
     for c in chosen:
         name = project.clips[c].name
@@ -144,7 +144,8 @@ def propose(
             each.motion = guess(each.traits, shapes, CARRIER if each.posture else None, each.posture)
         if alike.examples:
             each.learned = alike.guess(words_of(each.name), measures_of(each.traits))
-        why = left_aside(each.said, each.traits, each.motion, fights >= MANY * len(chosen))
+        usual, apart = odd >= MANY * len(chosen), shapes if each.posture is None else None
+        why = left_aside(each.said, each.traits, each.motion, usual, apart)
         layer = _layer_of(each)
         each.layer = layer.belief.value if layer is not None else "arms"
         each.beside = each.motion

@@ -16,7 +16,6 @@ from PySide6.QtWidgets import QInputDialog
 from metagraph.formats.store import open_project
 from metagraph.study.klm import predicted
 from metagraph.suggest.bridges import missing
-from metagraph.suggest.flags import gain
 from metagraph.suggest.review import DECIDING
 from tests.label_zoo.catalogue import named
 
@@ -167,11 +166,11 @@ def watched(project) -> float:
     )
 
 
-def test_where_a_look_gains_most_stands_first_after_the_stances(practice):
+def test_clips_stand_in_the_order_of_the_review_stances_first(practice):
     dialog = begun(practice)
-    found = [dialog.review.found.proposals[c] for c in dialog.queue.clips]
-    rest = [-gain(p) for p in found if p.kind.value != "stance"]
-    assert rest == sorted(rest) and len(found) == 152
+    assert list(dialog.queue.clips) == dialog.review.order() and len(dialog.queue.clips) == 152
+    rests = [dialog.review.found.proposals[c].kind.value == "stance" for c in dialog.queue.clips]
+    assert rests == sorted(rests, reverse=True)
     assert "0 of 152 placed" in dialog.queue.words.text() and "min left" in dialog.queue.words.text()
     dialog.close()
 
@@ -350,6 +349,9 @@ def test_clips_left_aside_stand_at_the_end_with_the_reason_and_are_labelled_all_
     assert dialog.current == aside[0]
     dialog.go_to(walks)
     drive.wait(lambda: dialog.stage.shown is not None and dialog.stage.shown.clip == walks)
+    drive.pause(100)
+    target, root = dialog.stage.view.camera.target, dialog.stage.shown.pose(dialog.stage.seconds).root
+    assert abs(root[0] - target[0]) < 0.6 and abs(root[2] - target[2]) < 0.6  # it is in the picture
     assert "Left aside" in dialog.stage.words.text() and "walk" in dialog.stage.words.text()
     assert [row.name for row in dialog.fields.rows] == ["kind"] and dialog.go.text() == "Leave aside"
     assert not dialog.tags.isEnabled()
