@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from typing import Any
 
 from metagraph.suggest.words_cut import Token
@@ -30,7 +31,11 @@ def spoken(batch: Sequence[Sequence[Token]], patterns: Any) -> Spoken | None:
     meanings = patterns.meanings
     own = own_words(patterns.changes)
     distinct = list(dict.fromkeys(tuple(t for t in name if not t.text.isdecimal()) for name in batch))
-    found = {tongue: [_told(name, tongue, meanings, own) for name in distinct] for tongue in languages()}
+    runs = [_phrases(name, meanings, own) for name in distinct]
+    found = {
+        tongue: [_told(name, some, tongue, meanings, own) for name, some in zip(distinct, runs, strict=True)]
+        for tongue in languages()
+    }
     tongues: list[Language] = []
     spent: list[set[int]] = [set() for _ in distinct]
     while True:
@@ -76,8 +81,39 @@ def _shared(word: str, tongues: Sequence[Language]) -> bool:
     return any(word in tongue.exact for tongue in tongues)
 
 
+@lru_cache(maxsize=1)
+def _any_language() -> frozenset[str]:
+    return frozenset(key for tongue in languages() for key in tongue.exact)
+
+
+def _phrases(
+    name: Sequence[Token], meanings: Any, own: Mapping[str, str | None]
+) -> dict[int, list[tuple[int, str]]]:
+    """Return which tokens together some language knows and English does not: where they begin -> how many,
+    the most first, and their letters.
+    """
+    known = _any_language()
+    out: dict[int, list[tuple[int, str]]] = {}
+    for at in range(len(name)):
+        for n in range(min(PARTS, len(name) - at), 0, -1):
+            some = name[at : at + n]
+            key = "".join(t.text for t in some)
+            if key not in known or key in own or any(t.run or t.alone for t in some):
+                continue
+            if n == 1 and in_english(key, meanings):
+                continue
+            if n > 1 and len(key) < 2 * _ALONE and any(in_english(t.text, meanings) for t in some):
+                continue  # "sit a" is no word of Japanese
+            out.setdefault(at, []).append((n, key))
+    return out
+
+
 def _told(
-    name: Sequence[Token], tongue: Language, meanings: Any, own: Mapping[str, str | None]
+    name: Sequence[Token],
+    known: Mapping[int, Sequence[tuple[int, str]]],
+    tongue: Language,
+    meanings: Any,
+    own: Mapping[str, str | None],
 ) -> dict[int, int]:
     """Return the tokens of a name that a language knows and English does not, with how many letters each."""
     out: dict[int, int] = {}
@@ -89,32 +125,31 @@ def _told(
     for at, token in enumerate(name):
         if token.run:
             if tongue.longest:
-                known = sum(
+                covered = sum(
                     b - a for m, a, b in cut_run(token.text, find, tongue.longest) if m and m not in MARKS
                 )
-                if 2 * known >= len(token.text):
-                    out[at] = 4 * known
+                if 2 * covered >= len(token.text):
+                    out[at] = 4 * covered
             continue
-        for n in range(min(PARTS, len(name) - at), 0, -1):
-            some = name[at : at + n]
-            if any(t.run for t in some):
-                continue
-            key = "".join(t.text for t in some)
-            if key in own or key not in tongue.exact or not tongue.sure(key):
-                continue
-            if (n == 1 and in_english(key, meanings)) or any(t.alone for t in some):
-                continue
-            if n > 1 and any(in_english(t.text, meanings) for t in some) and len(key) < 2 * _ALONE:
-                continue  # "sit a" is no word of Japanese
-            for k in range(at, at + n):
-                out[k] = max(out.get(k, 0), len(key) // n)
-            break
+        for n, key in known.get(at, ()):
+            if key in tongue.exact and tongue.sure(key):
+                for k in range(at, at + n):
+                    out[k] = max(out.get(k, 0), len(key) // n)
+                break
         else:
             word = token.text
-            if len(word) > 5 and at not in out and not in_english(word, meanings) and word not in own:
-                stem = tongue.stem(word)
-                if len(stem) > 4 and stem in tongue.stemmed and tongue.stemmed[stem] not in MARKS:
-                    out[at] = len(stem) - 1
-                elif len(word) > 8 and word.isascii() and len(cut := compound_of(word, tongue)) > 1:
-                    out[at] = max(map(len, cut))
+            passed = len(word) <= 5 or at in out or word in own or in_english(word, meanings)
+            if not passed and (size := _resembles(word, tongue)):
+                out[at] = size
     return out
+
+
+@lru_cache(maxsize=65536)
+def _resembles(word: str, tongue: Language) -> int:
+    """Return how many letters of a word tell a language by its stem or its parts, 0 for none."""
+    stem = tongue.stem(word)
+    if len(stem) > 4 and stem in tongue.stemmed and tongue.stemmed[stem] not in MARKS:
+        return len(stem) - 1
+    if len(word) > 8 and word.isascii() and len(cut := compound_of(word, tongue)) > 1:
+        return max(map(len, cut))
+    return 0

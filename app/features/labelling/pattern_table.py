@@ -15,6 +15,7 @@ from PySide6.QtWidgets import QComboBox, QStyledItemDelegate, QStyleOptionViewIt
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph.words import KINDS, LAYERS, LIMBS
 from metagraph.suggest.words_defaults import DEFAULTS, Field
+from metagraph.suggest.words_languages import AFTER_FROM, AFTER_TO, MAYBE_FROM, MAYBE_TO, NOTHING
 from metagraph.suggest.words_patterns import FIELDS, Patterns, PatternsError, forget, remembered
 
 Index = QModelIndex | QPersistentModelIndex
@@ -27,6 +28,7 @@ ABOUT = {
     "postures": "stance name",
     "joins": "transition",
     "junk": "no word",
+    "synonyms": "same as",
     "kind": "kind",
     "layer": "layer",
     "limb": "arm",
@@ -41,13 +43,23 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     "postures": ("stance",),
     "joins": ("to", "from"),
     "junk": ("junk",),
+    "synonyms": (),
     "kind": KINDS,
     "layer": LAYERS,
     "limb": LIMBS,
     "stance": (),
     "end_stance": (),
 }
-SHOWN = {"other": "none of the four", "junk": "nothing", None: "nothing any more"}
+SHOWN = {
+    "other": "none of the four",
+    "junk": "nothing",
+    None: "nothing any more",
+    NOTHING: "nothing",
+    MAYBE_TO: "to, between stances",
+    MAYBE_FROM: "from, between stances",
+    AFTER_TO: "to, after a stance",
+    AFTER_FROM: "from, after a stance",
+}
 NOBODY, MINE, LEARNED = "built in", "you", "corrections"
 
 

@@ -105,6 +105,20 @@ def test_built_in_words_are_found_changed_in_place_and_given_back(dialog: Patter
 
 
 @pytest.mark.window
+def test_words_of_other_languages_are_shown_by_what_they_stand_for_and_taken_away(
+    dialog: PatternsDialog,
+) -> None:
+    dialog.every.click()
+    dialog.search.setText("schulterzucken")
+    assert shown(dialog) == [("schulterzucken", "same as", "shrug", "built in")]
+    dialog.table.selectRow(0)
+    dialog.remove.click()
+    assert shown(dialog) == [("schulterzucken", "same as", "nothing any more", "you")]
+    dialog.search.setText("zwischen")
+    assert shown(dialog) == []
+
+
+@pytest.mark.window
 def test_a_built_in_word_that_is_taken_away_says_so_and_comes_back(dialog: PatternsDialog) -> None:
     dialog.every.click()
     dialog.search.setText("wave gesture")
