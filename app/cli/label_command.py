@@ -64,13 +64,14 @@ def run(options: Namespace) -> int:
     """Label a folder or project; write the project and an HTML report beside it."""
     from app.cli.command_output import say
     from app.cli.label_pictures import pictures
-    from app.cli.label_report import needs_a_look, report
+    from app.cli.label_report import report
     from metagraph.errors import FileError
     from metagraph.formats.atomic import write_atomically
     from metagraph.formats.import_words import counted
     from metagraph.formats.store import SUFFIX, save_project
     from metagraph.graph.check import check, grave
     from metagraph.suggest.bridges import bridged, told
+    from metagraph.suggest.flags import needs_a_look
     from metagraph.suggest.propose import SOURCES, accept, propose
 
     began = time.perf_counter()
@@ -97,7 +98,7 @@ def run(options: Namespace) -> int:
     place = path.with_name(path.name.removesuffix(SUFFIX) + ".labels.html")
     drawn = {} if options.no_pictures else pictures(taken.project, path.resolve().parent, [*found.proposals])
     write_atomically(place, report(taken.project, found, taken, drawn, notes, path).encode())
-    look = [p for p in found.doubtful if needs_a_look(p, taken)]
+    look = [p for p in found.doubtful if needs_a_look(p, taken.left)]
     errors = [p.message for p in grave(check(taken.project))]
     seconds = time.perf_counter() - began
     aside: dict[str, list[str]] = {}

@@ -19,6 +19,8 @@ from app.look.plural import many
 from metagraph.formats.import_words import counted
 from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.suggest.estimate import Belief
+from metagraph.suggest.flags import chance_wrong, doubt, gain, needs_a_look
+from metagraph.suggest.left_aside import reasons
 from metagraph.suggest.propose import Proposal, Proposals, Taken
 
 KIND_MARKS = {
@@ -27,7 +29,6 @@ KIND_MARKS = {
     "fidget": "◆",
     "transition": "➜",
 }  # as in the window; its module needs Qt
-SURE = 0.9  # from here on a proposal needs no second look
 
 
 def report(
@@ -41,7 +42,7 @@ def report(
     """Return the page. pictures: clip, or stance of the labelled project -> `[H, W, 4]` uint8, of those that
     could be drawn. path: the project's file, which the page says how to open.
     """
-    doubtful = [p for p in found.doubtful if needs_a_look(p, taken)]
+    doubtful = sorted((p for p in found.doubtful if needs_a_look(p, taken.left)), key=lambda p: -gain(p))
     told = [f"<li>{escape(note)}</li>" for note in counted(notes)]
     stances = {i: s.name for i in taken.held if (s := taken.project.stance(i)) is not None}
     held = [
@@ -71,6 +72,7 @@ def report(
             if there:
                 title = f"<h2>{layer.capitalize()}: {escape(place.name)} ({len(there)})</h2>"
                 parts.append(_section(title, _cards(project, found, there, taken, pictures, path)))
+    parts.append(_aside(project, found))
     body = "\n".join(parts)
     head = (
         f"<meta charset='utf-8'><link rel='icon' href='data:,'><title>{escape(project.name)}: "
@@ -80,11 +82,15 @@ def report(
     return f"<!doctype html><html lang='en'><head>{head}</head><body>\n{body}</body></html>\n"
 
 
-def needs_a_look(p: Proposal, taken: Taken) -> bool:
-    """Whether somebody should look at a proposal: it is unsure, its sources disagree, it would jump, or it
-    was not placed.
-    """
-    return p.confidence < SURE or bool(p.conflicts) or p.good is False or p.clip in taken.left
+def _aside(project: Project, found: Proposals) -> str:
+    """The clips that were left aside, by reason, the most frequent first."""
+    lines = []
+    for why, clips in reasons(found.aside):
+        names = ", ".join(escape(project.clips[c].name) for c in clips)
+        lines.append(f"<li>{many(len(clips), 'clip')}: {escape(why)} <span class='dim'>({names})</span></li>")
+    if not lines:
+        return ""
+    return f"<h2 id='aside'>Left aside ({len(found.aside)})</h2><ul>{''.join(lines)}</ul>"
 
 
 def _section(title: str, cards: str) -> str:
@@ -163,8 +169,8 @@ def _data_of(project: Project, found: Proposals, p: Proposal, taken: Taken) -> s
         "layer": p.layer.value,
         "stance": stance,
         "end": end,
-        "sure": f"{p.confidence:.3f}",
-        "look": "1" if needs_a_look(p, taken) else "0",
+        "sure": f"{1 - chance_wrong(p):.3f}",
+        "look": "1" if needs_a_look(p, taken.left) else "0",
     }
     return " ".join(f"data-{key}='{escape(value, quote=True)}'" for key, value in values.items())
 
@@ -205,7 +211,7 @@ def _card(
             f"likelihood</summary><ul>{''.join(details)}</ul></details></li>"
         )
     warnings = [
-        *p.conflicts,
+        *([doubt(p)] if needs_a_look(p) else p.conflicts),
         *([p.timing_reason] if p.good is False else []),
         *([taken.left[p.clip]] if p.clip in taken.left else []),
     ]

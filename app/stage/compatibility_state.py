@@ -8,7 +8,7 @@ made when asked for.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, QTimer, Signal
@@ -16,6 +16,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from app.look.plural import many
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
+from app.stage.fixes import Fix
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.graph.problem import Problem
@@ -31,24 +32,6 @@ EDGES = {
     "open-loop": "loops",
 }  # what `check` says of the same places, in rougher words
 REASONS = {"begins": "jump-start", "ends": "jump-end", "loops": "jump-loop"}
-
-
-@dataclass(frozen=True)
-class Fix:
-    """One press that mends a problem. words: on the button. changes: fields of the action, as
-    `edits.update_actions` takes them.
-    """
-
-    words: str
-    action: str
-    changes: Mapping[str, Any] = field(default_factory=dict, hash=False)
-    end: str | None = None  # the stance a transition should end in
-
-    def __call__(self, project: Project) -> Project:
-        """Return the project mended."""
-        if self.end is not None:
-            return edits.set_ends(project, [self.action], self.end)
-        return edits.update_actions(project, [self.action], **self.changes)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,5 +1,5 @@
 """The problems of the project as it is now: found on a thread after each edit, merged with what the
-statistics of jumps flag.
+statistics of jumps flag, and what mends them with a press.
 """
 
 from __future__ import annotations
@@ -9,16 +9,19 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.compatibility_state import Compatibility, merged
+from app.stage.fixes import Fix, bridges_for
 from app.stage.session import Session
 from metagraph.graph.check import check
 from metagraph.graph.problem import Problem
+
+Checked = tuple[list[Problem], dict[Problem, Fix]]
 
 AFTER = 250  # milliseconds of quiet after an edit before problems are looked for
 
 
 class ProblemWatch(QObject):
     """changed: `problems` and `misfits` are of the project as it is now. misfits: action id -> words, of the
-    actions with problems.
+    actions with problems. fixes: what mends some of the problems.
     """
 
     changed = Signal()
@@ -35,6 +38,8 @@ class ProblemWatch(QObject):
         self.document, self.session, self.jobs, self.compatibility = document, session, jobs, compatibility
         self.problems: tuple[Problem, ...] = ()
         self.misfits: dict[str, str] = {}
+        self.fixes: dict[Problem, Fix | None] = {}
+        self._bridges: dict[Problem, Fix] = {}
         self._found: tuple[Problem, ...] = ()  # by `check`, without what the statistics flag
         self._busy = False
         self._soon = QTimer(self, singleShot=True, interval=AFTER)
@@ -52,12 +57,16 @@ class ProblemWatch(QObject):
             return
         self._busy = True
         project = self.document.project
-        self.jobs.start(
-            "check", lambda _: check(project), self._checked, lambda e: self._checked([]), quick=True
-        )
 
-    def _checked(self, problems: list[Problem]) -> None:
+        def work(_: object) -> Checked:
+            problems = check(project)
+            return problems, bridges_for(project, problems)
+
+        self.jobs.start("check", work, self._checked, lambda e: self._checked(([], {})), quick=True)
+
+    def _checked(self, result: Checked) -> None:
         self._busy = False
+        problems, self._bridges = result
         self._found = tuple(problems)
         self._merge()
 
@@ -65,7 +74,9 @@ class ProblemWatch(QObject):
         """Problems of what is not edited now are not shown."""
         meta = self.session.onstage.mode == "meta"
         found = tuple(p for p in self._found if not (p.state or p.link if meta else p.stance or p.action))
-        self.problems = merged(found, self.compatibility.flags if meta else {})
+        flags = self.compatibility.flags if meta else {}
+        self.problems = merged(found, flags)
+        self.fixes = {**flags, **self._bridges}
         self.misfits = {
             p.action: f"{p.message}. {p.remedy}" for p in self.problems if p.action and p.severity != "hint"
         }

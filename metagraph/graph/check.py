@@ -5,26 +5,21 @@ anything.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from functools import lru_cache
 from typing import Any
-from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph import anatomy
-from metagraph.graph.expand import ends_in, reachable
+from metagraph.graph import anatomy, end_gaps
+from metagraph.graph.expand import reachable
 from metagraph.graph.manual_check import check_manual
-from metagraph.graph.model import KINDS, LAYERS, REACH, Action, Layer, MetaGraph, Project
+from metagraph.graph.model import KINDS, LAYERS, Action, Layer, MetaGraph, Project
 from metagraph.graph.problem import Problem, Severity
 from metagraph.motion import rotation
-from metagraph.motion.clip import Clip
 from metagraph.motion.features import pose_distance
 
 Array = NDArray[Any]
 
-FAR = 0.08  # metres a joint may be from the stance at a clip's ends before it shows (of a 1.7 m character)
-OPEN_LOOP = 0.05  # metres a loop may be open where its seam is not blended
 FLOATS = 0.06  # of the height: how far the base pose's feet may be from where the stances have them
 TWISTED = np.radians(50)  # how far the base pose's hips may be turned from the stance's
 
@@ -325,81 +320,24 @@ def _ends(
     project: Project, graph: MetaGraph, action: Action, at: Callable[[Severity, str, str, str], Problem]
 ) -> Iterator[Problem]:
     """Compare a clip's ends with the stances it leaves and enters, on the joints its layer moves."""
-    motion = _motion(project, action)
-    if motion is None or project.skeleton is None:
-        return
-    joints = _reached(project, graph, action)
-    scale = project.skeleton.height / 1.6
-    start, end = project.span(action)
     if action.kind == "stance":
-        gap = _gap(ref(motion), start, ref(motion), end, joints)
-        if gap > OPEN_LOOP * scale and action.timing.blend_in <= 0:
+        gap = end_gaps.seam(project, graph, action)
+        if gap is not None and gap.far and action.timing.blend_in <= 0:
             yield at(
                 "warning",
                 "open-loop",
-                f"does not close: its ends are {gap * 100:.0f} cm apart",
+                f"does not close: its ends are {gap.metres * 100:.0f} cm apart",
                 "Blend its seam (blend in), or trim it to a loop.",
             )
         return
-    for stance, moment, word in ((action.stance, start, "begins"), (ends_in(action), end, "ends")):
-        loop = next(iter(graph.of(stance, "stance")), None) if stance else None
-        target = _motion(project, loop) if loop is not None else None
-        if loop is None or target is None:
-            continue
-        gap = _gap(ref(motion), moment, ref(target), project.span(loop)[0], joints)
-        if gap > FAR * scale:
+    for gap in end_gaps.gaps(project, graph, action):
+        if gap.far:
             yield at(
                 "warning",
-                "far-start" if word == "begins" else "far-end",
-                f"{word} {gap * 100:.0f} cm from stance '{_name(project, stance)}'",
+                "far-start" if gap.edge == "begins" else "far-end",
+                f"{gap.edge} {gap.metres * 100:.0f} cm from stance '{_name(project, gap.stance)}'",
                 "Trim it, lengthen the blend, or place it on the stance it fits.",
             )
-
-
-def stance_gaps(project: Project, action: Action) -> tuple[float, float]:
-    """Return how far a clip's first and last pose are from the stances it leaves and enters, metres of the
-    farthest joint its layer moves; 0 where that is not known.
-    """
-    graph, motion = project.graphs[action.layer], _motion(project, action)
-    if motion is None or project.skeleton is None:
-        return 0.0, 0.0
-    joints, out = _reached(project, graph, action), []
-    for stance, moment in zip((action.stance, ends_in(action)), project.span(action), strict=True):
-        loop = next(iter(graph.of(stance, "stance")), None) if stance else None
-        target = _motion(project, loop) if loop is not None else None
-        if loop is None or target is None:
-            out.append(0.0)
-        else:
-            out.append(_gap(ref(motion), moment, ref(target), project.span(loop)[0], joints))
-    return out[0], out[1]
-
-
-def _reached(project: Project, graph: MetaGraph, action: Action) -> tuple[int, ...]:
-    moved = anatomy.mask(project, action)
-    parts = anatomy.parts(project)
-    return tuple(
-        j
-        for j, part in enumerate(parts)
-        if graph.weights.get(part, REACH[graph.layer][part]) > 0
-        and part != "face"
-        and (moved is None or moved[j] > 0)
-    )
-
-
-@lru_cache(maxsize=65536)
-def _gap(a: ref[Clip], seconds_a: float, b: ref[Clip], seconds_b: float, joints: tuple[int, ...]) -> float:
-    """Largest distance in metres of the joints, root aside. Clips compare by identity, so edits elsewhere
-    cost nothing; and by `ref`, so that those of a closed project are let go.
-    """
-    one, other = a(), b()
-    assert one is not None and other is not None
-    return float(pose_distance(one.skeleton, one.pose_at(seconds_a), other.pose_at(seconds_b), joints))
-
-
-def _motion(project: Project, action: Action | None) -> Clip | None:
-    entry = project.clips.get(action.clip) if action is not None else None
-    motion = entry.motion if entry is not None else None
-    return motion if motion is not None and motion.skeleton == project.skeleton else None
 
 
 def _start_loop(project: Project, layer: Layer) -> Action | None:
@@ -408,7 +346,7 @@ def _start_loop(project: Project, layer: Layer) -> Action | None:
 
 
 def _first_pose(project: Project, loop: Action | None) -> Any:
-    motion = _motion(project, loop)
+    motion = end_gaps.motion_of(project, loop)
     return motion.pose_at(project.span(loop)[0]) if motion is not None and loop is not None else None
 
 

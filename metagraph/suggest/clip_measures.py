@@ -101,6 +101,21 @@ def layer_of(traits: Traits) -> Belief[Layer]:
     return Belief("body", 0.5, share)
 
 
+def moves_most(traits: Traits) -> Belief[Layer]:
+    """Return which layer of a recording of the whole body goes farthest, beside what is usual for a stance of
+    it: all of it sways, so that speeds tell little.
+    """
+    far = sorted(
+        ((x.extent / TYPICAL[layer], layer) for layer, x in traits.layers.items() if x.names), reverse=True
+    )
+    if not far or far[0][0] <= 0:
+        return layer_of(traits)
+    first, second = far[0], far[1][0] if len(far) > 1 else 0.0
+    x = traits.layers[first[1]]
+    words = f"the {first[1]} goes {100 * traits.height * x.extent:.0f} cm, the most beside what is usual"
+    return Belief(first[1], _tempered(first[0] / max(second, 1e-6)), words)
+
+
 def _tempered(ratio: float) -> float:
     """Return how sure one is of a ratio above 1: half at 1, SUREST from 5 on."""
     return 0.5 + (SUREST - 0.5) * min(1.0, log(max(ratio, 1.0)) / log(5.0))

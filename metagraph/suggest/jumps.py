@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.graph import anatomy
+from metagraph.graph import anatomy, end_gaps
 from metagraph.graph.expand import ends_in
 from metagraph.graph.model import REACH, Action, Layer, Project
 from metagraph.motion.clip import Clip
@@ -50,13 +50,16 @@ class Curves:
     """An action's clip beside its stances. times `[F]`: seconds, tracks.RATE a second. enter, leave `[F]`:
     what entering and leaving at each would cost, of what shows as a jump, without a blend (see
     `compatibility.shown`); for a loop both are what its seam would cost if it ended there. proposed: a timing
-    in which nothing shows.
+    in which nothing shows. gaps: metres `[F]` from the stance it leaves and the one it enters, height: of the
+    skeleton, metres: for what a long blend covers (see `end_gaps`); None for loops.
     """
 
     times: Array
     enter: Array
     leave: Array
     proposed: c.Times
+    gaps: tuple[Array, Array] | None = None
+    height: float = 0.0
 
 
 class Measured:
@@ -139,7 +142,8 @@ def jumps(
     known: dict[Any, tuple[Jump, ...]] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> list[Jump]:
-    """Return the jumps of a layer; none where its statistics are not reliable. known: filled with what was
+    """Return the jumps of a layer; none where its statistics are not reliable, nor where a long blend goes
+    the way at an unhurried pace. known: filled with what was
     found, and looked up there again as long as the action and what it was measured beside stay the same.
     """
     found: list[Jump] = []
@@ -164,6 +168,7 @@ def _of(project: Project, measured: Measured, action: Action) -> list[Jump]:
         measured.costs(project, action, action.stance),
         measured.costs(project, action, ends_in(action)),
     )
+    slow = {g.edge for g in end_gaps.gaps(project, project.graphs[action.layer], action) if g.slow}
     found = []
     middle = (
         t.stroke
@@ -178,7 +183,7 @@ def _of(project: Project, measured: Measured, action: Action) -> list[Jump]:
         latest = (
             end - t.blend_in - t.blend_out if middle is None else min(middle, end - t.blend_in - t.blend_out)
         )
-        if now > 1:
+        if now > 1 and "begins" not in slow:
             better = _nearest(cost, start, 0.0, latest, t.blend_in)
             better, mend = _mend(
                 "start", start, better, _blended("blend_in", _at(cost, start), end - start - t.blend_out)
@@ -188,7 +193,7 @@ def _of(project: Project, measured: Measured, action: Action) -> list[Jump]:
     target = ends_in(action)
     if left is not None and target is not None:
         now = float(c.shown(_at(left, end), t.blend_out))
-        if now > 1:
+        if now > 1 and "ends" not in slow:
             length = project.clips[action.clip].duration
             soonest = (
                 start + t.blend_in + t.blend_out
@@ -301,7 +306,9 @@ def curves(project: Project, measured: Measured, action: Action) -> Curves | Non
     stats = c.masked(measured.stats, motion, anatomy.mask(project, action), roles)
     stroke = phases(project, action).stroke if action.kind == "gesture" else action.timing.stroke
     proposed = c.times(stats, motion, into, left, stroke, roles)
-    return Curves(_times(motion, into), c.entering(into), left, proposed)
+    times = _times(motion, into)
+    gaps = end_gaps.distances(project, action, times)
+    return Curves(times, c.entering(into), left, proposed, gaps, motion.skeleton.height)
 
 
 def _times(motion: Clip, cost: Array) -> Array:

@@ -4,39 +4,82 @@ word, not forced into what a talking character does.
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
 from metagraph.suggest.clip_measures import nothing, walks
+from metagraph.suggest.estimate import Belief
 from metagraph.suggest.motion_guess import MotionGuess
 from metagraph.suggest.name_words import NameGuess
+from metagraph.suggest.proposal import Place, Proposals, plain
+from metagraph.suggest.stances import Stances, likely
 from metagraph.suggest.traits import Traits
 
+# Words that mean nothing else; others may be a beat in another language, or in another mouth
+SURELY = frozenset(
+    ("walk", "walking", "run", "running", "jog", "jogging", "sprint", "strafe", "jump", "climb", "swim")
+    + ("crawl", "fly", "fall", "death", "die", "dying", "dead", "locomotion", "dance", "dancing", "t pose")
+    + ("a pose", "tpose", "apose", "bind pose", "turn in place")
+)
+MANY = 0.2  # of a set's names that say so, from which on it is a game's
 POSE = 0.2  # seconds, below which a clip is a pose and no movement
 FAR = 0.5  # heights over the ground, from which on a clip that goes to no other stance goes away
 ROUND = 50.0  # degrees that one who goes to no other stance turns round
 EXERCISE = 0.14  # heights the hips go up and down, while the legs move fast
 FAST = 0.25  # heights a second the legs move
+_NUMBER = re.compile(r"\d+(?:\.\d+)?")
 PASSES = 0.8  # of the chance that a clip passes between two stances, from which on that is why it moves so
 
 
-def _shared(traits: Traits, motion: MotionGuess | None) -> bool:
-    """Whether a pose is one that other clips begin or end in, so that it may be a stance. Without motion
-    nobody knows.
+def _talks(traits: Traits | None, motion: MotionGuess | None) -> bool:
+    """Whether a clip moves as talkers do: from a stance and back, on the spot."""
+    if traits is None or motion is None or not motion.begins or not motion.ends:
+        return False
+    (begins, one), (ends, other) = motion.begins[0], motion.ends[0]
+    stays = one is other and min(begins, ends) > 0.5
+    return stays and traits.travel < FAR and traits.turned < ROUND and not walks(traits)
+
+
+def _shared(traits: Traits, motion: MotionGuess | None, shapes: Stances | None) -> bool:
+    """Return whether a pose is one that other clips begin or end in, so that it may be a stance: in each
+    layer that has such poses, where the layers were recorded apart. Without motion nobody knows.
     """
     if motion is None:
         return True
-    chance, shape = next(iter(motion.begins), (0.0, None))
-    return (
-        nothing(traits) and traits.face == 0 and shape is not None and chance > 0.5 and len(shape.members) > 1
+    if not nothing(traits) or traits.face > 0:
+        return False
+    told = [motion.begins]
+    if shapes is not None:
+        told = [
+            likely(some, x.names, x.first)
+            for layer, x in traits.layers.items()
+            if x.names and (some := [s for s in shapes.get(layer, ()) if s.id or len(s.members) > 1])
+        ]
+    firsts = [next(iter(some), (0.0, None)) for some in told]
+    return bool(firsts) and all(
+        shape is not None and chance > 0.5 and (shape.id != "" or len(shape.members) > 1)
+        for chance, shape in firsts
     )
 
 
-def left_aside(said: NameGuess, traits: Traits | None, motion: MotionGuess | None) -> str:
-    """Return why a clip is none of the four kinds, "" where it may be one."""
-    if traits is not None and traits.duration < POSE and not _shared(traits, motion):
+def left_aside(
+    said: NameGuess,
+    traits: Traits | None,
+    motion: MotionGuess | None,
+    usual: bool = True,
+    shapes: Stances | None = None,
+) -> str:
+    """Return why a clip is none of the four kinds, "" where it may be one. usual: whether many names of the
+    set speak of what talkers do not do, as those of a game do. shapes: the stances, where each layer was
+    recorded by itself.
+    """
+    if traits is not None and traits.duration < POSE and not _shared(traits, motion, shapes):
         frames = "a single frame" if traits.frames == 1 else f"only {traits.duration:.2f} s long"
         return f"is {frames}: a pose in which no other clip begins or ends, not a movement"
     if said.kind is not None:
         return ""
-    if said.other is not None:
+    if said.other is not None and (usual or said.other.value in SURELY or not _talks(traits, motion)):
         return said.other.reason
     if traits is None or motion is None or motion.chances is None:
         return ""
@@ -61,3 +104,50 @@ def left_aside(said: NameGuess, traits: Traits | None, motion: MotionGuess | Non
     ):
         return f"goes up and down by {100 * traits.height * traits.rise:.0f} cm: an exercise"
     return ""
+
+
+def taken_up(found: Proposals, clip: str) -> Proposals:
+    """Return the proposals with one clip that was left aside among them. Its stances are those of the same
+    names that there are now.
+    """
+    spare = found.spare[clip]
+    places: dict[str, Place] = dict(found.places)
+
+    def moved(belief: Belief[str] | None) -> Belief[str] | None:
+        if belief is None:
+            return None
+        old = spare.places[belief.value]
+        same = [k for k, x in places.items() if (x.layer, plain(x.name)) == (old.layer, plain(old.name))]
+        key = belief.value if belief.value in same else next(iter(same), f"new {old.layer} {plain(old.name)}")
+        places.setdefault(key, replace(old, key=key, there=False))
+        return replace(belief, value=key)
+
+    p = spare.proposal
+    p = replace(p, stance=moved(p.stance), end_stance=moved(p.end_stance))
+    return replace(
+        found,
+        proposals={**found.proposals, clip: p},
+        places=places,
+        aside={c: why for c, why in found.aside.items() if c != clip},
+        spare={c: x for c, x in found.spare.items() if c != clip},
+    )
+
+
+def reasons(aside: Mapping[str, str]) -> list[tuple[str, list[str]]]:
+    """Return reasons in words with the clips they are of, the most frequent first; those that differ in
+    numbers alone are one, with the least and the greatest.
+    """
+    groups: dict[str, list[str]] = {}
+    for clip, why in aside.items():
+        groups.setdefault(_NUMBER.sub("#", why), []).append(clip)
+    out = []
+    for clips in groups.values():
+        found = zip(*(_NUMBER.findall(aside[c]) for c in clips), strict=True)
+        ranges = iter([(min(x, key=float), max(x, key=float)) for x in found])
+
+        def spoken(_: re.Match[str], ranges: Iterator[tuple[str, str]] = ranges) -> str:
+            least, most = next(ranges)
+            return least if least == most else f"{least} to {most}"
+
+        out.append((_NUMBER.sub(spoken, aside[clips[0]]), clips))
+    return sorted(out, key=lambda x: -len(x[1]))

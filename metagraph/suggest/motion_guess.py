@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from math import exp, log
 
 from metagraph.graph.words import LAYERS, Kind, Layer, Limb
-from metagraph.suggest.clip_measures import SUREST, TYPICAL, energy, layer_of, resting, walks
+from metagraph.suggest.clip_measures import SUREST, TYPICAL, energy, layer_of, moves_most, resting, walks
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.stances import Shape, Stances, distance, likely, nearest
 from metagraph.suggest.traits import LayerTraits, Traits
@@ -72,7 +72,7 @@ def guess(
     calm = starts[0][1].calm if starts and starts[0][0] < 0.5 * TYPICAL[layer.value] else 0.0
     walking = walks(traits)
     rests = 1.0 if walking else resting(traits) + (3.0 if energy(traits) <= 1.05 * calm else 0.0)
-    moves = layer if posture is None else layer_of(traits)
+    moves = layer if posture is None else moves_most(traits)
     x = traits.layers[moves.value]
     rest, gesture = _sigmoid(rests), _gesturing(traits, moves)
     chances: dict[Kind, float] = {
@@ -291,17 +291,21 @@ def _hands_telling(traits: Traits) -> float:
     scratching = _clipped((touch.trunk * traits.duration - 1.1) / 0.6, 0, 1) * _clipped(
         (touch.rub - 0.09) / 0.05, 0, 1
     )
+    hands = traits.energy["left_arm"] + traits.energy["right_arm"]
+    busy = traits.energy["fingers"] / max(hands, 1e-6) - 0.3  # fingers that play while the hand hangs
     return (
         1.7
         + _clipped(_log(arms.extent, 0.12), -1.6, 1)
         + 0.5 * _clipped(_log(head.peak, 0.06), -1.5, 1)
         + 1.5 * still * _clipped(_log(head.peak, 0.12), 0, 1)
         + 1.6 * _clipped(traits.shrug / 0.01, 0, 1.2)
-        + 6.0 * min(traits.out, 0.15)
+        + 6.0 * min(traits.out, 0.15) * _clipped((traits.lifted + 0.04) / 0.04, 0, 1)
+        - 2.5 * _clipped((0.05 - traits.front) / 0.03, 0, 1) * _clipped(-traits.lifted / 0.04, 0, 1)
+        - 2.0 * still * _clipped(busy, 0, 1)
         - 12.0 * min(touch.head, 0.4)
-        - 7.0 * min(touch.arm, 0.4)
+        - 10.0 * _clipped(touch.arm - 0.08, 0, 0.35)
         - 3.0 * scratching
-        - 2.4 * _clipped((touch.kept - 0.6) / 0.3, 0, 1) / (1 + (arms.extent / 0.2) ** 4)
+        - 2.4 * _clipped((touch.kept - 0.45) / 0.3, 0, 1) / (1 + (arms.extent / 0.25) ** 4)
         - 4.0 * still * _clipped((traits.sway - 0.04) / 0.05, 0, 1)
         - 1.2 * still * _clipped(_log(traits.energy["legs"], 0.04), 0, 1.5)
         - 0.8 * min(max(bouts - 2, 0), 2)
@@ -318,8 +322,10 @@ def _rest_telling(traits: Traits, layer: Layer) -> float:
     bouts = max((arms, head, body), key=lambda y: y.peak).bouts
     nods, leans = _log(head.peak, 0.12), _log(body.peak, 0.1)
     if layer == "head":
+        rolls = _spread(head, "crown", 0) if bouts > 2 else 0.0  # a neck that is stretched from side to side
         return (
             1.6 * nods
+            - 3.0 * _clipped((rolls - 0.03) / 0.02, 0, 1)
             + (2.7 if bouts == 1 else 0.0)
             + 2.7 * log(traits.duration + 0.1)
             - 0.3 * _log(head.extent, 0.03)
@@ -329,6 +335,14 @@ def _rest_telling(traits: Traits, layer: Layer) -> float:
         lower = _log(traits.energy["legs"] + traits.energy["hips"], 0.02)
         return 1.55 + 0.9 * nods + leans - 1.4 * lower - (2.9 if bouts > 2 else 0.0)
     return _hands_telling(traits)
+
+
+def _spread(x: LayerTraits, point: str, axis: int) -> float:
+    """Return how far a point goes along an axis, heights; 0 of a figure that lacks it."""
+    if point not in x.names:
+        return 0.0
+    n = x.names.index(point)
+    return float(x.high[n, axis] - x.low[n, axis])
 
 
 def _clipped(x: float, least: float, most: float) -> float:

@@ -79,15 +79,25 @@ class Proposal:
 
 
 @dataclass(frozen=True)
+class Spare:
+    """What a clip that is left aside would be taken for. places: the stances this speaks of, by key."""
+
+    proposal: Proposal
+    places: Mapping[str, Place]
+
+
+@dataclass(frozen=True)
 class Proposals:
     """Proposals by clip, and the stances they speak of, by key. aside: clip -> why it is none of the four
-    kinds: walks, turns, exercises. whole: whether one layer plays the whole body (see `whole_body`).
+    kinds: walks, turns, exercises. whole: whether one layer plays the whole body (see `whole_body`). spare:
+    for each clip that is left aside, what it would be if somebody wanted it all the same.
     """
 
     proposals: Mapping[str, Proposal]
     places: Mapping[str, Place]
     aside: Mapping[str, str] = field(default_factory=dict)
     whole: bool = False
+    spare: Mapping[str, Spare] = field(default_factory=dict)
 
     @property
     def doubtful(self) -> list[Proposal]:

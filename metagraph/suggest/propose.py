@@ -20,11 +20,11 @@ from metagraph.suggest.alike import Alike, Example
 from metagraph.suggest.clip_measures import layer_of
 from metagraph.suggest.details import masked, rest_of, stroked, timed, weighted
 from metagraph.suggest.estimate import Belief
-from metagraph.suggest.left_aside import left_aside
+from metagraph.suggest.left_aside import MANY, left_aside
 from metagraph.suggest.motion_guess import guess
 from metagraph.suggest.name_words import NameGuess, Patterns, read_names
 from metagraph.suggest.places import Heard, Places
-from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, plain, words_of
+from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, Spare, plain, words_of
 from metagraph.suggest.stances import Shape, discover, discovered, known, nearest, parted, settled
 from metagraph.suggest.traits import Traits, traits_of
 from metagraph.suggest.vote_fusion import Agreed, combine
@@ -133,7 +133,8 @@ def propose(
     standing = {c: t for c, t in mine.items() if called[c].other is None}  # where fights begin nobody stands
     shapes = _shapes(project, traits, standing, whole, called) if moving else {}
     alike = Alike([*examples_of(project, traits), *examples]) if "learned" in sources else Alike([])
-    heard, aside = list[Heard](), dict[str, str]()
+    odd = sum(1 for c in chosen if names.get(project.clips[c].name, NameGuess()).other is not None)
+    heard, others, aside = list[Heard](), list[Heard](), dict[str, str]()
     for c in chosen:
         name = project.clips[c].name
         each = Heard(c, name, names.get(name, NameGuess()), traits.get(c), named="name" in sources)
@@ -143,19 +144,22 @@ def propose(
             each.motion = guess(each.traits, shapes, CARRIER if each.posture else None, each.posture)
         if alike.examples:
             each.learned = alike.guess(words_of(each.name), measures_of(each.traits))
-        why = left_aside(each.said, each.traits, each.motion)
-        if why and "kind" not in each.learned:
-            aside[c] = why
-            continue
+        usual, apart = odd >= MANY * len(chosen), shapes if each.posture is None else None
+        why = left_aside(each.said, each.traits, each.motion, usual, apart)
         layer = _layer_of(each)
         each.layer = layer.belief.value if layer is not None else "arms"
         each.beside = each.motion
         if each.traits is not None and each.motion is not None and each.motion.layer.value != each.layer:
             each.beside = guess(each.traits, shapes, each.layer, each.posture)
-        heard.append(each)
+        if why and "kind" not in each.learned:
+            aside[c] = why
+            others.append(each)
+        else:
+            heard.append(each)
     places = Places(project, heard, shapes)
     out = {each.clip: p for each in heard if (p := _proposal(each, places)) is not None}
     out = _somewhere(out, places.by_key)
+    spare = _spare(out, others, places)
     if moving:
         out = timed(project, out, cancelled)
         motions = {each.clip: each for each in heard}
@@ -163,7 +167,7 @@ def propose(
             c: stroked(project, masked(project, p, motions[c].traits), motions[c].beside)
             for c, p in out.items()
         }
-    return Proposals(weighted(project, out), _with_rests(project, places.by_key, out), aside, whole)
+    return Proposals(weighted(project, out), _with_rests(project, places.by_key, out), aside, whole, spare)
 
 
 def _shapes(
@@ -257,6 +261,20 @@ def _somewhere(proposals: Mapping[str, Proposal], places: dict[str, Place]) -> d
     return out
 
 
+def _spare(proposals: Mapping[str, Proposal], others: Iterable[Heard], places: Places) -> dict[str, Spare]:
+    """Return what clips that are left aside would be taken for; they say nothing of the stances there are."""
+    by_key = dict(places.by_key)
+    mine = {each.clip: _proposal(each, places, True) for each in others}
+    known = {clip: p for clip, p in mine.items() if p is not None}
+    found = _somewhere({**proposals, **known}, by_key)
+    out = {}
+    for clip in known:
+        p = found[clip]
+        keys = [b.value for b in (p.stance, p.end_stance) if b is not None]
+        out[clip] = Spare(p, {key: by_key[key] for key in keys})
+    return out
+
+
 def _with_rests(
     project: Project, places: Mapping[str, Place], proposals: Mapping[str, Proposal]
 ) -> dict[str, Place]:
@@ -271,9 +289,10 @@ def _with_rests(
     }
 
 
-def _proposal(each: Heard, places: Places) -> Proposal | None:
+def _proposal(each: Heard, places: Places, anyway: bool = False) -> Proposal | None:
+    """Return what is proposed for a clip; nothing where nothing says kind or layer, unless anyway."""
     kind, layer = each.agreed("kind", len(KINDS)), _layer_of(each)
-    if kind is None and layer is None:
+    if kind is None and layer is None and not anyway:
         return None
     unsure: Agreed[Any] = Agreed(Belief("gesture", 0.3, "nothing says what it is"))
     kind = kind or unsure

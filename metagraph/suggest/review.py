@@ -1,7 +1,8 @@
 """A person going through proposals: what they correct, what is still open, and how long the rest will take.
 
-Stances come first, the most used before the others, since all else hangs on them; then the least certain. A
-correction is kept as it was meant - a stance by its name - so that it outlives proposals that are made anew.
+Stances come first, the most used before the others, since all else hangs on them; then those at which a
+look gains most. A correction is kept as it was meant - a stance by its name - so that it outlives proposals
+that are made anew.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from metagraph.graph.model import KINDS, LAYERS, LIMBS, Layer, Project
 from metagraph.suggest.accept import Taken, accept
 from metagraph.suggest.details import timed
 from metagraph.suggest.estimate import Belief
+from metagraph.suggest.flags import gain
 from metagraph.suggest.proposal import Place, Proposal, Proposals, plain
 from metagraph.suggest.propose import waiting
 
@@ -105,7 +107,8 @@ class Review:
 
     def order(self) -> list[str]:
         """Return the clips in the order they are best looked at: stances first, the most used before the
-        others, since a layer begins in its first and the first gives the base pose; then the least certain.
+        others, since a layer begins in its first and the first gives the base pose; then those at which a
+        look gains most.
         """
         used = Counter(p.stance.value for p in self.found.proposals.values() if p.stance is not None)
 
@@ -114,6 +117,7 @@ class Review:
             return (
                 not rests,
                 -used[p.stance.value] if rests and p.stance is not None else 0,
+                -gain(p),
                 p.confidence,
                 p.clip,
             )

@@ -19,6 +19,7 @@ Array = NDArray[Any]
 HEAD, TRUNK, ARM, THIGH = 0.06, 0.075, 0.022, 0.045
 SKULL = 0.06  # heights from the joint of the head to the middle of the skull
 TOUCHES = 0.03  # heights between hand and surface, from which on they touch: bones and takes are not exact
+HANDLES = 0.05  # the same of a hand at its other arm: sleeves and watches lie upon it
 CLEAR = 0.02  # heights that a hand must be farther off at first than it comes, so that the touch is new
 
 
@@ -53,7 +54,7 @@ def self_contact(world: Mapping[str, Array], seconds: float) -> SelfContact:
         tip = world.get(f"{side}_tip", hand)
         points = np.stack([hand, (hand + tip) / 2, hand + 0.85 * (tip - hand)])
         for what, gap, place in _gaps(world, other, points):
-            touching = gap < TOUCHES
+            touching = gap < (HANDLES if what == "arm" else TOUCHES)
             if gap[0] < TOUCHES:
                 kept = max(kept, float(touching.mean()) if what != "thigh" else 0.0)
             elif what in share and gap[0] - gap.min() > CLEAR:

@@ -5,13 +5,13 @@ back, at the pace of a movement instead of jumping.
 from __future__ import annotations
 
 from collections.abc import Collection
+from math import ceil
 
 from metagraph.graph import edits
-from metagraph.graph.check import stance_gaps
+from metagraph.graph.end_gaps import TALL, UNHURRIED, gaps
 from metagraph.graph.model import LAYERS, Project
 
-PACE = 1.0  # metres a second that the farthest joint of a figure of 1.6 m goes in a blend, on average
-NEAR = 0.05  # metres that nobody sees a blend go
+NEAR = 0.05  # metres of a figure TALL metres high that nobody sees a blend go
 SHARE = 0.45  # of a clip that a blend may take
 
 
@@ -21,7 +21,7 @@ def softened(project: Project, but: Collection[str] = ()) -> Project:
     """
     if project.skeleton is None:
         return project
-    pace, near = (x * project.skeleton.height / 1.6 for x in (PACE, NEAR))
+    pace, near = (x * project.skeleton.height / TALL for x in (UNHURRIED, NEAR))
     changes = {}
     for layer in LAYERS:
         for action in project.graphs[layer].actions.values():
@@ -29,11 +29,13 @@ def softened(project: Project, but: Collection[str] = ()) -> Project:
                 continue
             start, end = project.span(action)
             most, timing = SHARE * (end - start), action.timing
+            far = {g.edge: g.metres for g in gaps(project, project.graphs[layer], action)}
             into, out = (
-                0.0 if gap <= near else min(most, gap / pace) for gap in stance_gaps(project, action)
+                min(most, gap / pace) if (gap := far.get(edge, 0.0)) > near else 0.0
+                for edge in ("begins", "ends")
             )
             longer = {
-                name: round(value, 3)
+                name: ceil(value * 1000) / 1000
                 for name, value, now in (
                     ("blend_in", into, timing.blend_in),
                     ("blend_out", out, timing.blend_out),

@@ -285,6 +285,24 @@ def test_far_start_and_far_end(healthy: Project, toy: Any) -> None:
     assert "cm from stance 'rest'" in found[0].message and found[0].severity == "warning"
 
 
+@pytest.mark.parametrize(("blend", "pops"), [(0.0, True), (0.39, True), (0.4, False), (0.9, False)])
+def test_a_long_slow_blend_is_no_pop(healthy: Project, toy: Any, blend: float, pops: bool) -> None:
+    """Its hands are some 40 cm away: too far for a seam, and an unhurried way for half a second."""
+    clip = toy.clip("from afar", 2.4, 0.4, 0.0, swing=0.0)
+    project = edits.add_clips(healthy, [("from afar.glb", 0, "", clip)])
+    project = edits.place(project, [toy.id(project, "from afar")], "arms", "gesture", toy.id(project, "rest"))
+    ident = f"a{project.next_id - 1}"
+    project = edits.update_actions(project, [ident], timing={"blend_in": blend, "blend_out": 0.0})
+    assert codes(project) == (["far-start"] if pops else [])
+
+
+def test_a_long_way_in_a_long_blend_still_pops_and_so_does_the_other_end(healthy: Project, toy: Any) -> None:
+    project = edits.move_actions(healthy, [toy.id(healthy, "far beat")], "gesture", toy.id(healthy, "rest"))
+    ident = toy.id(project, "far beat")
+    slow = edits.update_actions(project, [ident], timing={"blend_in": 0.5, "blend_out": 0.1})
+    assert [c for c in codes(slow) if c.startswith("far")] == ["far-start", "far-end"]
+
+
 def test_joints_an_action_leaves_alone_may_be_far_from_the_stance(healthy: Project, toy: Any) -> None:
     ident = toy.id(healthy, "up beat")
     project = edits.move_actions(healthy, [ident], "gesture", toy.id(healthy, "rest"))

@@ -7,8 +7,8 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from app.cli.label_report import needs_a_look
 from metagraph.graph.model import Project
+from metagraph.suggest.flags import needs_a_look
 from metagraph.suggest.memory import Memory
 from metagraph.suggest.proposal import Proposal, Proposals, plain
 from metagraph.suggest.propose import SOURCES, accept, propose, waiting
@@ -186,7 +186,7 @@ def measured(project: Project, truth: Truth, found: Proposals) -> Tally:
         if p is None:
             continue
         out.believed("clip", p.confidence, right)
-        flagged = needs_a_look(p, taken)
+        flagged = needs_a_look(p, taken.left)
         out.flags.update({"clips": 1, "flagged": flagged, "wrong": not right, "both": flagged and not right})
         reasons = (p.confidence < SURE, bool(p.conflicts), p.good is False, p.clip in taken.left)
         for cause, is_ in zip(CAUSES, reasons, strict=True):

@@ -10,7 +10,11 @@ import pytest
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Project
 from metagraph.suggest import compatibility as c
+from metagraph.suggest.accept import accept
+from metagraph.suggest.bridges import bridged
 from metagraph.suggest.jumps import FEWEST_CLIPS, Measured, curves, jumps
+from metagraph.suggest.propose import propose
+from tests.label_zoo.catalogue import named
 
 
 def cut(toy: Any, project: Project, name: str, **timing: Any) -> Project:
@@ -182,3 +186,16 @@ def test_a_moment_far_away_is_not_proposed_where_a_longer_blend_would_do(toy: An
     project = edits.place(project, [toy.id(project, "away")], "arms", "gesture", toy.id(project, "rest"))
     (jump,) = found(cut(toy, project, "away", stroke=0.1, blend_out=0.1))
     assert jump.better is None and set(jump.change) == {"blend_out"}
+
+
+def test_a_long_slow_blend_over_a_wide_gap_is_no_jump_and_a_short_one_is() -> None:
+    """Takes in which little moves from frame to frame, so that each blend from seat to seat is unusual."""
+    made = named("opaque days of sitting").project
+    project, bridges = bridged(accept(made, propose(made)).project)
+    (name,) = [x.action for x in bridges]
+    for blend, edges in ((0.1, ["begins"]), (0.39, ["begins"]), (0.55, [])):
+        blended = edits.update_actions(project, [name], timing={"blend_in": blend})
+        assert [x.edge for x in found(blended) if x.action == name] == edges, blend
+    strip = curves(project, Measured(project, "arms"), project.action(name))  # type: ignore[arg-type]
+    assert strip is not None and strip.gaps is not None
+    assert strip.gaps[0][0] > 0.3 > 0.05 > strip.gaps[1][0]

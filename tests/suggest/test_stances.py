@@ -15,7 +15,17 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 from metagraph.suggest.clip_measures import layer_of
 from metagraph.suggest.motion_guess import MotionGuess, guess
-from metagraph.suggest.stances import Shape, discover, discovered, distance, known, nearest
+from metagraph.suggest.stances import (
+    Shape,
+    discover,
+    discovered,
+    distance,
+    known,
+    likely,
+    nearest,
+    parted,
+    settled,
+)
 from metagraph.suggest.traits import Traits, traits, traits_of
 from tests.suggest.test_traits import backwards, chain, mirrored, of, one_armed, scaled
 
@@ -245,3 +255,74 @@ def test_a_character_without_a_head_or_arms_moves_its_body() -> None:
         layer_of(of(Clip("x", skeleton, 30, turn, np.random.default_rng(0).normal(size=(30, 1, 3))))).value
         == "body"
     )
+
+
+HANDS = ("left_hand", "right_hand")
+poses = st.lists(st.floats(-0.4, 0.4), min_size=6, max_size=6).map(lambda x: np.array(x).reshape(2, 3))
+
+
+def standing(pose: Any, spread: float = 0.0, name: str = "s") -> Shape:
+    found = np.asarray(pose, float).reshape(2, 3)
+    return Shape("", name, "arms", HANDS, found[None], (name,), name, 0.0, 0.9, 0.0, np.full(2, spread))
+
+
+@given(st.lists(st.tuples(poses, st.floats(0, 0.1)), max_size=6), poses, st.randoms())
+def test_how_likely_a_pose_is_of_each_stance_adds_up_to_one_at_most_in_any_order(
+    some: Any, pose: Any, random: Any
+) -> None:
+    shapes = [standing(at, spread, str(n)) for n, (at, spread) in enumerate(some)]
+    found = likely(shapes, HANDS, pose)
+    chances = [p for p, _ in found]
+    assert len(found) == len(shapes) and sum(chances) <= 1 + 1e-9 and all(0 <= p <= 1 for p in chances)
+    assert chances == sorted(chances, reverse=True)
+    mixed = list(shapes)
+    random.shuffle(mixed)
+    other = {shape.name: p for p, shape in likely(mixed, HANDS, pose)}
+    assert other == pytest.approx({shape.name: p for p, shape in found})
+
+
+def test_a_pose_is_of_its_own_stance_and_one_far_from_all_of_none() -> None:
+    shapes = [standing(np.zeros(6), name="a"), standing(np.full(6, 0.2), name="b")]
+    assert likely(shapes, HANDS, np.zeros((2, 3)))[0][1].name == "a"
+    assert likely(shapes, HANDS, np.zeros((2, 3)))[0][0] > 0.95
+    assert sum(p for p, _ in likely(shapes, HANDS, np.full((2, 3), 5.0))) < 0.1
+    assert likely([], HANDS, np.zeros((2, 3))) == [] and likely(shapes, ("crown",), np.zeros((1, 3))) == []
+
+
+def test_stances_are_parted_only_where_words_and_poses_part_alike() -> None:
+    (one,) = shapes = [standing(np.zeros(6), 0.02)]
+    near, far = np.zeros((2, 3)), np.full((2, 3), 0.012)
+
+    def ends(*some: tuple[str, Any]) -> list[tuple[str, float, Any, str]]:
+        return [(f"{word} {n}", 0.0, pose, word) for n, (word, pose) in enumerate(some)]
+
+    assert parted((), ()) == () and parted(shapes, ()) == (one,)
+    assert parted(shapes, ends(("idle 1", near), ("idle 2", far))) == (one,)  # one clip of each is none
+    two = parted(shapes, ends(*[("idle 1", near)] * 3, *[("idle 2", far)] * 3))
+    assert [s.clip.rpartition(" ")[0] for s in two] == ["idle 1", "idle 2"]
+    assert np.allclose(two[0].poses[0], near) and np.allclose(two[1].poses[0], far)
+    assert not set(two[0].members) & set(two[1].members)
+    same = ends(*[("idle 1", near)] * 3, *[("idle 2", near)] * 3)
+    assert parted(shapes, same) == (one,)
+    mixed = ends(*[("a", near), ("b", near), ("a", far), ("b", far)] * 3)
+    assert parted(shapes, mixed) == (one,)
+
+
+def test_where_clips_begin_and_end_anywhere_there_is_one_stance() -> None:
+    shapes = tuple(standing(np.full(6, 0.2 * n), name=str(n)) for n in range(3))
+    draw = np.random.default_rng(0)
+    anywhere = [(HANDS, draw.uniform(-0.5, 1.0, (2, 3))) for _ in range(40)]
+    inside = [(HANDS, np.full((2, 3), 0.2 * (n % 3)) + 0.002) for n in range(40)]
+    assert settled(shapes, anywhere) == shapes[:1] and settled(shapes, inside) == shapes
+    assert settled((), anywhere) == () and settled(shapes[:1], anywhere) == shapes[:1]
+    assert settled(shapes, ()) == shapes  # nothing speaks against them
+
+
+def test_together_the_clips_of_all_layers_tell_the_stances(toy: Any, found: dict[str, Traits]) -> None:
+    assert discover({}, "arms", together=True) == ()
+    one = {"x": of(toy.clip("x"))}
+    assert len(discover(one, "arms", together=True)) <= 1
+    apart = {c for s in discover(found, "arms") for c in s.members}
+    every = {c for s in discover(found, "arms", together=True) for c in s.members}
+    others = {c for c, t in found.items() if layer_of(t).value != "arms"}
+    assert not apart & others and every & others

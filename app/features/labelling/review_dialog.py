@@ -39,6 +39,7 @@ from app.project.learned import Learned
 from app.stage.figures import Figures
 from app.stage.playback_source import Shown, alone
 from app.stage.session import Session
+from metagraph.graph.model import KINDS, Kind
 from metagraph.suggest.proposal import Proposal
 from metagraph.suggest.review import DECIDING, Field, Review
 
@@ -75,6 +76,7 @@ class ReviewDialog(QDialog):
         self.row: Field = "kind"
         self.context = True  # the clip plays out of its stance and back, not alone
         self._trials = 0
+        self._bridged: tuple[str, ...] = ()
         if session.transport.playing:
             session.transport.set_playing(False)  # one character at a time
             self.finished.connect(lambda _: session.transport.set_playing(True))
@@ -88,6 +90,7 @@ class ReviewDialog(QDialog):
         self.queue.picked.connect(self.go_to)
         self.queue.sure_wanted.connect(self.accept_sure)
         self.queue.limit_changed.connect(self._count)
+        self.queue.bridge_wanted.connect(self.bridge)
         self.fields.chosen.connect(self._choose)
         self.fields.picked.connect(self._pick)
         self.work.found.connect(self._begin)
@@ -191,7 +194,7 @@ class ReviewDialog(QDialog):
     # --- where it is
 
     def _begin(self) -> None:
-        self.queue.fill(self.work.clips)
+        self.queue.fill(self.work.clips, self.work.aside)
         self._refresh()
         self.go_to(self.work.after(None))
 
@@ -199,19 +202,24 @@ class ReviewDialog(QDialog):
         """Look at a clip; None when nothing is left to look at."""
         self.current = clip
         if clip is not None:
-            self.row = self.review.doubtful(clip)
+            self.row = "kind" if clip in self.work.aside else self.review.doubtful(clip)
             self.queue.go_to(clip)
         self.work.look_at()
         self._show()
         self._play()
 
     def _later(self) -> None:
-        self.go_to(self.work.after(self.current))
+        self.go_to(self.work.open_after(self.current))
 
     def _earlier(self) -> None:
         self.go_to(self.work.before(self.current))
 
     # --- correcting
+
+    @property
+    def _proposed(self) -> Proposal | None:
+        """What the current clip is taken for; None where there is none, or it was left aside."""
+        return self.review.found.proposals.get(self.current or "")
 
     def _tell(self, name: Field, value: Any) -> None:
         if self.current is not None:
@@ -225,20 +233,37 @@ class ReviewDialog(QDialog):
     def _choose(self, name: Field, value: Any) -> None:
         """Take a value for a field of the current clip."""
         self.row = name
+        if self.current in self.work.aside:
+            if name == "kind":
+                self._take_up(self.current, value)
+            return
         if self.current is not None and value != self.review.value(self.current, self.row):
             self._tell(self.row, value)
         self._show()
+
+    def _take_up(self, clip: str, kind: Kind) -> None:
+        """Label a clip that was left aside."""
+        self.work.take_up(clip, kind)
+        self.queue.fill(self.work.clips, self.work.aside)
+        self._refresh()
+        self.go_to(clip)
 
     def _turn(self, step: int) -> None:
         """Take the next or the previous value of the current field."""
         if self.current is None:
             return
-        values = [v for v, _ in self.review.choices(self.current, self.row)]
+        values = [v for v, _ in self._choices(self.row)]
         if values:
-            now = self.review.value(self.current, self.row)
+            now = self.review.value(self.current, self.row) if self._proposed is not None else None
             self._choose(
                 self.row, values[(values.index(now) + step) % len(values)] if now in values else values[0]
             )
+
+    def _choices(self, name: Field) -> list[tuple[Any, str]]:
+        """Return what a field of the current clip may be."""
+        if self._proposed is None or self.current is None:
+            return [(k, k) for k in KINDS]
+        return self.review.choices(self.current, name)
 
     def _move(self, step: int) -> None:
         names = [row.name for row in self.fields.rows]
@@ -247,27 +272,28 @@ class ReviewDialog(QDialog):
 
     def _number(self, place: int) -> None:
         if self.current is not None:
-            choices = self.review.choices(self.current, self.row)
+            choices = self._choices(self.row)
             if place < len(choices):
                 self._choose(self.row, choices[place][0])
 
     def _tag(self) -> None:
-        if self.current is None:
+        p = self._proposed
+        if p is None:
             return
         tags = tuple(
             dict.fromkeys(t for word in self.tags.text().split(",") if (t := " ".join(word.split())))
         )
-        belief = self.review.found.proposals[self.current].tags
-        if tags != (belief.value if belief is not None else ()):
+        if tags != (p.tags.value if p.tags is not None else ()):
             self._tell("tags", tags)
 
     def _cut(self, name: str) -> None:
         """Let the clip start or end at what is just seen."""
         shown, span = self.stage.shown, self.stage.strip.span
-        if self.current is None or shown is None:
+        p = self._proposed
+        if self.current is None or shown is None or p is None:
             return
         old, length = (
-            self.review.found.proposals[self.current].timing,
+            p.timing,
             self.document.project.clips[self.current].duration,
         )
         start, end = float(old.get("start") or 0.0), float(old.get("end") or length)
@@ -279,7 +305,7 @@ class ReviewDialog(QDialog):
 
     def _new_stance(self) -> None:
         """Ask for the name of a stance there is not yet."""
-        if self.current is None:
+        if self._proposed is None:
             return
         ends = self.row == "end_stance"
         words, ok = QInputDialog.getText(
@@ -302,6 +328,8 @@ class ReviewDialog(QDialog):
         """Place the clip as it is shown, and go on; close when nothing is left."""
         if self.current is None:
             self.close()
+        elif self._proposed is None:
+            self._later()
         else:
             self._place(
                 [self.current], f"Label {self.document.project.clips[self.current].name}", self.current
@@ -326,9 +354,16 @@ class ReviewDialog(QDialog):
                 f"{len(taken.placed)} placed; not {self.document.project.clips[why[0]].name}: {why[1]}."
             )
 
+    def bridge(self) -> None:
+        """Join the stances that no clip leads to or back from by blending."""
+        if self.work.parted:
+            self._bridged = self.work.bridge()
+            self._count()
+
     def undo(self) -> None:
         """Take the last step back, and look at that clip again."""
         if self.work.can_undo:
+            self._bridged = ()
             self.go_to(self.work.undo())
 
     # --- showing
@@ -343,22 +378,36 @@ class ReviewDialog(QDialog):
             self.queue.count(
                 len(self.work.waiting()), len(self.work.sure_ones(self.queue.least)), self.work.pace
             )
+        project = self.document.project
+        names = [s.name for i in self.work.parted if (s := project.stance(i)) is not None]
+        made = self._bridged if not names and any(self._bridged) else ()
+        self.queue.part(names, made)
         self.back.setEnabled(self.work.can_undo)
 
     def _show(self) -> None:
         """Show what the current clip is taken for."""
         clip, project = self.current, self.document.project
-        self.go.setText("Accept" if clip is not None else "Done")
-        self.tags.setEnabled(clip is not None)
+        p = self._proposed
+        self.go.setText("Done" if clip is None else "Accept" if p is not None else "Leave aside")
+        self.tags.setEnabled(p is not None)
         if clip is None or clip not in project.clips:
             self.fields.show_rows((), "")
             self.timing.setText("")
             self.tags.setText("")
-            self.stage.tell(
-                "<b>Every clip is placed.</b>" if self.work.looked else "Looking at names and motion…"
+            done = (
+                "<b>Every clip is placed.</b>" if not self.work.aside else review_words.rest(self.work.aside)
             )
+            self.stage.tell(done if self.work.looked else "Looking at names and motion…")
             return
-        p = self.review.found.proposals[clip]
+        if p is None:
+            why = self.review.found.aside.get(clip, "")
+            kinds = self._choices("kind")
+            self.row = "kind"
+            self.fields.show_rows([ReviewRow("kind", TITLES["kind"], kinds, None, 0.0, why)], self.row)
+            self.timing.setText(review_words.ANYWAY)
+            self.tags.setText("")
+            self.stage.tell(review_words.headline(self.review, project, clip, theme(self.session.look.name)))
+            return
         rows = []
         for name in DECIDING:
             if choices := self.review.choices(clip, name):
@@ -393,7 +442,7 @@ class ReviewDialog(QDialog):
             ready = review.with_times(times) if times is not None else review
             return (
                 (number, times, *trial(project, ready, clip))
-                if context
+                if context and clip in review.found.proposals
                 else (number, times, alone(project, clip), None)
             )
 
@@ -418,6 +467,7 @@ class ReviewDialog(QDialog):
             k.Key_Enter: self.accept_current,
             k.Key_Backspace: self.undo,
             k.Key_A: self.accept_sure,
+            k.Key_B: self.bridge,
             k.Key_Up: lambda: self._move(-1),
             k.Key_Down: lambda: self._move(1),
             k.Key_Left: lambda: self._turn(-1),
@@ -453,8 +503,8 @@ class ReviewDialog(QDialog):
         """Give the keys back when a field is done."""
         done = (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Escape, Qt.Key.Key_Tab)
         if event.type() == QEvent.Type.KeyPress and isinstance(event, QKeyEvent) and event.key() in done:
-            if event.key() == Qt.Key.Key_Escape and watched is self.tags and self.current is not None:
-                belief = self.review.found.proposals[self.current].tags
+            if event.key() == Qt.Key.Key_Escape and watched is self.tags and (p := self._proposed):
+                belief = p.tags
                 self.tags.setText(", ".join(belief.value) if belief is not None else "")
             self.setFocus()
             return True

@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.labelling.review_words import about
+from app.look.plural import many
 from app.look.theme import KIND_MARKS, theme
 from app.stage.session import Session
 from app.widgets.quiet_fields import SpinBox
@@ -32,17 +33,19 @@ DOUBT = 0.7  # below it a clip is marked as worth a look
 
 class ReviewQueue(QWidget):
     """clips: all of the review, in the order they are gone through. picked: a clip was clicked. sure_wanted:
-    accept the sure ones. limit_changed: how sure that is.
+    accept the sure ones. limit_changed: how sure that is. bridge_wanted: join stances that no clip leads to.
     """
 
     picked = Signal(str)
     sure_wanted = Signal()
     limit_changed = Signal()
+    bridge_wanted = Signal()
 
     def __init__(self, session: Session, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.session = session
         self.clips: tuple[str, ...] = ()
+        self.aside: tuple[str, ...] = ()
         self._items: dict[str, QTreeWidgetItem] = {}
         self.bar = QProgressBar(self, textVisible=False)
         self.words = QLabel("Looking at names and motion…", self, wordWrap=True)
@@ -73,7 +76,12 @@ class ReviewQueue(QWidget):
         self.limit.setAccessibleName("At least so sure")
         self.limit.setToolTip("How sure a proposal must be to be accepted with the others")
         self.limit.valueChanged.connect(self.limit_changed)
-        for widget in (self.list, self.sure):
+        self.parted = QLabel(self, wordWrap=True)
+        self.bridge = QPushButton("Bridge by blending", self)
+        self.bridge.setAutoDefault(False)
+        self.bridge.setToolTip("Makes transitions that are blends from pose to pose, as one step (B)")
+        self.bridge.clicked.connect(self.bridge_wanted)
+        for widget in (self.list, self.sure, self.bridge):
             widget.setFocusPolicy(
                 Qt.FocusPolicy.NoFocus
             )  # keys are the review's, wherever the mouse has been
@@ -86,22 +94,43 @@ class ReviewQueue(QWidget):
         row.addWidget(self.sure, 1)
         row.addWidget(self.limit)
         column.addLayout(row)
+        column.addWidget(self.parted)
+        column.addWidget(self.bridge)
+        self.part((), ())
 
     @property
     def least(self) -> float:
         """How sure a proposal must be to be accepted with the others, 0..1."""
         return self.limit.value() / 100
 
-    def fill(self, clips: Sequence[str]) -> None:
-        """List other clips."""
+    def fill(self, clips: Sequence[str], aside: Sequence[str] = ()) -> None:
+        """List other clips, and at the end those that were left aside."""
         self.list.blockSignals(True)
         self.list.clear()
-        self.clips, self._items = tuple(clips), {}
-        for clip in clips:
+        self.clips, self.aside, self._items = tuple(clips), tuple(aside), {}
+        for clip in (*clips, *aside):
+            if aside and clip == aside[0]:
+                head = QTreeWidgetItem(self.list, [f"Left aside ({len(aside)})", ""])
+                head.setFlags(Qt.ItemFlag.NoItemFlags)
+                head.setToolTip(0, "None of the four kinds; choose a kind to label one all the same")
             item = self._items[clip] = QTreeWidgetItem(self.list, ["", ""])
             item.setData(0, CLIP, clip)
             item.setTextAlignment(1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self.list.blockSignals(False)
+
+    def part(self, stances: Sequence[str], made: Sequence[str]) -> None:
+        """Tell of stances, by name, that no clip leads to or from, or else what was made of blends."""
+        names = ", ".join(stances[:4]) + (" …" if len(stances) > 4 else "")
+        if stances:
+            them = "it" if len(stances) == 1 else "them"
+            self.parted.setText(
+                f"No clip leads to {many(len(stances), 'stance')}, or back from {them}: {names}."
+            )
+        else:
+            self.parted.setText(f"{many(len(made), 'transition')} made by blending." if made else "")
+        self.parted.setToolTip("\n".join(stances if stances else made))
+        self.parted.setVisible(bool(stances or made))
+        self.bridge.setVisible(bool(stances))
 
     def go_to(self, clip: str) -> None:
         """Show a clip as the current one; `picked` is not emitted."""
@@ -113,9 +142,15 @@ class ReviewQueue(QWidget):
         """Show what each clip is taken for now, and whether it is placed."""
         look, open_ = theme(self.session.look.name), set(waiting(project))
         for clip, item in self._items.items():
-            entry, p = project.clips.get(clip), review.found.proposals[clip]
+            entry, p = project.clips.get(clip), review.found.proposals.get(clip)
             item.setHidden(entry is None)
             if entry is None:
+                continue
+            if p is None:
+                item.setText(0, f"–  {entry.name}")
+                item.setToolTip(0, f"{entry.name}: left aside, {review.found.aside.get(clip, '')}")
+                for column in (0, 1):
+                    item.setForeground(column, QColor(look.dim))
                 continue
             placed, kind = clip not in open_, p.kind.value
             item.setText(0, f"{KIND_MARKS[kind]}  {entry.name}")
@@ -133,7 +168,8 @@ class ReviewQueue(QWidget):
         self.bar.setMaximum(max(1, total))
         self.bar.setValue(total - left)
         if not total:
-            self.words.setText("Every clip is placed.")
+            what = "All that is left was left aside." if self.aside else "Every clip is placed."
+            self.words.setText(what)
         elif not left:
             self.words.setText(f"All {total} clips are placed.")
         else:

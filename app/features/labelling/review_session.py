@@ -1,16 +1,20 @@
 """A review at work on a document: proposals made and made anew, corrections kept and learned from, clips
-placed and taken back.
+placed and taken back, stances joined that no clip leads to.
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 from PySide6.QtCore import QElapsedTimer, QObject, QTimer, Signal
 
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.project.learned import Learned
-from metagraph.graph.model import Project
+from metagraph.graph.model import Kind, Project
 from metagraph.suggest.accept import Taken
+from metagraph.suggest.bridges import bridged, missing, told
+from metagraph.suggest.left_aside import reasons, taken_up
 from metagraph.suggest.proposal import Proposal, Proposals
 from metagraph.suggest.propose import propose, waiting
 from metagraph.suggest.review import Field, Pace, Review
@@ -19,7 +23,8 @@ REST = 400  # milliseconds of quiet after a correction before the rest is propos
 
 
 class Reviewing(QObject):
-    """clips: all of the review, in the order they are gone through. found: the first proposals are there.
+    """clips: all of the review, in the order they are gone through. aside: those left aside. parted: the
+    stances that bridges can join, after many clips were placed at once. found: the first proposals are there.
     changed: proposals or what is placed. failed: words.
     """
 
@@ -34,6 +39,9 @@ class Reviewing(QObject):
         self.document, self.jobs, self.learned = document, jobs, learned
         self.review, self.pace = Review(Proposals({}, {})), Pace()
         self.clips: tuple[str, ...] = ()
+        self.aside: tuple[str, ...] = ()
+        self.parted: tuple[str, ...] = ()
+        self._looks_for_parted = False
         self.looked = False  # whether proposals have come
         self._steps: list[str | None] = []  # the clips placed here, one per undo step; None for many at once
         self._clock = QElapsedTimer()
@@ -50,7 +58,11 @@ class Reviewing(QObject):
 
     def _first(self, found: Proposals) -> None:
         self.review = Review(found).settled(self.document.project)
-        self.clips = tuple(c for c in self.review.order() if c in self.document.project.clips)
+        entries = self.document.project.clips
+        self.clips = tuple(c for c in self.review.order() if c in entries)
+        self.aside = tuple(
+            c for _, clips in reasons(found.aside) for c in clips if c in entries and c in found.spare
+        )
         self.looked = True
         self.found.emit()
 
@@ -75,6 +87,9 @@ class Reviewing(QObject):
             )
 
     def _again(self, found: Proposals) -> None:
+        mine = self.review.found  # what has a proposal is not left aside any more, whatever is learned
+        aside = {c: why for c, why in found.aside.items() if c not in mine.proposals}
+        found = replace(found, aside=aside, spare={**mine.spare, **found.spare})
         self.review = self.review.anew(found).settled(self.document.project)
         self.changed.emit()
 
@@ -98,9 +113,15 @@ class Reviewing(QObject):
         waiting = set(self.waiting())
         return next((c for c in (*self.clips[at + 1 :], *self.clips[: at + 1]) if c in waiting), None)
 
+    def open_after(self, clip: str | None) -> str | None:
+        """Return the next clip that waits or is left aside, from the beginning again after the last."""
+        every, there = (*self.clips, *self.aside), set(waiting(self.document.project))
+        at = every.index(clip) if clip in every else -1
+        return next((c for c in (*every[at + 1 :], *every[: at + 1]) if c in there), None)
+
     def before(self, clip: str | None) -> str | None:
         """Return the clip before, whether it is placed or not."""
-        there = [c for c in self.clips if c in self.document.project.clips]
+        there = [c for c in (*self.clips, *self.aside) if c in self.document.project.clips]
         return there[max(0, there.index(clip) - 1)] if clip in there else next(iter(there), None)
 
     # --- deciding
@@ -112,6 +133,13 @@ class Reviewing(QObject):
     def tell(self, clip: str, name: Field, value: object) -> None:
         """Correct a field of a clip's proposal; the project changes when it is placed."""
         self.review = self.review.tell(clip, name, value)
+        self.changed.emit()
+
+    def take_up(self, clip: str, kind: Kind) -> None:
+        """Make a clip that was left aside one of the review, as a kind."""
+        self.review = Review(taken_up(self.review.found, clip), self.review.said).tell(clip, "kind", kind)
+        self.clips = (*self.clips, clip)
+        self.aside = tuple(c for c in self.aside if c != clip)
         self.changed.emit()
 
     def times_found(self, p: Proposal) -> None:
@@ -135,21 +163,45 @@ class Reviewing(QObject):
         if self.document.undo_stack.index() == at:
             self._steps.pop()  # it was placed just so already
         self._learn(clips)
+        if step is None:
+            self._looks_for_parted = True
+            self._look_for_parted()
         return taken
+
+    def _look_for_parted(self) -> None:
+        """Look for stances that no clip leads to or back from, on a thread."""
+        project = self.document.project
+
+        def done(found: list[str]) -> None:
+            if project is self.document.project and tuple(found) != self.parted:
+                self.parted = tuple(found)
+                self.changed.emit()
+
+        self.jobs.start("parted stances", lambda _: missing(project), done, self._failed, quick=True)
+
+    def bridge(self) -> tuple[str, ...]:
+        """Join the stances that no clip leads to or from by blending, as one undo step; return what was made,
+        in words.
+        """
+        after, made = bridged(self.document.project)
+        if made:
+            self._steps.append(None)
+            self.document.edit("Bridge by blending", lambda p: bridged(p)[0])
+        return tuple(told(after, made))
 
     def _learn(self, clips: list[str]) -> None:
         """Remember what was corrected of clips that are now placed, and look at the rest anew."""
         entries = self.document.project.clips
         names = [entries[c].name for c in self.clips if c in entries]
-        told = [
+        corrected = [
             (c, name, value)
             for c in clips
             for name, value in self.review.said.get(c, {}).items()
             if name != "timing"
         ]
-        for clip, name, value in told:
+        for clip, name, value in corrected:
             self.learned.correct(entries[clip].name, name, value, names)
-        if told:
+        if corrected:
             self._anew.start()
 
     @property
@@ -164,4 +216,6 @@ class Reviewing(QObject):
 
     def _edited(self, before: Project, after: Project) -> None:
         self.review = self.review.settled(after)
+        if self._looks_for_parted and before.graphs is not after.graphs:
+            self._look_for_parted()
         self.changed.emit()

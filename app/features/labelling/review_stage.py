@@ -4,6 +4,8 @@ it.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from PySide6.QtCore import QElapsedTimer, QRectF, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import (
@@ -29,6 +31,7 @@ from preview.figure import Figure
 from preview.scene import THEMES, Actor, Scene
 
 FRAME = 16  # milliseconds between frames
+STRAYS = 0.2  # of its height that a figure goes before the camera goes along
 ABOVE = 0.16  # of the figure's height that is left free above it
 
 
@@ -110,6 +113,7 @@ class ReviewStage(QWidget):
         self.shown: Shown | None = None
         self.seconds, self.playing = 0.0, True
         self._framed: object = None
+        self._stood, self._tall = np.zeros(2), 1.0  # where the framed figure stands, and how high it is
         self.view = make_view(self._scene, self)
         self.view.setMinimumSize(320, 240)
         self.view.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # the keys are the review's
@@ -216,6 +220,8 @@ class ReviewStage(QWidget):
         if self._framed is not figure and not self.view.moved_by_hand:
             self._framed = figure
             self._frame(figure, positions)
+        elif not self.view.moved_by_hand:
+            self._follow(positions[0, [0, 2]])
         morphs = figure.morph_weights(self.shown.morphs(self.seconds)) if figure.morphs else None
         return Scene((Actor(figure, rotations, positions, morphs, {}, False),))
 
@@ -226,6 +232,18 @@ class ReviewStage(QWidget):
             [0.0, ABOVE * (high[1] - low[1]), 0.0]
         )  # what is written over the picture hides no face
         self.view.camera = whole_figure((low, high + room), aspect)
+
+        self._stood, self._tall = positions[0, [0, 2]], float(high[1] - low[1])
+
+    def _follow(self, stands: np.ndarray) -> None:
+        """Let a figure that walks off stay in the picture. stands `[2]`: x and z of its root."""
+        away = stands - self._stood
+        far = float(np.linalg.norm(away))
+        if np.isfinite(far) and far > STRAYS * self._tall:
+            shift = away * (1 - STRAYS * self._tall / far)
+            self._stood = self._stood + shift
+            x, y, z = self.view.camera.target
+            self.view.camera = replace(self.view.camera, target=(x + float(shift[0]), y, z + float(shift[1])))
 
     def _frame_again(self) -> None:
         self.view.moved_by_hand = False

@@ -4,8 +4,10 @@ grasp.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from html import escape
 
+from app.look.plural import many
 from app.look.theme import KIND_MARKS, KIND_TITLES, Theme
 from metagraph.graph.model import Project
 from metagraph.suggest.proposal import Proposal
@@ -25,7 +27,9 @@ KEYS = (
     ("N", "new stance"),
     ("T", "tags"),
     ("A", "accept the sure"),
+    ("B", "bridge stances"),
 )
+ANYWAY = "Left aside; choose what it is to label it all the same."
 
 
 def legend(look: Theme) -> str:
@@ -39,6 +43,12 @@ def legend(look: Theme) -> str:
 
 def headline(review: Review, project: Project, clip: str, look: Theme) -> str:
     """Return what a clip is taken for as rich text, and what speaks against it."""
+    if clip not in review.found.proposals:
+        return (
+            f'<span style="font-size:17px; font-weight:600">Left aside</span><br>'
+            f'<span style="color:{look.dim}">{escape(project.clips[clip].name)}</span><br>'
+            f"{escape(review.found.aside.get(clip, ''))}"
+        )
     p, places = review.found.proposals[clip], review.found.places
     kind = p.kind.value
     where = [p.layer.value.capitalize()]
@@ -55,6 +65,12 @@ def headline(review: Review, project: Project, clip: str, look: Theme) -> str:
     against = [*p.conflicts, *([p.timing_reason] if p.good is False else [])]
     lines += [f'<span style="color:{look.warning}">⚠ {escape(words)}</span>' for words in against]
     return "<br>".join(lines)
+
+
+def rest(aside: Sequence[str]) -> str:
+    """Return what is said when nothing is left but clips that were left aside."""
+    were = "was" if len(aside) == 1 else "were"
+    return f"<b>Every clip is placed</b> but {many(len(aside), 'clip')} that {were} left aside."
 
 
 def timing(p: Proposal, duration: float) -> str:

@@ -21,8 +21,8 @@ def contribute(shell: Shell) -> Contribution:
 
         panel = ProblemsPanel(shell.stage.session, shell.widget)
         panel.mend_wanted.connect(compatibility.mend)
-        panel.show_problems(watch.problems, compatibility.flags)
-        watch.changed.connect(lambda: panel.show_problems(watch.problems, compatibility.flags))
+        panel.show_problems(watch.problems, watch.fixes)
+        watch.changed.connect(lambda: panel.show_problems(watch.problems, watch.fixes))
         return panel
 
     return Contribution(

@@ -37,7 +37,7 @@ from PySide6.QtWidgets import (
 from app.look import icons
 from app.look.plural import many
 from app.look.theme import theme
-from app.stage.compatibility_state import Fix
+from app.stage.fixes import Fix
 from app.stage.session import Session
 from metagraph.graph.problem import Problem
 
@@ -183,7 +183,7 @@ class ProblemsPanel(QWidget):
             item.setForeground(0, QColor(look.text if problem.severity != "hint" else look.dim))
             item.setToolTip(0, f"{problem.severity}: {problem.message}. {problem.remedy}")
             if fix is not None:
-                item.setToolTip(FIX, "One step that can be undone")
+                item.setToolTip(FIX, fix.tip)
             item.setData(0, ROLE, problem)
             self.tree.addTopLevelItem(item)
         for column, width in enumerate((560, 170, 380)):
@@ -208,7 +208,7 @@ class ProblemsPanel(QWidget):
         problem = item.data(0, ROLE)
         fix = self.fixes.get(problem) if isinstance(problem, Problem) else None
         if fix is not None:
-            self.session.jump(action=fix.action)
+            self.session.jump(problem.layer, problem.stance, fix.action or problem.action)
             self.mend_wanted.emit([fix])
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:

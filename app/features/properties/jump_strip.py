@@ -13,6 +13,7 @@ from PySide6.QtGui import QColor, QHelpEvent
 from PySide6.QtWidgets import QToolTip, QWidget
 
 from app.look.theme import Theme
+from metagraph.graph import end_gaps
 from metagraph.graph.model import Action, Project
 
 if TYPE_CHECKING:
@@ -33,8 +34,14 @@ class Seen:
 
         t = action.timing
         self.loops, self.times, self.proposed = action.kind == "stance", curves.times, curves.proposed
-        self.enter = np.asarray(shown(curves.enter, t.blend_in))
-        self.leave = np.asarray(shown(curves.leave, t.blend_in if self.loops else t.blend_out))
+        self.enter = np.array(shown(curves.enter, t.blend_in))
+        self.leave = np.array(shown(curves.leave, t.blend_in if self.loops else t.blend_out))
+        if curves.gaps is not None:  # what a long blend covers at an unhurried pace does not show
+            for cost, gap, blend in zip(
+                (self.enter, self.leave), curves.gaps, (t.blend_in, t.blend_out), strict=True
+            ):
+                covered = end_gaps.slow(gap, curves.height, blend)
+                cost[covered] = np.minimum(cost[covered], 1.0)
         if self.loops:
             self.pivot = 0
         elif action.kind == "transition":

@@ -14,11 +14,13 @@ from typing import Any
 
 import pytest
 
-from app.cli.label_report import open_command
+from app.cli.label_report import open_command, report
 from app.cli.parser import main
 from metagraph.formats.store import read_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
+from metagraph.suggest.accept import Taken
+from metagraph.suggest.proposal import Proposals
 from tests.projects import clip
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -98,6 +100,21 @@ def test_a_command_survives_any_name(tmp_path: Path) -> None:
     asked = [shlex.split(open_command(project, e.id, tmp_path / "a b.yaml"))[-1] for e in entries]
     assert asked[0] == entries[0].name
     assert asked[1:] == [e.id for e in entries[1:]]
+
+
+def test_what_was_left_aside_stands_at_the_end_by_reason_with_a_count() -> None:
+    project = edits.add_clips(
+        Project("p"), [(f"{n}.glb", 0, "", clip(name)) for n, name in enumerate(("a<b>", "run", "jog"))]
+    )
+    one, two, three = project.clips
+    aside = {one: "name says 'x<y'", two: "goes 2.0 m away", three: "goes 3.5 m away"}
+    taken = Taken(project, (), {})
+    page = report(project, Proposals({}, {}, aside), taken, {})
+    assert "<h2 id='aside'>Left aside (3)</h2>" in page
+    assert "2 clips: goes 2.0 to 3.5 m away" in page and "(run, jog)" in page
+    assert "1 clip: name says &#x27;x&lt;y&#x27;" in page and "a&lt;b&gt;" in page and "a<b>" not in page
+    assert page.index("2 clips: goes") < page.index("1 clip: name")
+    assert "Left aside" not in report(project, Proposals({}, {}), taken, {})
 
 
 def test_many_notes_of_the_same_are_one_in_the_report() -> None:

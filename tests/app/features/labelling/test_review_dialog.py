@@ -15,7 +15,9 @@ from PySide6.QtWidgets import QInputDialog
 
 from metagraph.formats.store import open_project
 from metagraph.study.klm import predicted
+from metagraph.suggest.bridges import missing
 from metagraph.suggest.review import DECIDING
+from tests.label_zoo.catalogue import named
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 K = Qt.Key
@@ -164,11 +166,11 @@ def watched(project) -> float:
     )
 
 
-def test_the_least_certain_stand_first_after_the_stances(practice):
+def test_clips_stand_in_the_order_of_the_review_stances_first(practice):
     dialog = begun(practice)
-    found = [dialog.review.found.proposals[c] for c in dialog.queue.clips]
-    rest = [p.confidence for p in found if p.kind.value != "stance"]
-    assert rest == sorted(rest) and len(found) == 152
+    assert list(dialog.queue.clips) == dialog.review.order() and len(dialog.queue.clips) == 152
+    rests = [dialog.review.found.proposals[c].kind.value == "stance" for c in dialog.queue.clips]
+    assert rests == sorted(rests, reverse=True)
     assert "0 of 152 placed" in dialog.queue.words.text() and "min left" in dialog.queue.words.text()
     dialog.close()
 
@@ -319,3 +321,117 @@ def test_closing_lets_the_character_play_on(practice):
     assert not drive.session.transport.playing
     press(dialog, K.Key_Escape)
     drive.wait(lambda: drive.session.transport.playing)
+
+
+def made_of(drive, name: str):
+    """A made set in the window, nothing of it placed."""
+    project = named(name).project
+    drive.document.load(project, None)
+    drive.files.opened.emit()
+    drive.wait(lambda: drive.performance.skeleton() is not None, 60)
+    return begun(drive)
+
+
+def test_clips_left_aside_stand_at_the_end_with_the_reason_and_are_labelled_all_the_same(toys):
+    drive = toys
+    dialog = made_of(drive, "one stance and exercises")
+    project, aside = drive.document.project, dialog.work.aside
+    assert len(aside) == 14 and len(aside) + len(dialog.work.clips) == len(project.clips)
+    assert not set(aside) & set(dialog.work.clips) and dialog.work.waiting() == list(dialog.work.clips)
+    tree = dialog.queue.list
+    texts = [tree.topLevelItem(n).text(0) for n in range(tree.topLevelItemCount())]
+    assert texts[len(dialog.work.clips)] == "Left aside (14)" and texts[-1].startswith("–  ")
+    walks = next(c for c in aside if "walk" in project.clips[c].name)
+    assert "left aside" in dialog.queue._items[walks].toolTip(0)
+    press(dialog, K.Key_Backtab)  # before the first there is none
+    dialog.go_to(dialog.work.clips[-1])
+    press(dialog, K.Key_Tab)
+    assert dialog.current == aside[0]
+    dialog.go_to(walks)
+    drive.wait(lambda: dialog.stage.shown is not None and dialog.stage.shown.clip == walks)
+    drive.pause(100)
+    target, root = dialog.stage.view.camera.target, dialog.stage.shown.pose(dialog.stage.seconds).root
+    assert abs(root[0] - target[0]) < 0.6 and abs(root[2] - target[2]) < 0.6  # it is in the picture
+    assert "Left aside" in dialog.stage.words.text() and "walk" in dialog.stage.words.text()
+    assert [row.name for row in dialog.fields.rows] == ["kind"] and dialog.go.text() == "Leave aside"
+    assert not dialog.tags.isEnabled()
+    press(dialog, K.Key_BracketLeft, K.Key_N, K.Key_Down, K.Key_C, K.Key_C)  # nothing to correct yet
+    press(dialog, K.Key_Return)
+    assert dialog.current not in (None, walks) and walks in dialog.work.aside
+    assert not list(drive.document.project.actions())
+    dialog.go_to(walks)
+    press(dialog, K.Key_3)
+    assert dialog.current == walks and dialog.work.clips[-1] == walks and walks not in dialog.work.aside
+    assert dialog.review.value(walks, "kind") == "fidget" and "stance" in [r.name for r in dialog.fields.rows]
+    drive.wait(lambda: dialog.stage.shown is not None and walks in dialog.stage.shown.project.uses)
+    press(dialog, K.Key_Return)
+    assert [a.kind for a in drive.document.project.uses[walks]] == ["fidget"]
+    press(dialog, K.Key_Backspace)
+    assert dialog.current == walks and not list(drive.document.project.actions())
+    dialog.close()
+
+
+def test_a_clip_taken_up_stays_one_when_the_rest_is_looked_at_anew(toys, monkeypatch):
+    drive = toys
+    dialog = made_of(drive, "one stance and exercises")
+    monkeypatch.setattr(type(dialog.work.learned), "correct", lambda self, *a: None)
+    clip, other = dialog.work.aside[:2]
+    dialog.go_to(clip)
+    press(dialog, K.Key_2)
+    before = dialog.review.found
+    press(dialog, K.Key_Return)
+    drive.wait(lambda: dialog.review.found.proposals.keys() == before.proposals.keys())
+    drive.pause(700)
+    drive.settle()
+    assert clip not in dialog.review.found.aside and other in dialog.review.found.aside
+    dialog.go_to(other)
+    press(dialog, K.Key_2, K.Key_Return)
+    kinds = {c: a.kind for c in (clip, other) for a in drive.document.project.uses[c]}
+    assert kinds == {clip: "gesture", other: "gesture"}
+    dialog.close()
+
+
+def test_when_all_but_those_left_aside_is_placed_that_is_said(toys):
+    dialog = made_of(toys, "one stance and exercises")
+    dialog.queue.limit.setValue(0)
+    press(dialog, K.Key_A)
+    while dialog.current is not None:
+        press(dialog, K.Key_Return)
+    assert "14 clips that were left aside" in dialog.stage.words.text() and dialog.go.text() == "Done"
+    assert not dialog.queue.bridge.isVisible()  # one stance: there is nothing to bridge
+    press(dialog, K.Key_Tab)
+    assert dialog.current == dialog.work.aside[0]
+    dialog.close()
+
+
+def test_stances_no_clip_leads_to_are_told_after_all_were_accepted_and_bridged_with_a_press(toys):
+    drive = toys
+    dialog = made_of(drive, "standing talker")
+    assert not dialog.queue.bridge.isVisible()
+    press(dialog, K.Key_Return)
+    drive.settle()
+    assert not dialog.queue.bridge.isVisible()  # a single clip is no reason to speak of it
+    dialog.queue.limit.setValue(0)
+    press(dialog, K.Key_A)
+    drive.wait(dialog.queue.bridge.isVisible)
+    stance = drive.document.project.stance(dialog.work.parted[0])
+    assert (
+        "No clip leads to 1 stance" in dialog.queue.parted.text()
+        and stance.name in dialog.queue.parted.text()
+    )
+    count, placed = drive.document.undo_stack.count(), len(list(drive.document.project.actions()))
+    QTest.mouseClick(dialog.queue.bridge, Qt.MouseButton.LeftButton)
+    assert drive.document.undo_stack.count() == count + 1
+    assert missing(drive.document.project) == []
+    drive.wait(lambda: not dialog.queue.bridge.isVisible())
+    assert dialog.queue.parted.text() == "1 transition made by blending."
+    assert "blended in" in dialog.queue.parted.toolTip()
+    press(dialog, K.Key_Backspace)
+    assert len(list(drive.document.project.actions())) == placed
+    drive.wait(dialog.queue.bridge.isVisible)
+    press(dialog, K.Key_B)
+    drive.wait(lambda: not dialog.queue.bridge.isVisible())
+    assert missing(drive.document.project) == []
+    press(dialog, K.Key_Backspace, K.Key_Backspace)
+    drive.wait(lambda: not dialog.queue.parted.isVisible())
+    dialog.close()

@@ -4,13 +4,18 @@ press.
 
 from __future__ import annotations
 
+from collections import Counter
+
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from app.features.problems.problems_panel import FIX
 from app.stage.compatibility_state import judge, merged, told
+from app.stage.fixes import Fix, bridges_for
 from metagraph.graph import edits
+from metagraph.graph.check import check
+from metagraph.graph.expand import reachable
 from metagraph.graph.model import Project
 from metagraph.graph.problem import Problem
 
@@ -144,3 +149,75 @@ def test_all_timings_are_mended_in_one_step(toys, toy, wide):
     item = panel.tree.topLevelItem(0)
     if item is not None:
         assert "Go there" in [a.text() for a in panel.menu(item).actions()]
+
+
+@pytest.fixture(scope="module")
+def parted(toy):
+    """The toy project without its transitions: only rest is ever seen."""
+    project = toy.project()
+    return edits.remove_actions(project, [a.id for a in project.actions() if a.kind == "transition"])
+
+
+def test_a_stance_nothing_leads_to_is_mended_by_blending_and_one_without_a_loop_is_not(toy, parted):
+    fixes = bridges_for(parted, check(parted))
+    assert Counter(p.code for p in fixes) == {"dead-end": 3, "unreachable": 2}
+    for problem, fix in fixes.items():
+        assert fix.words == "Bridge by blending" and "blended in" in fix.tip
+        assert not [p for p in check(fix(parted)) if (p.code, p.stance) == (problem.code, problem.stance)]
+    up = toy.id(parted, "up")
+    bare = edits.remove_actions(parted, [a.id for a in parted.graphs["arms"].of(up, "stance")])
+    assert up not in {p.stance for p in bridges_for(bare, check(bare))}
+    assert bridges_for(Project(), check(Project())) == {}
+
+
+def test_what_went_meanwhile_is_mended_no_more(toy, parted):
+    up = toy.id(parted, "up")
+    (fix, *_) = [f for p, f in bridges_for(parted, check(parted)).items() if p.stance == up]
+    gone = edits.remove_stance(parted, up)
+    assert fix(gone) is gone
+    assert Fix("Use 1.00 s", "a99", {"timing": {"end": 1.0}})(parted) is parted
+
+
+@pytest.mark.window
+@pytest.mark.gl
+def test_a_stance_that_cannot_be_reached_is_bridged_with_a_press_in_one_step(toys, toy, parted):
+    drive = toys
+    drive.document.load(parted, None)
+    drive.files.opened.emit()
+    panel = drive.problems_panel
+    drive.wait(lambda: len(panel.fixable()) == 5)
+    drive.show("problems")
+    drive.wait(panel.tree.isVisible)
+    tree = panel.tree
+    up = toy.id(parted, "up")
+
+    def row(code):
+        rows = (tree.topLevelItem(n) for n in range(tree.topLevelItemCount()))
+        return next(i for i in rows if i.text(0) == f"stance 'up' cannot be {code}")
+
+    item = row("reached")
+    assert item.text(FIX) == "Bridge by blending" and "blended in" in item.toolTip(FIX)
+    tree.scrollTo(tree.indexFromItem(item, FIX))
+    cell = tree.visualRect(tree.indexFromItem(item, FIX))
+    spot = cell.topLeft()
+    spot.setX(spot.x() + 20)
+    spot.setY(cell.center().y())
+    QTest.mouseClick(tree.viewport(), Qt.MouseButton.LeftButton, pos=spot)
+    stack, graph = drive.document.undo_stack, drive.document.project.graphs["arms"]
+    assert stack.count() == 1 and stack.text(0) == "Bridge by blending"
+    assert up in reachable(graph, graph.start) and graph.start in reachable(graph, up)
+    drive.wait(lambda: len(panel.fixable()) == 2)
+    assert {p.stance for p in drive.problems.problems if p.code in ("unreachable", "dead-end")} == {
+        toy.id(parted, "far")
+    }
+    assert not drive.canvas.misfits  # a long slow blend is nothing to warn of
+    drive.document.undo()
+    drive.wait(lambda: len(panel.fixable()) == 5)
+    assert panel.all.text() == "Mend 5 problems"
+    drive.click((panel.all, panel.all.rect().center()))
+    assert stack.count() == 1 and stack.text(0) == "Mend 5 problems"
+    drive.wait(lambda: not panel.fixable())
+    graph = drive.document.project.graphs["arms"]
+    assert reachable(graph, graph.start) == set(graph.stances)
+    drive.document.undo()
+    assert drive.document.project.graphs == parted.graphs

@@ -1,0 +1,55 @@
+"""What mends a problem with one press: other times, another end, or ways by blending."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from metagraph.graph import edits
+from metagraph.graph.model import Project
+from metagraph.graph.problem import Problem
+
+BRIDGE = "Bridge by blending"
+
+
+@dataclass(frozen=True)
+class Fix:
+    """One press that mends a problem. words: on the button. action: whose fields change, as
+    `edits.update_actions` takes them, or whose end. stance: that is led to and from by blending. tip: what
+    comes of it.
+    """
+
+    words: str
+    action: str | None = None
+    changes: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    end: str | None = None  # the stance a transition should end in
+    stance: str | None = None
+    tip: str = "One step that can be undone"
+
+    def __call__(self, project: Project) -> Project:
+        """Return the project mended; as it is where what was to be mended went meanwhile."""
+        if self.stance is not None:
+            from metagraph.suggest.bridges import bridged_at
+
+            return bridged_at(project, self.stance)[0]
+        if self.action is None or project.action(self.action) is None:
+            return project
+        if self.end is not None:
+            return edits.set_ends(project, [self.action], self.end)
+        return edits.update_actions(project, [self.action], **self.changes)
+
+
+def bridges_for(project: Project, problems: Iterable[Problem]) -> dict[Problem, Fix]:
+    """Return what joins stances that cannot be reached or left to the others by blending."""
+    from metagraph.suggest import bridges
+
+    out: dict[Problem, Fix] = {}
+    for problem in problems:
+        if problem.code in ("unreachable", "dead-end") and problem.stance is not None:
+            after, made = bridges.bridged_at(project, problem.stance)
+            if made:
+                tip = "; ".join(bridges.told(after, made))
+                words = f"{tip[:1].upper()}{tip[1:]}. One step that can be undone"
+                out[problem] = Fix(BRIDGE, stance=problem.stance, tip=words)
+    return out

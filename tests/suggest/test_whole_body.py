@@ -1,0 +1,141 @@
+"""Recordings of the whole body: noticed in whatever figure, units and names, and nowhere else."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from metagraph.graph.model import LAYERS, Project
+from metagraph.suggest.accept import accept
+from metagraph.suggest.propose import propose
+from metagraph.suggest.traits import Traits, traits_of
+from metagraph.suggest.whole_body import CARRIER, SCALE, carried, recorded_whole, whole_of
+from tests.label_zoo.catalogue import named
+from tests.suggest.test_traits import chain, of
+
+WHOLE = (
+    "standing talker",
+    "arms tell the stances",
+    "sitting talker",
+    "sitting, leaning, standing",
+    "sitting without legs",
+    "opaque takes",
+)
+LAYERED = ("japanese joints", "few joints", "no turns at rest, no fingers", "a hundred times too large")
+
+
+def test_without_clips_or_with_one_nothing_was_recorded_whole(toy: Any) -> None:
+    one = {"x": of(toy.clip("x"))}
+    assert not recorded_whole({}) and not recorded_whole({}, {"x": "sit"})
+    assert not recorded_whole(one) and not recorded_whole(one, {"x": "sit", "gone": "stand"})
+
+
+@pytest.mark.parametrize("frames", [1, 40])
+def test_a_skeleton_that_is_no_figure_was_not_recorded_whole(frames: int) -> None:
+    from metagraph.motion.clip import Clip
+
+    turns = np.tile([0, 0, 0, 1.0], (frames, 4, 1))
+    clips = {f"x{n}": of(Clip("x", chain(4), 30, turns, np.zeros((frames, 1, 3)))) for n in range(5)}
+    assert not recorded_whole(clips) and not recorded_whole(clips, dict.fromkeys(clips, "sit"))
+    for t in clips.values():
+        whole = whole_of(t).layers[CARRIER]
+        assert np.isfinite(whole.first).all() and np.isfinite([whole.extent, whole.loop_error]).all()
+
+
+@pytest.mark.parametrize("name", WHOLE)
+def test_takes_of_the_whole_body_are_noticed_by_names_or_by_motion(name: str) -> None:
+    assert propose(named(name).project).whole
+
+
+@pytest.mark.parametrize("name", LAYERED)
+def test_clips_of_single_layers_are_not(name: str) -> None:
+    project = named(name).project
+    assert not propose(project).whole and not propose(project, sources=("motion",)).whole
+
+
+@pytest.fixture(scope="module")
+def talker() -> dict[str, Traits]:
+    return traits_of(named("standing talker").project)
+
+
+@given(st.randoms())
+def test_the_order_of_clips_does_not_matter(random: Any) -> None:
+    for name, whole in (("opaque takes", True), ("few joints", False)):
+        found = list(_known(name).items())
+        random.shuffle(found)
+        assert recorded_whole(dict(found)) == whole
+
+
+_TRAITS: dict[str, dict[str, Traits]] = {}
+
+
+def _known(name: str) -> dict[str, Traits]:
+    if name not in _TRAITS:
+        _TRAITS[name] = traits_of(named(name).project)
+    return _TRAITS[name]
+
+
+def test_names_alone_tell_it_where_one_stance_stands_before_what_several_layers_do(
+    talker: dict[str, Traits],
+) -> None:
+    from metagraph.suggest.clip_measures import layer_of, nothing
+
+    moving = [c for c, t in talker.items() if not nothing(t) and t.face == 0]
+    layer = {c: layer_of(talker[c]).value for c in moving}
+    assert len(set(layer.values())) > 1
+    by_layer = {c: {"arms": "wave", "head": "nod", "body": "shift"}[layer[c]] for c in moving}
+    mixed = {c: ("stand", "sit")[n % 2] for n, c in enumerate(moving)}
+    some = {c: talker[c] for c in moving}
+    assert recorded_whole(some, mixed)
+    assert recorded_whole(some, by_layer) == recorded_whole(some)  # words for layers say nothing new
+    assert recorded_whole(some, dict.fromkeys(moving, "stand")) == recorded_whole(some)
+
+
+def test_the_whole_is_every_layer_in_the_carriers_measure(talker: dict[str, Traits]) -> None:
+    for t in talker.values():
+        whole = whole_of(t).layers[CARRIER]
+        assert whole.names == tuple(n for layer in LAYERS for n in t.layers[layer].names)
+        at = 0
+        for layer in LAYERS:
+            own = t.layers[layer]
+            part = whole.first[at : at + len(own.names)]
+            assert part == pytest.approx(own.first * SCALE[layer])
+            at += len(own.names)
+        assert whole.extent == pytest.approx(max(t.layers[x].extent * SCALE[x] for x in LAYERS))
+        assert {x: whole_of(t).layers[x] is t.layers[x] for x in LAYERS if x != CARRIER} == {
+            x: True for x in LAYERS if x != CARRIER
+        }
+
+
+def test_traits_without_any_layer_stay_as_they_are(talker: dict[str, Traits]) -> None:
+    from dataclasses import replace
+
+    t = next(iter(talker.values()))
+    none = replace(t.layers["arms"], names=(), first=np.zeros((0, 3)))
+    bare = replace(t, layers=dict.fromkeys(LAYERS, none))
+    assert whole_of(bare) is bare
+
+
+def test_a_project_carries_the_whole_body_once_such_takes_are_accepted() -> None:
+    made = named("standing talker").project
+    assert not carried(Project()) and not carried(made)
+    found = propose(made)
+    assert not carried(accept(made, found, clips=()).project)
+    project = accept(made, found).project
+    assert carried(project) and not carried(
+        accept(named("few joints").project, propose(named("few joints").project)).project
+    )
+    assert {layer for layer in LAYERS if project.graphs[layer].stances} == {CARRIER}
+    # Clips that come later are of that layer, too, few as they are.
+    placed = list(project.uses)[-3:]
+    from metagraph.graph import edits
+
+    open_ = edits.remove_actions(
+        project, [a.id for c in placed for a in project.uses[c] if a.kind != "stance"]
+    )
+    again = propose(open_)
+    assert again.whole and {p.layer.value for p in again.proposals.values()} <= {CARRIER}
