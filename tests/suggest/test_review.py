@@ -10,6 +10,7 @@ from metagraph.formats.store import open_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.suggest.estimate import Belief
+from metagraph.suggest.flags import gain
 from metagraph.suggest.proposal import Place, Proposal, Proposals
 from metagraph.suggest.propose import propose
 from metagraph.suggest.review import PAUSE, SAID, USUAL, Pace, Review
@@ -40,15 +41,15 @@ def test_nothing_to_review_has_no_order() -> None:
     assert review.order() == [] and review.take(Project(), ["gone"]).placed == ()
 
 
-def test_stances_come_first_the_most_used_before_the_others_then_the_least_certain(
+def test_stances_come_first_the_most_used_before_the_others_then_where_a_look_gains_most(
     practice: Project, found: Proposals
 ) -> None:
     order = [found.proposals[c] for c in Review(found).order()]
     kinds = [p.kind.value == "stance" for p in order]
     assert kinds == sorted(kinds, reverse=True)
     assert practice.clips[order[0].clip].name == "hands_at_sides__stance"
-    confidences = [p.confidence for p in order if p.kind.value != "stance"]
-    assert confidences == sorted(confidences)
+    gains = [gain(p) for p in order if p.kind.value != "stance"]
+    assert gains == sorted(gains, reverse=True)
 
 
 def test_what_is_said_is_certain_and_ends_the_dispute(practice: Project, found: Proposals) -> None:

@@ -1,0 +1,57 @@
+"""How likely a proposal is wrong, and what that says of a look at it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from metagraph.suggest.estimate import Belief
+from metagraph.suggest.flags import LOOK, chance_wrong, doubt, gain, needs_a_look
+from metagraph.suggest.proposal import Proposal
+
+SURE = Proposal(
+    "c",
+    Belief("gesture", 0.99, "name says 'shrug'"),
+    Belief("arms", 0.95, "the arms move"),
+    Belief("s", 0.99, "begins 0.0 cm from it"),
+    None,
+    Belief("both", 0.9, "both move"),
+)
+
+
+def test_what_is_sure_throughout_needs_no_look_and_what_was_not_placed_does() -> None:
+    assert not needs_a_look(SURE) and chance_wrong(SURE) < 0.1
+    assert needs_a_look(SURE, {"c": "nothing says where it ends"})
+
+
+@given(st.floats(0.02, 0.98), st.floats(0.02, 0.98))
+def test_the_less_sure_a_kind_is_the_likelier_it_is_wrong(one: float, other: float) -> None:
+    less, more = sorted((one, other))
+    chances = [chance_wrong(replace(SURE, kind=replace(SURE.kind, confidence=x))) for x in (less, more)]
+    assert 0 <= chances[1] <= chances[0] <= 1
+
+
+def test_sources_that_disagree_make_a_proposal_likelier_to_be_wrong_and_are_told() -> None:
+    told = replace(SURE, conflicts=("name says 'idle 2', but begins 0.1 cm from \"idle 1\"",))
+    assert chance_wrong(told) > chance_wrong(SURE)
+    assert "but begins 0.1 cm" in doubt(told) and doubt(told).split("%")[0].isdecimal()
+
+
+@pytest.mark.parametrize(
+    ("field", "word"), [("kind", "its kind is 30% sure"), ("stance", "its stance is 30% sure")]
+)
+def test_a_doubt_names_what_is_least_sure(field: str, word: str) -> None:
+    assert word in doubt(replace(SURE, **{field: replace(getattr(SURE, field), confidence=0.3)}))
+
+
+def test_a_transition_that_nothing_says_the_end_of_is_told_so() -> None:
+    p = replace(SURE, kind=Belief("transition", 0.97, "name says 'to'"))
+    assert doubt(p).endswith("nothing says its end")
+
+
+def test_a_look_gains_more_where_others_are_called_alike() -> None:
+    alike = replace(SURE, details={"likelihood": Belief(0.25, 0.8, "one of 4 of 'shrug'")})
+    assert gain(alike) > gain(SURE) > 0 and 0 < LOOK < 1
