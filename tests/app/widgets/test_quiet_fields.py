@@ -146,7 +146,16 @@ def test_typing_a_number_is_told_as_ever(page, qtbot):
     assert told == [1.25]
 
 
-def test_an_arrow_that_is_held_with_the_mouse_is_one_step(page, qtbot):
+@pytest.fixture
+def bare_style(qapp):
+    """The application without the program's look, which has no arrows to hold."""
+    sheet = qapp.styleSheet()
+    qapp.setStyleSheet("")
+    yield
+    qapp.setStyleSheet(sheet)
+
+
+def test_an_arrow_that_is_held_with_the_mouse_is_one_step(bare_style, page, qtbot):
     field = page.add(SpinBox(page))
     field.setValue(10)
     told = []
