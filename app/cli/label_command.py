@@ -72,6 +72,7 @@ def run(options: Namespace) -> int:
     from metagraph.graph.check import check, grave
     from metagraph.suggest.bridges import bridged, told
     from metagraph.suggest.flags import needs_a_look
+    from metagraph.suggest.left_aside import reasons
     from metagraph.suggest.propose import SOURCES, accept, propose
 
     began = time.perf_counter()
@@ -101,9 +102,6 @@ def run(options: Namespace) -> int:
     look = [p for p in found.doubtful if needs_a_look(p, taken.left)]
     errors = [p.message for p in grave(check(taken.project))]
     seconds = time.perf_counter() - began
-    aside: dict[str, list[str]] = {}
-    for clip, why in found.aside.items():
-        aside.setdefault(why, []).append(project.clips[clip].name)
     for note in counted(notes):
         print(f"note: {note}", file=sys.stderr)
     for stance, rest in taken.held.items():
@@ -111,8 +109,8 @@ def run(options: Namespace) -> int:
             print(f"held: {made.name}: {rest.reason}", file=sys.stderr)
     for line in told(taken.project, bridges):
         print(f"bridged: {line}", file=sys.stderr)
-    for why, clips in aside.items():
-        print(f"aside: {_several(clips)}: {why}", file=sys.stderr)
+    for why, clips in reasons(found.aside):
+        print(f"aside: {_several([project.clips[c].name for c in clips])}: {why}", file=sys.stderr)
     for clip, why in taken.left.items():
         print(f"left: {project.clips[clip].name}: {why}", file=sys.stderr)
     for message in errors:

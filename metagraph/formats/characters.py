@@ -20,7 +20,6 @@ from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton
 
 SUFFIXES = (".glb", ".gltf", ".vrm")
-CHOOSE = "Choose its character (File menu, Choose character…)"
 SAME = 0.8  # share of a skeleton's joints that a file without motion must name to be taken for its character
 
 

@@ -5,7 +5,8 @@ layer, how much it rests.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import log
+from dataclasses import replace
+from math import log, sqrt
 
 from metagraph.graph.words import Layer
 from metagraph.suggest.estimate import Belief
@@ -20,12 +21,40 @@ HELD = 1.0  # seconds in which nothing moves, from which on that is a pose to st
 FLOWING = 0.2  # of its greatest speed that a clip has at its ends, from which on it is a loop that flows
 STRIDE = 0.05  # heights that each foot comes before the other in a walk, at least
 BREATHES = 0.008  # heights a second that arms move which hang on a chest that breathes, while the head moves
+SEVERAL = 8  # clips, from which on what the calmest of them have is known to be the recording's
+CALMEST = 0.05  # of the clips of a set, that move only as it trembles
+MORE = 1.5  # times what those have, up to which a short clip may tremble
+TREMBLE = 0.025  # heights a second; where the calmest clips move more, none of them rests
 # how often a guess from motion is right at most: it alone cannot tell a small gesture from a large fidget
 SUREST = 0.95
 
 
 def energy(traits: Traits) -> float:
     return sum(traits.energy.values())
+
+
+def with_tremble(traits: Mapping[str, Traits]) -> dict[str, Traits]:
+    """Return traits that know what all clips of their set have: the tremble of a recording, and the breath,
+    tell nothing of one clip.
+    """
+    moving = [t for t in traits.values() if t.face == 0 and not nothing(t)]
+    if len(moving) < SEVERAL:
+        return dict(traits)
+    least = {}
+    for part in moving[0].energy:
+        calm = sorted(t.energy[part] for t in moving)[int(CALMEST * len(moving))]
+        least[part] = MORE * calm if calm < TREMBLE else 0.0
+    return {clip: replace(t, tremble=least) for clip, t in traits.items()}
+
+
+def _beyond_tremble(traits: Traits) -> Mapping[str, float]:
+    """Return the energies without the set's, all of them where nothing is left: squares of speeds add up where
+    movements do not depend on each other.
+    """
+    beyond = {
+        part: sqrt(max(0.0, e**2 - traits.tremble.get(part, 0.0) ** 2)) for part, e in traits.energy.items()
+    }
+    return beyond if any(beyond.values()) else traits.energy
 
 
 def nothing(traits: Traits) -> bool:
@@ -68,7 +97,7 @@ def walks(traits: Traits) -> bool:
 
 def layer_of(traits: Traits) -> Belief[Layer]:
     """Return which layer a clip moves: the body where hips or legs do, else the arms, else the head."""
-    e, layers = traits.energy, traits.layers
+    e, layers = _beyond_tremble(traits), traits.layers
     lower, upper = e["hips"] + e["legs"], e["head"] + e["trunk"]
     breath = BREATHES if upper > 3 * BREATHES else 0.0
     arms = max(0.0, e["left_arm"] + e["right_arm"] - breath) + e["fingers"]

@@ -21,22 +21,28 @@ Array = NDArray[Any]
 
 ALIKE = 0.3  # of a look's worth, that each other clip of the same words adds
 LOOK = 0.2  # chance of being wrong, from which on a look is worth its time
-WEIGHTS = (0.685, 0.588, 0.031, 0.091, -1.348, -0.196)  # of `measures`, as `fit_flags.py` prints them
+LOST = 0.5  # confidence, below which a stance is hardly known at all
+WEIGHTS = (-1.969, 1.036, 0.36, 0.527, 1.967, -2.112, 0.158)  # of `measures`, as `fit_flags.py` prints them
 
 
 def measures(p: Proposal) -> Array:
-    """Return what a proposal says of itself `[6]`: 1, logits of kind, of stance and of where a transition
-    ends (0 of what is none), whether its sources disagree, and whether it would jump.
+    """Return what a proposal says of itself `[7]`: 1, logits of kind, of layer and of where a transition ends
+    (0 of what is none), whether it is an act, a gesture or fidget, which are the hardest to tell apart,
+    whether its name says its kind, and whether its stance is hardly known.
+
+    How sure a stance is, whether the sources disagree, and whether it would jump said nothing more about
+    right and wrong on the sets that the weights were fitted on.
     """
     end = p.end_stance.confidence if p.end_stance is not None else 0.02
     return np.array(
         [
             1.0,
             _logit(p.kind.confidence),
-            _logit(p.stance.confidence if p.stance is not None else 0.02),
+            _logit(p.layer.confidence),
             _logit(end) if p.kind.value == "transition" else 0.0,
-            float(bool(p.conflicts)),
-            float(p.good is False),
+            float(p.kind.value in ("gesture", "fidget")),
+            float(p.said),
+            float(p.stance is None or p.stance.confidence < LOST),
         ]
     )
 
@@ -58,7 +64,11 @@ def doubt(p: Proposal) -> str:
     chance = f"{chance_wrong(p):.0%} likely wrong"
     if p.conflicts:
         return f"{chance}: {p.conflicts[0]}"
-    beliefs: list[tuple[str, Belief[Any] | None]] = [("kind", p.kind), ("stance", p.stance)]
+    beliefs: list[tuple[str, Belief[Any] | None]] = [
+        ("kind", p.kind),
+        ("layer", p.layer),
+        ("stance", p.stance),
+    ]
     if p.kind.value == "transition":
         beliefs.append(("end", p.end_stance))
     name, least = min(beliefs, key=lambda x: x[1].confidence if x[1] is not None else 0.0)

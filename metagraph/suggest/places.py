@@ -39,7 +39,7 @@ NEVER = 0.3  # of how sure a source is at least, so that its vote counts
 @dataclass
 class Heard:
     """What the sources say of a clip. motion: what it seems to be; beside: the same when it is of the layer
-    that all agree on. posture: its poses as stances are told. named: whether names may speak.
+    that all agree on. posture: its poses as stances are told.
     """
 
     clip: str
@@ -51,7 +51,6 @@ class Heard:
     beside: MotionGuess | None = None
     layer: Layer = "arms"
     learned: dict[str, Belief[str]] = field(default_factory=dict)
-    named: bool = True
 
     def votes(self, what: str) -> list[Belief[Any]]:
         """Return what is believed of a field, source by source."""
@@ -67,18 +66,16 @@ class Heard:
     def ends(self) -> Likely:
         return self.beside.ends if self.beside is not None else ()
 
-    def called(self) -> list[tuple[str, Likely, float, bool]]:
-        """Return the stances its name speaks of: (words, what its pose there may be, how much it counts,
-        whether it is the last pose).
-        """
-        out: list[tuple[str, Likely, float, bool]] = []
+    def called(self) -> list[tuple[str, Likely, float]]:
+        """Return the stances its name speaks of: (words, what its pose there may be, how much it counts)."""
+        out: list[tuple[str, Likely, float]] = []
         kind = self.said.kind.value if self.said.kind is not None else None
         if self.said.stance is not None:
-            out.append((self.said.stance.value, self.begins, LOOP_VOTE if kind == "stance" else 1.0, False))
+            out.append((self.said.stance.value, self.begins, LOOP_VOTE if kind == "stance" else 1.0))
             if kind in ("gesture", "fidget"):
-                out.append((self.said.stance.value, self.ends, 0.5, True))
+                out.append((self.said.stance.value, self.ends, 0.5))
         if self.said.end_stance is not None:
-            out.append((self.said.end_stance.value, self.ends, 1.0, True))
+            out.append((self.said.end_stance.value, self.ends, 1.0))
         return out
 
     def agreed(self, what: str, count: int) -> Agreed[Any] | None:
@@ -129,7 +126,7 @@ class Places:
         taken: dict[str, str] = {}
         for _, word, n in pairs:
             told = (layer, plain(word))
-            if n in free and word not in taken and (told not in self._of_word or not _lies(self, told, free)):
+            if n in free and word not in taken and not self._placed(told):
                 key = self._of_word.get(told, f"new {layer} {n + 1}")
                 name, there = (self.by_key[key].name, True) if key in self.by_key else (word, False)
                 self.by_key[key] = Place(key, layer, name, there, free[n])
@@ -176,13 +173,12 @@ class Places:
             out.append(Belief(key, seen.confidence, words))
         return out
 
+    def _placed(self, told: tuple[Layer, str]) -> bool:
+        """Whether a word's stance has a pose already."""
+        return told in self._of_word and self.by_key[self._of_word[told]].shape is not None
+
     def count(self, layer: Layer) -> int:
         return max(2, sum(1 for p in self.by_key.values() if p.layer == layer))
-
-
-def _lies(places: Places, told: tuple[Layer, str], free: Mapping[int, Shape]) -> bool:
-    """Whether a word's stance has a pose already."""
-    return places.by_key[places._of_word[told]].shape is not None
 
 
 def _votes(heard: Sequence[Heard]) -> tuple[dict[str, dict[int, float]], dict[str, float]]:
@@ -192,7 +188,7 @@ def _votes(heard: Sequence[Heard]) -> tuple[dict[str, dict[int, float]], dict[st
     out: dict[str, dict[int, float]] = defaultdict(lambda: defaultdict(float))
     spoken: dict[str, float] = defaultdict(float)
     for each in heard:
-        for word, likely, weight, _ in each.called():
+        for word, likely, weight in each.called():
             if likely:
                 spoken[word] += weight
             for chance, shape in likely:

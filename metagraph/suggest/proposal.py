@@ -49,7 +49,7 @@ class Proposal:
     firmly, in words. timing: as `Timing` has it, where the motion says; good: whether neither its beginning
     nor its end would jump, None where nobody knows. details: what else an action has, by its name in the
     model, where something is known: each of `timing`, `mask` (names of the only joints it moves, none for
-    all), `stroke` (seconds, of gestures) and `likelihood`.
+    all), `stroke` (seconds, of gestures) and `likelihood`. said: whether its name says its kind.
     """
 
     clip: str
@@ -64,6 +64,7 @@ class Proposal:
     timing_reason: str = ""
     good: bool | None = None
     details: Mapping[str, Belief[Any]] = field(default_factory=dict)
+    said: bool = False
 
     @property
     def confidence(self) -> float:

@@ -17,7 +17,7 @@ import numpy as np
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, Action, Layer, Limb, Project
 from metagraph.suggest.accept import Taken, accept
 from metagraph.suggest.alike import Alike, Example
-from metagraph.suggest.clip_measures import layer_of
+from metagraph.suggest.clip_measures import layer_of, with_tremble
 from metagraph.suggest.details import masked, rest_of, stroked, timed, weighted
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.left_aside import MANY, left_aside
@@ -116,7 +116,8 @@ def propose(
     Never raises for what clips are; one of which nothing is known is left out.
     """
     chosen = waiting(project) if clips is None else [c for c in clips if c in project.clips]
-    traits = traits_of(project, cancelled, progress) if {"motion", "learned"} & set(sources) else {}
+    seen = traits_of(project, cancelled, progress) if {"motion", "learned"} & set(sources) else {}
+    traits = with_tremble(seen)
     # All names together tell the stances, also those of clips that are placed: what a number means is not
     # forgotten while somebody goes through them.
     names = read_names([x.name for x in project.clips.values()], patterns) if "name" in sources else {}
@@ -137,7 +138,7 @@ def propose(
     heard, others, aside = list[Heard](), list[Heard](), dict[str, str]()
     for c in chosen:
         name = project.clips[c].name
-        each = Heard(c, name, names.get(name, NameGuess()), traits.get(c), named="name" in sources)
+        each = Heard(c, name, names.get(name, NameGuess()), traits.get(c))
         if whole and each.traits is not None and each.traits.face == 0:
             each.posture = whole_of(each.traits).layers[CARRIER]
         if each.traits is not None and moving:
@@ -318,4 +319,5 @@ def _proposal(each: Heard, places: Places, anyway: bool = False) -> Proposal | N
         limb.belief if limb is not None else both,
         each.said.tags,
         tuple(x.conflict for x in found if x.conflict),
+        said=each.said.kind is not None and each.said.kind.value == kind.belief.value,
     )

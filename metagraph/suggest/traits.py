@@ -8,7 +8,7 @@ Lengths are in character heights, so that size does not matter; directions are t
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -79,7 +79,8 @@ class Traits:
     hips go up and down, heights. face: of a clip in which nothing else moves, how much joints of the face do,
     0..2; 0 of any other. contact: with its own body. shrug: how far the shoulders rise more than the
     trunk, heights. sway: how far the hips go to a side. front, lifted: how far before the chest, and above
-    the hips, the hand is that goes farthest, when it is farthest, heights.
+    the hips, the hand is that goes farthest, when it is farthest, heights. tremble: the energies that all
+    clips of its set have (see `with_tremble`).
     """
 
     height: float
@@ -102,6 +103,7 @@ class Traits:
     sway: float = 0.0
     front: float = 0.0
     lifted: float = 0.0
+    tremble: Mapping[str, float] = field(default_factory=dict)
 
 
 # Clips are values that never change, so what was found of one holds for as long as it lives.
@@ -327,6 +329,7 @@ def _of(figure: Figure, points: Mapping[str, Array], world: Mapping[str, Array],
     left, right = hands
     out, near = _reach(world)
     touch = _touch(world)
+    front, lifted = _gesture_space(points, world)
     ground = world["hips"][:, [0, 2]]
     return Traits(
         figure.height,
@@ -346,7 +349,8 @@ def _of(figure: Figure, points: Mapping[str, Array], world: Mapping[str, Array],
         contact=self_contact(world, float(times[1] - times[0]) if len(times) > 1 else 0.0),
         shrug=_shrug(points),
         sway=float(np.ptp(points["hips"][:, 0])) if "hips" in points else 0.0,
-        **_gesture_space(points, world),
+        front=front,
+        lifted=lifted,
     )
 
 
@@ -359,9 +363,9 @@ def _shrug(points: Mapping[str, Array]) -> float:
     return min(rises, default=0.0)
 
 
-def _gesture_space(points: Mapping[str, Array], world: Mapping[str, Array]) -> dict[str, float]:
+def _gesture_space(points: Mapping[str, Array], world: Mapping[str, Array]) -> tuple[float, float]:
     """Return where the hand is that goes farthest: before the chest and above the hips."""
-    best, out = 0.0, {"front": 0.0, "lifted": 0.0}
+    best, out = 0.0, (0.0, 0.0)
     for name in ("left_hand", "right_hand"):
         if name not in points:
             continue
@@ -370,7 +374,7 @@ def _gesture_space(points: Mapping[str, Array], world: Mapping[str, Array]) -> d
         if away[far] > best:
             best = float(away[far])
             height = world[name][far, 1] - world["hips"][far, 1]
-            out = {"front": float(points[name][far, 2]), "lifted": float(height)}
+            out = float(points[name][far, 2]), float(height)
     return out
 
 

@@ -9,7 +9,7 @@ them as they were recorded.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from metagraph.graph.model import Project
 from metagraph.graph.words import LAYERS, Layer
 from metagraph.suggest.body_points import NAMES
-from metagraph.suggest.clip_measures import TYPICAL, layer_of, nothing
+from metagraph.suggest.clip_measures import TYPICAL, layer_of, nothing, resting
 from metagraph.suggest.stances import SETTLED, Shape, discover, likely
 from metagraph.suggest.traits import LayerTraits, Traits
 
@@ -28,9 +28,12 @@ Array = NDArray[Any]
 CARRIER: Layer = "arms"  # the layer that moves the whole body where all of it was recorded together
 # How much farther than the carrier's points another layer's count: another stance of the trunk is smaller
 SCALE: Mapping[Layer, float] = {layer: TYPICAL[CARRIER] / TYPICAL[layer] for layer in LAYERS}
-# Of the clips that stay in another stance than the most used one, the share whose stance differs in a layer
-# that they do not move: arms that gesture while the weight is on the other leg, a nod with crossed arms
-TOGETHER = 0.3
+# Of the clips that do not move a layer, the share that is in another than its usual pose: arms that gesture
+# while the weight is on the other leg, a nod with crossed arms
+TOGETHER = 0.25
+# Which clips tell that of a layer: those of others. A head goes along with arms, and with a trunk that leans.
+BESIDE: Mapping[Layer, tuple[Layer, ...]] = {"body": ("arms", "head"), "arms": ("body", "head")}
+CLEAR = 0.7  # how sure the layer is that a clip moves, from which on it says something
 FEW = 3  # clips of one stance, from which on its name tells what is done in it
 MIXED = 0.2  # of those clips that move another layer than most of their stance
 APART: Mapping[Layer, float] = {"arms": 0.02, "head": 0.012, "body": 0.01}  # heights; less is the same pose
@@ -89,7 +92,9 @@ def _named_whole(traits: Mapping[str, Traits], named: Mapping[str, str]) -> bool
     groups: dict[str, list[Layer]] = {}
     for clip, word in named.items():
         if clip in traits and traits[clip].face == 0 and not nothing(traits[clip]):
-            groups.setdefault(word, []).append(layer_of(traits[clip]).value)
+            moved = layer_of(traits[clip])
+            if moved.confidence >= CLEAR:
+                groups.setdefault(word, []).append(moved.value)
     several = [layers for layers in groups.values() if len(layers) >= FEW]
     mixed = sum(len(layers) - max(Counter(layers).values()) for layers in several)
     return len(several) > 1 and mixed > MIXED * sum(map(len, several))
@@ -103,20 +108,27 @@ def _seen_whole(traits: Mapping[str, Traits]) -> bool:
     }
     shapes = discover(moving, CARRIER, together=True)
     held: list[tuple[Shape, Layer]] = []  # of clips that stay in a stance, it and the layer they move
-    settled = 0.0
+    settled = 0
     for clip, t in moving.items():
         x = t.layers[CARRIER]
         begins, ends = (likely(shapes, x.names, pose) for pose in (x.first, x.last))
         if begins and ends and min(begins[0][0], ends[0][0]) > 0.5:
             settled += 1
-            if begins[0][1] is ends[0][1]:
-                held.append((begins[0][1], layer_of(traits[clip]).value))
+            moved = layer_of(traits[clip])
+            if begins[0][1] is ends[0][1] and moved.confidence >= CLEAR and resting(traits[clip]) < 0:
+                held.append((begins[0][1], moved.value))
     if len(shapes) < 2 or settled < SETTLED * len(moving):
         return False  # cut from longer takes, or poses to look at: nobody stands anywhere
-    first = shapes[0]
-    apart = {id(shape): {x for x in LAYERS if _apart(first, shape, x)} for shape in shapes[1:]}
-    away = [(apart[id(shape)], layer) for shape, layer in held if shape is not first]
-    return sum(1 for differ, layer in away if differ - {layer}) > TOGETHER * len(away)
+    return any(_varies(layer, [shape for shape, moved in held if moved in BESIDE[layer]]) for layer in BESIDE)
+
+
+def _varies(layer: Layer, held: Sequence[Shape]) -> bool:
+    """Return whether clips that do not move a layer are recorded in several poses of it."""
+    if len(held) < FEW:
+        return False
+    counts = Counter(map(id, held))
+    usual = max(held, key=lambda shape: counts[id(shape)])
+    return sum(1 for shape in held if _apart(usual, shape, layer)) > TOGETHER * len(held)
 
 
 def _apart(one: Shape, other: Shape, layer: Layer) -> bool:
