@@ -6,6 +6,8 @@ import importlib.util
 import re
 import subprocess
 import sys
+import threading
+import time
 import tomllib
 from itertools import pairwise
 from pathlib import Path
@@ -28,6 +30,7 @@ def run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> ModuleType:
         monkeypatch.setattr(
             module.subprocess, name, lambda *args, **kwargs: pytest.fail(f"started {args[0]}")
         )
+    monkeypatch.delenv("PYTHONDONTWRITEBYTECODE", raising=False)  # its tests may be begun without
     monkeypatch.setattr(module, "ROOT", tmp_path)
     monkeypatch.setattr(module, "VENV", tmp_path / ".venv")
     monkeypatch.setattr(module, "PYTHON", tmp_path / ".venv" / "bin" / "python")
@@ -346,6 +349,66 @@ def test_the_tests_are_lint_types_imports_and_pytest_and_one_failure_is_a_failur
     monkeypatch.setattr(run.subprocess, "call", calls)
     assert run.run_tests(["-k", "journal"]) == 0
     assert [command[1:] for command in calls] == [["-m", "pytest", "--spread", "-k", "journal"]]
+
+
+def test_engines_are_installed_meanwhile_and_only_the_tests_wait_for_them(
+    run: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    order: list[str] = []
+    linted = threading.Event()
+
+    def engines() -> None:
+        assert linted.wait(30), "the environment and the lint waited for the engines"
+        order.append("engines")
+
+    def call(command: list[str], **more: Any) -> int:
+        order.append(Path(command[0]).name.removesuffix(".exe"))
+        if order[-1] == "lint-imports":
+            linted.set()
+        return 0
+
+    monkeypatch.setattr(run.os, "geteuid", lambda: 0, raising=False)
+    monkeypatch.setattr(run, "engines", engines)
+    monkeypatch.setattr(run, "node_packages", lambda: order.append("node packages"))
+    monkeypatch.setattr(run, "environment", lambda most: order.append(f"environment {most}"))
+    monkeypatch.setattr(run.subprocess, "call", call)
+    monkeypatch.setattr(run.subprocess, "Popen", Compiling())
+    assert run.prepare_and_test([]) == 0
+    assert order == [
+        "environment 2",
+        "ruff",
+        "ruff",
+        "mypy",
+        "lint-imports",
+        "engines",
+        "node packages",
+        "python",
+    ]
+
+
+def test_nothing_else_is_said_while_somebody_may_be_asked(
+    run: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    order: list[str] = []
+    monkeypatch.setattr(run.os, "geteuid", lambda: 1000, raising=False)
+    monkeypatch.setattr(run, "engines", lambda: (time.sleep(0.05), order.append("asked")))
+    monkeypatch.setattr(run, "node_packages", lambda: None)
+    monkeypatch.setattr(run, "environment", lambda most: order.append("environment") or "no network")
+    assert run.prepare_and_test([]) == "no network"
+    assert order == ["asked", "environment"]
+
+
+def test_bytecode_that_is_unwanted_beside_the_sources_is_kept_with_the_tests(
+    run: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
+    monkeypatch.delenv("PYTHONPYCACHEPREFIX", raising=False)
+    run.keep_bytecode()
+    assert "PYTHONDONTWRITEBYTECODE" not in run.os.environ
+    assert Path(run.os.environ["PYTHONPYCACHEPREFIX"]) == run.ROOT / ".pytest_cache" / "bytecode"
+    monkeypatch.delenv("PYTHONPYCACHEPREFIX")
+    run.keep_bytecode()
+    assert "PYTHONPYCACHEPREFIX" not in run.os.environ  # beside the sources, as usual
 
 
 @pytest.mark.parametrize(

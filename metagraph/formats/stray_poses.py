@@ -177,12 +177,14 @@ def _run(take: _Take, steps: Array, way: slice, fps: float, frames: int) -> int:
     for start in dict.fromkeys((held, 0)):
         for length in range(min(longest, count - 1 - start), 0, -1):
             end = start + length
+            peak = float(steps[start:end].max())
+            if peak < VISIBLE:
+                continue
             following = steps[end : end + window]
             after = max(STILL, float(following.max()))
-            own = float(np.quantile(steps[end:], 0.95)) if count - end > 8 else 0.0
-            peak = float(steps[start:end].max())
-            if peak < VISIBLE or peak < OWN * after:
+            if peak < OWN * after:
                 continue
+            own = float(np.quantile(steps[end:], 0.95)) if count - end > 8 else 0.0
             # Either much quicker than what follows, or broken off as nothing after it is.
             smooth = max(STILL, float(np.abs(np.diff(following)).max(initial=0)))
             next_ones = max(STILL, float(following[:3].max()))
