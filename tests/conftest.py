@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 import os
 import sys
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -208,6 +210,28 @@ class Toy:
 @pytest.fixture(scope="session")
 def toy() -> Toy:
     return Toy()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def sample_clips_read_once() -> None:
+    """A process decodes each sample clip once, wherever a copy of it lies: opening the sample project a
+    hundred times cost more than most of what is tested on it. Files that differ in a byte are read.
+    """
+    from metagraph.formats import gltf
+
+    read, known = gltf.read_gltf_clips, {}
+    samples = {path.name for path in (ROOT / "sample_clips" / "clips").glob("*.glb")}
+
+    def read_once(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
+        path = Path(path)
+        if path.name not in samples or not path.is_file():
+            return read(path, as_is)
+        key = (path.name, hashlib.sha256(path.read_bytes()).digest(), frozenset(as_is))
+        if key not in known:
+            known[key] = read(path, as_is)
+        return list(known[key])
+
+    gltf.read_gltf_clips = read_once
 
 
 @pytest.fixture(scope="session")
