@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import hashlib
 import math
 import os
@@ -28,7 +29,26 @@ os.environ["NUMBA_CACHE_DIR"] = str(kernels.provide(WORKER or "alone"))
 
 # Files that take longest, the longest first: begun late, one of them would keep one process busy while the
 # others have nothing left.
-LONG = ("test_docs.py", "live/test_session.py")
+LONG = (
+    "test_docs.py",
+    "app/features/labelling/test_review_dialog.py",
+    "app/test_participant.py",
+    "app/cli/test_parser.py",
+    "app/test_memory.py",
+    "app/cli/test_export_command.py",
+    "app/stage/test_conversation_plans.py",
+    "live/test_live_session.py",
+    "engines/test_real_exports.py",
+    "app/features/motion_graph/test_motion_graph_dialog.py",
+    "formats/test_fuzz.py",
+    "label_zoo/test_label_zoo.py",
+    "mimicry/test_mimic.py",
+    "study/test_simulate.py",
+    "suggest/test_propose.py",
+    "study/test_sitting.py",
+    "app/features/study/test_journey_study.py",
+    "app/project/test_journey_two_windows.py",
+)
 
 # The gate must give the same answer twice; at the desk, examples are drawn anew each time.
 settings.register_profile("gate", derandomize=True, deadline=None)
@@ -219,7 +239,8 @@ def sample_clips_read_once() -> None:
     """
     from metagraph.formats import gltf
 
-    read, known = gltf.read_gltf_clips, {}
+    read = gltf.read_gltf_clips
+    known: dict[tuple[str, bytes, frozenset[str]], list[Clip]] = {}
     samples = {path.name for path in (ROOT / "sample_clips" / "clips").glob("*.glb")}
 
     def read_once(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
@@ -229,7 +250,7 @@ def sample_clips_read_once() -> None:
         key = (path.name, hashlib.sha256(path.read_bytes()).digest(), frozenset(as_is))
         if key not in known:
             known[key] = read(path, as_is)
-        return list(known[key])
+        return [copy.copy(clip) for clip in known[key]]  # each reader has clips of its own to lose
 
     gltf.read_gltf_clips = read_once
 

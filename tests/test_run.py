@@ -16,7 +16,12 @@ from typing import Any
 
 import pytest
 
+from tests.conftest import LONG
+
 ROOT = Path(__file__).resolve().parents[1]
+ENVIRONMENT = ("PYTHONDONTWRITEBYTECODE", "PYTHONPYCACHEPREFIX", *(f"MALLOC_{x}" for x in (
+    "MMAP_THRESHOLD_", "TRIM_THRESHOLD_", "ARENA_MAX"
+)))  # fmt: skip
 
 
 @pytest.fixture
@@ -30,7 +35,8 @@ def run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> ModuleType:
         monkeypatch.setattr(
             module.subprocess, name, lambda *args, **kwargs: pytest.fail(f"started {args[0]}")
         )
-    monkeypatch.delenv("PYTHONDONTWRITEBYTECODE", raising=False)  # its tests may be begun without
+    for name in ENVIRONMENT:  # taken back afterwards, whatever becomes of it
+        monkeypatch.setenv(name, "")
     monkeypatch.setattr(module, "ROOT", tmp_path)
     monkeypatch.setattr(module, "VENV", tmp_path / ".venv")
     monkeypatch.setattr(module, "PYTHON", tmp_path / ".venv" / "bin" / "python")
@@ -411,6 +417,13 @@ def test_bytecode_that_is_unwanted_beside_the_sources_is_kept_with_the_tests(
     assert "PYTHONPYCACHEPREFIX" not in run.os.environ  # beside the sources, as usual
 
 
+def test_what_somebody_says_of_memory_stands(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MALLOC_ARENA_MAX", "7")
+    monkeypatch.delenv("MALLOC_TRIM_THRESHOLD_", raising=False)
+    run.give_memory_back()
+    assert run.os.environ["MALLOC_ARENA_MAX"] == "7" and int(run.os.environ["MALLOC_TRIM_THRESHOLD_"]) > 0
+
+
 @pytest.mark.parametrize(
     ("arguments", "cores", "processes"),
     [
@@ -426,6 +439,10 @@ def test_tests_are_spread_over_all_cores_unless_asked_otherwise(
     monkeypatch.setattr(run.os, "sched_getaffinity", lambda process: set(range(cores)), raising=False)
     found = run.spread(arguments)
     assert found[:2] == (["-n", str(processes)] if processes > 1 else [])
+
+
+def test_files_that_are_begun_first_are_there() -> None:
+    assert [name for name in LONG if not (ROOT / "tests" / name).is_file()] == []
 
 
 # --- engines exports are tested in
