@@ -21,6 +21,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from tests import kernels
 from tests.run_notes import KEY, NOTES
+from tests.thorough import THOROUGH
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -53,7 +54,8 @@ LONG = (
 # The gate must give the same answer twice; at the desk, examples are drawn anew each time.
 settings.register_profile("gate", derandomize=True, deadline=None)
 settings.register_profile("desk", deadline=None)
-settings.load_profile("gate" if os.environ.get("CI") else "desk")
+settings.register_profile("thorough", deadline=None, max_examples=1000)
+settings.load_profile("thorough" if THOROUGH else "gate" if os.environ.get("CI") else "desk")
 
 
 ALL_NOTES = pytest.StashKey[dict[str, dict[str, str]]]()
