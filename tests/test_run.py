@@ -83,7 +83,7 @@ def test_it_needs_nothing_but_python() -> None:
         "in ('numpy', 'yaml', 'PySide6')])"
     )
     made = subprocess.run(
-        [sys.executable, "-S", "-c", code], cwd="/", capture_output=True, text=True, check=True
+        [sys.executable, "-S", "-c", code], cwd="/", capture_output=True, text=True, check=True, timeout=300
     )
     assert made.stdout.strip() == "[]"
 
