@@ -14,6 +14,7 @@ import os
 import shutil
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent
@@ -60,13 +61,11 @@ def main(arguments):
         os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
     )
     trouble = system_libraries(screen, testing) if sys.platform.startswith("linux") else None
-    trouble = trouble or environment(2 if testing else 0)
     if trouble:
         return trouble
     if testing:
-        engines()
-        return run_tests(arguments[1:])
-    return subprocess.call(
+        return prepare_and_test(arguments[1:])
+    return environment(0) or subprocess.call(
         [str(PYTHON), "-m", "app.cli", *(arguments or (["window", "--sample"] if screen else ["demo"]))],
         cwd=ROOT,
     )
@@ -215,17 +214,26 @@ def pip(*arguments, quiet=False):
 # --- tests
 
 
-def run_tests(arguments):
-    """Lint, types, import rules, then the tests; with arguments, only pytest with those."""
+def prepare_and_test(arguments):
+    """Install what tests need, then test. What exports are run in comes meanwhile, since only the tests wait
+    for it.
+    """
+    beside = threading.Thread(target=lambda: (engines(), node_packages()))
+    beside.start()
+    if hasattr(os, "geteuid") and os.geteuid() != 0:
+        beside.join()  # it may ask
+    try:
+        return environment(2) or run_tests(arguments, beside.join)
+    finally:
+        beside.join()
 
-    def tool(name):
-        return str(PYTHON.with_name(name + (".exe" if WINDOWS else "")))
 
+def node_packages():
+    """Install what exports are checked in with Node, where it is."""
     npm = shutil.which("npm")
     stamp, wanted = ROOT / "tests" / "node_modules" / ".installed", ROOT / "tests" / "package.json"
     wanted = wanted.read_text() if wanted.exists() else None
     if npm and wanted and not (stamp.exists() and stamp.read_text() == wanted):
-        # The engines exports are checked in; their tests skip where there is no Node.
         options = [
             "--prefix",
             str(ROOT / "tests"),
@@ -240,6 +248,18 @@ def run_tests(arguments):
             == 0
         ):
             stamp.write_text(wanted)
+
+
+def run_tests(arguments, ready=lambda: None):
+    """Lint, types, import rules, then the tests, once `ready` has returned; with arguments, only pytest with
+    those.
+    """
+
+    def tool(name):
+        return str(PYTHON.with_name(name + (".exe" if WINDOWS else "")))
+
+    keep_bytecode()
+    give_memory_back()
     lint = [
         [tool("ruff"), "check", "."],
         [tool("ruff"), "format", "--check", "."],
@@ -248,6 +268,7 @@ def run_tests(arguments):
     ]
     tests = [str(PYTHON), "-m", "pytest", *spread(arguments), *arguments]
     if arguments:
+        ready()
         return told(tests)
     # What the tests call compiled is compiled meanwhile: on another core, and once for all of their
     # processes.
@@ -256,7 +277,24 @@ def run_tests(arguments):
         failed = [told(step) for step in lint]
     finally:
         compiling.wait()
+    ready()
     return max(*failed, told(tests))
+
+
+def keep_bytecode():
+    """Where bytecode is not to be written beside the sources, keep it with what else the tests keep: they
+    start some hundred processes, and each would compile all that it imports.
+    """
+    if os.environ.pop("PYTHONDONTWRITEBYTECODE", None):
+        os.environ.setdefault("PYTHONPYCACHEPREFIX", str(ROOT / ".pytest_cache" / "bytecode"))
+
+
+def give_memory_back():
+    """Have glibc give back what the tests let go of: as it is, each large array that goes makes it keep more,
+    until their processes hold a third more than is in use.
+    """
+    for name, value in (("MMAP_THRESHOLD_", 1 << 18), ("TRIM_THRESHOLD_", 1 << 20), ("ARENA_MAX", 2)):
+        os.environ.setdefault("MALLOC_" + name, str(value))
 
 
 def told(command):

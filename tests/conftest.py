@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import copy
+import hashlib
 import math
 import os
 import sys
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +21,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from tests import kernels
 from tests.run_notes import KEY, NOTES
+from tests.thorough import THOROUGH
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -26,12 +30,32 @@ os.environ["NUMBA_CACHE_DIR"] = str(kernels.provide(WORKER or "alone"))
 
 # Files that take longest, the longest first: begun late, one of them would keep one process busy while the
 # others have nothing left.
-LONG = ("test_docs.py", "live/test_session.py")
+LONG = (
+    "test_docs.py",
+    "app/features/labelling/test_review_dialog.py",
+    "app/test_participant.py",
+    "app/cli/test_parser.py",
+    "app/test_memory.py",
+    "app/cli/test_export_command.py",
+    "app/stage/test_conversation_plans.py",
+    "live/test_live_session.py",
+    "engines/test_real_exports.py",
+    "app/features/motion_graph/test_motion_graph_dialog.py",
+    "formats/test_fuzz.py",
+    "label_zoo/test_label_zoo.py",
+    "mimicry/test_mimic.py",
+    "study/test_simulate.py",
+    "suggest/test_propose.py",
+    "study/test_sitting.py",
+    "app/features/study/test_journey_study.py",
+    "app/project/test_journey_two_windows.py",
+)
 
 # The gate must give the same answer twice; at the desk, examples are drawn anew each time.
 settings.register_profile("gate", derandomize=True, deadline=None)
 settings.register_profile("desk", deadline=None)
-settings.load_profile("gate" if os.environ.get("CI") else "desk")
+settings.register_profile("thorough", deadline=None, max_examples=1000)
+settings.load_profile("thorough" if THOROUGH else "gate" if os.environ.get("CI") else "desk")
 
 
 ALL_NOTES = pytest.StashKey[dict[str, dict[str, str]]]()
@@ -208,6 +232,29 @@ class Toy:
 @pytest.fixture(scope="session")
 def toy() -> Toy:
     return Toy()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def sample_clips_read_once() -> None:
+    """A process decodes each sample clip once, wherever a copy of it lies: opening the sample project a
+    hundred times cost more than most of what is tested on it. Files that differ in a byte are read.
+    """
+    from metagraph.formats import gltf
+
+    read = gltf.read_gltf_clips
+    known: dict[tuple[str, bytes, frozenset[str]], list[Clip]] = {}
+    samples = {path.name for path in (ROOT / "sample_clips" / "clips").glob("*.glb")}
+
+    def read_once(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
+        path = Path(path)
+        if path.name not in samples or not path.is_file():
+            return read(path, as_is)
+        key = (path.name, hashlib.sha256(path.read_bytes()).digest(), frozenset(as_is))
+        if key not in known:
+            known[key] = read(path, as_is)
+        return [copy.copy(clip) for clip in known[key]]  # each reader has clips of its own to lose
+
+    gltf.read_gltf_clips = read_once
 
 
 @pytest.fixture(scope="session")

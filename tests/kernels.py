@@ -42,6 +42,7 @@ def make() -> Path:
             cwd=ROOT,
             env={**os.environ, "NUMBA_CACHE_DIR": scratch},
             check=True,
+            timeout=900,
         )
         with contextlib.suppress(OSError):  # another was faster
             Path(scratch).rename(found)

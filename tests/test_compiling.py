@@ -118,7 +118,9 @@ def test_the_motion_graph_says_what_is_missing_in_its_own_words() -> None:
         "from metagraph.compiling import CompilerError\n"
         "try:\n    import metagraph.synthesis.kernels\nexcept CompilerError as error:\n    print(error)"
     )
-    made = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    made = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, timeout=300
+    )
     assert "This needs numba, which is not installed. Install it:" in made.stdout
 
 

@@ -6,6 +6,8 @@ import importlib.util
 import re
 import subprocess
 import sys
+import threading
+import time
 import tomllib
 from itertools import pairwise
 from pathlib import Path
@@ -14,7 +16,12 @@ from typing import Any
 
 import pytest
 
+from tests.conftest import LONG
+
 ROOT = Path(__file__).resolve().parents[1]
+ENVIRONMENT = ("PYTHONDONTWRITEBYTECODE", "PYTHONPYCACHEPREFIX", *(f"MALLOC_{x}" for x in (
+    "MMAP_THRESHOLD_", "TRIM_THRESHOLD_", "ARENA_MAX"
+)))  # fmt: skip
 
 
 @pytest.fixture
@@ -28,6 +35,8 @@ def run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> ModuleType:
         monkeypatch.setattr(
             module.subprocess, name, lambda *args, **kwargs: pytest.fail(f"started {args[0]}")
         )
+    for name in ENVIRONMENT:  # taken back afterwards, whatever becomes of it
+        monkeypatch.setenv(name, "")
     monkeypatch.setattr(module, "ROOT", tmp_path)
     monkeypatch.setattr(module, "VENV", tmp_path / ".venv")
     monkeypatch.setattr(module, "PYTHON", tmp_path / ".venv" / "bin" / "python")
@@ -74,7 +83,7 @@ def test_it_needs_nothing_but_python() -> None:
         "in ('numpy', 'yaml', 'PySide6')])"
     )
     made = subprocess.run(
-        [sys.executable, "-S", "-c", code], cwd="/", capture_output=True, text=True, check=True
+        [sys.executable, "-S", "-c", code], cwd="/", capture_output=True, text=True, check=True, timeout=300
     )
     assert made.stdout.strip() == "[]"
 
@@ -348,6 +357,73 @@ def test_the_tests_are_lint_types_imports_and_pytest_and_one_failure_is_a_failur
     assert [command[1:] for command in calls] == [["-m", "pytest", "--spread", "-k", "journal"]]
 
 
+def test_engines_are_installed_meanwhile_and_only_the_tests_wait_for_them(
+    run: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    order: list[str] = []
+    linted = threading.Event()
+
+    def engines() -> None:
+        assert linted.wait(30), "the environment and the lint waited for the engines"
+        order.append("engines")
+
+    def call(command: list[str], **more: Any) -> int:
+        order.append(Path(command[0]).name.removesuffix(".exe"))
+        if order[-1] == "lint-imports":
+            linted.set()
+        return 0
+
+    monkeypatch.setattr(run.os, "geteuid", lambda: 0, raising=False)
+    monkeypatch.setattr(run, "engines", engines)
+    monkeypatch.setattr(run, "node_packages", lambda: order.append("node packages"))
+    monkeypatch.setattr(run, "environment", lambda most: order.append(f"environment {most}"))
+    monkeypatch.setattr(run.subprocess, "call", call)
+    monkeypatch.setattr(run.subprocess, "Popen", Compiling())
+    assert run.prepare_and_test([]) == 0
+    assert order == [
+        "environment 2",
+        "ruff",
+        "ruff",
+        "mypy",
+        "lint-imports",
+        "engines",
+        "node packages",
+        "python",
+    ]
+
+
+def test_nothing_else_is_said_while_somebody_may_be_asked(
+    run: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    order: list[str] = []
+    monkeypatch.setattr(run.os, "geteuid", lambda: 1000, raising=False)
+    monkeypatch.setattr(run, "engines", lambda: (time.sleep(0.05), order.append("asked")))
+    monkeypatch.setattr(run, "node_packages", lambda: None)
+    monkeypatch.setattr(run, "environment", lambda most: order.append("environment") or "no network")
+    assert run.prepare_and_test([]) == "no network"
+    assert order == ["asked", "environment"]
+
+
+def test_bytecode_that_is_unwanted_beside_the_sources_is_kept_with_the_tests(
+    run: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
+    monkeypatch.delenv("PYTHONPYCACHEPREFIX", raising=False)
+    run.keep_bytecode()
+    assert "PYTHONDONTWRITEBYTECODE" not in run.os.environ
+    assert Path(run.os.environ["PYTHONPYCACHEPREFIX"]) == run.ROOT / ".pytest_cache" / "bytecode"
+    monkeypatch.delenv("PYTHONPYCACHEPREFIX")
+    run.keep_bytecode()
+    assert "PYTHONPYCACHEPREFIX" not in run.os.environ  # beside the sources, as usual
+
+
+def test_what_somebody_says_of_memory_stands(run: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MALLOC_ARENA_MAX", "7")
+    monkeypatch.delenv("MALLOC_TRIM_THRESHOLD_", raising=False)
+    run.give_memory_back()
+    assert run.os.environ["MALLOC_ARENA_MAX"] == "7" and int(run.os.environ["MALLOC_TRIM_THRESHOLD_"]) > 0
+
+
 @pytest.mark.parametrize(
     ("arguments", "cores", "processes"),
     [
@@ -363,6 +439,10 @@ def test_tests_are_spread_over_all_cores_unless_asked_otherwise(
     monkeypatch.setattr(run.os, "sched_getaffinity", lambda process: set(range(cores)), raising=False)
     found = run.spread(arguments)
     assert found[:2] == (["-n", str(processes)] if processes > 1 else [])
+
+
+def test_files_that_are_begun_first_are_there() -> None:
+    assert [name for name in LONG if not (ROOT / "tests" / name).is_file()] == []
 
 
 # --- engines exports are tested in

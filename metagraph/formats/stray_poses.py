@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -76,8 +77,14 @@ class _Take:
         turned = self.size(np.diff(self.places, axis=0)) / self.spread
         gone = np.linalg.norm(np.diff(self.middles, axis=0), axis=-1) / self.spread
         self.steps = (turned, np.hypot(turned, gone))
-        self.bound = [self.centred(skeleton.globals(pose)[1]) for pose in (skeleton.rest, *bound)]
+        self._bound = bound
         self.roles: dict[str, int] | None = None
+
+    @cached_property
+    def bound(self) -> list[Array]:
+        """Places of the poses that a tool may leave; of most takes no pose is ever compared with them."""
+        skeleton = self.clip.skeleton
+        return [self.centred(skeleton.globals(pose)[1]) for pose in (skeleton.rest, *self._bound)]
 
     def size(self, ways: Array) -> Array:
         """Return the weighted root mean square `[...]` of ways `[..., J, 3]`."""
@@ -177,12 +184,14 @@ def _run(take: _Take, steps: Array, way: slice, fps: float, frames: int) -> int:
     for start in dict.fromkeys((held, 0)):
         for length in range(min(longest, count - 1 - start), 0, -1):
             end = start + length
+            peak = float(steps[start:end].max())
+            if peak < VISIBLE:
+                continue
             following = steps[end : end + window]
             after = max(STILL, float(following.max()))
-            own = float(np.quantile(steps[end:], 0.95)) if count - end > 8 else 0.0
-            peak = float(steps[start:end].max())
-            if peak < VISIBLE or peak < OWN * after:
+            if peak < OWN * after:
                 continue
+            own = float(np.quantile(steps[end:], 0.95)) if count - end > 8 else 0.0
             # Either much quicker than what follows, or broken off as nothing after it is.
             smooth = max(STILL, float(np.abs(np.diff(following)).max(initial=0)))
             next_ones = max(STILL, float(following[:3].max()))

@@ -80,6 +80,11 @@ def shared(qapp: object, request: pytest.FixtureRequest) -> Iterator[SharedWindo
 @pytest.fixture(scope="session")
 def qapp() -> object:
     """The application as the program makes it: OpenGL format and shared contexts set before."""
+    from app.features.character import character_panel
+    from app.features.labelling import review_stage
+
+    # Characters are drawn in software here: at a screen's rate that leaves little time for anything else.
+    character_panel.FRAME = review_stage.FRAME = 80
     app = prepare()
     yield app
 

@@ -21,6 +21,7 @@ from metagraph.engines.export import schema_text
 from metagraph.engines.reading import read_export
 from metagraph.formats.store import open_project
 from metagraph.graph import requests as a
+from tests.processes import started
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 ROOT = Path(__file__).resolve().parents[2]
@@ -211,15 +212,11 @@ app.exec()
         "XDG_DATA_HOME": str(tmp_path / "other"),
         "XDG_CONFIG_HOME": str(tmp_path / "other"),
     }
-    process = subprocess.Popen(
-        [sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, env=environment, cwd=ROOT
-    )
-    try:
-        return process.stdout.readline().strip()
-    finally:
+    with started(sys.executable, "-c", script, stdout=subprocess.PIPE, env=environment) as process:
+        told = process.stdout.readline().strip()
         process.send_signal(signal.SIGKILL)
         process.wait(10)
-        process.stdout.close()
+        return told
 
 
 def test_sitting_down_and_standing_up_are_transitions_between_two_stances(

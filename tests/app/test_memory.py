@@ -17,7 +17,7 @@ from tests.app.every_dialog import DIALOGS, opened
 from tests.app.handles import Handles
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
-TIMES = 5
+TIMES = 2
 
 
 def settled() -> None:

@@ -83,6 +83,7 @@ def khronos(*files: Path, warnings: bool = True) -> None:
         capture_output=True,
         text=True,
         check=True,
+        timeout=300,
     )
     reports = [json.loads(line) for line in out.stdout.splitlines()]
     assert len(reports) == len(files)

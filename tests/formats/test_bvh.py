@@ -509,7 +509,9 @@ def test_importing_the_reader_does_not_import_numba() -> None:
         "'scipy' in sys.modules)"
     )
     assert (
-        subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[2], check=False).returncode
+        subprocess.run(
+            [sys.executable, "-c", code], cwd=Path(__file__).parents[2], check=False, timeout=300
+        ).returncode
         == 0
     )
 

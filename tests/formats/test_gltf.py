@@ -678,7 +678,7 @@ def test_written_files_pass_the_khronos_validator(tmp_path: Path, quantize: bool
     )
     files = [str(tmp_path / "clips.glb"), str(tmp_path / "figure.glb")]
     done = subprocess.run(
-        [node, "-e", program, *files], cwd=folder, capture_output=True, text=True, check=True
+        [node, "-e", program, *files], cwd=folder, capture_output=True, text=True, check=True, timeout=300
     )
     for line in done.stdout.splitlines():
         issues = json.loads(line)

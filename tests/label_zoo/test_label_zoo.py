@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -49,6 +50,13 @@ OF = {
 @cache
 def found(name: str) -> MadeSet:
     return named(name)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def let_go() -> Iterator[None]:
+    """A hundred sets are much for a process that goes on to test something else."""
+    yield
+    found.cache_clear()
 
 
 def posed(clip: Clip, frames: Any = slice(None)) -> dict[str, Any]:

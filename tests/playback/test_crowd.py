@@ -90,4 +90,4 @@ def test_making_a_crowd_and_importing_it_do_not_load_numba() -> None:
         "import sys; import metagraph.playback.crowd, metagraph.playback.player;"
         "assert not {'numba', 'scipy', 'torch', 'trimesh'} & set(sys.modules)"
     )
-    subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True)
+    subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, timeout=300)

@@ -120,7 +120,7 @@ def test_sound_is_not_loaded_before_it_is_needed() -> None:
     code = f"{modules}; print([m for m in ('soundfile', 'scipy', 'numba', 'av') if m in sys.modules])"
     assert (
         subprocess.run(
-            [sys.executable, "-c", code], capture_output=True, text=True, check=True
+            [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=300
         ).stdout.strip()
         == "[]"
     )

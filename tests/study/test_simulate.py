@@ -21,9 +21,12 @@ from metagraph.study.simulate_work import drawn, slipped
 from metagraph.study.sitting import phases, where
 from metagraph.study.study_plan import read_study
 from tests.study.makers import LAYER, small
+from tests.thorough import THOROUGH, many
 
 TWO = {"five": tuple("abcde"), "eight": tuple("fghijklm")}
-STUDIES = 1000
+STUDIES = many(300, 1000)
+# The shares of 300 studies scatter by 1.3 %, those of 1,000 by 0.7 %.
+LEAST, MOST = (0.935, 0.965) if THOROUGH else (0.92, 0.98)
 
 
 @pytest.mark.parametrize(
@@ -60,9 +63,7 @@ def test_without_any_chance_the_truth_comes_out_exactly() -> None:
 
 
 def test_intervals_include_the_truth_as_often_as_they_promise() -> None:
-    """1,000 studies of 12 people: of ratio, order and practice 93.5 to 96.5 % of the intervals hold what was
-    put in.
-    """
+    """Studies of 12 people: of ratio, order and practice 95 % of the intervals hold what was put in."""
     held: Counter[str] = Counter()
     for seed in range(STUDIES):
         plain = Truth(participants=12, seed=seed, order=1.0)
@@ -82,7 +83,7 @@ def test_intervals_include_the_truth_as_often_as_they_promise() -> None:
             log(plain.ratio) / spread_of_logs(plain)
         )
     assert {
-        name: count / STUDIES for name, count in held.items() if not 0.935 <= count / STUDIES <= 0.965
+        name: count / STUDIES for name, count in held.items() if not LEAST <= count / STUDIES <= MOST
     } == {}
 
 

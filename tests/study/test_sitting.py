@@ -20,6 +20,9 @@ from metagraph.study.sitting import Sitting, SittingError, phases, where
 from metagraph.study.study_plan import read_study
 from metagraph.study.task_projects import make, reopen, write
 from tests.processes import started
+from tests.thorough import many
+
+KILLS = many(40, 100)
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -220,7 +223,7 @@ def test_edits_in_the_journal_are_in_the_file_once_it_was_reopened(tiny):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="processes are forked and killed as Unix does")
-def test_killed_at_100_moments_nothing_is_lost_and_nothing_is_there_twice(tiny):
+def test_killed_at_many_moments_nothing_is_lost_and_nothing_is_there_twice(tiny):
     study = read_study(tiny)
     draw = random.Random(20260301)
     kills, seen = 0, set()
@@ -231,7 +234,9 @@ def test_killed_at_100_moments_nothing_is_lost_and_nothing_is_there_twice(tiny):
         words = [sys.executable, Path(__file__).with_name("scripted.py"), tiny, participant]
         with started(*words, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
             for _ in range(400):
-                process.stdin.write(f"{draw.randrange(1300) if kills < 100 else 1e9} {draw.uniform(0, 6)}\n")
+                process.stdin.write(
+                    f"{draw.randrange(1300) if kills < KILLS else 1e9} {draw.uniform(0, 6)}\n"
+                )
                 process.stdin.flush()
                 told = process.stdout.readline().strip()
                 if not study.log(participant).exists():
@@ -264,5 +269,5 @@ def test_killed_at_100_moments_nothing_is_lost_and_nothing_is_there_twice(tiny):
         for run in log.tasks():
             made = read_project(study.data(participant) / run.artefact)
             assert len(made.graphs["arms"].stances) == 40
-    assert kills == 100
+    assert kills == KILLS
     assert seen >= {"task", "training"}

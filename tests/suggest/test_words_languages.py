@@ -318,7 +318,7 @@ def test_other_languages_are_loaded_when_names_are_first_read() -> None:
         "import sys; import metagraph.suggest.name_words; "
         "sys.exit(any(m.endswith('words_german') for m in sys.modules))"
     )
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+    assert subprocess.run([sys.executable, "-c", code], check=False, timeout=300).returncode == 0
 
 
 def test_the_languages_have_their_words() -> None:

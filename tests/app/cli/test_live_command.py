@@ -15,6 +15,7 @@ import pytest
 
 from app.cli.parser import main
 from metagraph.formats.store import open_project
+from tests.processes import started
 
 ROOT = Path(__file__).resolve().parents[3]
 SAMPLE = ROOT / "sample_clips" / "sample.metagraph.yaml"
@@ -62,8 +63,8 @@ def test_people_are_told_in_words_on_standard_error() -> None:
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGTERM to catch")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupt_ends_it_cleanly(number: signal.Signals) -> None:
-    with subprocess.Popen(
-        command(*FREE, "--no-stdin"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT
+    with started(
+        *command(*FREE, "--no-stdin"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, longest=120
     ) as process:
         assert process.stdout is not None and process.stderr is not None
         assert json.loads(process.stdout.readline())["event"] == "ready"

@@ -400,6 +400,7 @@ def test_a_reader_that_has_read_enough_is_no_error() -> None:
         cwd=ROOT,
         capture_output=True,
         text=True,
+        timeout=300,
     )
     assert made.stderr == ""
     assert len(made.stdout.splitlines()) == 1
@@ -420,7 +421,9 @@ HEAVY = ("numba", "scipy", "trimesh", "torch", "pyqtgraph", "PIL", "av", "jsonsc
 def loaded(code: str) -> set[str]:
     """The packages that are imported after some code ran in a process of its own."""
     words = f"{code}\nimport sys, json; print(json.dumps(sorted({{m.split('.')[0] for m in sys.modules}})))"
-    made = subprocess.run([sys.executable, "-c", words], cwd=ROOT, capture_output=True, text=True, check=True)
+    made = subprocess.run(
+        [sys.executable, "-c", words], cwd=ROOT, capture_output=True, text=True, check=True, timeout=300
+    )
     return set(json.loads(made.stdout.splitlines()[-1]))
 
 

@@ -21,6 +21,7 @@ from metagraph.formats.locking import lock_path
 from metagraph.formats.recovery import left_journals, read_journal
 from metagraph.formats.store import read_project, save_project
 from metagraph.graph.model import Project
+from tests.processes import started
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -222,18 +223,14 @@ def test_killed_at_any_moment_of_saving_and_editing_no_finished_edit_is_lost(tmp
         saved = tmp_path / f"{round_}" / "show.metagraph.yaml"
         saved.parent.mkdir()
         save_project(toy.project(), saved)
-        words = [sys.executable, "-c", SAVING, str(saved)]
-        child = subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, text=True)
-        try:
+        with started(sys.executable, "-c", SAVING, saved, stdout=subprocess.PIPE) as child:
             wanted, finished = chance.randint(5, 120), 0
             for line in child.stdout:
                 finished = int(line)
                 if finished >= wanted:
                     break
-        finally:
             child.kill()
             finished = max([finished, *map(int, child.stdout.read().split())])
-            child.stdout.close()
             child.wait(10)
         left = [found for path in left_journals(saved) if (found := read_journal(path, saved)) is not None]
         latest = max([read_project(saved).settings.seed, *(found.project.settings.seed for found in left)])

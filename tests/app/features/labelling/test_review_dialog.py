@@ -23,10 +23,26 @@ pytestmark = [pytest.mark.window, pytest.mark.gl]
 K = Qt.Key
 
 
+PROPOSED = {}  # project, patterns -> what is proposed first, which takes seconds and is never changed
+
+
 @pytest.fixture
-def practice(drive):
-    """The practice project, its clips loaded, none placed."""
+def practice(drive, monkeypatch):
+    """The practice project, its clips loaded, none placed. What is proposed for it at first is found once."""
+    from app.features.labelling import review_session
     from app.project.files import PRACTICE
+
+    propose = review_session.propose
+
+    def once(project, clips, patterns, examples, **more):
+        key = (project.name, tuple(project.clips), len(list(project.actions())), repr(patterns))
+        if clips is not None or examples:
+            return propose(project, clips, patterns, examples, **more)
+        if key not in PROPOSED:
+            PROPOSED[key] = propose(project, clips, patterns, examples, **more)
+        return PROPOSED[key]
+
+    monkeypatch.setattr(review_session, "propose", once)
 
     drive.files.open(PRACTICE, template=True)
     drive.wait(

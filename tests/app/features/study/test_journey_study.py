@@ -23,6 +23,7 @@ from metagraph.graph import edits, manual_edits
 from metagraph.study.log import read
 from metagraph.study.questionnaires import sus_score
 from metagraph.study.study_plan import read_study
+from tests.processes import started
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 ROOT = Path(__file__).resolve().parents[4]
@@ -356,17 +357,13 @@ def test_a_window_that_is_killed_loses_nothing(tiny, tmp_path, qapp):
     log = tiny.parent / "data" / "P01" / "log.jsonl"
     made = 0
     for kill in (3, 11, 29):
-        process = subprocess.Popen(
-            [sys.executable, "-c", KILLED, str(tiny)], env=env, cwd=ROOT, stdout=subprocess.PIPE, text=True
-        )
-        try:
+        with started(sys.executable, "-c", KILLED, tiny, env=env, stdout=subprocess.PIPE) as process:
             for line in process.stdout:
                 made = int(line)
                 if made >= kill:
                     break
-        finally:
             process.send_signal(signal.SIGKILL)
-            process.communicate()
+            process.wait(10)
         assert made >= kill
         found = read(log)
         assert not found.problems and [e["n"] for e in found.events] == list(range(len(found.events)))
