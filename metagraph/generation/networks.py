@@ -6,7 +6,8 @@ are nested as below is what is stored, without renaming:
 
     linear        `.weight [out, in]`, `.bias [out]`                     y = x W^T + b
     convolution   `.weight [out, in, width]`, `.bias [out]`              over time, cross-correlation
-    LSTM          `.weight_ih_l0 [4N, in]`, `.weight_hh_l0 [4N, N]`, `.bias_ih_l0`, `.bias_hh_l0 [4N]`, `_l1` ...
+    LSTM          `.weight_ih_l0 [4N, in]`, `.weight_hh_l0 [4N, N]`, `.bias_ih_l0`, `.bias_hh_l0 [4N]`, `_l1`
+    ...
                   gates in the order input, forget, cell, output; one direction; state 0 at a sequence's start
 
 `shapes_of(sizes)` gives every name with its shape, in order; a file that has more, fewer or others is
@@ -48,8 +49,8 @@ each window by itself (`encoder.encode_windows`, which costs some 6 times as muc
 
 ln p(h) = ln N(z; 0, 1) + sum over steps of (sum logs + sum log_s + sum ln(sigmoid(scale + 2) + 1e-6)).
 `out` begins at zero. The LSTMs' state begins at 0 for each training sequence AND for the draw that the third
-term of the paper's loss makes; it runs on while sampling. With `span` > 1 a step of time is `span` frames: its
-control is that of its first frame, the past poses are the frames before that.
+term of the paper's loss makes; it runs on while sampling. With `span` > 1 a step of time is `span` frames:
+its control is that of its first frame, the past poses are the frames before that.
 
 **cvae** (`CvaeSizes`). LSTMs of `layers` layers; `encoder` reads [x, context], `encoder_out` gives mean and
 log variance of a code for each frame; `decoder` reads [code, context], `decoder_out` gives x. Control has no
@@ -58,13 +59,13 @@ are kept.
 
 **matching** (`MatchingSizes`). Tokens of `frames` frames: k = (x - tokens.mean) @ tokens.basis^T /
 tokens.deviation. A chunk draws `new` tokens at once, from `past` tokens before and the control of all
-`past + new + ahead` tokens' frames: [audio, activity, g / most] through `control.input` and `control.blocks` as
-above but PADDED with zeros to the same length, then `frames` frames in a row, flat, through `control.token`
-to `hidden`. g counts from the chunk's first frame, 0..most = (new + ahead) * frames - 1. Each token's place has
-the sum of: `embed_past` of a past token or `embed_new` of x_t (future places have neither), its control,
-`place [past + new + ahead, hidden]`. Without past (dropped) every past embedding is `no_past [hidden]`; without
-control every control is `no_control [hidden]`. e = `time.2`(silu(`time.0`([sin, cos of t * 1000 / 10000^(i/F)])))
-with F = time // 2, i < F, all sines first. Block i, `hidden` wide:
+`past + new + ahead` tokens' frames: [audio, activity, g / most] through `control.input` and `control.blocks`
+as above but PADDED with zeros to the same length, then `frames` frames in a row, flat, through
+`control.token` to `hidden`. g counts from the chunk's first frame, 0..most = (new + ahead) * frames - 1.
+Each token's place has the sum of: `embed_past` of a past token or `embed_new` of x_t (future places have
+neither), its control, `place [past + new + ahead, hidden]`. Without past (dropped) every past embedding is
+`no_past [hidden]`; without control every control is `no_control [hidden]`. e = `time.2`(silu(`time.0`([sin,
+cos of t * 1000 / 10000^(i/F)]))) with F = time // 2, i < F, all sines first. Block i, `hidden` wide:
 
     s1, b1, s2, b2 = split(`blocks.i.modulation`(silu(e)))
     x <- x + `proj`(attention(`qkv`(norm(x) * (1 + s1) + b1)))      qkv: all q, then k, then v; heads in a row
@@ -94,9 +95,9 @@ _Some = Annotated[int, Meta(ge=0, le=256)]
 
 
 class Control(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """How a network hears. audio: numbers of audio a frame. past: poses before. before, ahead: frames of audio
-    and activity before and after. width: of the encoder's layers, and of its two results. dilations: of its
-    convolutions of width 3; with kind `encoder` their sum is `before + ahead` over 2.
+    """How a network hears. audio: numbers of audio a frame. past: poses before. before, ahead: frames of
+    audio and activity before and after. width: of the encoder's layers, and of its two results. dilations:
+    of its convolutions of width 3; with kind `encoder` their sum is `before + ahead` over 2.
     """
 
     kind: Literal["window", "encoder"] = "encoder"
@@ -110,7 +111,8 @@ class Control(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def __post_init__(self) -> None:
         if self.kind == "encoder" and 2 * sum(self.dilations) != self.before + self.ahead:
             raise ValueError(
-                f"convolutions with dilations {list(self.dilations)} read {2 * sum(self.dilations) + 1} frames, "
+                f"convolutions with dilations {list(self.dilations)} read "
+                f"{2 * sum(self.dilations) + 1} frames, "
                 f"but the window has {self.frames}"
             )
 
@@ -132,9 +134,9 @@ class Control(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class FlowSizes(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag="flow", tag_field="net"):
-    """A flow, with or without an autoencoder. pose: numbers a frame. code: what the flow is on. between: units
-    of the autoencoder's inner layers. dims: numbers of a code. steps: K. units, layers: of each LSTM. span:
-    frames of one step of time.
+    """A flow, with or without an autoencoder. pose: numbers a frame. code: what the flow is on. between:
+    units of the autoencoder's inner layers. dims: numbers of a code. steps: K. units, layers: of each LSTM.
+    span: frames of one step of time.
     """
 
     pose: _Count = 78
@@ -173,9 +175,9 @@ class CvaeSizes(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, t
 class MatchingSizes(
     Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag="matching", tag_field="net"
 ):
-    """Flow matching on tokens. pose: numbers a frame. frames: of a token. dims: numbers of a token. past, new,
-    ahead: tokens. hidden, layers, heads: of the transformer; ratio: how much wider its inner layers are. time:
-    numbers that tell t. width, dilations: of the convolutions over the control.
+    """Flow matching on tokens. pose: numbers a frame. frames: of a token. dims: numbers of a token. past,
+    new, ahead: tokens. hidden, layers, heads: of the transformer; ratio: how much wider its inner layers
+    are. time: numbers that tell t. width, dilations: of the convolutions over the control.
     """
 
     pose: _Count = 78
@@ -343,8 +345,8 @@ def _matching(s: MatchingSizes) -> Shapes:
 
 
 def initial(sizes: Sizes, seed: int = 1) -> Weights:
-    """Return weights to begin with, float32: torch's own ranges (uniform within 1 / sqrt(inputs)), rotations as
-    the flow's matrices, zero where a layer should begin by doing nothing. What is computed from the data
+    """Return weights to begin with, float32: torch's own ranges (uniform within 1 / sqrt(inputs)), rotations
+    as the flow's matrices, zero where a layer should begin by doing nothing. What is computed from the data
     (means, deviations, bases, actnorm) leaves it as it is.
     """
     chance = np.random.default_rng(seed)
@@ -378,7 +380,9 @@ def sizes_units(sizes: Sizes) -> int:
 
 
 def _silent(name: str) -> bool:
-    """Whether a layer begins at zero: the couplings' outputs, the transformer's modulations and its result."""
+    """Whether a layer begins at zero: the couplings' outputs, the transformer's modulations and its
+    result.
+    """
     return (name.startswith("flow.") and ".out." in name) or ".modulation." in name or "final.out" in name
 
 
