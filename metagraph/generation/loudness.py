@@ -1,0 +1,82 @@
+"""How loud a channel is (ITU-R BS.1770-4), so that every voice is heard at the same level."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
+TARGET = -23.0  # LUFS
+BLOCK, HOP = 0.4, 0.1  # seconds
+ABSOLUTE, RELATIVE = -70.0, -10.0  # LUFS, and LU below the mean: what is softer does not count
+LOUDEST = 60.0  # dB a channel is raised at most
+_PIECE, _MARGIN = 30.0, 1.0  # seconds that are filtered at once, and what is thrown away on either side
+
+
+def loudness(samples: Array, rate: int) -> float:
+    """Return the integrated loudness of one channel `[N]`, LUFS; -inf where nothing is louder than the gate.
+    Shorter than a block, the whole is one.
+    """
+    samples = np.asarray(samples, np.float64)
+    if not len(samples):
+        return -np.inf
+    hop, each = max(1, round(HOP * rate)), round(BLOCK / HOP)
+    squares = _weighted(samples, rate) ** 2
+    count = len(squares) // hop
+    if count < each:
+        power = np.array([squares.mean()])
+    else:
+        parts = squares[: count * hop].reshape(count, hop).mean(1)
+        power = np.convolve(parts, np.ones(each) / each, "valid")
+    power = power[_lufs(power) > ABSOLUTE]
+    if not len(power):
+        return -np.inf
+    power = power[_lufs(power) > float(_lufs(power.mean())) + RELATIVE]
+    return float(_lufs(power.mean()))
+
+
+def gain_of(samples: Array, rate: int) -> float:
+    """Return the factor that brings a channel `[N]` to TARGET; 1 for silence."""
+    level = loudness(samples, rate)
+    return 1.0 if not np.isfinite(level) else float(10 ** (min(TARGET - level, LOUDEST) / 20))
+
+
+def _lufs(power: Any) -> Array:
+    return np.asarray(-0.691 + 10 * np.log10(np.maximum(power, 1e-20)))
+
+
+def _weighted(samples: Array, rate: int) -> Array:
+    """Return samples through the K weighting: a shelf that raises what is high, and a high pass. The filters
+    ring for much less than the margin, so pieces can go through the frequency domain.
+    """
+    size, margin = round(_PIECE * rate), round(_MARGIN * rate)
+    out = np.empty_like(samples)
+    for start in range(0, len(samples), size):
+        first = max(0, start - margin)
+        piece = samples[first : start + size]
+        length = 1 << int(np.ceil(np.log2(len(piece) + margin)))
+        heard = np.fft.irfft(np.fft.rfft(piece, length) * _response(length, rate), length)
+        out[start : start + size] = heard[start - first : len(piece)]
+    return out
+
+
+def _response(length: int, rate: int) -> Array:
+    """Return the weighting at each frequency of a transform, complex. Its two filters are given by what they
+    are in analogue, so that any rate can have them.
+    """
+    z = np.exp(-2j * np.pi * np.arange(length // 2 + 1) / length)
+    gain, hertz, quality = 3.999843853973347, 1681.974450955533, 0.7071752369554196
+    k, high = np.tan(np.pi * hertz / rate), 10 ** (gain / 20)
+    middle = high**0.4996667741545416
+    shelf = (
+        (high + middle * k / quality + k * k)
+        + 2 * (k * k - high) * z
+        + (high - middle * k / quality + k * k) * z * z
+    ) / ((1 + k / quality + k * k) + 2 * (k * k - 1) * z + (1 - k / quality + k * k) * z * z)
+    hertz, quality = 38.13547087602444, 0.5003270373238773
+    k = np.tan(np.pi * hertz / rate)
+    below = (1 + k / quality + k * k) + 2 * (k * k - 1) * z + (1 - k / quality + k * k) * z * z
+    return np.asarray(shelf * (1 - 2 * z + z * z) * (1.0 / below))
