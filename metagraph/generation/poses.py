@@ -70,7 +70,7 @@ def rig_of(skeleton: Skeleton, roles: Mapping[str, int] | None = None, base: Arr
             "Correct its roles, or leave its takes out"
         )
     chosen = {role: found[role] for role in JOINTS if role in found}
-    taken = set(chosen.values()) | {found.get("hips", 0)}
+    taken = {*chosen.values(), found.get("hips", 0), 0}
     lines = []
     for joint in chosen.values():
         line = [joint]
