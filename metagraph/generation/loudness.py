@@ -64,19 +64,13 @@ def _weighted(samples: Array, rate: int) -> Array:
 
 
 def _response(length: int, rate: int) -> Array:
-    """Return the weighting at each frequency of a transform, complex. Its two filters are given by what they
-    are in analogue, so that any rate can have them.
+    """Return the weighting at each frequency of a transform, complex: that of the standard's filters, which are
+    given for 48 kHz.
     """
-    z = np.exp(-2j * np.pi * np.arange(length // 2 + 1) / length)
-    gain, hertz, quality = 3.999843853973347, 1681.974450955533, 0.7071752369554196
-    k, high = np.tan(np.pi * hertz / rate), 10 ** (gain / 20)
-    middle = high**0.4996667741545416
-    shelf = (
-        (high + middle * k / quality + k * k)
-        + 2 * (k * k - high) * z
-        + (high - middle * k / quality + k * k) * z * z
-    ) / ((1 + k / quality + k * k) + 2 * (k * k - 1) * z + (1 - k / quality + k * k) * z * z)
-    hertz, quality = 38.13547087602444, 0.5003270373238773
-    k = np.tan(np.pi * hertz / rate)
-    below = (1 + k / quality + k * k) + 2 * (k * k - 1) * z + (1 - k / quality + k * k) * z * z
-    return np.asarray(shelf * (1 - 2 * z + z * z) * (1.0 / below))
+    hertz = np.minimum(np.arange(length // 2 + 1) * (rate / length), 24000.0)
+    z = np.exp(-2j * np.pi * hertz / 48000)
+    shelf = (1.53512485958697 - 2.69169618940638 * z + 1.19839281085285 * z * z) / (
+        1 - 1.69065929318241 * z + 0.73248077421585 * z * z
+    )
+    high_pass = (1 - 2 * z + z * z) / (1 - 1.99004745483398 * z + 0.99007225036621 * z * z)
+    return np.asarray(shelf * high_pass)

@@ -78,6 +78,9 @@ class Marks:
         return Marks(cut(self.peaks), cut(self.responses), cut(self.hesitations))
 
 
+NO_MARKS = Marks()
+
+
 @dataclass(frozen=True, eq=False)
 class Take:
     """A take, FPS frames a second. poses `[T, X]` and features `[T, audio + 4]`, float32, not standardised.
@@ -87,7 +90,7 @@ class Take:
     source: Source
     poses: Array
     features: Array
-    marks: Marks = Marks()
+    marks: Marks = NO_MARKS
     notes: tuple[str, ...] = ()
 
     @property
