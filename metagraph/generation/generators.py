@@ -63,7 +63,10 @@ class FlowGenerator(Generator):
             past = encode_past(self.w, control, self.past[-control.past :])
             context = np.concatenate([past, context])
         z = noise(seed, take, frame, self.sizes.dims) * self.temperature
-        code, self.state = self.flow.draw(z, context, self.state)
+        with np.errstate(over="ignore", invalid="ignore"):
+            code, self.state = self.flow.draw(z, context, self.state)
+        if not np.isfinite(code).all():  # a flow that ran away begins anew
+            code, self.state = np.zeros_like(code), self.flow.start()
         flat = vae.decode(self.w, self.sizes, code)
         poses = np.clip(flat.reshape(self.sizes.span, -1), -FURTHEST, FURTHEST)
         self.past = np.concatenate([self.past, poses])[-max(1, control.past) :]

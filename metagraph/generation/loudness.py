@@ -64,8 +64,8 @@ def _weighted(samples: Array, rate: int) -> Array:
 
 
 def _response(length: int, rate: int) -> Array:
-    """Return the weighting at each frequency of a transform, complex: that of the standard's filters, which are
-    given for 48 kHz.
+    """Return the weighting at each frequency of a transform, complex: that of the standard's filters, which
+    are given for 48 kHz.
     """
     hertz = np.minimum(np.arange(length // 2 + 1) * (rate / length), 24000.0)
     z = np.exp(-2j * np.pi * hertz / 48000)

@@ -96,7 +96,8 @@ def decode(rig: PoseRig, poses: Array) -> Array:
     """Return the local rotations `[..., n, 4]` of the rig's joints, float64, of poses `[..., 6 n]`: what lies
     between them is in the base pose. Rows need neither be of length 1 nor at a right angle.
     """
-    relative = rotation.from_matrix(gram_schmidt(np.reshape(poses, (*np.shape(poses)[:-1], -1, 2, 3))))
+    rows = np.reshape(poses, (*np.shape(poses)[:-1], len(rig.joints), 2, 3))
+    relative = rotation.from_matrix(gram_schmidt(rows))
     turns = []
     for n, line in enumerate(rig.lines):
         own = relative[..., n, :]

@@ -220,7 +220,8 @@ def write_model(model: Model, path: str | Path, half: bool = False) -> None:
                 f"its weights take {size / 2**20:.0f} MiB, at most {MOST / 2**20:.0f} MiB are read"
                 + ("" if half else "; 16 bits would halve them")
             )
-        arrays = {name: np.ascontiguousarray(w, kept) for name, w in model.weights.items()}
+        with np.errstate(over="ignore"):
+            arrays = {name: np.ascontiguousarray(w, kept) for name, w in model.weights.items()}
         if any(not np.isfinite(a).all() for a in arrays.values()):
             raise ValueError("a weight is too large for 16 bits")
     except (ValueError, PoseError) as error:

@@ -68,7 +68,7 @@ def find_takes(folders: Iterable[Path], speech: Sequence[Path] = ()) -> tuple[li
     """
     found = list(folders)
     clips = [c for f in found for c in ([f] if f.is_file() else find_clip_files(f))]
-    beside = [p for f in (*found, *speech) for p in _files(f if f.is_dir() else f.parent)]
+    beside = [p for f in (*found, *speech) for p in _files(f.parent if f.is_file() else f)]
     named = {id_of(p): p for p in beside if p.suffix.lower() in SOUNDS}
     words = {id_of(p): p for p in beside if p.suffix.lower() in _WORDS}
     takes, without = [], []

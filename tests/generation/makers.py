@@ -104,7 +104,7 @@ def conversation(seconds: float, seed: int = 1) -> Conversation:
         kind = ("clause", "clause", "response", "hesitation")[n % 4]
         length = float(chance.uniform(0.6, 1.4))
         peak = at + length / 2 if kind == "clause" else None
-        sides[n % 2 if n % 4 > 1 else int(chance.integers(0, 2))].append(
+        sides[n % 2].append(
             Segment(kind, at, at + length, peak)  # type: ignore[arg-type]
         )
         at += length + float(chance.uniform(0.1, 0.6))

@@ -12,7 +12,7 @@ import soundfile
 from metagraph.errors import FileError
 from metagraph.formats.bvh import write_bvh
 from metagraph.formats.clips import digest
-from metagraph.formats.conversation_writers import write_conversation_json
+from metagraph.formats.conversation_writers import write_json
 from metagraph.generation.features import RATE
 from metagraph.generation.take_files import UNLICENSED, find_takes, licence_of, read_takes
 from tests.bodies import column
@@ -101,7 +101,7 @@ def test_a_bad_take_spoils_no_other(tmp_path):
 def test_words_tell_who_says_what(tmp_path):
     _write(tmp_path, "talk", 12.0)
     talk = conversation(12)
-    write_conversation_json(talk, tmp_path / "talk.json")
+    write_json(talk, tmp_path / "talk.json")
     found, _ = find_takes([tmp_path])
     assert found[0].transcripts
     take = read_takes(found).takes[0]
