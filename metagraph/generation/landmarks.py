@@ -56,8 +56,11 @@ def _small(rig: PoseRig) -> _Small:
         whole.rest_translations[keep],
     )
     turns, points = whole.globals(Pose(rig.base, whole.rest_translations))
-    across, up = points[arms[0]] - points[arms[1]], points[role["head"]] - points[arms, :].mean(0)
-    before = np.cross(across, up)
+    across = points[arms[0]] - points[arms[1]]
+    trunk = points[role["head"]] - points[rig.lines[0][0]]
+    # Somebody who stands or sits looks level, however far the head is before the trunk.
+    lying = abs(trunk[1]) < 0.7 * float(np.linalg.norm(trunk))
+    before = np.cross(across, trunk if lying else np.array([0.0, trunk[1], 0.0]))
     length = float(np.linalg.norm(before))
     if length < 1e-9:
         raise PoseError("the head is not above the arms in the base pose: nobody can tell what is before it")
