@@ -49,10 +49,9 @@ def conv1d(w: Layers, name: str, x: Array, dilation: int = 1) -> Array:
         raise ValueError(
             f"{x.shape[-2]} frames are too few for a convolution over {1 + (width - 1) * dilation}"
         )
-    out = w[f"{name}.bias"] + x[..., :left, :] @ weight[:, :, 0].T
-    for k in range(1, width):
-        out = out + x[..., k * dilation : k * dilation + left, :] @ weight[:, :, k].T
-    return np.asarray(out)
+    near = [x[..., k * dilation : k * dilation + left, :] for k in range(width)]
+    flat = np.stack(near, -1).reshape(*x.shape[:-2], left, -1)
+    return np.asarray(flat @ weight.reshape(len(weight), -1).T + w[f"{name}.bias"])
 
 
 def layer_norm(x: Array, eps: float = 1e-5) -> Array:

@@ -98,11 +98,7 @@ def decode(rig: PoseRig, poses: Array) -> Array:
     """
     rows = np.reshape(poses, (*np.shape(poses)[:-1], len(rig.joints), 2, 3))
     relative = rotation.from_matrix(gram_schmidt(rows))
-    turns = []
-    for n, line in enumerate(rig.lines):
-        own = relative[..., n, :]
-        turns.append(rotation.multiply(rig.base[line[-1]], own))
-    return np.stack(turns, -2)
+    return rotation.multiply(rig.base[list(rig.joints)], relative)
 
 
 def _line(rotations: Array, line: tuple[int, ...]) -> Array:
