@@ -1,7 +1,8 @@
 """Learned motion: python tests/benchmarks/bench_generation.py [seconds]
 
-How many times faster than they play poses are made by models of each kind and size, as the sound comes in, 40 ms at
-a time, and what hearing it costs alone. The weights have learned nothing, which takes as long. One thread.
+How many times faster than they play poses are made by models of each kind and size, as the sound comes in,
+40 ms at a time, and what hearing it costs alone. The weights have learned nothing, which takes as long. One
+thread.
 """
 
 from __future__ import annotations

@@ -31,7 +31,7 @@ FPS = 25
 
 
 def _talker(seed: int, seconds: float = 60, hear: int | None = None) -> Performance:
-    """Somebody whose hands are fast at own peaks, and who nods with responses. hear: the seed of what is said."""
+    """Somebody whose hands are fast at own peaks and who nods with responses. hear: seed of what is said."""
     say = np.random.default_rng(1000 + (seed if hear is None else hear))
     chance = np.random.default_rng(seed)
     count = round(seconds * FPS)
