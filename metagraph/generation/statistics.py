@@ -7,9 +7,8 @@ true motion to other speech; and the *mean pose*.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -51,36 +50,6 @@ class Performance:
     def __len__(self) -> int:
         return len(self.poses)
 
-    @cached_property
-    def speeds(self) -> Array:
-        """Of landmarks, `[T - 1, 9]`, cm/s."""
-        return np.asarray(np.linalg.norm(np.diff(self.landmarks, axis=0), axis=-1) * FPS * 100)
-
-    @cached_property
-    def accelerations(self) -> Array:
-        """Of landmarks, `[T - 2, 9]`, cm/s^2."""
-        return np.asarray(np.linalg.norm(np.diff(self.landmarks, 2, axis=0), axis=-1) * FPS**2 * 100)
-
-    @cached_property
-    def hands(self) -> Array:
-        """The speed of the faster hand, `[T - 1]`, cm/s."""
-        return np.asarray(self.speeds[:, list(WRISTS)].max(1))
-
-    @cached_property
-    def nodding(self) -> Array:
-        """How fast the nose goes up or down beside the head, `[T - 1]`, cm/s."""
-        up = self.landmarks[:, NOSE, 1] - self.landmarks[:, HEAD, 1]
-        return np.asarray(np.abs(np.diff(up)) * FPS * 100)
-
-    def distances(self, mean: Array) -> Array:
-        """Return how far landmarks are from a mean pose `[9, 3]`: `[T, 9]`, cm."""
-        return np.asarray(np.linalg.norm(self.landmarks - mean, axis=-1) * 100)
-
-    def derivatives(self, mean: Array) -> tuple[Array, Array]:
-        """Return how fast those distances grow `[n, 9]`, cm/s, while speaking, and while listening."""
-        rate = np.diff(self.distances(mean), axis=0) * FPS
-        return rate[self.activity[1:, SELF] > 0.5], rate[self.activity[1:, PARTNER] > 0.5]
-
     def part(self, first: int, last: int) -> Performance:
         """Return frames first to last, excluded."""
         marks = self.marks.shifted(first / FPS, last / FPS)
@@ -121,10 +90,21 @@ def wasserstein(a: Array, b: Array) -> float:
     """Return the distance W1 between two sets of numbers: the mean difference of their quantiles; nan where
     one is empty.
     """
-    if not len(a) or not len(b):
-        return float("nan")
-    at = (np.arange(QUANTILES) + 0.5) / QUANTILES
-    return float(np.abs(np.quantile(a, at) - np.quantile(b, at)).mean())
+    return _apart(np.reshape(a, (-1, 1)), np.reshape(b, (-1, 1)))
+
+
+def _apart(a: Array, b: Array) -> float:
+    """Return the mean W1 over columns."""
+    return float(np.abs(_quantiles(a) - _quantiles(b)).mean()) if len(a) and len(b) else float("nan")
+
+
+def _quantiles(rows: Array) -> Array:
+    """Return QUANTILES of each column `[columns, QUANTILES]`."""
+    ordered = np.sort(np.ascontiguousarray(rows.T), axis=1)
+    at = (np.arange(QUANTILES) + 0.5) / QUANTILES * (len(rows) - 1)
+    low = at.astype(int)
+    high = np.minimum(low + 1, len(rows) - 1)
+    return np.asarray(ordered[:, low] + (ordered[:, high] - ordered[:, low]) * (at - low))
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,9 +124,59 @@ def _truth(motion: Sequence[Performance]) -> _Truth:
     return _Truth(mean_landmarks(motion), scale, parts["scores.mean"], parts["scores.basis"])
 
 
-def measures(
-    generated: Sequence[Performance], true: Sequence[Performance], truth: _Truth | None = None
-) -> dict[str, float]:
+@dataclass(frozen=True, eq=False)
+class _Parts:
+    """What measures are made of, of one stretch of motion; cm and seconds. Of `near`, `profile` and
+    `windows` all stretches' rows are put together.
+    """
+
+    far: Array  # landmarks from their mean `[T, 9]`
+    speeds: Array  # of landmarks `[T - 1, 9]`
+    jerks: Array  # their mean acceleration `[T - 2]`
+    speaking: Array  # how fast the distances grow `[n, 9]`
+    listening: Array
+    hands: Array  # speed of the faster one `[T - 1]`
+    nodding: Array  # how fast the nose goes up or down beside the head `[T - 1]`
+    strokes: Array  # which steps are near own peaks, after responses, after hesitations `[T - 1]`
+    responses: Array
+    hesitations: Array
+    profile: Array  # hands about peaks `[n, 2 ABOUT FPS + 1]`
+    windows: Array  # mean, deviation and mean step of the scores of each second `[n, 3 SCORES]`
+
+
+def _parts(m: Performance, truth: _Truth) -> _Parts:
+    steps = np.diff(m.landmarks, axis=0) * (FPS * 100)
+    far = np.linalg.norm(m.landmarks - truth.mean, axis=-1) * 100
+    growing = np.diff(far, axis=0) * FPS
+    speeds = np.linalg.norm(steps, axis=-1)
+    hands = speeds[:, list(WRISTS)].max(1)
+    reach, count = round(ABOUT * FPS), len(steps)
+    peaks = [at for at in (round(p * FPS) for p in m.marks.peaks) if reach <= at < count - reach]
+    scores = (truth.scale.apply(m.poses) - truth.centre) @ truth.basis.T
+    whole = len(scores) // WINDOW
+    pieces = scores[: whole * WINDOW].reshape(whole, WINDOW, -1).astype(np.float64)
+    told = [pieces.mean(1), pieces.std(1), np.abs(np.diff(pieces, axis=1)).mean(1)]
+    return _Parts(
+        far,
+        speeds,
+        np.linalg.norm(np.diff(steps, axis=0), axis=-1).mean(1) * FPS,
+        growing[m.activity[1:, SELF] > 0.5],
+        growing[m.activity[1:, PARTNER] > 0.5],
+        hands,
+        np.abs(steps[:, NOSE, 1] - steps[:, HEAD, 1]),
+        _moments(count, m.marks.peaks, NEAR, NEAR),
+        _moments(count, m.marks.responses, 0.0, NOD),
+        _moments(count, m.marks.hesitations, 0.0, NOD),
+        np.array([hands[at - reach : at + reach + 1] for at in peaks]).reshape(len(peaks), 2 * reach + 1),
+        np.concatenate(told, 1),
+    )
+
+
+def _together(parts: Sequence[_Parts]) -> _Parts:
+    return _Parts(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(_Parts)))
+
+
+def measures(generated: Sequence[Performance], true: Sequence[Performance]) -> dict[str, float]:
     """Return all MEASURES of generated motion beside what was recorded; nan where what it is made of does not
     occur. distance, frechet: the smaller the better, down to the floor. speed, acceleration, wrist_range,
     profile: 1 is perfect; speed_w1, role_w1: 0. role, stroke, nods: as the recorded motion's own. Raises
@@ -154,24 +184,30 @@ def measures(
     """
     if not generated or not true or min(len(m) for m in (*generated, *true)) < 3:
         raise ValueError("there is no motion to compare: give takes of some seconds")
-    truth = _truth(true) if truth is None else truth
-    far, far_true = (np.concatenate([m.distances(truth.mean) for m in ms]) for ms in (generated, true))
-    speed, speed_true = (np.concatenate([m.speeds for m in ms]) for ms in (generated, true))
-    jerky, jerky_true = (np.concatenate([m.accelerations for m in ms]).mean() for ms in (generated, true))
+    truth = _truth(true)
+    return _compared(*(_together([_parts(m, truth) for m in motion]) for motion in (generated, true)))
+
+
+def _compared(made: _Parts, true: _Parts) -> dict[str, float]:
     hands = list(WRISTS)
-    profile, profile_true = _profile(generated), _profile(true)
+    role = role_w1 = float("nan")
+    if min(map(len, (made.speaking, made.listening, true.speaking, true.listening))) > 1:
+        role = float(np.abs(made.speaking).mean() / _least(np.abs(made.listening).mean()))
+        pairs = ((made.speaking, true.speaking), (made.listening, true.listening))
+        role_w1 = float(np.mean([_apart(a, b) / _least(np.abs(b).mean()) for a, b in pairs]))
     out = {
-        "distance": _columns(far, far_true) / _least(far_true.mean()),
-        "speed": float(speed.mean() / _least(speed_true.mean())),
-        "speed_w1": _columns(speed, speed_true) / _least(speed_true.mean()),
-        "acceleration": float(jerky / _least(jerky_true)),
-        "wrist_range": float(_range(far[:, hands]) / _least(_range(far_true[:, hands]))),
-        **_roles(generated, true, truth.mean),
-        "stroke": _stroke(generated),
-        "nods_responses": _nods(generated, lambda m: m.responses),
-        "nods_hesitations": _nods(generated, lambda m: m.hesitations),
-        "profile": _correlation(profile, profile_true),
-        "frechet": _frechet(_windows(generated, truth), _windows(true, truth)),
+        "distance": _apart(made.far, true.far) / _least(true.far.mean()),
+        "speed": float(made.speeds.mean() / _least(true.speeds.mean())),
+        "speed_w1": _apart(made.speeds, true.speeds) / _least(true.speeds.mean()),
+        "acceleration": float(made.jerks.mean() / _least(true.jerks.mean())),
+        "wrist_range": _range(made.far[:, hands]) / _least(_range(true.far[:, hands])),
+        "role": role,
+        "role_w1": role_w1,
+        "stroke": _beside(made.hands, made.strokes),
+        "nods_responses": _beside(made.nodding, made.responses),
+        "nods_hesitations": _beside(made.nodding, made.hesitations),
+        "profile": _profile(made.profile, true.profile),
+        "frechet": _frechet(made.windows, true.windows),
     }
     return {name: out[name] for name in MEASURES}
 
@@ -180,86 +216,33 @@ def _least(value: Any) -> float:
     return max(float(value), 1e-9)
 
 
-def _columns(a: Array, b: Array) -> float:
-    """Return the mean W1 over columns."""
-    return float(np.mean([wasserstein(a[:, n], b[:, n]) for n in range(a.shape[1])]))
-
-
 def _range(values: Array) -> float:
+    """Return how far the quarters are apart, the mean over columns."""
     low, high = np.percentile(values, (25, 75), axis=0)
     return float((high - low).mean())
 
 
-def _roles(generated: Sequence[Performance], true: Sequence[Performance], mean: Array) -> dict[str, float]:
-    def both(motion: Sequence[Performance]) -> list[Array]:
-        pairs = [m.derivatives(mean) for m in motion]
-        return [np.concatenate([p[n] for p in pairs]) for n in range(2)]
-
-    made, recorded = both(generated), both(true)
-    if min(map(len, (*made, *recorded))) < 2:
-        return {"role": float("nan"), "role_w1": float("nan")}
-    apart = [_columns(a, b) / _least(np.abs(b).mean()) for a, b in zip(made, recorded, strict=True)]
-    return {
-        "role": float(np.abs(made[0]).mean() / _least(np.abs(made[1]).mean())),
-        "role_w1": float(np.mean(apart)),
-    }
-
-
 def _moments(count: int, moments: Sequence[float], before: float, after: float) -> Array:
-    """Return which of `count` steps are near moments (seconds): from `before` seconds before to `after`
-    after.
+    """Return which of `count` steps are near moments (seconds): from `before` before to `after` after
+    them.
     """
     out = np.zeros(count, bool)
     for at in moments:
-        first, last = round((at - before) * FPS), round((at + after) * FPS)
-        out[max(0, first) : max(0, last)] = True
+        out[max(0, round((at - before) * FPS)) : max(0, round((at + after) * FPS))] = True
     return out
 
 
-def _beside(
-    motion: Sequence[Performance], values: Callable[[Performance], Array], near: Callable[[int, Marks], Array]
-) -> float:
-    """Return the mean of values at some moments over their mean at all; nan without such moments."""
-    every = np.concatenate([values(m) for m in motion])
-    some = np.concatenate([near(len(m) - 1, m.marks) for m in motion])
-    return float(every[some].mean() / _least(every.mean())) if some.any() else float("nan")
+def _beside(values: Array, some: Array) -> float:
+    """Return the mean of some values over the mean of all; nan without any."""
+    return float(values[some].mean() / _least(values.mean())) if some.any() else float("nan")
 
 
-def _stroke(motion: Sequence[Performance]) -> float:
-    return _beside(motion, lambda m: m.hands, lambda n, marks: _moments(n, marks.peaks, NEAR, NEAR))
-
-
-def _nods(motion: Sequence[Performance], which: Callable[[Marks], tuple[float, ...]]) -> float:
-    return _beside(motion, lambda m: m.nodding, lambda n, marks: _moments(n, which(marks), 0.0, NOD))
-
-
-def _profile(motion: Sequence[Performance]) -> Array:
-    """Return the hands' mean speed about peaks, `[2 ABOUT FPS + 1]`; empty without any."""
-    reach = round(ABOUT * FPS)
-    rows = [
-        m.hands[at - reach : at + reach + 1]
-        for m in motion
-        for at in (round(p * FPS) for p in m.marks.peaks)
-        if at - reach >= 0 and at + reach + 1 <= len(m.hands)
-    ]
-    return np.mean(rows, axis=0) if rows else np.zeros(0)
-
-
-def _correlation(a: Array, b: Array) -> float:
-    if not len(a) or not len(b) or min(a.std(), b.std()) < 1e-9:
+def _profile(made: Array, true: Array) -> float:
+    """Return the correlation of the mean speeds about peaks."""
+    if not len(made) or not len(true):
         return float("nan")
-    return float(np.corrcoef(a, b)[0, 1])
-
-
-def _windows(motion: Sequence[Performance], truth: _Truth) -> Array:
-    """Return mean, deviation and mean step of the scores of each second, `[n, 3 SCORES]`."""
-    rows = []
-    for m in motion:
-        scores = (truth.scale.apply(m.poses) - truth.centre) @ truth.basis.T
-        for first in range(0, len(scores) - WINDOW + 1, WINDOW):
-            some = scores[first : first + WINDOW]
-            rows.append(np.concatenate([some.mean(0), some.std(0), np.abs(np.diff(some, axis=0)).mean(0)]))
-    return np.array(rows, np.float64).reshape(len(rows), -1)
+    a, b = made.mean(0), true.mean(0)
+    return float("nan") if min(a.std(), b.std()) < 1e-9 else float(np.corrcoef(a, b)[0, 1])
 
 
 def _frechet(a: Array, b: Array) -> float:
@@ -337,18 +320,19 @@ def row(
     """Return a system's row. generated: of each seed, motion to all that `true` holds, in its order. Values
     are means over seeds; the spread is by drawing blocks of BLOCK seconds, and seeds, with replacement.
     """
-    truth = _truth(true)
-    whole = [measures(each, true, truth) for each in generated]
+    whole = [measures(each, true) for each in generated]
     values = {m: float(np.mean([w[m] for w in whole])) for m in MEASURES}
     values["diversity"] = diversity(generated)
-    pieces, recorded = [blocks(each) for each in generated], blocks(true)
+    truth = _truth(true)
+    pieces = [[_parts(b, truth) for b in blocks(each)] for each in generated]
+    recorded = [_parts(b, truth) for b in blocks(true)]
     chance = np.random.default_rng(seed)
     drawn: list[dict[str, float]] = []
     for _ in range(draws):
         which = chance.integers(0, len(recorded), len(recorded))
         some = pieces[int(chance.integers(0, len(pieces)))]
         taken = [n for n in which.tolist() if n < len(some)]
-        drawn.append(measures([some[n] for n in taken], [recorded[n] for n in taken], truth))
+        drawn.append(_compared(_together([some[n] for n in taken]), _together([recorded[n] for n in taken])))
     tail = (1 - LEVEL) / 2
     spread = {}
     for m in MEASURES if drawn else ():
