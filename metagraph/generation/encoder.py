@@ -21,7 +21,7 @@ def encode_window(w: Layers, control: Control, window: Array, lookahead: int) ->
     window = masked(window, control.before + lookahead)
     if control.kind == "window":
         return np.asarray(window.reshape(*window.shape[:-2], -1))
-    x = relu(conv1d(w, "control.input", _told(window, lookahead / max(1, control.ahead))))
+    x = relu(conv1d(w, "control.input", _told(window, _share(lookahead, control.ahead))))
     apart = 1  # only what the one result is made of: every second, fourth ... frame
     for n, dilation in enumerate(control.dilations):
         step = dilation // apart
@@ -59,7 +59,7 @@ def encode_chunk(w: Layers, sizes: MatchingSizes, features: Array, lookahead: in
     standardised. lookahead: frames after the chunk's first new one that are known, 0..most.
     """
     known = masked(features, sizes.past * sizes.frames + lookahead)
-    x = relu(conv1d(w, "control.input", _told(known, lookahead / max(1, sizes.most))))
+    x = relu(conv1d(w, "control.input", _told(known, _share(lookahead, sizes.most))))
     for n, dilation in enumerate(sizes.dilations):
         edge = [(0, 0)] * (x.ndim - 2) + [(dilation, dilation), (0, 0)]
         x = x + relu(conv1d(w, f"control.blocks.{n}", np.pad(x, edge), dilation))
@@ -78,6 +78,11 @@ def masked(window: Array, last: int) -> Array:
     out = window.copy()
     out[..., last + 1 :, :] = 0
     return out
+
+
+def _share(lookahead: int, most: int) -> float:
+    """Return how much of what could be known ahead is known, 0..1; 1 where there is nothing to know."""
+    return lookahead / most if most else 1.0
 
 
 def _told(features: Array, share: float) -> Array:

@@ -38,7 +38,8 @@ WARMEST = 1.2  # temperature at most
 class Sampler:
     """One take of a model, from its first frame on.
 
-    seed, take: 0..2^64 - 1. temperature: 0..WARMEST, how much may happen by chance. lookahead: frames of
+    seed, take: 0..2^64 - 1; start: number of the first frame, 0 or more, so that what begins later has the
+    chance of its own frames. temperature: 0..WARMEST, how much may happen by chance. lookahead: frames of
     sound ahead that each frame may wait for; None: all that the model uses. guidance: how closely a matching
     model follows the speech. channels, gains: of the sound, as `features.AudioStream`. first: local
     rotations `[J, 4]` of all joints that it goes on from, None for the mean pose. smooth: frames, the
@@ -53,6 +54,7 @@ class Sampler:
         temperature: float = 1.0,
         *,
         take: int = 0,
+        start: int = 0,
         lookahead: int | None = None,
         guidance: float = GUIDANCE,
         channels: int = 2,
@@ -62,20 +64,20 @@ class Sampler:
     ) -> None:
         if not 0 <= temperature <= WARMEST:
             raise ValueError(f"a temperature is 0 to {WARMEST:g}, not {temperature:g}")
-        if not (0 <= seed < 2**64 and 0 <= take < 2**64):
-            raise ValueError("seeds are whole numbers from 0 to 2^64 - 1")
+        if not (0 <= seed < 2**64 and 0 <= take < 2**64 and 0 <= start < 2**63):
+            raise ValueError("seeds, takes and frames are whole numbers from 0 to 2^64 - 1")
         if not np.isfinite(guidance):
             raise ValueError("the guidance must be a finite number")
-        self.model, self.seed, self.take = model, seed, take
+        self.model, self.seed, self.take, self.start = model, seed, take, start
         self._features = FeatureStream(channels, model.card.tracks, gains)
         sizes = model.card.sizes
-        start = np.zeros(sizes.pose, np.float32)
+        before = np.zeros(sizes.pose, np.float32)
         if first is not None:
             rotations = np.asarray(first, np.float64)
             if rotations.shape != (len(model.rig.skeleton), 4) or not np.isfinite(rotations).all():
                 raise PoseError("the first pose is one of another skeleton")
-            start = model.poses.apply(encode(model.rig, rotations))
-        self._made = generator(model.weights, sizes, start, temperature, lookahead, guidance)
+            before = model.poses.apply(encode(model.rig, rotations))
+        self._made = generator(model.weights, sizes, before, temperature, lookahead, guidance)
         smooth = (SMOOTH if isinstance(sizes, MatchingSizes) else 0.0) if smooth is None else smooth
         self._weights = gaussian(smooth).astype(np.float32)
         quiet = silence(model.card.tracks * MELS)
@@ -110,7 +112,7 @@ class Sampler:
             window = self._heard[:size]
             if len(window) < size:
                 window = np.concatenate([window, np.repeat(self._quiet, size - len(window), 0)])
-            new = made.step(window, self.seed, self.take, self._next)
+            new = made.step(window, self.seed, self.take, self.start + self._next)
             new = new[: self._known - self._next] if last else new
             poses.append(new)
             self._heard = self._heard[made.made :]

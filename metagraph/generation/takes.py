@@ -35,6 +35,7 @@ SPOKEN = 0.5  # seconds somebody speaks in a take at least
 APART = 6.0  # seconds between what is learned from and what is held out of one take
 HELD = 0.15  # of all takes' length is held out
 BLOCK = 4.0  # seconds that are compared to find out whether takes share a stretch
+_AT_ONCE = 16  # blocks
 ALIKE, MOVED = 0.98, 0.95  # correlation of what is heard, and of how much is moved, from which on they do
 
 
@@ -104,7 +105,8 @@ class Take:
 
     def part(self, first: int, last: int) -> Take:
         """Return frames first to last, excluded."""
-        first, last = max(0, first), min(last, len(self.poses))
+        first = max(0, first)
+        last = max(first, min(last, len(self.poses)))
         source = replace(self.source, start=self.source.start + first / FPS)
         marks = self.marks.shifted(first / FPS, last / FPS)
         return replace(
@@ -296,13 +298,14 @@ def check_split(learned: Sequence[Take], held: Sequence[Take]) -> None:
     """
     if not learned or not held:
         raise SplitError("one half of the takes is empty: add takes")
+    signs = {id(t): _signature(t) for t in (*learned, *held)}
     for h in held:
         for t in learned:
-            if _near(t, h) or shares_stretch(t, h):
+            if _near(t, h) or _alike(signs[id(t)], signs[id(h)]):
                 how = "its mirror twin" if t.source.mirrored != h.source.mirrored else "a stretch of it"
                 raise SplitError(
-                    f"'{h.source.name}' is held out, but {how} ('{t.source.name}') is learned from: hold "
-                    "out both"
+                    f"'{h.source.name}' is held out, but {how} ('{t.source.name}') is learned from: "
+                    "hold out both"
                 )
 
 
@@ -318,12 +321,18 @@ def shares_stretch(a: Take, b: Take) -> bool:
     """Whether BLOCK seconds of two takes sound and move alike at the same moments, left and right exchanged
     or not. Either alone is no sign: the same speech is performed twice, and the same gesture made again.
     """
+    return _alike(_signature(a), _signature(b))
+
+
+def _alike(a: tuple[Array, Array], b: tuple[Array, Array]) -> bool:
     size = round(BLOCK * FPS)
-    heard, moved = zip(*(_signature(t) for t in (a, b)), strict=True)
-    for first in range(0, len(b.poses) - size + 1, size):
-        found = _correlation(heard[0], heard[1][first : first + size])
-        for at in np.flatnonzero(found > ALIKE).tolist():
-            both = moved[0][at : at + size], moved[1][first : first + size]
+    count = len(b[0]) // size
+    pieces = b[0][: count * size].reshape(count, size)
+    for first in range(0, count, _AT_ONCE):
+        found = _correlation(a[0], pieces[first : first + _AT_ONCE])
+        for n, at in zip(*np.nonzero(found > ALIKE), strict=True):
+            start = (first + int(n)) * size
+            both = a[1][at : at + size], b[1][start : start + size]
             if min(x.std() for x in both) > 1e-4 and np.corrcoef(*both)[0, 1] > MOVED:
                 return True
     return False
@@ -337,16 +346,19 @@ def _signature(take: Take) -> tuple[Array, Array]:
     return heard, np.arccos(np.clip(cosine, -1, 1)).sum(-1)
 
 
-def _correlation(whole: Array, block: Array) -> Array:
-    """Return the correlation of a block with each stretch of the whole `[T - B + 1]`."""
-    size = len(block)
-    if len(whole) < size or block.std() < 1e-6:
-        return np.zeros(0)
+def _correlation(whole: Array, pieces: Array) -> Array:
+    """Return the correlation of each piece `[n, B]` with each stretch of the whole, `[n, T - B + 1]`; 0 for
+    pieces that do not vary.
+    """
+    count, size = pieces.shape
+    if len(whole) < size:
+        return np.zeros((count, 0))
     length = 1 << int(np.ceil(np.log2(len(whole) + size)))
     whole = whole - whole.mean()
-    unit = (block - block.mean()) / (block.std() * size)
+    spread = pieces.std(1, keepdims=True)
+    unit = (pieces - pieces.mean(1, keepdims=True)) / (np.maximum(spread, 1e-6) * size)
     product = np.fft.irfft(np.fft.rfft(whole, length) * np.conj(np.fft.rfft(unit, length)), length)
     sums, squares = (np.concatenate([[0.0], np.cumsum(x)]) for x in (whole, whole**2))
     mean = (sums[size:] - sums[:-size]) / size
     deviation = np.sqrt(np.maximum((squares[size:] - squares[:-size]) / size - mean**2, 1e-12))
-    return np.asarray(product[: len(mean)] / deviation)
+    return np.asarray(np.where(spread > 1e-6, product[:, : len(mean)] / deviation, 0.0))

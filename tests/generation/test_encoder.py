@@ -27,6 +27,14 @@ def test_a_window_alone_hears_what_a_whole_recording_hears(dilations):
     assert np.abs(whole - alone).max() < 1e-10
 
 
+def test_what_never_hears_ahead_is_told_the_same_alone_and_whole():
+    control = Control(width=8, before=30, ahead=0)
+    w = shaken(tiny("flow-vae"))
+    features = CHANCE.standard_normal((40, 31)).astype(np.float32)
+    alone = encoder.encode_window(w, control, encoder.windows(features, 31), 0)
+    assert np.abs(encoder.encode_all(w, control, features) - alone).max() < 1e-5
+
+
 @pytest.mark.parametrize("kind", ["window", "encoder"])
 def test_what_comes_after_the_lookahead_is_not_heard(kind):
     sizes = tiny("flow-vae")

@@ -20,6 +20,7 @@ from metagraph.generation.sampler import (
     heard_activity,
     whole,
 )
+from metagraph.generation.stored import Model
 from metagraph.motion import rotation
 from tests.generation.makers import babble, conversation, moving, stance, untrained
 
@@ -177,6 +178,26 @@ def test_noise_is_of_seed_take_and_frame_alone():
     assert abs(many.std() - 1) < 0.01
     assert abs((many**4).mean() - 3) < 0.1
     assert noise(1, 1, 1, 3)[:3] == pytest.approx(noise(1, 1, 1, 3))
+
+
+def test_what_begins_later_has_the_chance_of_its_own_frames():
+    """A model that hears nothing and remembers nothing makes the same frames from wherever it begins."""
+    model = MODELS["cvae"]
+    deaf = {
+        n: w * (0 if "_hh_" in n or "_ih_l0" in n and n.endswith("bias") else 1)
+        for n, w in model.weights.items()
+    }
+    deaf = {n: w * 0 if n.startswith("control") else w for n, w in deaf.items()}
+    for name in (n for n in deaf if n.startswith("decoder.") and "bias" in n):
+        deaf[name] = deaf[name].copy()
+        deaf[name].reshape(4, -1)[1] -= 100  # forgets
+    made = [
+        np.concatenate([s.push(SOUND[:, a * 640 :], TOLD[a:]), s.finish()])
+        for a in (0, 20)
+        for s in [Sampler(Model(model.card, deaf), 3, start=a)]
+    ]
+    assert np.abs(made[0][20:] - made[1]).max() < 1e-5
+    assert np.abs(made[0][:-20] - made[1]).max() > 1e-3
 
 
 def test_nobody_speaking_is_a_take_too():

@@ -119,6 +119,15 @@ def test_one_recording_gives_a_block_with_six_seconds_cut_away():
         split([_take(12)])
 
 
+def test_pieces_of_one_recording_are_cut_at_the_same_moment():
+    take = _take(90)
+    learned, held = split([take.part(0, 700), take.part(700, 1500), take.part(1500, 2251)], 0.2)
+    begin = min(h.source.start for h in held)
+    assert all(t.source.start + t.seconds <= begin - 6 + 0.05 for t in learned)
+    assert all(len(t.poses) == len(t.features) > 0 for t in (*learned, *held))
+    assert len(take.part(300, 100).poses) == 0
+
+
 def test_a_mirror_twin_goes_where_its_take_goes():
     clip = moving(60, 1)
     take = _take(60)
