@@ -163,9 +163,8 @@ def checked(model: Model) -> Model:
     card, weights = model.card, model.weights
     _check_card(card)
     expected = shapes_of(card.sizes)
-    if list(weights) != list(expected):
-        odd = sorted(set(weights) ^ set(expected))
-        raise ValueError(f"its weights are not those of its sizes ('{odd[0] if odd else 'another order'}')")
+    if odd := sorted(set(weights) ^ set(expected)):
+        raise ValueError(f"its weights are not those of its sizes ('{odd[0]}')")
     for name, shape in expected.items():
         if weights[name].shape != shape:
             raise ValueError(f"weight '{name}' is {weights[name].shape}, expected {shape}")
@@ -221,7 +220,7 @@ def write_model(model: Model, path: str | Path, half: bool = False) -> None:
                 + ("" if half else "; 16 bits would halve them")
             )
         with np.errstate(over="ignore"):
-            arrays = {name: np.ascontiguousarray(w, kept) for name, w in model.weights.items()}
+            arrays = {n: np.ascontiguousarray(model.weights[n], kept) for n in shapes_of(model.card.sizes)}
         if any(not np.isfinite(a).all() for a in arrays.values()):
             raise ValueError("a weight is too large for 16 bits")
     except (ValueError, PoseError) as error:

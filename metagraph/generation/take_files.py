@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import CancelledError
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +47,18 @@ class TakeFiles:
     sounds: tuple[Path, ...]
     transcripts: tuple[Path, ...] = ()
     side: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Speech:
+    """What is heard with a take: samples `[C, N]` at RATE, own voice first; the share of each channel that
+    was cut off at full scale; the conversation where its words are known; what there is to know, in words.
+    """
+
+    samples: Array
+    clipped: tuple[float, ...]
+    conversation: Conversation | None
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,30 +168,33 @@ def read_takes(
 
 
 def _take(rig: PoseRig, files: TakeFiles, clip: Clip, tracks: int, licences: dict[Path, str]) -> Take:
-    samples, clipped, conversation = read_speech(files)
+    speech = read_speech(files)
     digests = tuple(digest(p) for p in (files.clip, *files.sounds))
     folder = files.clip.parent
     if folder not in licences:
         licences[folder] = licence_of(folder)
     source = Source(files.clip.stem, digests, licences[folder])
-    return take_of(rig, clip, samples, RATE, source, conversation, files.side, tracks, clipped)
+    take = take_of(
+        rig, clip, speech.samples, RATE, source, speech.conversation, files.side, tracks, speech.clipped
+    )
+    return replace(take, notes=(*speech.notes, *take.notes))
 
 
-def read_speech(files: TakeFiles) -> tuple[Array, tuple[float, ...], Conversation | None]:
-    """Return samples `[C, N]` at RATE, own voice first, the share of each that was cut off at full scale,
-    and the conversation where its words are known. Raises FileError.
-    """
-    conversation = None
+def read_speech(files: TakeFiles) -> Speech:
+    """Return what is heard with a take. Raises FileError."""
+    conversation: Conversation | None = None
+    notes: tuple[str, ...] = ()
     if files.transcripts:
-        conversation = read_conversation(files.sounds, files.transcripts).conversation
+        read = read_conversation(files.sounds, files.transcripts)
+        conversation, notes = read.conversation, read.notes
     recordings = [read_recording(p, LONGEST) for p in files.sounds]
     if len(recordings) > 1:
         voices = [at_rate(r.samples.mean(0)[None], r.rate)[0] for r in recordings[:2]]
         longest = max(map(len, voices))
         samples = np.stack([np.pad(v, (0, longest - len(v))) for v in voices])
-        return samples, tuple(max(r.clipped) for r in recordings[:2]), conversation
-    one = recordings[0]
-    samples, clipped = at_rate(one.samples, one.rate), one.clipped
+        clipped = tuple(max(r.clipped) for r in recordings[:2])
+    else:
+        samples, clipped = at_rate(recordings[0].samples, recordings[0].rate), recordings[0].clipped
     if len(samples) > 2:
         raise FileError(
             files.sounds[0],
@@ -188,7 +203,7 @@ def read_speech(files: TakeFiles) -> tuple[Array, tuple[float, ...], Conversatio
         )
     if len(samples) == 2 and files.side == 1:
         samples, clipped = samples[::-1], clipped[::-1]
-    return samples, clipped, conversation
+    return Speech(samples, clipped, conversation, notes)
 
 
 def licence_of(folder: Path) -> str:

@@ -152,7 +152,8 @@ def take_of(
             "over is "
             "left out. Check that both begin at the same moment."
         )
-    _check_sound(who, sound, clipped, notes)
+    shared = conversation is not None and all(s.segments for s in conversation.sides)
+    _check_sound(who, sound, clipped, shared, notes)
     if tracks == 2 and len(sound) == 1:
         sound = np.concatenate([sound, np.zeros_like(sound)])
     if conversation is None:
@@ -176,12 +177,15 @@ def take_of(
     return Take(source, poses[:count], heard, marks, tuple(notes))
 
 
-def _check_sound(who: str, sound: Array, clipped: Sequence[float], notes: list[str]) -> None:
+def _check_sound(who: str, sound: Array, clipped: Sequence[float], shared: bool, notes: list[str]) -> None:
+    """shared: one channel has both voices, and the words tell whose each is."""
     silent = [not np.isfinite(loudness(channel, RATE)) for channel in sound]
     if all(silent):
         raise TakeError(f"{who}: its sound is silent. Check the microphone, or which channel is its own")
-    if len(sound) == 1:
+    if len(sound) == 1 and not shared:
         notes.append(f"{who} has one voice only: it is its own, and the partner never speaks.")
+    elif len(sound) == 1:
+        notes.append(f"{who}: both voices are in one channel; neither is brought to its own loudness.")
     elif silent[0]:
         notes.append(
             f"{who}: its own channel is silent: it teaches listening alone. Are the channels swapped?"

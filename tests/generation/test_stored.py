@@ -72,6 +72,13 @@ def test_written_twice_it_is_the_same_file(tmp_path, kept):
     assert (tmp_path / "b.mgmodel").read_bytes() == kept.read_bytes()
 
 
+def test_weights_may_come_in_any_order_and_precision(tmp_path, kept):
+    model = untrained()
+    other = {n: w.astype(np.float64) for n, w in reversed(model.weights.items())}
+    write_model(Model(model.card, other), tmp_path / "c.mgmodel")
+    assert (tmp_path / "c.mgmodel").read_bytes() == kept.read_bytes()
+
+
 def test_in_16_bits_it_is_smaller_and_nearly_the_same(tmp_path, kept):
     model = untrained()
     write_model(model, tmp_path / "h.mgmodel", half=True)

@@ -14,7 +14,14 @@ from metagraph.formats.bvh import write_bvh
 from metagraph.formats.clips import digest
 from metagraph.formats.conversation_writers import write_json
 from metagraph.generation.features import RATE
-from metagraph.generation.take_files import UNLICENSED, find_takes, licence_of, read_takes
+from metagraph.generation.take_files import (
+    UNLICENSED,
+    TakeFiles,
+    find_takes,
+    licence_of,
+    read_speech,
+    read_takes,
+)
 from tests.bodies import column
 from tests.generation.makers import babble, conversation, moving
 
@@ -53,6 +60,18 @@ def test_two_clips_are_the_sides_of_one_conversation(tmp_path):
     assert np.abs(one.features[:100, :27] - two.features[:100, :27]).max() < 1e-3  # both voices mixed
     assert (one.activity[:, 0] == two.activity[:, 1]).all()
     assert one.activity[:, 0].any()
+
+
+def test_a_sound_of_each_side_is_heard_as_one_of_two_channels(tmp_path):
+    _write(tmp_path, "talk")
+    for n in range(2):
+        soundfile.write(tmp_path / f"voice {n}.wav", babble(6 - n, 1 + n), RATE)
+    together = TakeFiles(tmp_path / "talk.bvh", (tmp_path / "talk.wav",), side=1)
+    apart = TakeFiles(tmp_path / "talk.bvh", (tmp_path / "voice 0.wav", tmp_path / "voice 1.wav"), side=1)
+    one, two = read_speech(together).samples, read_speech(apart).samples
+    assert np.abs(one[:, : 5 * RATE] - two[:, : 5 * RATE])[1].max() < 1e-3
+    assert one.shape == two.shape
+    assert not two[0, 5 * RATE :].any()
 
 
 def test_speech_may_lie_elsewhere(tmp_path):
@@ -106,7 +125,16 @@ def test_words_tell_who_says_what(tmp_path):
     assert found[0].transcripts
     take = read_takes(found).takes[0]
     assert take.marks.peaks
-    assert not any("no words" in note for note in take.notes)
+    assert not any("loudness tells who speaks" in note for note in take.notes)
+
+
+def test_both_voices_in_one_channel_are_told_apart_by_words(tmp_path):
+    _write(tmp_path, "talk", 12.0, sides=1)
+    write_json(conversation(12), tmp_path / "talk.json")
+    take = read_takes(find_takes([tmp_path])[0]).takes[0]
+    assert take.activity[:, 0].any()
+    assert take.activity[:, 1].any()
+    assert "both voices are in one channel" in " ".join(take.notes)
 
 
 def test_where_a_take_is_from_is_kept(tmp_path):

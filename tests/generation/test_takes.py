@@ -83,7 +83,8 @@ def test_another_skeleton_and_one_that_does_not_move_are_refused():
 
 
 def test_what_can_be_learned_from_all_the_same_is_told():
-    assert "one voice only" in " ".join(_take(samples=babble(12, 1)).notes)
+    assert "one voice only" in " ".join(_take(samples=babble(12, 1), talk=False).notes)
+    assert "both voices are in one channel" in " ".join(_take(samples=babble(12, 1)).notes)
     assert "no words" in " ".join(_take(talk=False).notes)
     deaf = np.stack([babble(12, 1), np.zeros(12 * RATE)])
     assert "partner's channel is silent" in " ".join(_take(samples=deaf).notes)
