@@ -1,0 +1,124 @@
+"""A normalising flow with LSTMs: from codes to noise and back, with the exact likelihood (`networks` has the
+formulas).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.generation.layers import Layers, State, linear, lstm, lstm_state, lstm_step, sigmoid
+from metagraph.generation.networks import FlowSizes
+
+Array = NDArray[Any]
+FlowState = list[State]  # one for each step
+LEAST = 1e-6  # what a coupling scales by at least
+
+
+class Flow:
+    """A flow's weights, ready for both directions. dtype: what is reckoned in."""
+
+    def __init__(self, weights: Layers, sizes: FlowSizes, dtype: Any = np.float32) -> None:
+        self.dims, self.half, self.layers = sizes.dims, sizes.dims // 2, sizes.layers
+        self.steps = [f"flow.steps.{k}" for k in range(sizes.steps)]
+        self.dtype = dtype
+        used: dict[str, Array] = {
+            name: value.astype(dtype) for name, value in weights.items() if name.startswith("flow.")
+        }
+        self.weights = used
+        self._matrices: list[Array] = []
+        self._inverses: list[Array] = []
+        self._logs: list[float] = []
+        for step in self.steps:
+            matrix = matrix_of(weights, f"{step}.linear")
+            self._matrices.append(matrix.astype(dtype))
+            self._inverses.append(np.linalg.inv(matrix).astype(dtype))
+            logs = weights[f"{step}.actnorm.logs"].astype(np.float64)
+            self._logs.append(float(logs.sum() + weights[f"{step}.linear.log_s"].astype(np.float64).sum()))
+
+    def start(self, batch: tuple[int, ...] = ()) -> FlowState:
+        """Return the state at a sequence's start."""
+        return [lstm_state(self.weights, f"{step}.lstm", self.layers, batch) for step in self.steps]
+
+    def forward(
+        self, codes: Array, context: Array, state: FlowState | None = None
+    ) -> tuple[Array, Array, FlowState]:
+        """Return noise `[..., T, D]`, the logarithm of the determinant of each moment `[..., T]`, and the
+        state after them. codes: `[..., T, D]`; context: `[..., T, C]`; state: None at a sequence's start.
+        """
+        z: Array = np.asarray(codes, self.dtype)
+        context = np.asarray(context, self.dtype)
+        before = self.start(z.shape[:-2]) if state is None else state
+        total: Array = np.full(z.shape[:-1], sum(self._logs), self.dtype)
+        after: FlowState = []
+        for k, step in enumerate(self.steps):
+            w = self.weights
+            z = (z + w[f"{step}.actnorm.bias"]) * np.exp(w[f"{step}.actnorm.logs"])
+            z = z @ self._matrices[k].T
+            a, b = z[..., : self.half], z[..., self.half :]
+            hidden, next_state = lstm(w, f"{step}.lstm", np.concatenate([a, context], -1), before[k])
+            shift, scale = self._coupling(step, hidden)
+            z = np.concatenate([a, (b + shift) * scale], -1)
+            total = total + np.log(scale).sum(-1)
+            after.append(next_state)
+        return z, total, after
+
+    def inverse(
+        self, noise: Array, context: Array, state: FlowState | None = None
+    ) -> tuple[Array, FlowState]:
+        """Return codes `[..., T, D]` of noise, with a context `[..., T, C]` known beforehand, and the state
+        after them.
+        """
+        z: Array = np.asarray(noise, self.dtype)
+        context = np.asarray(context, self.dtype)
+        before = self.start(z.shape[:-2]) if state is None else state
+        after: FlowState = []
+        for k in reversed(range(len(self.steps))):
+            a = z[..., : self.half]
+            hidden, next_state = lstm(
+                self.weights, f"{self.steps[k]}.lstm", np.concatenate([a, context], -1), before[k]
+            )
+            z = self._undone(k, z, hidden)
+            after.insert(0, next_state)
+        return z, after
+
+    def draw(self, noise: Array, context: Array, state: FlowState) -> tuple[Array, FlowState]:
+        """Return the code `[D]` of one moment's noise `[D]` and context `[C]`, and the next state."""
+        z: Array = np.asarray(noise, self.dtype)
+        after = list(state)
+        for k in reversed(range(len(self.steps))):
+            a = z[: self.half]
+            hidden, after[k] = lstm_step(
+                self.weights, f"{self.steps[k]}.lstm", np.concatenate([a, context]), state[k]
+            )
+            z = self._undone(k, z, hidden)
+        return z, after
+
+    def log_likelihood(self, codes: Array, context: Array, state: FlowState | None = None) -> Array:
+        """Return ln p of each moment's code `[..., T]`, natural logarithm, given those before it."""
+        z, logs, _ = self.forward(codes, context, state)
+        return np.asarray(logs - 0.5 * (z * z + np.log(2 * np.pi)).sum(-1))
+
+    def _coupling(self, step: str, hidden: Array) -> tuple[Array, Array]:
+        """Return what the second half is shifted and scaled by, `[..., D - D // 2]` each."""
+        told = linear(self.weights, f"{step}.out", hidden)
+        count = self.dims - self.half
+        return told[..., :count], sigmoid(told[..., count:] + 2) + np.asarray(LEAST, self.dtype)
+
+    def _undone(self, k: int, z: Array, hidden: Array) -> Array:
+        w, step = self.weights, self.steps[k]
+        shift, scale = self._coupling(step, hidden)
+        z = np.concatenate([z[..., : self.half], z[..., self.half :] / scale - shift], -1)
+        z = z @ self._inverses[k].T
+        return np.asarray(z * np.exp(-w[f"{step}.actnorm.logs"]) - w[f"{step}.actnorm.bias"])
+
+
+def matrix_of(weights: Layers, name: str) -> Array:
+    """Return W = P L (U + diag(s)) `[D, D]`, float64, of an invertible linear layer."""
+    p, lower, upper, sign, log_s = (
+        weights[f"{name}.{part}"].astype(np.float64) for part in ("p", "lower", "upper", "sign", "log_s")
+    )
+    left = np.tril(lower, -1) + np.eye(len(p))
+    return np.asarray(p @ left @ (np.triu(upper, 1) + np.diag(sign * np.exp(log_s))))

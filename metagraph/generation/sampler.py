@@ -1,0 +1,219 @@
+"""Motion from what is heard: as it comes in, or of a whole conversation. The same seed gives the same motion
+to the bit, in whatever pieces the sound came.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.generation.chunks import GUIDANCE, SMOOTH, gaussian
+from metagraph.generation.features import (
+    MELS,
+    RATE,
+    FeatureStream,
+    conversation_activity,
+    frames_of,
+    silence,
+    voice_activity,
+)
+from metagraph.generation.generators import generator
+from metagraph.generation.loudness import gain_of
+from metagraph.generation.networks import FPS, MatchingSizes
+from metagraph.generation.poses import PoseError, decode, encode
+from metagraph.generation.stored import Model
+from metagraph.graph.conversation import Conversation
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Pose
+
+Array = NDArray[Any]
+
+WARMEST = 1.2  # temperature at most
+
+
+class Sampler:
+    """One take of a model, from its first frame on.
+
+    seed, take: 0..2^64 - 1; start: number of the first frame, 0 or more, so that what begins later has the
+    chance of its own frames. temperature: 0..WARMEST, how much may happen by chance. lookahead: frames of
+    sound ahead that each frame may wait for; None: all that the model uses. guidance: how closely a matching
+    model follows the speech. channels, gains: of the sound, as `features.AudioStream`. first: local
+    rotations `[J, 4]` of all joints that it goes on from, None for the mean pose. smooth: frames, the
+    deviation of a Gaussian over the numbers of poses; None: SMOOTH for matching, 0 for others. delay: frames
+    by which poses come out later than the sound goes in.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        seed: int = 1,
+        temperature: float = 1.0,
+        *,
+        take: int = 0,
+        start: int = 0,
+        lookahead: int | None = None,
+        guidance: float = GUIDANCE,
+        channels: int = 2,
+        gains: Sequence[float] | None = None,
+        first: Array | None = None,
+        smooth: float | None = None,
+    ) -> None:
+        if not 0 <= temperature <= WARMEST:
+            raise ValueError(f"a temperature is 0 to {WARMEST:g}, not {temperature:g}")
+        if not (0 <= seed < 2**64 and 0 <= take < 2**64 and 0 <= start < 2**63):
+            raise ValueError("seeds, takes and frames are whole numbers from 0 to 2^64 - 1")
+        if not np.isfinite(guidance):
+            raise ValueError("the guidance must be a finite number")
+        self.model, self.seed, self.take, self.start = model, seed, take, start
+        self._features = FeatureStream(channels, model.card.tracks, gains)
+        sizes = model.card.sizes
+        before = np.zeros(sizes.pose, np.float32)
+        if first is not None:
+            rotations = np.asarray(first, np.float64)
+            if rotations.shape != (len(model.rig.skeleton), 4) or not np.isfinite(rotations).all():
+                raise PoseError("the first pose is one of another skeleton")
+            before = model.poses.apply(encode(model.rig, rotations))
+        self._made = generator(model.weights, sizes, before, temperature, lookahead, guidance)
+        smooth = (SMOOTH if isinstance(sizes, MatchingSizes) else 0.0) if smooth is None else smooth
+        self._weights = gaussian(smooth).astype(np.float32)
+        quiet = silence(model.card.tracks * MELS)
+        # Features that are still needed, from `before` frames before the next one made.
+        self._heard = model.heard(np.tile(quiet, (self._made.before, 1)))
+        self._quiet = model.heard(quiet[None])
+        self._next = 0  # number of the next frame made
+        self._known = 0  # frames of sound that are known
+        self._out = np.zeros((0, sizes.pose), np.float32)  # poses that are made, and still averaged over
+        self._begun = False
+        self.delay = self._made.needed + len(self._weights) // 2
+
+    def push(self, audio: Array, activity: Array) -> Array:
+        """Return the poses that are ready, local rotations `[n, joints, 4]` of the rig's joints. audio: `[C,
+        N]` at `features.RATE`; activity: of the next frames `[m, 4]`. Raises FeatureError.
+        """
+        return self._go(self._features.push(audio, activity), False)
+
+    def finish(self) -> Array:
+        """Return the poses that are left, as though silence followed."""
+        return self._go(self._features.finish(), True)
+
+    def _go(self, frames: Array, last: bool) -> Array:
+        self._known += len(frames)
+        if len(frames):
+            self._heard = np.concatenate([self._heard, self.model.heard(frames)])
+        made, size = self._made, self._made.before + 1 + self._made.ahead
+        poses = [self._out]
+        while self._next < self._known:
+            if self._next + made.needed >= self._known and not last:
+                break
+            window = self._heard[:size]
+            if len(window) < size:
+                window = np.concatenate([window, np.repeat(self._quiet, size - len(window), 0)])
+            new = made.step(window, self.seed, self.take, self.start + self._next)
+            new = new[: self._known - self._next] if last else new
+            poses.append(new)
+            self._heard = self._heard[made.made :]
+            self._next += len(new)
+        return self._averaged(np.concatenate(poses), last)
+
+    def _averaged(self, poses: Array, last: bool) -> Array:
+        """Return rotations of the poses of which all neighbours are known."""
+        reach = len(self._weights) // 2
+        if not self._begun and len(poses):
+            poses = np.concatenate([np.repeat(poses[:1], reach, 0), poses])
+            self._begun = True
+        if last and len(poses):
+            poses = np.concatenate([poses, np.repeat(poses[-1:], reach, 0)])
+        count = max(0, len(poses) - 2 * reach)
+        out = np.zeros((count, poses.shape[1]), np.float32)
+        for n, weight in enumerate(self._weights):
+            out += weight * poses[n : n + count]
+        self._out = poses[count:]
+        return decode(self.model.rig, self.model.poses.undo(out))
+
+
+def whole(
+    model: Model,
+    samples: Array,
+    activity: Array,
+    *,
+    seed: int = 1,
+    temperature: float = 1.0,
+    lookahead: int | None = None,
+    guidance: float = GUIDANCE,
+    take: int = 0,
+    first: Array | None = None,
+    smooth: float | None = None,
+    name: str = "generated",
+) -> Clip:
+    """Return the motion to a recording, as long as it is. samples: `[C, N]` at `features.RATE`, own voice
+    first; activity: `[T, 4]`, as `features.conversation_activity` or `voice_activity` give it. Joints that
+    the model does not move are in its base pose, or as `first` has them. Raises FeatureError.
+    """
+    samples = np.atleast_2d(samples)
+    if not samples.shape[1]:
+        raise ValueError("there is no sound to move to")
+    sampler = Sampler(
+        model,
+        seed,
+        temperature,
+        take=take,
+        lookahead=lookahead,
+        guidance=guidance,
+        channels=len(samples),
+        gains=[gain_of(channel, RATE) for channel in samples],
+        first=first,
+        smooth=smooth,
+    )
+    ready = [sampler.push(samples, activity[: frames_of(samples.shape[1])]), sampler.finish()]
+    return clip_of(model, np.concatenate(ready), name, first, seed)
+
+
+def conversation_motion(
+    model: Model, conversation: Conversation, side: int, samples: Array, seed: int = 1, **options: Any
+) -> Clip:
+    """Return the motion of one side of a conversation. samples: `[C, N]` at `features.RATE`, that side's
+    voice first. options: as for `whole`.
+    """
+    count = frames_of(np.atleast_2d(samples).shape[1])
+    activity = conversation_activity(conversation, side, count)
+    name = conversation.sides[side].name or f"{conversation.name}, side {side + 1}"
+    return whole(model, samples, activity, seed=seed, **{"name": name, **options})
+
+
+def heard_activity(samples: Array) -> Array:
+    """Return activity `[T, 4]` of a recording without words: samples `[C, N]` at `features.RATE`."""
+    samples = np.atleast_2d(samples)
+    partner = samples[1] if len(samples) > 1 else None
+    return voice_activity(samples[0], partner, RATE, frames_of(samples.shape[1]))
+
+
+def clip_of(
+    model: Model, turns: Array, name: str, first: Array | None = None, seed: int | None = None
+) -> Clip:
+    """Return a clip of rotations `[T, joints, 4]` of the rig's joints."""
+    rig = model.rig
+    held = rig.base if first is None else np.asarray(first, np.float64)
+    rotations = np.repeat(held[None], len(turns), 0)
+    between = sorted({j for line in rig.lines for j in line[:-1]})
+    rotations[:, between] = rig.base[between]
+    rotations[:, list(rig.joints)] = turns
+    root = np.repeat(rig.skeleton.rest_translations[None, :1], len(turns), 0)
+    made = "by a learned model" if seed is None else f"by a learned model, seed {seed}"
+    return Clip(
+        name,
+        rig.skeleton,
+        FPS,
+        rotation.continuous(rotation.normalize(rotations)).astype(np.float32),
+        root.astype(np.float32),
+        notes=(f"generated {made} ({model.card.kind})",),
+    )
+
+
+def first_pose(clip: Clip, seconds: float = 0.0) -> Array:
+    """Return the local rotations `[J, 4]` of a clip, a stance say, at a moment."""
+    pose: Pose = clip.pose_at(seconds)
+    return np.asarray(pose.rotations, np.float64)

@@ -1,0 +1,218 @@
+"""Folders of takes: clips, each with the sound beside it, and its words where there are any.
+
+`talk.bvh` is said with `talk.wav`: its first channel is the take's own voice, the second the partner's. Two
+clips of one conversation are `talk_1.bvh` and `talk_2.bvh` (also a and b, left and right), the sides of
+`talk.wav`. A transcript has the sound's name.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import CancelledError
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.errors import FileError
+from metagraph.formats.clips import digest, find_clip_files, read_clips
+from metagraph.formats.conversations import SOUNDS, read_conversation
+from metagraph.formats.transcript_words import SUFFIXES as TRANSCRIPTS
+from metagraph.generation.features import RATE, at_rate
+from metagraph.generation.poses import PoseError, PoseRig, rig_of
+from metagraph.generation.takes import Source, Take, TakeError, take_of
+from metagraph.graph.conversation import Conversation
+from metagraph.motion.clip import Clip
+from metagraph.speech.sound import read_recording
+
+Array = NDArray[Any]
+
+LONGEST = 7200.0  # seconds of a take's sound
+_SIDE = re.compile(r"(?i)[ ._-]*(1|2|a|b|left|right)$")
+_LICENCE = re.compile(r"(?i)(licen[cs]e|copying)([ ._-].*)?")
+UNLICENSED = "no licence found beside it"
+_WORDS = {s.lower() for s in TRANSCRIPTS}
+
+
+@dataclass(frozen=True)
+class TakeFiles:
+    """A take's files. sounds: one, or own voice and partner's. side: whose channel, and segments, are its
+    own.
+    """
+
+    clip: Path
+    sounds: tuple[Path, ...]
+    transcripts: tuple[Path, ...] = ()
+    side: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Speech:
+    """What is heard with a take: samples `[C, N]` at RATE, own voice first; the share of each channel that
+    was cut off at full scale; the conversation where its words are known; what there is to know, in words.
+    """
+
+    samples: Array
+    clipped: tuple[float, ...]
+    conversation: Conversation | None
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """What came of reading many takes. clips: of each take, to make its twin. failures: in words, each naming
+    its file; they spoil nothing else.
+    """
+
+    rig: PoseRig | None
+    takes: tuple[Take, ...]
+    clips: tuple[Clip, ...]
+    failures: tuple[str, ...]
+    notes: tuple[str, ...]
+
+
+def find_takes(folders: Iterable[Path], speech: Sequence[Path] = ()) -> tuple[list[TakeFiles], list[str]]:
+    """Return the takes below folders (or of single clips) by path, and clips without sound, in words. speech:
+    sounds, or folders of them, that are looked through as well. Raises FileError.
+    """
+    found = list(folders)
+    clips = [c for f in found for c in ([f] if f.is_file() else find_clip_files(f))]
+    beside = [p for f in (*found, *speech) for p in _files(f.parent if f.is_file() else f)]
+    named = {id_of(p): p for p in beside if p.suffix.lower() in SOUNDS}
+    words = {id_of(p): p for p in beside if p.suffix.lower() in _WORDS}
+    takes, without = [], []
+    for clip in dict.fromkeys(clips):
+        key, side = id_of(clip), 0
+        mark = _SIDE.search(clip.stem)
+        if _match(named, key) is None and mark:
+            key = (key[0], key[1][: -len(mark[0])])
+            side = int(mark[1].casefold() in ("2", "b", "right"))
+        sound = _match(named, key)
+        if sound is None:
+            without.append(
+                f"{clip.name}: there is no sound beside it. Give one the same name ({clip.stem}.wav), or say "
+                "where the speech is"
+            )
+            continue
+        told = _match(words, id_of(sound))
+        takes.append(TakeFiles(clip, (sound,), (told,) if told else (), side))
+    return takes, without
+
+
+def id_of(path: Path) -> tuple[str, str]:
+    """Return what makes files belong together: their folder and their name."""
+    return str(path.parent.resolve()), path.stem.casefold()
+
+
+def _match(files: Mapping[tuple[str, str], Path], key: tuple[str, str]) -> Path | None:
+    """Return the file of that name in the same folder, else the only one elsewhere."""
+    if key in files:
+        return files[key]
+    others = [p for (_, stem), p in files.items() if stem == key[1]]
+    return others[0] if len(others) == 1 else None
+
+
+def _files(folder: Path) -> list[Path]:
+    if not folder.is_dir():
+        raise FileError(folder, "there is no such folder", remedy="Check where the takes are.")
+    return sorted(p for p in folder.rglob("*") if p.is_file())
+
+
+def read_takes(
+    files: Iterable[TakeFiles],
+    rig: PoseRig | None = None,
+    roles: Mapping[str, int] | None = None,
+    tracks: int = 1,
+    progress: Callable[[int, Path], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> Batch:
+    """Read takes; a bad one fails alone. rig: whose joints count; None: of the skeleton that most of them
+    have. roles: of that skeleton, as found unless given. progress: called before each with how many are
+    done. Raises CancelledError once `cancelled` says so.
+    """
+    failures: list[str] = []
+    read: list[tuple[TakeFiles, Clip]] = []
+    for each in files:
+        if cancelled is not None and cancelled():
+            raise CancelledError
+        try:
+            read.append((each, max(read_clips(each.clip), key=lambda c: c.frames)))
+        except FileError as error:
+            failures.append(str(error))
+    if rig is None and read:
+        counts = {c.skeleton: sum(o.skeleton == c.skeleton for _, o in read) for _, c in read}
+        try:
+            rig = rig_of(max(counts, key=lambda s: counts[s]), roles)
+        except PoseError as error:
+            return Batch(None, (), (), (*failures, str(error)), ())
+    takes, clips, notes = [], [], []
+    licences: dict[Path, str] = {}
+    for done, (each, clip) in enumerate(read):
+        if cancelled is not None and cancelled():
+            raise CancelledError
+        if progress is not None:
+            progress(done, each.clip)
+        assert rig is not None
+        try:
+            take = _take(rig, each, clip, tracks, licences)
+        except (FileError, TakeError) as error:
+            failures.append(str(error))
+            continue
+        takes.append(take)
+        clips.append(clip)
+        notes += [*(f"{each.clip.name}: {note}" for note in clip.notes), *take.notes]
+    return Batch(rig, tuple(takes), tuple(clips), tuple(failures), tuple(dict.fromkeys(notes)))
+
+
+def _take(rig: PoseRig, files: TakeFiles, clip: Clip, tracks: int, licences: dict[Path, str]) -> Take:
+    speech = read_speech(files)
+    digests = tuple(digest(p) for p in (files.clip, *files.sounds))
+    folder = files.clip.parent
+    if folder not in licences:
+        licences[folder] = licence_of(folder)
+    source = Source(files.clip.stem, digests, licences[folder])
+    take = take_of(
+        rig, clip, speech.samples, RATE, source, speech.conversation, files.side, tracks, speech.clipped
+    )
+    return replace(take, notes=(*speech.notes, *take.notes))
+
+
+def read_speech(files: TakeFiles) -> Speech:
+    """Return what is heard with a take. Raises FileError."""
+    conversation: Conversation | None = None
+    notes: tuple[str, ...] = ()
+    if files.transcripts:
+        read = read_conversation(files.sounds, files.transcripts)
+        conversation, notes = read.conversation, read.notes
+    recordings = [read_recording(p, LONGEST) for p in files.sounds]
+    if len(recordings) > 1:
+        voices = [at_rate(r.samples.mean(0)[None], r.rate)[0] for r in recordings[:2]]
+        longest = max(map(len, voices))
+        samples = np.stack([np.pad(v, (0, longest - len(v))) for v in voices])
+        clipped = tuple(max(r.clipped) for r in recordings[:2])
+    else:
+        samples, clipped = at_rate(recordings[0].samples, recordings[0].rate), recordings[0].clipped
+    if len(samples) > 2:
+        raise FileError(
+            files.sounds[0],
+            f"has {len(samples)} channels, a conversation of two has one for each",
+            remedy="Save the two speakers' channels as one file.",
+        )
+    if len(samples) == 2 and files.side == 1:
+        samples, clipped = samples[::-1], clipped[::-1]
+    return Speech(samples, clipped, conversation, notes)
+
+
+def licence_of(folder: Path) -> str:
+    """Return the first line of the licence that lies in a folder, or in the nearest two above it."""
+    for place in (folder, *folder.resolve().parents[:2]):
+        for path in sorted(place.iterdir()) if place.is_dir() else ():
+            if path.is_file() and _LICENCE.fullmatch(path.name):
+                text = path.read_bytes()[:4000].decode("utf-8", "replace")
+                line = next((line.strip() for line in text.splitlines() if line.strip()), "")
+                if line:
+                    return f"{path.name}: {line[:200]}"
+    return UNLICENSED

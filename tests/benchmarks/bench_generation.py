@@ -1,0 +1,68 @@
+"""Learned motion: python tests/benchmarks/bench_generation.py [seconds]
+
+How many times faster than they play poses are made by models of each kind and size, as the sound comes in,
+40 ms at a time, and what hearing it costs alone. The weights have learned nothing, which takes as long. One
+thread.
+"""
+
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import sys
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))
+
+import numpy as np  # noqa: E402
+
+from metagraph.generation.features import conversation_activity, features, frames_of  # noqa: E402
+from metagraph.generation.loudness import gain_of  # noqa: E402
+from metagraph.generation.networks import FPS, parameters, sizes_of  # noqa: E402
+from metagraph.generation.sampler import Sampler  # noqa: E402
+from tests.generation.makers import babble, conversation, untrained  # noqa: E402
+
+SYSTEMS = (
+    ("flow-vae", "small", 1.0),
+    ("moglow", "small", 1.0),
+    ("cvae", "small", 1.0),
+    ("matching", "small", 1.0),
+    ("cvae", "paper", 1.0),
+    ("flow-vae", "paper", 0.1),
+    ("moglow", "paper", 0.03),
+)
+
+
+def main(seconds: float) -> None:
+    sound = np.stack([babble(seconds, 1), babble(seconds, 2)])
+    told = conversation_activity(conversation(seconds), 0, frames_of(sound.shape[1]))
+    began = time.process_time()
+    gains = [gain_of(channel, 16000) for channel in sound]
+    measured = time.process_time() - began
+    began = time.process_time()
+    features(sound, told, gains=gains)
+    heard = time.process_time() - began
+    print(f"{seconds:g} s: loudness {seconds / measured:.0f} x real time, features {seconds / heard:.0f} x")
+    for kind, size, share in SYSTEMS:
+        sizes = sizes_of(kind, size)
+        sampler = Sampler(untrained(kind, 0.0, sizes), gains=gains)
+        count = int(share * seconds * FPS)
+        worst, total, made = 0.0, 0.0, 0
+        for n in range(count):
+            began = time.process_time()
+            made += len(sampler.push(sound[:, n * 640 : (n + 1) * 640], told[n : n + 1]))
+            took = time.process_time() - began
+            worst, total = max(worst, took), total + took
+        print(
+            f"{kind:9} {size:6} {parameters(sizes) / 1e6:7.2f} M  {made / FPS / total:6.1f} x real time, "
+            f"{1000 * total / max(made, 1):6.2f} ms a frame, at most {1000 * worst:6.1f} ms a push, "
+            f"{sampler.delay} frames late"
+        )
+
+
+if __name__ == "__main__":
+    main(float(sys.argv[1]) if len(sys.argv) > 1 else 30.0)

@@ -1,0 +1,153 @@
+"""Codes, tokens and chunks."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from metagraph.generation import chunks, cvae, vae
+from metagraph.generation.layers import lstm_state
+from metagraph.generation.networks import Control, CvaeSizes, FlowSizes, MatchingSizes
+from tests.generation.makers import shaken, tiny
+
+CHANCE = np.random.default_rng(8)
+
+
+def test_components_tell_most_of_what_varies_together():
+    source = CHANCE.standard_normal((400, 3)) @ CHANCE.standard_normal((3, 20)) + 5
+    w = vae.principal(source, 3, "code")
+    sizes = FlowSizes(pose=20, code="pca", dims=3)
+    codes = vae.encode(w, sizes, source)
+    assert np.allclose(codes.mean(0), 0, atol=1e-5)
+    assert np.allclose(np.cov(codes, rowvar=False, bias=True), np.eye(3), atol=1e-4)
+    assert np.abs(vae.decode(w, sizes, codes) - source).max() < 1e-4
+    assert np.allclose(w["code.basis"] @ w["code.basis"].T, np.eye(3), atol=1e-5)
+    assert (np.diff(w["code.deviation"]) <= 0).all()
+    again = vae.principal(source, 3, "code")
+    assert all((again[n] == w[n]).all() for n in w)
+
+
+def test_components_of_too_few_rows_are_refused():
+    with pytest.raises(ValueError, match="3 stretches are too few for 3 components"):
+        vae.principal(np.zeros((3, 9)), 3, "code")
+    assert np.isfinite(vae.principal(np.ones((9, 4)), 2, "code")["code.deviation"]).all()
+
+
+@pytest.mark.parametrize("code", ["none", "autoencoder"])
+def test_a_codes_mean_and_deviation_come_off_and_on(code):
+    dims = 78 if code == "none" else 7
+    sizes = FlowSizes(code=code, dims=dims)
+    w = shaken(sizes)
+    poses = CHANCE.standard_normal((4, 78)).astype(np.float32)
+    plain, back = vae.encode(w, sizes, poses), vae.decode(w, sizes, vae.encode(w, sizes, poses))
+    assert plain.shape == (4, dims)
+    assert back.shape == (4, 78)
+    if code == "autoencoder":
+        w["code.mean"], w["code.deviation"] = w["code.mean"] + 3, w["code.deviation"] * 2
+        assert np.allclose(vae.encode(w, sizes, poses), (plain - 3) / 2, atol=1e-5)
+        assert np.allclose(vae.decode(w, sizes, vae.encode(w, sizes, poses)), back, atol=1e-4)
+
+
+def test_frames_are_put_in_rows_and_the_rest_is_left_out():
+    assert vae.spans(np.arange(22).reshape(11, 2), 4).tolist() == [[*range(8)], [*range(8, 16)]]
+
+
+def test_tokens_of_all_components_give_their_poses_back():
+    sizes = MatchingSizes(pose=5, dims=20)
+    poses = np.cumsum(CHANCE.standard_normal((400, 5)), 0)
+    w = vae.principal(vae.spans(poses, 4), 20, "tokens")
+    tokens = chunks.tokens_of(w, sizes, poses)
+    assert tokens.shape == (100, 20)
+    assert np.abs(chunks.poses_of(w, sizes, tokens) - poses).max() < 1e-3
+    held = chunks.still_tokens(w, sizes, poses[7])
+    assert held.shape == (6, 20)
+    assert np.ptp(held, axis=0).max() == 0
+
+
+def _places(sizes: MatchingSizes):
+    w = shaken(sizes, dtype=np.float64)
+    heard = CHANCE.standard_normal((sizes.tokens, sizes.hidden))
+    past, noise = (CHANCE.standard_normal((n, sizes.dims)) for n in (sizes.past, sizes.new))
+    return w, heard, past, noise
+
+
+def test_a_velocity_depends_on_all_it_is_given():
+    sizes = tiny("matching")
+    assert isinstance(sizes, MatchingSizes)
+    w, heard, past, noise = _places(sizes)
+    own = chunks.velocity(w, sizes, noise, np.array(0.3), past, heard)
+    assert own.shape == noise.shape
+    for other in (
+        chunks.velocity(w, sizes, noise + 1, np.array(0.3), past, heard),
+        chunks.velocity(w, sizes, noise, np.array(0.9), past, heard),
+        chunks.velocity(w, sizes, noise, np.array(0.3), past + 1, heard),
+        chunks.velocity(w, sizes, noise, np.array(0.3), None, heard),
+        chunks.velocity(w, sizes, noise, np.array(0.3), past, heard[::-1]),
+        chunks.velocity(w, sizes, noise, np.array(0.3), past, None),
+    ):
+        assert np.abs(other - own).max() > 1e-3
+    ahead = heard.copy()
+    ahead[-1] = -ahead[-1]  # the places of the future are heard, too
+    assert np.abs(chunks.velocity(w, sizes, noise, np.array(0.3), past, ahead) - own).max() > 1e-4
+
+
+def test_chunks_at_once_are_each_by_itself():
+    sizes = tiny("matching")
+    assert isinstance(sizes, MatchingSizes)
+    w, heard, past, noise = _places(sizes)
+    together = chunks.velocity(
+        w,
+        sizes,
+        np.stack([noise, -noise]),
+        np.array([0.1, 0.8]),
+        np.stack([past, -past]),
+        np.stack([heard] * 2),
+    )
+    apart = chunks.velocity(w, sizes, -noise, np.array(0.8), -past, heard)
+    assert np.abs(together[1] - apart).max() < 1e-12
+
+
+def test_guidance_is_between_and_beyond_both_velocities():
+    sizes = tiny("matching")
+    assert isinstance(sizes, MatchingSizes)
+    w, heard, past, noise = _places(sizes)
+    free = np.broadcast_to(w["no_control"], heard.shape)
+    drawn = [chunks.draw_chunk(w, sizes, noise, past, heard, g, 1) for g in (0.0, 1.0, 2.0)]
+    told = chunks.draw_chunk(w, sizes, noise, past, free, 1.0, 1)
+    assert np.abs(drawn[0] - told).max() < 1e-12
+    assert np.abs(drawn[2] - (2 * drawn[1] - drawn[0])).max() < 1e-12
+
+
+def test_eulers_steps_follow_a_straight_line_exactly():
+    """A network that always says the same goes as far in 1 step as in 8."""
+    sizes = tiny("matching")
+    assert isinstance(sizes, MatchingSizes)
+    w, heard, past, noise = _places(sizes)
+    w["final.out.weight"] *= 0
+    for steps in (1, 8):
+        out = chunks.draw_chunk(w, sizes, noise, past, heard, 2.0, steps)
+        assert np.abs(out - (noise + w["final.out.bias"])).max() < 1e-12
+
+
+def test_a_gaussian_leaves_what_stands_still_and_takes_the_trembling():
+    still = np.full((9, 2), 3.0)
+    assert np.abs(chunks.smoothed(still) - still).max() < 1e-12
+    trembling = np.tile([[1.0], [-1.0]], (20, 1))
+    assert np.abs(chunks.smoothed(trembling)[8:-8]).max() < 0.02
+    assert (chunks.smoothed(trembling, 0) == trembling).all()
+    assert len(chunks.smoothed(trembling[:1])) == 1
+    assert chunks.gaussian(1.5).sum() == pytest.approx(1)
+    assert len(chunks.gaussian(1.5)) == 11
+
+
+def test_a_cvae_frame_by_frame_is_the_whole():
+    sizes = CvaeSizes(pose=9, control=Control(past=0, width=4), dims=3, units=5, layers=3)
+    w = shaken(sizes, dtype=np.float64)
+    codes, context = CHANCE.standard_normal((8, 3)), CHANCE.standard_normal((8, 4))
+    whole = cvae.decode(w, sizes, codes, context)
+    state = lstm_state(w, "decoder", 3)
+    for t in range(8):
+        one, state = cvae.draw(w, codes[t], context[t], state)
+        assert np.abs(one - whole[t]).max() < 1e-12
+    mean, log_variance = cvae.encode(w, sizes, whole, context)
+    assert mean.shape == log_variance.shape == (8, 3)

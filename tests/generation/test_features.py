@@ -1,0 +1,159 @@
+"""What is heard, whole and as it comes in."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from metagraph.generation.features import (
+    FLOOR,
+    HOP,
+    MELS,
+    RATE,
+    AudioStream,
+    FeatureError,
+    FeatureStream,
+    conversation_activity,
+    features,
+    frames_of,
+    one_hot,
+    silence,
+    speaking,
+    voice_activity,
+    with_edges,
+)
+from metagraph.graph.conversation import Conversation, Segment, Side
+from tests.generation.makers import babble
+
+SOUND = np.stack([babble(1.3, 1), babble(1.3, 2)])
+TOLD = one_hot(np.arange(60) % 7 < 3, np.arange(60) % 5 < 2)
+
+
+@settings(max_examples=60)
+@given(
+    cuts=st.lists(st.integers(0, SOUND.shape[1]), max_size=12),
+    told=st.lists(st.integers(0, 33), max_size=6),
+    length=st.integers(0, SOUND.shape[1]),
+    tracks=st.sampled_from([1, 2]),
+)
+def test_in_pieces_features_are_the_same_to_the_bit(cuts, told, length, tracks):
+    sound = SOUND[:, :length]
+    activity = TOLD[: frames_of(length)]
+    whole = features(sound, activity, tracks, gains=(0.7, 1.9))
+    stream = FeatureStream(2, tracks, (0.7, 1.9))
+    edges = [0, *sorted(min(c, length) for c in cuts), length]
+    steps = [0, *sorted(min(c, len(activity)) for c in told), len(activity)]
+    parts = []
+    for n in range(max(len(edges), len(steps)) - 1):
+        piece = sound[:, edges[n] : edges[n + 1]] if n + 1 < len(edges) else sound[:, :0]
+        said = activity[steps[n] : steps[n + 1]] if n + 1 < len(steps) else activity[:0]
+        parts.append(stream.push(piece, said))
+    parts.append(stream.finish())
+    out = np.concatenate(parts)
+    assert out.tobytes() == whole.tobytes()
+    assert out.shape == (frames_of(length), 27 * tracks + 4)
+
+
+def test_sample_by_sample_is_the_whole():
+    sound = SOUND[:, :1700]
+    stream = AudioStream()
+    parts = [stream.push(sound[:, n : n + 1]) for n in range(1700)]
+    assert (
+        np.concatenate([*parts, stream.finish()]).tobytes()
+        == features(sound, TOLD[:3], gains=(1, 1))[:, :27].tobytes()
+    )
+
+
+def test_a_frame_is_ready_as_soon_as_its_window_is_heard():
+    stream = AudioStream(1)
+    assert len(stream.push(np.zeros(511))) == 0
+    assert len(stream.push(np.zeros(1))) == 1
+    assert len(stream.push(np.zeros(HOP - 1))) == 0
+    assert len(stream.push(np.zeros(1))) == 1
+
+
+def test_silence_is_the_floor_and_no_sound_has_no_frames():
+    quiet = features(np.zeros((1, 2000)), one_hot(np.zeros(4, bool), np.zeros(4, bool)))
+    assert quiet.tobytes() == np.tile(silence(), (4, 1)).tobytes()
+    assert quiet[0, 0] == np.float32(np.log(FLOOR))
+    assert features(np.zeros((2, 0)), np.zeros((0, 4))).shape == (0, 31)
+    assert with_edges(quiet, 5, 25).shape == (34, 31)
+
+
+def test_a_tone_is_loudest_in_its_own_mel():
+    t = np.arange(RATE) / RATE
+    loudest = [
+        int(features(np.sin(2 * np.pi * f * t), TOLD[:26])[12, :MELS].argmax()) for f in (200, 1000, 5000)
+    ]
+    assert loudest == sorted(set(loudest))
+    assert loudest[0] < 5
+    assert loudest[2] > 20
+
+
+def test_a_click_is_heard_in_the_frame_at_its_time():
+    sound = np.zeros(RATE)
+    sound[10 * HOP] = 1
+    mels = features(sound, TOLD[:26], gains=(1,))[:, :MELS].mean(1)
+    assert mels.argmax() == 10
+    assert mels[9] < mels[10] > mels[11]
+
+
+def test_both_voices_are_as_loud_whatever_their_microphones():
+    soft = features(SOUND * [[0.05], [1.0]], TOLD[:33], tracks=2)
+    loud = features(SOUND, TOLD[:33], tracks=2)
+    assert np.abs(soft[:, :54] - loud[:, :54]).max() < 0.02
+
+
+def test_what_cannot_be_heard_is_told():
+    stream = FeatureStream(2)
+    with pytest.raises(FeatureError, match="has 1 channels, expected 2"):
+        stream.push(np.zeros(5), np.zeros((0, 4)))
+    with pytest.raises(FeatureError, match="not a number"):
+        stream.push(np.full((2, 5), np.nan), np.zeros((0, 4)))
+    with pytest.raises(FeatureError, match="one 1 and three 0"):
+        stream.push(np.zeros((2, 0)), np.ones((1, 4)))
+    stream.finish()
+    with pytest.raises(FeatureError, match="ended already"):
+        stream.push(np.zeros((2, 5)), np.zeros((0, 4)))
+    with pytest.raises(FeatureError, match="two channels"):
+        AudioStream(1, 2)
+    with pytest.raises(FeatureError, match="as many gains"):
+        AudioStream(2, 1, (1.0,))
+
+
+def test_short_gaps_in_speech_are_none():
+    own = speaking([(1.0, 2.0), (2.19, 2.5), (2.75, 3.0)], 100)
+    assert own[25:63].all()
+    assert not own[63:69].any()
+    assert own[69:75].all()
+    assert not own[:25].any()
+    assert not own[75:].any()
+    assert not speaking([], 5).any()
+
+
+def test_a_long_stretch_is_not_forgotten_for_a_short_one_inside():
+    assert speaking([(0.0, 4.0), (1.0, 1.1), (4.1, 5.0)], 130)[:125].all()
+
+
+def test_who_speaks_is_one_of_four():
+    told = Side(segments=(Segment("clause", 0.0, 1.0), Segment("hesitation", 1.5, 2.0)))
+    other = Side(segments=(Segment("response", 0.8, 1.2),))
+    talk = Conversation(name="t", length=3, sides=(told, other))
+    first, second = (conversation_activity(talk, side, 75) for side in (0, 1))
+    assert (first.sum(1) == 1).all()
+    assert [int(first[n].argmax()) for n in (0, 22, 27, 34, 40, 60)] == [0, 2, 1, 3, 0, 3]
+    assert (second[:, [1, 0, 2, 3]] == first).all()
+
+
+def test_without_words_loudness_tells_who_speaks():
+    own, other = babble(8, 3), babble(8, 4)
+    own[: 4 * RATE] *= 1e-3
+    other[4 * RATE :] *= 1e-3
+    told = voice_activity(own, other, RATE, 200)
+    assert told[:100, 0].mean() < 0.05 < 0.2 < told[100:, 0].mean()
+    assert told[100:, 1].mean() < 0.05 < 0.2 < told[:100, 1].mean()
+    alone = voice_activity(own, None, RATE, 200)
+    assert not alone[:, 1].any()
+    assert not alone[:, 2].any()

@@ -1,0 +1,60 @@
+"""What is drawn one frame after another is what a whole take is measured by."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from metagraph.generation.features import conversation_activity, features, frames_of
+from metagraph.generation.generators import generator
+from metagraph.generation.likelihood import noise_of
+from metagraph.generation.networks import Control, FlowSizes
+from metagraph.generation.noise import noise
+from tests.generation.makers import babble, conversation, untrained
+
+SOUND = np.stack([babble(2, 1), babble(2, 2)])
+TOLD = conversation_activity(conversation(2), 0, frames_of(SOUND.shape[1]))
+HEARD = features(SOUND, TOLD)
+WINDOW = Control(kind="window", ahead=20)
+
+
+@pytest.mark.parametrize("lookahead", [None, 0, 7])
+@pytest.mark.parametrize(
+    "sizes",
+    [
+        FlowSizes(code="none", dims=78, steps=3, units=6, control=Control(width=8)),
+        FlowSizes(code="none", dims=78, steps=2, units=6, layers=2, control=WINDOW),
+        FlowSizes(code="pca", dims=234, steps=2, units=6, control=Control(width=8, past=2), span=3),
+        FlowSizes(code="none", dims=78, steps=2, units=6, control=Control(width=8, past=0)),
+    ],
+)
+def test_a_take_that_was_drawn_gives_its_noise_back(sizes, lookahead):
+    """The sampler goes frame by frame, with windows of its own; this goes through the whole at once."""
+    model = untrained("moglow", 0.02, sizes)
+    made = generator(model.weights, sizes, np.zeros(78, np.float32), 0.5, lookahead)
+    edges = model.heard(np.concatenate([HEARD[:0], HEARD]))
+    quiet = model.heard(np.concatenate([np.tile(np.log(1e-5), 27), [0, 0, 0, 1]])[None].astype(np.float32))
+    heard = np.concatenate([quiet] * made.before + [edges] + [quiet] * made.ahead)
+    count = len(HEARD) // sizes.span
+    rows = [made.step(heard[n * sizes.span :][: made.before + 1 + made.ahead], 4, 0, n) for n in range(count)]
+    poses = model.poses.undo(np.concatenate(rows))
+    z, logs = noise_of(model, poses, HEARD[: len(poses)], lookahead)
+    expected = 0.5 * np.stack([noise(4, 0, n, sizes.dims) for n in range(count)])
+    assert np.abs(np.concatenate(rows)).max() < 8
+    assert np.abs(z - expected).max() < 2e-3
+    assert np.isfinite(logs).all()
+    assert logs.shape == (count,)
+
+
+def test_what_is_unlike_the_model_is_less_likely():
+    model = untrained("flow-vae", 0.05)
+    poses = np.tile(np.array([1.0, 0, 0, 0, 1, 0] * 13), (len(HEARD), 1))
+    far = poses + 0.5 * np.random.default_rng(1).standard_normal(poses.shape)
+    assert noise_of(model, far, HEARD)[1].mean() < noise_of(model, poses, HEARD)[1].mean() - 1
+
+
+def test_models_without_a_flow_and_takes_that_do_not_fit_are_told():
+    with pytest.raises(ValueError, match="matching model has no likelihood"):
+        noise_of(untrained("matching"), np.zeros((3, 78)), HEARD[:3])
+    with pytest.raises(ValueError, match="4 poses cannot go with 3"):
+        noise_of(untrained(), np.zeros((4, 78)), HEARD[:3])

@@ -1,0 +1,64 @@
+"""Sizes and names of weights."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from metagraph.generation.initial import initial
+from metagraph.generation.networks import Control, FlowSizes, MatchingSizes, parameters, shapes_of, sizes_of
+
+
+@pytest.mark.parametrize(
+    ("kind", "millions"), [("flow-vae", 31.53), ("moglow", 180.30), ("cvae", 3.04), ("matching", 0.63)]
+)
+def test_the_papers_sizes_have_as_many_numbers_as_counted(kind, millions):
+    assert parameters(sizes_of(kind, "paper", 54)) / 1e6 == pytest.approx(millions, abs=0.005)
+
+
+def test_the_papers_control_has_1231_numbers():
+    assert Control(kind="window").context(54) == 1231
+
+
+@pytest.mark.parametrize("kind", ["flow-vae", "moglow", "cvae", "matching"])
+def test_weights_begin_with_the_names_and_shapes_that_are_said(kind):
+    sizes = sizes_of(kind, "small", 78)
+    weights = initial(sizes)
+    assert {n: w.shape for n, w in weights.items()} == shapes_of(sizes)
+    assert list(weights) == list(shapes_of(sizes))
+    assert all(w.dtype == np.float32 and np.isfinite(w).all() for w in weights.values())
+    again = initial(sizes)
+    assert all((again[n] == w).all() for n, w in weights.items())
+    assert any((initial(sizes, 2)[n] != w).any() for n, w in weights.items())
+
+
+@pytest.mark.parametrize("joints", [1, 3, 10])
+def test_few_joints_have_sizes_too(joints):
+    for kind in ("flow-vae", "moglow", "cvae", "matching"):
+        assert parameters(sizes_of(kind, "small", 6 * joints)) > 0
+
+
+def test_sizes_that_cannot_be_are_told():
+    with pytest.raises(ValueError, match="read 7 frames, but the window has 31"):
+        Control(dilations=(1, 2))
+    with pytest.raises(ValueError, match="on 78 numbers, not on 35"):
+        FlowSizes(code="none", dims=35)
+    with pytest.raises(ValueError, match="cannot be shared by 5 heads"):
+        MatchingSizes(heads=5)
+    with pytest.raises(ValueError, match="24 numbers have no 32 components"):
+        MatchingSizes(pose=6)
+
+
+def test_using_models_brings_in_no_torch():
+    """Nor Qt: what is imported is counted in a process of its own."""
+    code = (
+        "import importlib, pkgutil, sys, metagraph.generation as g\n"
+        "for m in pkgutil.iter_modules(g.__path__):\n"
+        "    if m.name != 'training': importlib.import_module('metagraph.generation.' + m.name)\n"
+        "print([m for m in ('torch', 'PySide6', 'moderngl', 'onnxruntime') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
