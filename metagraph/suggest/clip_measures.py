@@ -48,8 +48,8 @@ def with_tremble(traits: Mapping[str, Traits]) -> dict[str, Traits]:
 
 
 def _beyond_tremble(traits: Traits) -> Mapping[str, float]:
-    """Return the energies without the set's, all of them where nothing is left: squares of speeds add up where
-    movements do not depend on each other.
+    """Return the energies without the set's, all of them where nothing is left: squares of speeds add up
+    where movements do not depend on each other.
     """
     beyond = {
         part: sqrt(max(0.0, e**2 - traits.tremble.get(part, 0.0) ** 2)) for part, e in traits.energy.items()
