@@ -44,6 +44,8 @@ LOWEST = 0.25  # of the leg: how far hips may be lowered so that legs of other p
 STRAIGHT = (
     0.9  # of the arm: from here on it stretches ever less for a place that only wider shoulders put so far
 )
+ASIDE = np.radians(50)  # how far at most a foot turned from the hips' heading is followed in setting it apart
+UPTURNED, LIFTED = 0.5, 0.3  # 1 - cosine of the sole's tilt, and of the leg: from there a foot bears no weight
 FLOATING = 0.25  # of the leg: a rest pose this far off the ground is not standing on it
 
 
@@ -468,25 +470,36 @@ class _Work:
         self.walk()
 
     def foot_goal(self, side: str) -> Array:
-        """Return where an ankle goes, `[F, 3]`. Wider hips set it further out, as the foot itself points: a
-        planted foot stays.
+        """Return where an ankle goes, `[F, 3]`. Wider hips set it further out: a foot flat on the ground as it
+        points, so that it stays there while the hips turn; any other with the hips, as the leg itself goes.
         """
-        above = self.source.roles[f"{side}_foot"]
+        above, legs = self.source.roles[f"{side}_foot"], [self.source.roles[f"{s}_upper_leg"] for s in SIDES]
         wide = (1 if side == "left" else -1) * (self.target.half_hips - self.scale * self.source.half_hips)
+        # Halfway between how either stands with toes out: the same way there and back.
+        half = rotation.power(self.align[f"{side}_foot"], 0.5)
         turned = rotation.multiply(
-            self.from_turns[:, above], rotation.conjugate(self.source.rotations[above]).astype(np.float32)
+            self.from_turns[:, above],
+            rotation.multiply(rotation.conjugate(self.source.rotations[above]), half).astype(np.float32),
         )
-        heading = rotation.normalize(turned * np.array([0, 1, 0, 1], np.float32))
-        return self.placed(self.from_places[:, above]) + rotation.rotate(
-            heading, np.array([wide, 0, 0], np.float32)
-        )
+        hips = self.from_places[:, legs[0]] - self.from_places[:, legs[1]]
+        hips = hips / np.maximum(np.linalg.norm(hips, axis=-1, keepdims=True), 1e-9)
+        body, foot = np.arctan2(-hips[:, 2], hips[:, 0]), 2 * np.arctan2(turned[:, 1], turned[:, 3])
+        aside = (foot - body + np.pi) % (2 * np.pi) - np.pi
+        heading = body + np.sign(aside) * ASIDE * _eased(np.abs(aside) / ASIDE, np.full(len(aside), 0.6))
+        flat = np.stack([np.cos(heading), 0 * heading, -np.sin(heading)], -1)
+        tilt = 1 - 2 * (turned[:, 0] ** 2 + turned[:, 2] ** 2)  # of the sole: 1 flat, 0 upright
+        high = np.abs(self.from_places[:, above, 1] - self.from_ankle) / self.source.leg
+        planted = (_faded((1 - tilt) / UPTURNED) * _faded(high / LIFTED))[:, None]
+        out = planted * flat + (1 - planted) * hips * [1, 0, 1]  # an ankle keeps its height
+        return self.placed(self.from_places[:, above]) + np.float32(wide) * out.astype(np.float32)
 
     def reach_hand(self, side: str) -> None:
         """Bring a wrist where it was from its shoulder, scaled by arm length; towards the middle by the
         shoulders' width.
         """
         upper, hand = self.source.roles[f"{side}_upper_arm"], self.source.roles[f"{side}_hand"]
-        scale, sign = self.target.arm / self.source.arm, 1 if side == "left" else -1
+        arm = [f"{side}_{part}" for part in ARM]
+        scale, sign = self.target.length(*arm) / self.source.length(*arm), 1 if side == "left" else -1
         away = self.from_places[:, hand] - self.from_places[:, upper]
         chest = next(r for r in ("upper_chest", "chest", "spine", "hips") if r in self.roles)
         joint = self.source.roles[chest]
@@ -611,6 +624,12 @@ def _eased(reach: Array, free: Array) -> Array:
     """
     left = np.maximum(1 - free, 1e-6)
     return np.where(reach > free, free + left * (1 - np.exp(-np.maximum(0, reach - free) / left)), reach)
+
+
+def _faded(amount: Array) -> Array:
+    """Return 1 for `amount` up to 0.5, 0 from 1 on, smoothly less between."""
+    x = np.clip(2 - 2 * amount, 0, 1)
+    return np.asarray(x * x * (3 - 2 * x))
 
 
 def _within(goal: Array, least: float, most: float) -> Array:
