@@ -46,6 +46,8 @@ STRAIGHT = (
 )
 ASIDE = np.radians(50)  # how far at most a foot turned from the hips' heading is followed in setting it apart
 UPTURNED, LIFTED = 0.5, 0.3  # 1 - cosine of the sole's tilt, and of the leg: from there a foot bears no weight
+# Beside the trunk, of the left side: directions whose opposites no hand and no foot comes near.
+OUTWARDS = {"upper_arm": np.array([0.6, -0.3, 0.75]), "upper_leg": np.array([0.0, -1, 0])}
 FLOATING = 0.25  # of the leg: a rest pose this far off the ground is not standing on it
 
 
@@ -304,6 +306,8 @@ class _Work:
         self.from_turns = rotation.multiply(source.turn.astype(np.float32), turns)
         self.from_places = rotation.rotate(source.turn.astype(np.float32), places)
         self.align = _aligned(source, target, list(roles))
+        self.level = rotation.IDENTITY if source.natural and target.natural else source.frame()
+        self.chest = next(r for r in ("upper_chest", "chest", "spine", "hips") if r in roles)
         self.scale = target.leg / source.leg
         self.parents = self._parents()
         self.levels = _levels(self.parents)
@@ -501,8 +505,7 @@ class _Work:
         arm = [f"{side}_{part}" for part in ARM]
         scale, sign = self.target.length(*arm) / self.source.length(*arm), 1 if side == "left" else -1
         away = self.from_places[:, hand] - self.from_places[:, upper]
-        chest = next(r for r in ("upper_chest", "chest", "spine", "hips") if r in self.roles)
-        joint = self.source.roles[chest]
+        joint = self.source.roles[self.chest]
         turned = rotation.multiply(
             self.from_turns[:, joint], rotation.conjugate(self.source.rotations[joint]).astype(np.float32)
         )
@@ -541,15 +544,14 @@ class _Work:
         goal = _within(goal - root, abs(one - two) + 1e-3 * (one + two), one + two)
         far = np.linalg.norm(goal, axis=-1, keepdims=True)
         ahead = goal / far
-        bent = rotation.rotate(rotation.between(tip, goal), knee)
-        bent = bent - ahead * np.einsum("fi,fi->f", bent, ahead)[:, None]
+        bent = self.bend(names, ahead)
         joint = self.source.roles[names[0]]
         turned = rotation.multiply(
             self.from_turns[:, joint].astype(np.float64), rotation.conjugate(self.source.rotations[joint])
         )
         pole = rotation.rotate(turned, side)
         pole = pole - ahead * np.einsum("fi,fi->f", pole, ahead)[:, None]
-        straight = np.maximum(0, 0.02 * one - np.linalg.norm(bent, axis=-1, keepdims=True))
+        straight = np.maximum(0, 0.02 - np.linalg.norm(bent, axis=-1, keepdims=True))
         bent = bent + straight * pole
         bent = bent / np.maximum(np.linalg.norm(bent, axis=-1, keepdims=True), 1e-9)
         along = (one**2 + far**2 - two**2) / (2 * far)
@@ -558,6 +560,30 @@ class _Work:
         self.turns[:, lower] = rotation.multiply(
             rotation.between(tip - knee, goal - new), self.turns[:, lower]
         )
+
+    def bend(self, names: Sequence[str], ahead: Array) -> Array:
+        """Return where a limb bends to, `[F, 3]` square to its new direction `ahead [F, 3]`, in lengths of its
+        upper bone: turned about that direction as the source's is about its own, beside the trunk.
+
+        The turn about a direction is reckoned from where the shortest way from OUTWARDS brings it, so that it
+        is the same there and back.
+        """
+        trunk = "hips" if names[0].endswith("leg") else self.chest
+        upper, lower, end = (self.from_places[:, self.source.roles[n]].astype(np.float64) for n in names)
+        joint = self.source.roles[trunk]
+        turned = rotation.multiply(
+            self.from_turns[:, joint].astype(np.float64),
+            rotation.multiply(rotation.conjugate(self.source.rotations[joint]), self.level),
+        )
+        sign = np.array([1.0 if names[0].startswith("left") else -1.0, 1, 1])
+        start = rotation.rotate(turned, sign * OUTWARDS[names[0].split("_", 1)[1]])
+        way = end - upper
+        way = way / np.maximum(np.linalg.norm(way, axis=-1, keepdims=True), 1e-9)
+        knee = lower - upper
+        knee = knee / np.maximum(np.linalg.norm(knee, axis=-1, keepdims=True), 1e-9)
+        knee = knee - way * np.einsum("fi,fi->f", knee, way)[:, None]
+        back = rotation.conjugate(rotation.between(start, way))
+        return rotation.rotate(rotation.between(start, ahead), rotation.rotate(back, knee))
 
     def finished(self) -> Clip:
         """Return the clip in the target's own hierarchy and axes."""
