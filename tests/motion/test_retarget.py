@@ -430,7 +430,7 @@ def test_real_clips_go_there_and_back(shared_data: Path, one: str, two: str) -> 
 def there_and_back(clip: Clip, other: Clip, degrees: float) -> None:
     joint_map = proposed(clip.skeleton, other.skeleton)
     pose = standing_pose(other)
-    out = retarget(clip, other.skeleton, joint_map, target_pose=pose)
+    out = retarget(clip, other.skeleton, replace(joint_map, contacts=False), target_pose=pose)
     back = retarget(out, clip.skeleton, joint_map.reversed, source_pose=pose, target_pose=standing_pose(clip))
     joints = [clip.skeleton.index(p.source) for p in joint_map.pairs]
     turned = rotation.angle_between(
@@ -456,7 +456,7 @@ def test_hands_and_feet_of_the_zoo_keep_their_height_and_planted_feet_stay(
 def heights_and_feet(clip: Clip, other: Clip) -> None:
     joint_map = proposed(clip.skeleton, other.skeleton)
     pose = standing_pose(other)
-    out = retarget(clip, other.skeleton, joint_map, target_pose=pose)
+    out = retarget(clip, other.skeleton, replace(joint_map, contacts=False), target_pose=pose)
     ours, theirs = roles_of(joint_map.reversed, clip.skeleton), roles_of(joint_map, other.skeleton)
     before, after = places(clip), places(out)
 
