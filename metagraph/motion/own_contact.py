@@ -1,8 +1,8 @@
-"""Hands that meet their own body, carried over: where the source's hand touches its face, trunk, thigh or other
-arm, the target's comes to the same place of its own body.
+"""Hands that meet their own body, carried over: where the source's hand touches its face, trunk, thigh or
+other arm, the target's comes to the same place of its own body.
 
-Parts of the body are lines with a radius, a head is a ball; all are sized by the figure's own bones, so that no
-mesh is needed. A place is told by how far it is along the part's line and by what way it lies beside it.
+Parts of the body are lines with a radius, a head is a ball; all are sized by the figure's own bones, so that
+no mesh is needed. A place is told by how far it is along the part's line and by what way it lies beside it.
 """
 
 from __future__ import annotations
@@ -22,12 +22,21 @@ from metagraph.motion.standing import Figure
 Array = NDArray[Any]
 Points = Mapping[str, Array]
 
-NEAR = 0.26  # of the arm's length: hands this far from a surface go as they would without it
-CLOSE = 0.03  # of the arm's length: surfaces this much nearer than another count four times as much
+NEAR = 0.2  # of the arm's length: hands this far from a surface, or in it, do not touch it
+CLOSE = 0.03  # of the arm's length: surfaces this much nearer than another count sixteen times as much
 PASSES = 5  # hands that follow each other settle in as many
-SMOOTH = 0.06  # seconds over which a hand's shift is spread
+SMOOTH = 0.1  # seconds over which a hand's shift is spread
+LEAD = 0.16  # seconds in which a hand comes to its place, and leaves it
+BEYOND = 0.25  # of the arm: a place so much out of reach is not reached for
+ODD = 0.8  # of the arm: figures so unlike that a place is so far away are not like enough
 WIDTH, DEPTH = 0.8, 0.55  # of half the shoulders: a trunk's half axes
-ARM, THIGH, SKULL = 0.07, 0.09, 0.12  # radii of arm and thigh, of their limb's length; a skull's height, of all
+ARM, THIGH, SKULL = (
+    0.07,
+    0.09,
+    0.12,
+)  # radii of arm and thigh, of their limb's length; a skull's height, of all
+BROAD = 0.11  # of all its height: half of shoulders broader than this say nothing of the trunk
+EYES = 0.045  # of all its height: how far a figure's eyes are ahead of its skull's middle
 HAND = 0.3  # of the arm's length: a hand whose fingers have no joints
 BENT = 0.93  # of the arm: from here on it stretches ever less for a contact
 ALONG = (0.0, 0.5, 0.85)  # of the hand, from wrist to fingertip: what touches
@@ -66,7 +75,8 @@ class Body:
 def body_of(figure: Figure) -> Body:
     """Return the body of a figure as it stands."""
     skeleton, roles = figure.skeleton, figure.roles
-    radius = {"trunk": DEPTH * figure.half_shoulders}
+    tall = max(1e-3, float(np.ptp(figure.positions[:, 1])))
+    radius = {"trunk": DEPTH * min(figure.half_shoulders, BROAD * tall)}
     tips: dict[str, Array] = {}
     for side in SIDES:
         arm = figure.length(*(f"{side}_{part}" for part in ("upper_arm", "lower_arm", "hand")))
@@ -79,12 +89,13 @@ def body_of(figure: Figure) -> Body:
         if not 0.1 * arm < np.linalg.norm(tip) < 0.6 * arm:  # none, or a thing held
             tip = HAND * arm * unit(hand - figure.at(f"{side}_lower_arm"))
         tips[side] = tip
-    tall = max(1e-3, float(np.ptp(figure.positions[:, 1])))
     above = [figure.positions[j, 1] - figure.at("head")[1] for j in skeleton.descendants(roles["head"])]
-    skull = float(np.clip(max(above), 0.5 * SKULL * tall, 2 * SKULL * tall))
-    skull = SKULL * tall if max(above) < 0.5 * SKULL * tall else skull
-    radius["head"] = skull / 2
-    return Body(figure, figure.arm, radius, tips, np.array([0.0, skull / 2, 0]))
+    size = float(np.clip(max(above), SKULL * tall, 2 * SKULL * tall))
+    radius["head"] = size / 2
+    skull = np.array([0.0, size / 2, 0])
+    if {"left_eye", "right_eye"} <= roles.keys():  # rigs put the head's joint anywhere, but not its eyes
+        skull = figure.middle("eye") - figure.at("head") - [0, 0, EYES * tall]
+    return Body(figure, figure.arm, radius, tips, skull)
 
 
 def _line(part: str, p: Points) -> tuple[Array, Array]:
@@ -113,14 +124,15 @@ def _touching(side: str, p: Points) -> list[Array]:
 
 @dataclass(frozen=True, eq=False)
 class _Place:
-    """One point of a hand at one part: how far along it `[F]`, beside it `[F, 3]`, how much it counts
-    `[F]`.
+    """One point of a hand at one part: how far along it `[F]`, beside it `[F, 3]`, how near its surface 0..1
+    `[F]`, how much it counts beside others `[F]`.
     """
 
     part: str
     point: int
     share: Array
     beside: Array
+    near: Array
     weight: Array
 
 
@@ -146,11 +158,12 @@ class OwnContact:
             for part in ("head", "trunk", "left_thigh", "right_thigh", *arms):
                 for n, point in enumerate(_touching(side, self.points)):
                     share, beside, gap = self._beside(part, point)
-                    near = faded(gap / (NEAR * self.source.arm))
+                    near = faded(np.abs(gap) / (NEAR * self.source.arm))
                     if near.any():
                         self.near[side] = np.maximum(self.near[side], near)
                         close = np.maximum(gap, 0) / (CLOSE * self.source.arm)
-                        self.places[side].append(_Place(part, n, share, beside, near**2 / (1 + close) ** 2))
+                        weight = (near / (1 + close)) ** 4
+                        self.places[side].append(_Place(part, n, share, beside, near, weight))
 
     def _beside(self, part: str, point: Array) -> tuple[Array, Array, Array]:
         """Return how far along a part a point is, 0..1, what way beside it, and how far from its surface."""
@@ -185,20 +198,30 @@ class OwnContact:
             beside = rotation.rotate(rotation.between(ours[1] - ours[0], theirs[1] - theirs[0]), beside)
         return np.asarray(theirs[0] + place.share[:, None] * (theirs[1] - theirs[0]) + scale * beside)
 
-    def shift(self, side: str, base: Points, now: Points, before: Array) -> Array:
-        """Return by what `[F, 3]` a hand that is at `base` gets to its places while all else is as `now`.
+    def shift(self, side: str, base: Points, now: Points, before: Array) -> tuple[Array, Array]:
+        """Return by what `[F, 3]` a hand that is at `base` gets to its places while all else is as `now`, and
+        how much of that is to be done, `[F]` 0..1: none of what is far out of its reach or far away.
 
         before: the last shift; hands that meet each other go half the way each.
         """
-        total, weights = np.zeros_like(before), np.zeros(len(before))
-        hand = _touching(side, base)
+        total, weights, near = np.zeros_like(before), np.zeros(len(before)), np.zeros(len(before))
+        hand, wrist = _touching(side, base), base[f"{side}_hand"] - base[f"{side}_upper_arm"]
         for place in self.places[side]:
             away = self.wanted(place, now) - hand[place.point]
+            far = np.linalg.norm(wrist + away, axis=-1) / self.target.arm
+            can = faded((far - 1) / BEYOND) * faded(np.linalg.norm(away, axis=-1) / (ODD * self.target.arm))
             if place.part.endswith("_hand"):
                 away = (before + away) / 2
-            total += place.weight[:, None] * away
-            weights += place.weight
-        return np.asarray(total / np.maximum(weights, 1e-9)[:, None])
+            total += (can * place.weight)[:, None] * away
+            weights += can * place.weight
+            near = np.maximum(near, can * place.near)
+        # Where hands only come near, the place is not yet sure: before and after it is that of the touch.
+        known = np.flatnonzero((near > near.max() / 2) & (weights > 0))
+        if not len(known):
+            return np.zeros_like(before), near
+        shift = total[known] / weights[known, None]
+        frames = np.arange(len(before))
+        return np.stack([np.interp(frames, known, x) for x in shift.T], -1), near
 
 
 Reach = Callable[[str, Array], tuple[Array, Array]]
@@ -211,12 +234,14 @@ def meet(contact: OwnContact, base: Points, reach: Reach, fps: float) -> dict[st
     and wrist come to.
     """
     now = dict(base)
-    full = {side: np.zeros_like(base["hips"]) for side in SIDES}
-    touched = {side: _spread(contact.near[side], fps) > 1e-4 for side in SIDES if contact.places[side]}
-    for _ in range(PASSES if touched else 0):
-        full = {side: contact.shift(side, base, now, full[side]) for side in touched}
-        for side in touched:
-            shift = _spread(contact.near[side][:, None] * full[side], fps)
+    sides = [side for side in SIDES if contact.places[side]]
+    full = {side: np.zeros_like(base["hips"]) for side in sides}
+    touched = {side: _lasting(contact.near[side], fps) > 1e-3 for side in sides}
+    for _ in range(PASSES if sides else 0):
+        found = {side: contact.shift(side, base, now, full[side]) for side in sides}
+        for side in sides:
+            full[side], near = found[side]
+            shift = _lasting(near, fps)[:, None] * _spread(full[side], SMOOTH * fps)
             wrist, root = base[f"{side}_hand"], base[f"{side}_upper_arm"]
             goal = root + _held(wrist - root, wrist + shift - root, contact.target.arm)
             elbow, wrist = reach(side, np.where(touched[side][:, None], goal, wrist))
@@ -226,18 +251,28 @@ def meet(contact: OwnContact, base: Points, reach: Reach, fps: float) -> dict[st
 
 
 def _held(before: Array, goal: Array, arm: float) -> Array:
-    """Return a goal from the shoulder, nearer where the arm would get straighter than it was and than BENT."""
+    """Return a goal from the shoulder, nearer where the arm would be straighter than it was and BENT."""
     far = np.linalg.norm(goal, axis=-1)
     free = np.clip(np.linalg.norm(before, axis=-1) / arm, BENT, 1)
     return np.asarray(goal * (eased(far / arm, free) * arm / np.maximum(far, 1e-9))[:, None])
 
 
-def _spread(values: Array, fps: float) -> Array:
-    """Return values `[F, ...]` smoothed over SMOOTH seconds, the ends going on as they are."""
-    reach = int(np.ceil(2.5 * SMOOTH * fps))
+def _lasting(near: Array, fps: float) -> Array:
+    """Return nearness `[F]` that begins and ends softly, in LEAD seconds before and after."""
+    reach = min(int(LEAD * fps), len(near) - 1)
+    held = near.copy()
+    for n in range(1, reach + 1):
+        held[n:] = np.maximum(held[n:], near[:-n])
+        held[:-n] = np.maximum(held[:-n], near[n:])
+    return _spread(held, LEAD / 2 * fps)
+
+
+def _spread(values: Array, frames: float) -> Array:
+    """Return values `[F, ...]` smoothed over some `frames`, the ends going on as they are."""
+    reach = int(np.ceil(2.5 * frames))
     if reach < 1 or len(values) < 2:
         return values
-    kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) / (SMOOTH * fps)) ** 2)
+    kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) / frames) ** 2)
     kernel /= kernel.sum()
     padded = np.concatenate([values[:1].repeat(reach, 0), values, values[-1:].repeat(reach, 0)])
     return np.asarray(sum(k * padded[n : n + len(values)] for n, k in enumerate(kernel)))

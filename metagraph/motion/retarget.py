@@ -29,24 +29,17 @@ from metagraph.motion.joint_map import (
     RetargetError,
     fingerprint,
 )
-from metagraph.motion.limbs import bent, eased, faded
+from metagraph.motion.limb_goals import LimbGoals
+from metagraph.motion.limbs import bent
 from metagraph.motion.own_contact import OwnContact, meet
 from metagraph.motion.skeleton import Pose, Skeleton
-from metagraph.motion.standing import Figure, aligned, standing_pose, stands
+from metagraph.motion.standing import Figure, standing_pose, stands
 
 Array = NDArray[Any]
 
 MOVED = 1e-4  # metres: below this a joint keeps its rest translation
 LOWEST = 0.25  # of the leg: how far hips may be lowered so that legs of other proportions reach
-STRAIGHT = (
-    0.9  # of the arm: from here on it stretches ever less for a place that only wider shoulders put so far
-)
-ASIDE = np.radians(50)  # how far at most a foot turned from the hips' heading is followed in setting it apart
-UPTURNED, LIFTED = 0.5, 0.3  # 1 - cosine of the sole's tilt, and of the leg: from there a foot bears no weight
-# Beside the trunk, of the left side: directions whose opposites no hand and no foot comes near.
-OUTWARDS = {"upper_arm": np.array([0.6, -0.3, 0.75]), "upper_leg": np.array([0.0, -1, 0])}
 BACKWARDS = np.array([0, 0, -1.0])  # where straight arms bend to
-FLOATING = 0.25  # of the leg: a rest pose this far off the ground is not standing on it
 
 
 def retarget(
@@ -78,7 +71,8 @@ def retarget(
     work.move_hips()
     for side in SIDES:
         work.reach([f"{side}_{part}" for part in LEG], work.foot_goal(side), np.array([0, 0, 1.0]))
-        work.reach_hand(side)
+        arm = [f"{side}_{part}" for part in ARM]
+        work.reach(arm, work.places[:, work.target.roles[arm[0]]] + work.hand_goal(side), BACKWARDS)
     if joint_map.contacts:
         work.meet()
     return work.finished()
@@ -101,7 +95,7 @@ def _checked(clip: Clip, target: Skeleton, joint_map: JointMap) -> dict[str, Joi
     return {pair.role: pair for pair in joint_map.pairs if pair.role}
 
 
-class _Work:
+class _Work(LimbGoals):
     """One clip on its way: `turns [F, J, 4]` and `places [F, J, 3]` of the target's joints in the character's
     axes.
     """
@@ -114,14 +108,8 @@ class _Work:
         joint_map: JointMap,
         roles: Mapping[str, JointPair],
     ) -> None:
-        self.clip, self.source, self.target, self.map, self.roles = clip, source, target, joint_map, roles
-        turns, places = clip.skeleton.globals(clip.poses())
-        self.from_turns = rotation.multiply(source.turn.astype(np.float32), turns)
-        self.from_places = rotation.rotate(source.turn.astype(np.float32), places)
-        self.align = aligned(source, target, list(roles))
-        self.level = rotation.IDENTITY if source.natural and target.natural else source.frame()
-        self.chest = next(r for r in ("upper_chest", "chest", "spine", "hips") if r in roles)
-        self.scale = target.leg / source.leg
+        super().__init__(clip, source, target, list(roles))
+        self.map, self.roles = joint_map, roles
         self.parents = self._parents()
         self.levels = _levels(self.parents)
         inner = self.parents >= 0
@@ -134,7 +122,6 @@ class _Work:
         self.shifted: set[int] = set()
         self.turns = np.empty((clip.frames, len(above), 4), np.float32)
         self.places = np.empty((clip.frames, len(above), 3), np.float32)
-        self.ground()
 
     def _parents(self) -> Array:
         """Return the target's parents, with limbs that its file keeps apart (IK feet, several roots) hung on
@@ -162,20 +149,6 @@ class _Work:
                         else roles.get("upper_chest", roles.get("spine", wanted))
                     )
         return parents
-
-    def ground(self) -> None:
-        """Find the ankles' heights that correspond: those of figures standing on the ground, whatever height
-        a rest pose has.
-        """
-        ankles = self.from_places[:, [self.source.roles["left_foot"], self.source.roles["right_foot"]], 1]
-        self.from_ankle = self.source.ankle
-        if self.source.natural and abs(float(ankles.min()) - self.from_ankle) > FLOATING * self.source.leg:
-            low = self.source.positions[:, 1].min()  # the rest pose floats or hangs: stand it on the ground
-            self.from_ankle -= float(low)
-        self.to_ankle = self.target.ankle
-        low = float(self.target.positions[:, 1].min())
-        if self.target.natural and abs(low) > FLOATING * self.target.leg:
-            self.to_ankle -= low
 
     def turn_joints(self) -> None:
         """Carry the turns of mapped joints over, spread them on joints between those of the trunk, let the
@@ -251,14 +224,6 @@ class _Work:
                 self.turns[:, above], self.local_t[:, joints]
             )
 
-    def placed(self, points: Array) -> Array:
-        """Return where places `[F, 3]` near the source's legs come to: scaled, the ankles of a standing
-        figure on the ground.
-        """
-        origin = np.array([self.source.hip[0], self.from_ankle, self.source.hip[2]], np.float32)
-        goal = np.array([self.target.hip[0], self.to_ankle, self.target.hip[2]], np.float32)
-        return np.asarray(goal + np.float32(self.scale) * (points - origin))
-
     def move_hips(self) -> None:
         """Put hips (and a root above them) where the source's are, scaled by leg length, as low as both legs
         need to reach.
@@ -286,92 +251,21 @@ class _Work:
         self.local_t[:, hips] = goal
         self.walk()
 
-    def foot_goal(self, side: str) -> Array:
-        """Return where an ankle goes, `[F, 3]`. Wider hips set it further out: a foot flat on the ground as it
-        points, so that it stays there while the hips turn; any other with the hips, as the leg itself goes.
-        """
-        above, legs = self.source.roles[f"{side}_foot"], [self.source.roles[f"{s}_upper_leg"] for s in SIDES]
-        wide = (1 if side == "left" else -1) * (self.target.half_hips - self.scale * self.source.half_hips)
-        # Halfway between how either stands with toes out: the same way there and back.
-        half = rotation.power(self.align[f"{side}_foot"], 0.5)
-        turned = rotation.multiply(
-            self.from_turns[:, above],
-            rotation.multiply(rotation.conjugate(self.source.rotations[above]), half).astype(np.float32),
-        )
-        hips = self.from_places[:, legs[0]] - self.from_places[:, legs[1]]
-        hips = hips / np.maximum(np.linalg.norm(hips, axis=-1, keepdims=True), 1e-9)
-        body, foot = np.arctan2(-hips[:, 2], hips[:, 0]), 2 * np.arctan2(turned[:, 1], turned[:, 3])
-        aside = (foot - body + np.pi) % (2 * np.pi) - np.pi
-        heading = body + np.sign(aside) * ASIDE * eased(np.abs(aside) / ASIDE, np.full(len(aside), 0.6))
-        flat = np.stack([np.cos(heading), 0 * heading, -np.sin(heading)], -1)
-        tilt = 1 - 2 * (turned[:, 0] ** 2 + turned[:, 2] ** 2)  # of the sole: 1 flat, 0 upright
-        high = np.abs(self.from_places[:, above, 1] - self.from_ankle) / self.source.leg
-        planted = (faded((1 - tilt) / UPTURNED) * faded(high / LIFTED))[:, None]
-        out = planted * flat + (1 - planted) * hips * [1, 0, 1]  # an ankle keeps its height
-        return self.placed(self.from_places[:, above]) + np.float32(wide) * out.astype(np.float32)
-
-    def reach_hand(self, side: str) -> None:
-        """Bring a wrist where it was from its shoulder, scaled by arm length; towards the middle by the
-        shoulders' width.
-        """
-        upper, hand = self.source.roles[f"{side}_upper_arm"], self.source.roles[f"{side}_hand"]
-        arm = [f"{side}_{part}" for part in ARM]
-        scale, sign = self.target.length(*arm) / self.source.length(*arm), 1 if side == "left" else -1
-        away = self.from_places[:, hand] - self.from_places[:, upper]
-        joint = self.source.roles[self.chest]
-        turned = rotation.multiply(
-            self.from_turns[:, joint], rotation.conjugate(self.source.rotations[joint]).astype(np.float32)
-        )
-        level = rotation.rotate(turned, np.array([1, 0, 0], np.float32)) * np.array([1, 0, 1], np.float32)
-        length = np.linalg.norm(level, axis=-1, keepdims=True)
-        level = level / np.maximum(length, 0.3)
-        from_half, to_half = self.source.half_shoulders, self.target.half_shoulders
-        out = sign * np.einsum("fi,fi->f", away, level) + from_half
-        inside = np.clip(out, -from_half, from_half)
-        extra = (to_half / from_half - scale) * (inside - from_half)
-        away, inwards = scale * away, (sign * extra)[:, None] * level
-        # As far inwards as the arm is long enough for: a hand that cannot come to the middle stays in front.
-        length = self.target.length(*(f"{side}_{part}" for part in ARM))
-        free = np.maximum(np.linalg.norm(away, axis=-1) / length, STRAIGHT)
-        reach = eased(np.linalg.norm(away + inwards, axis=-1) / length, free) * length
-        room = reach**2 - np.einsum("fi,fi->f", away, away)
-        along, square = (
-            np.einsum("fi,fi->f", away, inwards),
-            np.maximum(np.einsum("fi,fi->f", inwards, inwards), 1e-12),
-        )
-        most = np.clip(
-            (np.sqrt(np.maximum(0, along**2 + square * np.maximum(0, room))) - along) / square, 0, 1
-        )
-        goal = self.places[:, self.target.roles[f"{side}_upper_arm"]] + away + most[:, None] * inwards
-        self.reach([f"{side}_{part}" for part in ARM], goal, BACKWARDS)
-
     def reach(self, names: Sequence[str], goal: Array, side: Array) -> tuple[Array, Array]:
-        """Turn the two bones of a limb so that its end comes to `goal [F, 3]`, bending as the source's does, or
-        towards `side` when straight. Return where middle and end come to, each `[F, 3]`.
+        """Turn the two bones of a limb so that its end comes to `goal [F, 3]`, bending as the source's does,
+        or towards `side` when straight. Return where middle and end come to, each `[F, 3]`.
         """
         upper, lower, end = (self.target.roles[name] for name in names)
         above = tuple(self.from_places[:, self.source.roles[name]] for name in names)
         root = self.places[:, upper].astype(np.float64)
         knee, tip = self.places[:, lower] - root, self.places[:, end] - root
         one, two = (self.target.length(*pair) for pair in pairwise(names))
-        outwards = OUTWARDS[names[0].split("_", 1)[1]] * [1 if names[0].startswith("left") else -1, 1, 1]
-        start = rotation.rotate(
-            self.turned("hips" if names[0].endswith("leg") else self.chest),
-            rotation.rotate(self.level, outwards),
-        )
         pole = rotation.rotate(self.turned(names[0]), side)
-        new, goal = bent(goal - root, one, two, start, (above[0], above[1], above[2]), pole)
+        new, goal = bent(goal - root, one, two, self.outwards(names[0]), (above[0], above[1], above[2]), pole)
         first, second = rotation.between(knee, new), rotation.between(tip - knee, goal - new)
         self.turns[:, upper] = rotation.multiply(first, self.turns[:, upper])
         self.turns[:, lower] = rotation.multiply(second, self.turns[:, lower])
         return root + new, root + goal
-
-    def turned(self, role: str) -> Array:
-        """Return how a joint of the source is turned from its standing pose, `[F, 4]`."""
-        joint = self.source.roles[role]
-        return rotation.multiply(
-            self.from_turns[:, joint].astype(np.float64), rotation.conjugate(self.source.rotations[joint])
-        )
 
     def meet(self) -> None:
         """Bring hands that touch their own body to where they touch it; all else stays to the bit."""
