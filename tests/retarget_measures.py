@@ -20,8 +20,8 @@ from metagraph.motion.standing import Figure
 Array = Any
 
 LIMIT = 0.995  # of a limb's length: from here on a degree of its bend is a hair's breadth
-LOOSE = 0.005  # of a limb's length: bones that shift more do not hold together
-SHORT = 0.02  # of half the shoulders: a hand of the middle figure so far from its place fell short of it
+LOOSE = 0.001  # of a limb's length: bones that shift more do not hold together
+SHORT = 0.005  # of half the shoulders: a hand of the middle figure so far from its place fell short of it
 
 
 def figures(clip: Clip, target: Skeleton, joint_map: JointMap, pose: Pose, other: Pose) -> list[Figure]:

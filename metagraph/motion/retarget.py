@@ -142,7 +142,9 @@ class _Work(LimbGoals):
             )
             for role, over in (*chains, *arms):
                 joint, wanted = roles[role], roles[over]
-                if wanted not in skeleton.chain(joint) and joint not in skeleton.chain(wanted):
+                # Legs that hang on the spine, as bipeds of 3ds Max do, follow the hips all the same.
+                lumbar = role.endswith("upper_leg") and roles.get("spine") in skeleton.chain(joint)
+                if lumbar or (wanted not in skeleton.chain(joint) and joint not in skeleton.chain(wanted)):
                     parents[joint] = (
                         wanted
                         if not role.endswith("upper_arm")
