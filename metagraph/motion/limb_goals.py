@@ -21,7 +21,7 @@ from metagraph.motion.standing import Figure, aligned
 Array = NDArray[Any]
 
 STRAIGHT = (
-    0.9  # of the arm: from here on it stretches ever less for a place that only wider shoulders put so far
+    0.96  # of the arm: from here on it stretches ever less for a place that only wider shoulders put so far
 )
 ASIDE = np.radians(50)  # how far at most a foot turned from the hips' heading is followed in setting it apart
 UPTURNED, LIFTED = (

@@ -38,7 +38,7 @@ from sample_clips.make.mannequin_skeleton import mannequin_skeleton  # noqa: E40
 from tests.retarget_measures import contact_errors, round_trip, variant  # noqa: E402
 
 CLIPS, FRAMES, ROUNDS = 150, 91, 3
-EACH, LONGEST = 12, 240  # clips of a set, frames of a clip
+EACH, LONGEST = 6, 150  # clips of a set, frames of a clip
 SETS = {
     "adult": "sumerian-hosts/glTF/animations/adult_female/*.glb",
     "alien": "sumerian-hosts/glTF/animations/alien/*.glb",

@@ -127,10 +127,11 @@ def test_a_map_remembers_that_hands_are_left_alone(toy: Any) -> None:
 
 def test_hands_of_a_real_talker_touch_on_another(shared_data: Path) -> None:
     mannequin = ours("hands_clasped__stance").skeleton
-    for name in ("Idle01_ScratchChest01", "Idle01_Contemplate01"):
+    target = variant(mannequin)
+    gaps: list[list[np.ndarray]] = [[], []]
+    for name in ("Idle01_ScratchChest01", "Idle01_Contemplate01", "Idle01_SqueezeHand01"):
         clip = read_clips(next((shared_data / "smartbody-brad").rglob(f"*{name}.bvh")))[0]
-        off, on = (
-            contact_errors(clip, variant(mannequin), standing_pose(clip), variant(mannequin).rest, carried)
-            for carried in (False, True)
-        )
-        assert np.median(on[0]) < 0.5 * np.median(off[0])
+        for carried in (False, True):
+            gaps[carried].append(contact_errors(clip, target, standing_pose(clip), target.rest, carried)[0])
+    off, on = (np.concatenate(some) for some in gaps)
+    assert len(on) > 30 and np.median(on) < 0.5 * np.median(off)
