@@ -23,6 +23,11 @@ def arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--retarget", action="store_true", help="bring clips of other skeletons onto the project's"
     )
+    parser.add_argument(
+        "--no-contacts",
+        action="store_true",
+        help="with --retarget: leave hands that touch their own body where the arms bring them",
+    )
 
 
 def run(options: Namespace) -> int:
@@ -40,7 +45,12 @@ def run(options: Namespace) -> int:
             print(f"\r{done}/{total} {file.name[:50]:<50}", end="", file=sys.stderr)
 
     result = import_files(
-        project, path.resolve().parent, options.paths, progress, retarget="yes" if options.retarget else "no"
+        project,
+        path.resolve().parent,
+        options.paths,
+        progress,
+        retarget="yes" if options.retarget else "no",
+        contacts=not options.no_contacts,
     )
     if show:
         print(file=sys.stderr)

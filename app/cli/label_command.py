@@ -53,6 +53,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--retarget", action="store_true", help="bring clips of other skeletons onto that of most clips"
     )
     parser.add_argument(
+        "--no-contacts",
+        action="store_true",
+        help="with --retarget: leave hands that touch their own body where the arms bring them",
+    )
+    parser.add_argument(
         "--no-bridges",
         action="store_true",
         help="leave stances that no clip leads to or from as they are, instead of blending to them",
@@ -90,7 +95,7 @@ def run(options: Namespace) -> int:
     if path.suffix not in (".yaml", ".yml"):
         path = path.with_name(path.name + SUFFIX)
     patterns, examples = _taught(options, path)
-    project, notes = _project(source, path, options.retarget)
+    project, notes = _project(source, path, options.retarget, not options.no_contacts)
     found = propose(project, patterns=patterns, examples=examples, sources=tuple(options.sources or SOURCES))
     taken = accept(project, found, options.above)
     labelled, bridges = (taken.project, ()) if options.no_bridges else bridged(taken.project)
@@ -170,7 +175,7 @@ def _taught(options: Namespace, path: Path) -> tuple[Patterns | None, list[Examp
     return merged(patterns, given) if given is not None else patterns, learned.examples_beside(path)
 
 
-def _project(source: Path, path: Path, retarget: bool) -> tuple[Project, list[str]]:
+def _project(source: Path, path: Path, retarget: bool, contacts: bool) -> tuple[Project, list[str]]:
     """Return the project to label, and what there is to say about what was read."""
     from app.cli.command_output import opened
     from metagraph.errors import FileError
@@ -181,7 +186,9 @@ def _project(source: Path, path: Path, retarget: bool) -> tuple[Project, list[st
     if source.is_file():
         return opened(source), []
     empty = Project(name=path.name.removesuffix(SUFFIX))
-    result = import_files(empty, path.resolve().parent, [source], retarget="yes" if retarget else "no")
+    result = import_files(
+        empty, path.resolve().parent, [source], retarget="yes" if retarget else "no", contacts=contacts
+    )
     if not result.loaded:
         why = result.failures[0] if result.failures else "no clip was found in it"
         raise FileError(

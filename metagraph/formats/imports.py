@@ -123,6 +123,7 @@ def import_files(
     cancelled: Callable[[], bool] | None = None,
     retarget: Literal["no", "ask", "yes"] = "no",
     remembered: Maps | None = None,
+    contacts: bool = True,
 ) -> Imported:
     """Read files and folders for a project; nothing is changed yet.
 
@@ -130,7 +131,8 @@ def import_files(
     in an empty project the skeleton on which most of the clips can play does. A clip of another skeleton is
     retargeted when the project has a joint map for that; else `retarget` says: it is left out with its
     reason, handed back among the `strangers`, or retargeted by the remembered or proposed map. remembered:
-    the user's maps from other projects.
+    the user's maps from other projects. contacts: whether retargeted hands touch their own body where they
+    did, for skeletons that the project has no joint map for yet.
     """
     report = import_clips(gather(paths), progress, cancelled)
     failures = [str(error) for error in report.failures]
@@ -180,13 +182,15 @@ def import_files(
             result = _with_strangers(
                 result,
                 bringing,
-                Strangers(tuple(clips), reasons[key], *_map(bringing, clips, remembered)),
+                Strangers(tuple(clips), reasons[key], *_map(bringing, clips, remembered, contacts)),
                 retarget,
             )
     return replace(result, failures=tuple(dict.fromkeys(result.failures)))
 
 
-def _map(bringing: Bringing, clips: Sequence[Loaded], remembered: Maps | None) -> tuple[JointMap, bool]:
+def _map(
+    bringing: Bringing, clips: Sequence[Loaded], remembered: Maps | None, contacts: bool
+) -> tuple[JointMap, bool]:
     """Return the joint map that is offered for clips of one skeleton, and whether it was made before."""
     source = clips[0][3].skeleton
     assert bringing.project.skeleton is not None
@@ -195,7 +199,8 @@ def _map(bringing: Bringing, clips: Sequence[Loaded], remembered: Maps | None) -
         if remembered is not None
         else None
     )
-    return (found, True) if found is not None else (bringing.propose(source), False)
+    joint_map = bringing.propose(source) if found is None else found
+    return joint_map if contacts else replace(joint_map, contacts=False), found is not None
 
 
 def _with_strangers(result: Imported, bringing: Bringing, strangers: Strangers, retarget: str) -> Imported:

@@ -10,8 +10,9 @@ from metagraph.graph import anatomy
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint, proposed
-from metagraph.motion.retarget import retarget, standing_pose, stands
+from metagraph.motion.retarget import retarget
 from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.motion.standing import standing_pose, stands
 
 
 class Bringing:

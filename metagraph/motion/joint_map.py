@@ -72,12 +72,13 @@ class JointPair:
 @dataclass(frozen=True)
 class JointMap:
     """Joints of one skeleton and those of another that follow them. source, target: the skeletons'
-    fingerprints.
+    fingerprints. contacts: whether hands that touch their own body touch it at the same place.
     """
 
     source: str
     target: str
     pairs: tuple[JointPair, ...]
+    contacts: bool = True
 
     def of(self, source: str) -> JointPair | None:
         return next((p for p in self.pairs if p.source == source), None)
@@ -100,7 +101,7 @@ class JointMap:
     @property
     def reversed(self) -> JointMap:
         pairs = tuple(replace(p, source=p.target, target=p.source) for p in self.pairs)
-        return JointMap(self.target, self.source, pairs)
+        return JointMap(self.target, self.source, pairs, self.contacts)
 
     @property
     def missing(self) -> tuple[str, ...]:
@@ -113,7 +114,8 @@ class JointMap:
             {"from": p.source, "to": p.target, "role": p.role, "sure": round(p.sure, 3), "why": p.why}
             for p in self.pairs
         ]
-        return {"source": self.source, "target": self.target, "pairs": rows}
+        out: dict[str, Any] = {"source": self.source, "target": self.target, "pairs": rows}
+        return out if self.contacts else {**out, "contacts": False}
 
     @staticmethod
     def from_json(data: Mapping[str, Any]) -> JointMap:
@@ -129,7 +131,7 @@ class JointMap:
                 )
                 for p in data["pairs"]
             )
-            return JointMap(str(data["source"]), str(data["target"]), pairs)
+            return JointMap(str(data["source"]), str(data["target"]), pairs, bool(data.get("contacts", True)))
         except (KeyError, TypeError, ValueError, AttributeError) as error:
             raise RetargetError(f"that is no joint map ({error!r})") from None
 

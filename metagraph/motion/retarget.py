@@ -21,9 +21,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import (
     ARM,
-    FINGERS,
     LEG,
-    NEEDED,
     SIDES,
     TRUNK,
     JointMap,
@@ -31,207 +29,17 @@ from metagraph.motion.joint_map import (
     RetargetError,
     fingerprint,
 )
-from metagraph.motion.roles import find_roles
+from metagraph.motion.limb_goals import LimbGoals
+from metagraph.motion.limbs import bent
+from metagraph.motion.own_contact import OwnContact, meet
 from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.motion.standing import Figure, standing_pose, stands
 
 Array = NDArray[Any]
 
 MOVED = 1e-4  # metres: below this a joint keeps its rest translation
-BACKWARD = np.radians(
-    100
-)  # a neck or spine turned further than this in every frame does not start from its rest pose
 LOWEST = 0.25  # of the leg: how far hips may be lowered so that legs of other proportions reach
-STRAIGHT = (
-    0.9  # of the arm: from here on it stretches ever less for a place that only wider shoulders put so far
-)
-FLOATING = 0.25  # of the leg: a rest pose this far off the ground is not standing on it
-
-
-# --- standing poses
-
-
-def stands(skeleton: Skeleton, roles: Mapping[str, int] | None = None) -> bool:
-    """Whether the rest pose is a standing figure. In some files all bones lie along one axis, and only the
-    motion stands up.
-    """
-    roles = find_roles(skeleton) if roles is None else roles
-    _, p = skeleton.globals(skeleton.rest)
-    return all(r in roles for r in NEEDED) and bool(_upright(p[None], roles)[0] > 0.5)
-
-
-def _upright(p: Array, roles: Mapping[str, int]) -> Array:
-    """Return `[F]` how upright figures are, -1..1: the least of trunk and legs."""
-    lines = [p[:, roles["head"]] - p[:, roles["hips"]]]
-    lines += [p[:, roles[f"{side}_upper_leg"]] - p[:, roles[f"{side}_foot"]] for side in SIDES]
-    return np.asarray(np.min([v[:, 1] / np.maximum(np.linalg.norm(v, axis=-1), 1e-6) for v in lines], 0))
-
-
-def standing_pose(clip: Clip, roles: Mapping[str, int] | None = None) -> Pose:
-    """Return the rest pose where it stands and looks ahead, else the clip's frame that stands best: upright,
-    limbs straight, feet down.
-
-    Some files rest with every bone along one axis, or with the head back to front; their motion tells.
-    """
-    skeleton = clip.skeleton
-    roles = find_roles(skeleton) if roles is None else roles
-    if not all(r in roles for r in NEEDED):
-        return skeleton.rest
-    if stands(skeleton, roles):
-        trunk = [roles[r] for r in TRUNK[1:] if r in roles]
-        turned = rotation.angle_between(
-            clip.rotations[:, trunk], skeleton.rest_rotations[trunk].astype(np.float32)
-        ).min(0)
-        return _faced(skeleton, [j for j, angle in zip(trunk, turned, strict=True) if angle > BACKWARD])
-    poses = clip.poses()
-    _, p = skeleton.globals(poses)
-    worth = 2 * _upright(p, roles)
-    for side in SIDES:
-        for upper, lower, end in (ARM, LEG):
-            a, b, c = (p[:, roles[f"{side}_{part}"]] for part in (upper, lower, end))
-            length = np.linalg.norm(b - a, axis=-1) + np.linalg.norm(c - b, axis=-1)
-            worth = worth + np.linalg.norm(c - a, axis=-1) / np.maximum(length, 1e-6)
-    feet = p[:, [roles["left_foot"], roles["right_foot"]], 1]
-    worth = worth - np.ptp(feet, axis=1) / skeleton.height
-    best = int(np.argmax(worth))
-    return Pose(poses.rotations[best].astype(np.float64), poses.translations[best].astype(np.float64))
-
-
-def _faced(skeleton: Skeleton, joints: Sequence[int]) -> Pose:
-    """Return the rest pose with `joints` turned about the vertical by half a turn."""
-    if not joints:
-        return skeleton.rest
-    model, _ = skeleton.globals(skeleton.rest)
-    local = skeleton.rest_rotations.copy()
-    for j in joints:
-        above = model[skeleton.parents[j]]
-        local[j] = rotation.multiply(
-            rotation.conjugate(above), rotation.multiply(np.array([0, 1.0, 0, 0]), model[j])
-        )
-        model, _ = skeleton.globals(Pose(local, skeleton.rest_translations))
-    return Pose(local, skeleton.rest_translations)
-
-
-class _Figure:
-    """A skeleton in its standing pose, in the character's axes, by role. `ankle` is the ankles' height when
-    it stands on the ground.
-    """
-
-    def __init__(self, skeleton: Skeleton, roles: Mapping[str, int], pose: Pose) -> None:
-        self.skeleton, self.roles, self.pose = skeleton, roles, pose
-        rotations, positions = skeleton.globals(pose)
-        across = sum(
-            positions[roles[f"left_{r}"]] - positions[roles[f"right_{r}"]] for r in ("upper_leg", "upper_arm")
-        )
-        limbs = [roles[f"{s}_{part}"] for s in SIDES for part in (*ARM, *LEG)]
-        self.natural = bool(
-            (rotation.angle_between(pose.rotations, skeleton.rest_rotations)[limbs] < 1e-3).all()
-        ) and stands(skeleton, roles)
-        # Axes are those of the file, turned by quarters: a figure that looks a little aside does look aside.
-        quarter = np.round(np.arctan2(across[2], across[0]) / (np.pi / 2)) * np.pi / 2
-        self.turn = rotation.from_axis_angle(np.array([0, 1.0, 0]), quarter)
-        self.rotations, self.positions = (
-            rotation.multiply(self.turn, rotations),
-            rotation.rotate(self.turn, positions),
-        )
-        self.leg = float(
-            np.mean([self.length(f"{s}_upper_leg", f"{s}_lower_leg", f"{s}_foot") for s in SIDES])
-        )
-        self.arm = float(
-            np.mean([self.length(f"{s}_upper_arm", f"{s}_lower_arm", f"{s}_hand") for s in SIDES])
-        )
-        self.hip = self.middle("upper_leg")
-        self.ankle = float(self.middle("foot")[1])
-        self.half_hips, self.half_shoulders = self.half("upper_leg"), self.half("upper_arm")
-
-    def at(self, role: str) -> Array:
-        return np.asarray(self.positions[self.roles[role]])
-
-    def middle(self, part: str) -> Array:
-        return np.asarray((self.at(f"left_{part}") + self.at(f"right_{part}")) / 2)
-
-    def half(self, part: str) -> float:
-        return max(1e-3, float(np.linalg.norm(self.at(f"left_{part}") - self.at(f"right_{part}"))) / 2)
-
-    def length(self, *roles: str) -> float:
-        return max(1e-3, sum(float(np.linalg.norm(self.at(a) - self.at(b))) for a, b in pairwise(roles)))
-
-    def frame(self) -> Array:
-        """Return the turn of the trunk: its own left, up and ahead."""
-        up = self.at("head") - self.at("hips")
-        left = self.at("left_upper_leg") - self.at("right_upper_leg")
-        return _turn_of(up, left)
-
-
-def _turn_of(first: Array, second: Array) -> Array:
-    """Return the turn `[4]` whose Y lies along `first` and whose X as near as can be along `second`."""
-    y = first / np.linalg.norm(first)
-    x = second - y * (second @ y)
-    x = x / max(1e-9, float(np.linalg.norm(x)))
-    return rotation.from_matrix(np.stack([x, y, np.cross(x, y)], -1))
-
-
-def _aligned(source: _Figure, target: _Figure, roles: Sequence[str]) -> dict[str, Array]:
-    """Return for each role the turn `[4]` that brings the target's standing pose to the source's."""
-    level = rotation.IDENTITY
-    if not (source.natural and target.natural):
-        level = rotation.multiply(source.frame(), rotation.conjugate(target.frame()))
-    known = set(roles)
-    out: dict[str, Array] = dict.fromkeys(roles, level)
-
-    def bone(figure: _Figure, role: str, *tips: str) -> Array:
-        return np.asarray(np.mean([figure.at(t) for t in tips], 0) - figure.at(role))
-
-    def follow(role: str, before: Array, *tips: str) -> Array:
-        tips = tuple(t for t in tips if t in known)
-        out[role] = before
-        if tips:
-            wanted, own = bone(source, role, *tips), bone(target, role, *tips)
-            if min(np.linalg.norm(wanted), np.linalg.norm(own)) > 1e-4:
-                out[role] = rotation.multiply(rotation.between(rotation.rotate(before, own), wanted), before)
-        return out[role]
-
-    for side in SIDES:
-        turn = level
-        for (upper, lower, end), ahead in ((ARM, False), (LEG, True)):
-            turn = follow(f"{side}_{upper}", level, f"{side}_{lower}")
-            turn = follow(f"{side}_{lower}", turn, f"{side}_{end}")
-            if ahead:
-                out[f"{side}_foot"] = _heading(source, target, side) if f"{side}_toes" in known else level
-                out[f"{side}_toes"] = out[f"{side}_foot"]
-                continue
-            knuckles = [f"{side}_{f}_1" for f in FINGERS[1:] if f"{side}_{f}_1" in known]
-            turn = follow(f"{side}_{end}", turn, *knuckles)
-            if len(knuckles) > 1:
-                a, b = (
-                    _turn_of(bone(f, f"{side}_{end}", *knuckles), f.at(knuckles[0]) - f.at(knuckles[-1]))
-                    for f in (source, target)
-                )
-                turn = out[f"{side}_{end}"] = rotation.multiply(a, rotation.conjugate(b))
-            for finger in FINGERS:
-                hand = turn
-                for n in (1, 2, 3):
-                    if f"{side}_{finger}_{n}" in known:
-                        hand = follow(f"{side}_{finger}_{n}", hand, f"{side}_{finger}_{n + 1}")
-    for role in roles:
-        if "_twist_" in role:
-            out[role] = out[role.split("_twist_")[0]]
-    return out
-
-
-def _heading(source: _Figure, target: _Figure, side: str) -> Array:
-    """Return the turn about the vertical from where the target's foot points to where the source's does;
-    soles stay flat.
-    """
-    angles = []
-    for figure in (source, target):
-        ahead = figure.at(f"{side}_toes") - figure.at(f"{side}_foot")
-        if np.hypot(ahead[0], ahead[2]) < 1e-3:
-            return rotation.IDENTITY
-        angles.append(np.arctan2(ahead[0], ahead[2]))
-    return rotation.from_axis_angle(np.array([0, 1.0, 0]), angles[0] - angles[1])
-
-
-# --- the motion
+BACKWARDS = np.array([0, 0, -1.0])  # where straight arms bend to
 
 
 def retarget(
@@ -256,14 +64,17 @@ def retarget(
             f"'{clip.name}': the rest pose of the project's skeleton does not stand; give a pose of it that "
             "does"
         )
-    source = _Figure(clip.skeleton, ours, standing_pose(clip, ours) if source_pose is None else source_pose)
-    figure = _Figure(target, theirs, target.rest if target_pose is None else target_pose)
+    source = Figure(clip.skeleton, ours, standing_pose(clip, ours) if source_pose is None else source_pose)
+    figure = Figure(target, theirs, target.rest if target_pose is None else target_pose)
     work = _Work(clip, source, figure, joint_map, roles)
     work.turn_joints()
     work.move_hips()
     for side in SIDES:
         work.reach([f"{side}_{part}" for part in LEG], work.foot_goal(side), np.array([0, 0, 1.0]))
-        work.reach_hand(side)
+        arm = [f"{side}_{part}" for part in ARM]
+        work.reach(arm, work.places[:, work.target.roles[arm[0]]] + work.hand_goal(side), BACKWARDS)
+    if joint_map.contacts:
+        work.meet()
     return work.finished()
 
 
@@ -284,7 +95,7 @@ def _checked(clip: Clip, target: Skeleton, joint_map: JointMap) -> dict[str, Joi
     return {pair.role: pair for pair in joint_map.pairs if pair.role}
 
 
-class _Work:
+class _Work(LimbGoals):
     """One clip on its way: `turns [F, J, 4]` and `places [F, J, 3]` of the target's joints in the character's
     axes.
     """
@@ -292,17 +103,13 @@ class _Work:
     def __init__(
         self,
         clip: Clip,
-        source: _Figure,
-        target: _Figure,
+        source: Figure,
+        target: Figure,
         joint_map: JointMap,
         roles: Mapping[str, JointPair],
     ) -> None:
-        self.clip, self.source, self.target, self.map, self.roles = clip, source, target, joint_map, roles
-        turns, places = clip.skeleton.globals(clip.poses())
-        self.from_turns = rotation.multiply(source.turn.astype(np.float32), turns)
-        self.from_places = rotation.rotate(source.turn.astype(np.float32), places)
-        self.align = _aligned(source, target, list(roles))
-        self.scale = target.leg / source.leg
+        super().__init__(clip, source, target, list(roles))
+        self.map, self.roles = joint_map, roles
         self.parents = self._parents()
         self.levels = _levels(self.parents)
         inner = self.parents >= 0
@@ -315,7 +122,6 @@ class _Work:
         self.shifted: set[int] = set()
         self.turns = np.empty((clip.frames, len(above), 4), np.float32)
         self.places = np.empty((clip.frames, len(above), 3), np.float32)
-        self.ground()
 
     def _parents(self) -> Array:
         """Return the target's parents, with limbs that its file keeps apart (IK feet, several roots) hung on
@@ -336,27 +142,15 @@ class _Work:
             )
             for role, over in (*chains, *arms):
                 joint, wanted = roles[role], roles[over]
-                if wanted not in skeleton.chain(joint) and joint not in skeleton.chain(wanted):
+                # Legs that hang on the spine, as bipeds of 3ds Max do, follow the hips all the same.
+                lumbar = role.endswith("upper_leg") and roles.get("spine") in skeleton.chain(joint)
+                if lumbar or (wanted not in skeleton.chain(joint) and joint not in skeleton.chain(wanted)):
                     parents[joint] = (
                         wanted
                         if not role.endswith("upper_arm")
                         else roles.get("upper_chest", roles.get("spine", wanted))
                     )
         return parents
-
-    def ground(self) -> None:
-        """Find the ankles' heights that correspond: those of figures standing on the ground, whatever height
-        a rest pose has.
-        """
-        ankles = self.from_places[:, [self.source.roles["left_foot"], self.source.roles["right_foot"]], 1]
-        self.from_ankle = self.source.ankle
-        if self.source.natural and abs(float(ankles.min()) - self.from_ankle) > FLOATING * self.source.leg:
-            low = self.source.positions[:, 1].min()  # the rest pose floats or hangs: stand it on the ground
-            self.from_ankle -= float(low)
-        self.to_ankle = self.target.ankle
-        low = float(self.target.positions[:, 1].min())
-        if self.target.natural and abs(low) > FLOATING * self.target.leg:
-            self.to_ankle -= low
 
     def turn_joints(self) -> None:
         """Carry the turns of mapped joints over, spread them on joints between those of the trunk, let the
@@ -432,14 +226,6 @@ class _Work:
                 self.turns[:, above], self.local_t[:, joints]
             )
 
-    def placed(self, points: Array) -> Array:
-        """Return where places `[F, 3]` near the source's legs come to: scaled, the ankles of a standing
-        figure on the ground.
-        """
-        origin = np.array([self.source.hip[0], self.from_ankle, self.source.hip[2]], np.float32)
-        goal = np.array([self.target.hip[0], self.to_ankle, self.target.hip[2]], np.float32)
-        return np.asarray(goal + np.float32(self.scale) * (points - origin))
-
     def move_hips(self) -> None:
         """Put hips (and a root above them) where the source's are, scaled by leg length, as low as both legs
         need to reach.
@@ -467,84 +253,40 @@ class _Work:
         self.local_t[:, hips] = goal
         self.walk()
 
-    def foot_goal(self, side: str) -> Array:
-        """Return where an ankle goes, `[F, 3]`. Wider hips set it further out, as the foot itself points: a
-        planted foot stays.
-        """
-        above = self.source.roles[f"{side}_foot"]
-        wide = (1 if side == "left" else -1) * (self.target.half_hips - self.scale * self.source.half_hips)
-        turned = rotation.multiply(
-            self.from_turns[:, above], rotation.conjugate(self.source.rotations[above]).astype(np.float32)
-        )
-        heading = rotation.normalize(turned * np.array([0, 1, 0, 1], np.float32))
-        return self.placed(self.from_places[:, above]) + rotation.rotate(
-            heading, np.array([wide, 0, 0], np.float32)
-        )
-
-    def reach_hand(self, side: str) -> None:
-        """Bring a wrist where it was from its shoulder, scaled by arm length; towards the middle by the
-        shoulders' width.
-        """
-        upper, hand = self.source.roles[f"{side}_upper_arm"], self.source.roles[f"{side}_hand"]
-        scale, sign = self.target.arm / self.source.arm, 1 if side == "left" else -1
-        away = self.from_places[:, hand] - self.from_places[:, upper]
-        chest = next(r for r in ("upper_chest", "chest", "spine", "hips") if r in self.roles)
-        joint = self.source.roles[chest]
-        turned = rotation.multiply(
-            self.from_turns[:, joint], rotation.conjugate(self.source.rotations[joint]).astype(np.float32)
-        )
-        level = rotation.rotate(turned, np.array([1, 0, 0], np.float32)) * np.array([1, 0, 1], np.float32)
-        length = np.linalg.norm(level, axis=-1, keepdims=True)
-        level = level / np.maximum(length, 0.3)
-        from_half, to_half = self.source.half_shoulders, self.target.half_shoulders
-        out = sign * np.einsum("fi,fi->f", away, level) + from_half
-        inside = np.clip(out, -from_half, from_half)
-        extra = (to_half / from_half - scale) * (inside - from_half)
-        away, inwards = scale * away, (sign * extra)[:, None] * level
-        # As far inwards as the arm is long enough for: a hand that cannot come to the middle stays in front.
-        length = self.target.length(*(f"{side}_{part}" for part in ARM))
-        free = np.maximum(np.linalg.norm(away, axis=-1) / length, STRAIGHT)
-        reach = _eased(np.linalg.norm(away + inwards, axis=-1) / length, free) * length
-        room = reach**2 - np.einsum("fi,fi->f", away, away)
-        along, square = (
-            np.einsum("fi,fi->f", away, inwards),
-            np.maximum(np.einsum("fi,fi->f", inwards, inwards), 1e-12),
-        )
-        most = np.clip(
-            (np.sqrt(np.maximum(0, along**2 + square * np.maximum(0, room))) - along) / square, 0, 1
-        )
-        goal = self.places[:, self.target.roles[f"{side}_upper_arm"]] + away + most[:, None] * inwards
-        self.reach([f"{side}_{part}" for part in ARM], goal, np.array([0, 0, -1.0]))
-
-    def reach(self, names: Sequence[str], goal: Array, side: Array) -> None:
-        """Turn the two bones of a limb so that its end comes to `goal [F, 3]`, bending where it bends, or
-        towards `side` when straight.
+    def reach(self, names: Sequence[str], goal: Array, side: Array) -> tuple[Array, Array]:
+        """Turn the two bones of a limb so that its end comes to `goal [F, 3]`, bending as the source's does,
+        or towards `side` when straight. Return where middle and end come to, each `[F, 3]`.
         """
         upper, lower, end = (self.target.roles[name] for name in names)
+        above = tuple(self.from_places[:, self.source.roles[name]] for name in names)
         root = self.places[:, upper].astype(np.float64)
         knee, tip = self.places[:, lower] - root, self.places[:, end] - root
-        one = float(np.linalg.norm(self.target.positions[lower] - self.target.positions[upper]))
-        two = float(np.linalg.norm(self.target.positions[end] - self.target.positions[lower]))
-        goal = _within(goal - root, abs(one - two) + 1e-3 * (one + two), one + two)
-        far = np.linalg.norm(goal, axis=-1, keepdims=True)
-        ahead = goal / far
-        bent = rotation.rotate(rotation.between(tip, goal), knee)
-        bent = bent - ahead * np.einsum("fi,fi->f", bent, ahead)[:, None]
-        joint = self.source.roles[names[0]]
-        turned = rotation.multiply(
-            self.from_turns[:, joint].astype(np.float64), rotation.conjugate(self.source.rotations[joint])
-        )
-        pole = rotation.rotate(turned, side)
-        pole = pole - ahead * np.einsum("fi,fi->f", pole, ahead)[:, None]
-        straight = np.maximum(0, 0.02 * one - np.linalg.norm(bent, axis=-1, keepdims=True))
-        bent = bent + straight * pole
-        bent = bent / np.maximum(np.linalg.norm(bent, axis=-1, keepdims=True), 1e-9)
-        along = (one**2 + far**2 - two**2) / (2 * far)
-        new = ahead * along + bent * np.sqrt(np.maximum(0, one**2 - along**2))
-        self.turns[:, upper] = rotation.multiply(rotation.between(knee, new), self.turns[:, upper])
-        self.turns[:, lower] = rotation.multiply(
-            rotation.between(tip - knee, goal - new), self.turns[:, lower]
-        )
+        one, two = (self.target.length(*pair) for pair in pairwise(names))
+        pole = rotation.rotate(self.turned(names[0]), side)
+        new, goal = bent(goal - root, one, two, self.outwards(names[0]), (above[0], above[1], above[2]), pole)
+        first, second = rotation.between(knee, new), rotation.between(tip - knee, goal - new)
+        self.turns[:, upper] = rotation.multiply(first, self.turns[:, upper])
+        self.turns[:, lower] = rotation.multiply(second, self.turns[:, lower])
+        return root + new, root + goal
+
+    def meet(self) -> None:
+        """Bring hands that touch their own body to where they touch it; all else stays to the bit."""
+        contact = OwnContact(self.source, self.target, self.from_turns, self.from_places)
+        if not any(contact.places.values()):
+            return
+        self.walk()
+        before = self.turns.copy()
+
+        def reach(side: str, goal: Array) -> tuple[Array, Array]:
+            names = [f"{side}_{part}" for part in ARM]
+            for joint in (self.target.roles[name] for name in names[:2]):
+                self.turns[:, joint] = before[:, joint]
+            return self.reach(names, goal, BACKWARDS)
+
+        touched = meet(contact, contact.target.points(self.turns, self.places), reach, self.clip.fps)
+        for side, frames in touched.items():
+            for joint in (self.target.roles[f"{side}_{part}"] for part in ARM[:2]):
+                self.turns[~frames, joint] = before[~frames, joint]
 
     def finished(self) -> Clip:
         """Return the clip in the target's own hierarchy and axes."""
@@ -603,25 +345,3 @@ def _levels(parents: Array) -> list[Array]:
             depth[joint] += 1
             above = int(parents[above])
     return [np.flatnonzero(depth == d) for d in range(depth.max() + 1)]
-
-
-def _eased(reach: Array, free: Array) -> Array:
-    """Return `reach [F]`, of a limb's length, slowed down from `free` on so that it never quite gets to 1: no
-    elbow snaps straight.
-    """
-    left = np.maximum(1 - free, 1e-6)
-    return np.where(reach > free, free + left * (1 - np.exp(-np.maximum(0, reach - free) / left)), reach)
-
-
-def _within(goal: Array, least: float, most: float) -> Array:
-    """Return `[F, 3]` moved into reach sideways, so that the height stays."""
-    goal = goal.copy()
-    goal[:, 1] = np.clip(goal[:, 1], -most, most)
-    flat = np.linalg.norm(goal[:, [0, 2]], axis=-1)
-    room = np.sqrt(np.maximum(0, most**2 - goal[:, 1] ** 2))
-    goal[:, [0, 2]] *= np.minimum(1, room / np.maximum(flat, 1e-9))[:, None]
-    flat = np.linalg.norm(goal[:, [0, 2]], axis=-1)
-    goal[flat < 1e-6, 2] = flat[flat < 1e-6] = 1e-6  # straight above or below: out to the front
-    out = np.sqrt(np.maximum(0, least**2 - goal[:, 1] ** 2))
-    goal[:, [0, 2]] *= np.maximum(1, out / flat)[:, None]
-    return goal

@@ -25,9 +25,9 @@ from metagraph.formats.stray_poses import stray_poses
 from metagraph.formats.takes import BIND_POSE, LONE_FRAME
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.motion.retarget import standing_pose
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Pose
+from metagraph.motion.standing import standing_pose
 
 Array = NDArray[Any]
 Case = tuple[

@@ -20,8 +20,10 @@ from metagraph.formats.clips import read_clips
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint, proposed
-from metagraph.motion.retarget import retarget, standing_pose, stands
+from metagraph.motion.retarget import retarget
 from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.motion.standing import standing_pose, stands
+from tests.retarget_measures import round_trip
 from tests.zoo import ANIMALS
 
 SIDES = ("left", "right")
@@ -253,6 +255,23 @@ def test_there_and_back_a_clip_is_itself_within_two_degrees(
     assert np.degrees(rotation.angle_between(clip.rotations, back.rotations).mean()) < 2
 
 
+@given(st.integers(0, 2**31), st.floats(0.5, 2), st.floats(0, 1.2), st.floats(-0.6, 0.6), st.floats(0.5, 2))
+@hypothesis_settings(max_examples=40, deadline=None)
+def test_feet_turned_out_otherwise_and_hips_of_another_width_come_back_in_every_joint_and_frame(
+    toy: Any, seed: int, scale: float, down: float, out: float, wide: float
+) -> None:
+    target = rebuilt(toy.skeleton, scale=scale, arms_down=down, axes=seed)
+    local, offsets = toy.skeleton.rest_rotations.copy(), toy.skeleton.rest_translations * scale
+    for side, sign in (("Left", 1), ("Right", -1)):
+        local[toy.skeleton.index(f"{side}Foot")] = rotation.from_axis_angle(np.array([0, 1.0, 0]), sign * out)
+        offsets[toy.skeleton.index(f"{side}UpperLeg"), 0] *= wide
+    splayed = Skeleton(toy.skeleton.names, toy.skeleton.parents, local, offsets)
+    clip = gesture(toy.skeleton, seed)
+    for middle in (target, splayed):
+        degrees, fine = round_trip(clip, middle, toy.skeleton.rest, middle.rest)
+        assert max(float(angle[fine[role]].max(initial=0)) for role, angle in degrees.items()) < 2
+
+
 @given(st.integers(0, 2**31), st.floats(0.5, 2), st.floats(0.6, 1.5))
 @hypothesis_settings(max_examples=40)
 def test_wrists_and_ankles_keep_their_height_and_elbows_their_side(
@@ -387,9 +406,6 @@ FILES: dict[str, tuple[str, Callable[[Clip], bool]]] = {
 PAIRS = [(a, b) for a in ("sample", *FILES) for b in ("sample", *FILES) if a != b]
 if not (Path(__file__).parents[3] / "shared" / "data").is_dir():
     PAIRS = PAIRS[:1]  # where the clips are not, one skip says it for all pairs
-# Legs as short and hips as wide as the alien's cannot stand as the bowing actors do; their knees come back
-# straighter.
-SHORT = {("bandai", "alien"), ("alien", "bandai")}
 
 
 @cache
@@ -419,24 +435,22 @@ def zoo_pair(zoo_files: dict[str, Path], request: pytest.FixtureRequest) -> tupl
 
 @pytest.mark.parametrize("zoo_pair", ZOO, indirect=True, ids="-".join)
 def test_clips_of_the_zoo_go_there_and_back(zoo_pair: tuple[Clip, Clip]) -> None:
-    there_and_back(*zoo_pair, 2)
+    there_and_back(*zoo_pair)
 
 
 @pytest.mark.parametrize(("one", "two"), PAIRS)
 def test_real_clips_go_there_and_back(shared_data: Path, one: str, two: str) -> None:
-    there_and_back(real(shared_data, one), real(shared_data, two), 3 if (one, two) in SHORT else 2)
+    there_and_back(real(shared_data, one), real(shared_data, two))
 
 
-def there_and_back(clip: Clip, other: Clip, degrees: float) -> None:
-    joint_map = proposed(clip.skeleton, other.skeleton)
-    pose = standing_pose(other)
-    out = retarget(clip, other.skeleton, joint_map, target_pose=pose)
-    back = retarget(out, clip.skeleton, joint_map.reversed, source_pose=pose, target_pose=standing_pose(clip))
-    joints = [clip.skeleton.index(p.source) for p in joint_map.pairs]
-    turned = rotation.angle_between(
-        clip.skeleton.globals(clip.poses())[0], back.skeleton.globals(back.poses())[0]
-    )[:, joints]
-    assert np.degrees(turned.mean()) < degrees
+def there_and_back(clip: Clip, other: Clip) -> None:
+    """The mean of all joints, also of what cannot survive; and every joint in nearly all frames that can: an
+    arm all but stretched out loses a little.
+    """
+    degrees, fine = round_trip(clip, other.skeleton, standing_pose(clip), standing_pose(other))
+    assert np.mean(list(degrees.values())) < 2
+    worst = {r: float(np.percentile(a[fine[r]], 95)) if fine[r].any() else 0 for r, a in degrees.items()}
+    assert max(worst.values()) < 4, max(worst, key=worst.__getitem__)
 
 
 @pytest.mark.parametrize(("one", "two"), PAIRS)
@@ -456,7 +470,7 @@ def test_hands_and_feet_of_the_zoo_keep_their_height_and_planted_feet_stay(
 def heights_and_feet(clip: Clip, other: Clip) -> None:
     joint_map = proposed(clip.skeleton, other.skeleton)
     pose = standing_pose(other)
-    out = retarget(clip, other.skeleton, joint_map, target_pose=pose)
+    out = retarget(clip, other.skeleton, replace(joint_map, contacts=False), target_pose=pose)
     ours, theirs = roles_of(joint_map.reversed, clip.skeleton), roles_of(joint_map, other.skeleton)
     before, after = places(clip), places(out)
 

@@ -4,6 +4,7 @@ retargeted or left out.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from PySide6.QtCore import QSize, QStringListModel, Qt, QTimer
@@ -135,6 +136,10 @@ class JointMapDialog(QDialog):
         box.setContentsMargins(0, 0, 8, 0)
         self.doubtful = QCheckBox("Only what is not sure or not mapped", page)
         self.doubtful.toggled.connect(self._narrow)
+        self.contacts = QCheckBox("Hands touch their own body where they did", page)
+        self.contacts.setToolTip("On the face, the chest, the thighs, the other arm and hand")
+        self.contacts.setChecked(self.map.contacts)
+        self.contacts.toggled.connect(self._touch)
         self.tree = make_widget(QTreeWidget, page, rootIsDecorated=False, uniformRowHeights=True)
         self.tree.setHeaderLabels(["Joint of the clips", "Moves", "As", "Sure", "Why"])
         self.tree.setAccessibleName("Joint map")
@@ -158,6 +163,7 @@ class JointMapDialog(QDialog):
         self._filling.timeout.connect(self._more_combos)
         self._filling.start()
         box.addWidget(self.doubtful)
+        box.addWidget(self.contacts)
         box.addWidget(self.tree, 1)
         return page
 
@@ -268,6 +274,11 @@ class JointMapDialog(QDialog):
         for name, item in self.rows.items():
             pair = self.map.of(name)
             item.setHidden(self.doubtful.isChecked() and pair is not None and pair.sure >= 0.9)
+
+    def _touch(self, contacts: bool) -> None:
+        self.map = replace(self.map, contacts=contacts)
+        self._before = ("", self.map)
+        self._play()
 
     def _mark(self, *_: object) -> None:
         item = self.tree.currentItem()
