@@ -39,6 +39,11 @@ BROAD = 0.11  # of all its height: half of shoulders broader than this say nothi
 EYES = 0.045  # of all its height: how far a figure's eyes are ahead of its skull's middle
 HAND = 0.3  # of the arm's length: a hand whose fingers have no joints
 BENT = 0.93  # of the arm: from here on it stretches ever less for a contact
+HANGS = 40.0  # degrees from straight down: arms that hang less far out touch neither trunk nor thighs
+STRAIGHT = (
+    0.8,
+    0.9,
+)  # of the arm, from shoulder to wrist: from here to there on an arm that points down hangs
 ALONG = (0.0, 0.5, 0.85)  # of the hand, from wrist to fingertip: what touches
 
 
@@ -155,15 +160,28 @@ class OwnContact:
             arms = (f"{other}_{kind}" for kind in ("upper_arm", "lower_arm", "hand"))
             self.near[side] = np.zeros(len(places))
             self.places[side] = []
+            hanging = self._hanging(side)
             for part in ("head", "trunk", "left_thigh", "right_thigh", *arms):
                 for n, point in enumerate(_touching(side, self.points)):
                     share, beside, gap = self._beside(part, point)
                     near = faded(np.abs(gap) / (NEAR * self.source.arm))
+                    if part == "trunk" or part.endswith("_thigh"):
+                        near = near * (1 - hanging)
                     if near.any():
                         self.near[side] = np.maximum(self.near[side], near)
                         close = np.maximum(gap, 0) / (CLOSE * self.source.arm)
                         weight = (near / (1 + close)) ** 4
                         self.places[side].append(_Place(part, n, share, beside, near, weight))
+
+    def _hanging(self, side: str) -> Array:
+        """Return 0..1 `[F]`, how far an arm only hangs: then its hand is beside the body, and not on it."""
+        arm = self.points[f"{side}_hand"] - self.points[f"{side}_upper_arm"]
+        far = np.linalg.norm(arm, axis=-1)
+        down = np.degrees(np.arccos(np.clip(-arm[:, 1] / np.maximum(far, 1e-9), -1, 1)))
+        least, most = STRAIGHT
+        return np.asarray(
+            faded(down / HANGS) * np.clip((far / self.source.arm - least) / (most - least), 0, 1)
+        )
 
     def _beside(self, part: str, point: Array) -> tuple[Array, Array, Array]:
         """Return how far along a part a point is, 0..1, what way beside it, and how far from its surface."""

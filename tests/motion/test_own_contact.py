@@ -59,6 +59,13 @@ def test_a_touch_is_nearer_its_place_on_a_broader_figure(name: str) -> None:
     assert np.percentile(on[0], 95) < 0.7 * np.percentile(off[0], 95)
 
 
+def test_hands_that_only_hang_beside_the_thighs_stay_where_they_are() -> None:
+    clip = ours("hands_at_sides__stance").trimmed(0, 40)
+    for target in (variant(clip.skeleton), variant(clip.skeleton, 1.1, 0.8, 1.1)):
+        off, on = both(clip, target)
+        assert np.array_equal(off.rotations, on.rotations)
+
+
 def test_onto_itself_nothing_moves() -> None:
     clip = ours("hands_clasped__stance")
     off, on = both(clip, clip.skeleton)
