@@ -215,3 +215,7 @@ def test_clips_of_another_skeleton_are_left_out_or_retargeted_as_asked(
     assert "another character" not in capsys.readouterr().err
     project = open_project(out.with_name("p.metagraph.yaml")).project
     assert sum(bool(e.brought_from) for e in project.clips.values()) == 6
+    assert [x.contacts for x in project.joint_maps.values()] == [True]
+    main(["label", str(folder), "-o", str(out), "--no-pictures", "--retarget", "--no-contacts"])
+    project = open_project(out.with_name("p.metagraph.yaml")).project
+    assert [x.contacts for x in project.joint_maps.values()] == [False]

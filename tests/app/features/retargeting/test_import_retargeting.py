@@ -190,9 +190,12 @@ def test_a_map_is_corrected_later_and_its_clips_are_retargeted_again_in_one_step
     (dialog,) = shown()
     assert dialog.headline.text() == "2 clips were retargeted" and dialog.leave.text() == "Keep as it is"
     choose(drive, dialog, "Neck", None)
+    assert dialog.contacts.isChecked()
+    QTest.mouseClick(dialog.contacts, Qt.MouseButton.LeftButton, pos=QPoint(8, dialog.contacts.height() // 2))
     press(dialog.go)
     drive.wait(lambda: drive.document.project is not before)
     after = drive.document.project
+    assert not next(iter(after.joint_maps.values())).contacts
     assert (
         list(after.clips) == list(before.clips) and next(iter(after.joint_maps.values())).of("Neck") is None
     )
