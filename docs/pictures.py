@@ -47,8 +47,8 @@ def window(theme: str = "dark") -> Any:
     return out
 
 
-def shoot(out: Any, name: str) -> None:
-    out.window.grab().save(str(ROOT / "docs" / name))
+def shoot(shown: Any, name: str) -> None:
+    shown.grab().save(str(ROOT / "docs" / name))
     print(f"docs/{name}")
 
 
@@ -77,7 +77,7 @@ def finished(name: str, theme: str, machine: bool, action: str) -> None:
     cue = next((c for c in cues if c.action.kind == "gesture" and c.end - c.start > 2), cues[0])
     out.session.transport.seek((cue.start + cue.end) / 2)
     wait(4000)
-    shoot(out, name)
+    shoot(out.window, name)
     close(out)
 
 
@@ -121,7 +121,7 @@ def half_labelled() -> None:
     out.library.chips["unlabelled"].click()
     out.show("problems")
     wait(9000)
-    shoot(out, "practice.png")
+    shoot(out.window, "practice.png")
     close(out)
 
 
@@ -233,7 +233,7 @@ def conversation() -> None:
     session.transport.set_playing(False)
     session.transport.seek(9.7)
     wait(2500)
-    shoot(out, "conversation.png")
+    shoot(out.window, "conversation.png")
     close(out)
 
 
@@ -305,7 +305,7 @@ def performance() -> None:
 def nothing() -> None:
     """The window before anything is in it."""
     out = window()
-    shoot(out, "empty.png")
+    shoot(out.window, "empty.png")
     close(out)
 
 
