@@ -169,15 +169,20 @@ class Reviewing(QObject):
         return taken
 
     def _look_for_parted(self) -> None:
-        """Look for stances that no clip leads to or back from, on a thread."""
-        project = self.document.project
+        """Look for stances that no clip leads to or back from, nor would with the rest placed, on a thread."""
+        project, review, rest = self.document.project, self.review, self.waiting()
 
-        def done(found: list[str]) -> None:
-            if project is self.document.project and tuple(found) != self.parted:
-                self.parted = tuple(found)
+        def found(_: object) -> list[str]:
+            now = missing(project)
+            then = missing(review.take(project, rest).project) if now and rest else now
+            return [stance for stance in now if stance in then]
+
+        def done(stances: list[str]) -> None:
+            if project is self.document.project and tuple(stances) != self.parted:
+                self.parted = tuple(stances)
                 self.changed.emit()
 
-        self.jobs.start("parted stances", lambda _: missing(project), done, self._failed, quick=True)
+        self.jobs.start("parted stances", found, done, self._failed, quick=True)
 
     def bridge(self) -> tuple[str, ...]:
         """Join the stances that no clip leads to or from by blending, as one undo step; return what was made,

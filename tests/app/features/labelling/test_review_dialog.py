@@ -420,6 +420,21 @@ def test_when_all_but_those_left_aside_is_placed_that_is_said(toys):
     dialog.close()
 
 
+def test_a_stance_that_a_clip_leads_to_which_is_not_placed_yet_is_not_told(toys):
+    drive = toys
+    dialog = made_of(drive, "standing talker")
+    found = dialog.work.review.found.proposals
+    rest = [c for c, p in found.items() if p.kind.value == "transition"]
+    dialog.work.place([c for c in found if c not in rest], "All but transitions", None)
+    drive.wait(lambda: bool(dialog.work.parted))
+    now = missing(drive.document.project)
+    assert rest and len(dialog.work.parted) < len(now) and set(dialog.work.parted) < set(now)
+    dialog.work.place(rest, "The rest", None)
+    drive.settle()
+    assert list(dialog.work.parted) == missing(drive.document.project)
+    dialog.close()
+
+
 def test_stances_no_clip_leads_to_are_told_after_all_were_accepted_and_bridged_with_a_press(toys):
     drive = toys
     dialog = made_of(drive, "standing talker")
