@@ -335,7 +335,7 @@ def _ends(
             yield at(
                 "warning",
                 "far-start" if gap.edge == "begins" else "far-end",
-                f"{gap.edge} {gap.metres * 100:.0f} cm from stance '{_name(project, gap.stance)}'",
+                end_gaps.gap_words(gap, _name(project, gap.stance)),
                 "Trim it, lengthen the blend, or place it on the stance it fits.",
             )
 

@@ -50,6 +50,11 @@ class Gap:
         return self.blend >= LONG and not self.far
 
 
+def gap_words(gap: Gap, stance: str) -> str:
+    """Say a gap, in the words of every place that warns of one. stance: its name."""
+    return f"{gap.edge} {gap.metres * 100:.0f} cm from stance '{stance}'"
+
+
 def hidden(height: float, blend: float) -> float:
     """Return how many metres a blend of some seconds covers so that nothing pops. height: of the skeleton."""
     return max(FAR, UNHURRIED * blend if blend >= LONG else 0.0) * height / TALL

@@ -169,7 +169,7 @@ class Reviewing(QObject):
         return taken
 
     def _look_for_parted(self) -> None:
-        """Look for stances that no clip leads to or back from, nor would with the rest placed, on a thread."""
+        """Look for stances that no clip leads to or from, even with the rest placed; on a thread."""
         project, review, rest = self.document.project, self.review, self.waiting()
 
         def found(_: object) -> list[str]:

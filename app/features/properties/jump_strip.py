@@ -36,12 +36,14 @@ class Seen:
         self.loops, self.times, self.proposed = action.kind == "stance", curves.times, curves.proposed
         self.enter = np.array(shown(curves.enter, t.blend_in))
         self.leave = np.array(shown(curves.leave, t.blend_in if self.loops else t.blend_out))
-        if curves.gaps is not None:  # what a long blend covers at an unhurried pace does not show
+        if curves.gaps is not None:  # a long blend covers an unhurried pace, none covers what is far
             for cost, gap, blend in zip(
                 (self.enter, self.leave), curves.gaps, (t.blend_in, t.blend_out), strict=True
             ):
                 covered = end_gaps.slow(gap, curves.height, blend)
                 cost[covered] = np.minimum(cost[covered], 1.0)
+                far = np.isfinite(gap) & (gap > end_gaps.hidden(curves.height, blend))
+                cost[far] = np.maximum(cost[far], gap[far] / end_gaps.hidden(curves.height, blend))
         if self.loops:
             self.pivot = 0
         elif action.kind == "transition":

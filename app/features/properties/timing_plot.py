@@ -18,7 +18,7 @@ from app.look.theme import Theme, theme
 from app.project.document import Document
 from app.stage.compatibility_state import Compatibility, proposed_fields
 from app.stage.session import Session
-from metagraph.graph import anatomy, edits
+from metagraph.graph import anatomy, edits, end_gaps
 from metagraph.graph.model import Action, Project
 from metagraph.motion import features
 from metagraph.playback.phases import phases
@@ -33,6 +33,7 @@ WORDS = {
     "stroke": "stroke",
 }
 PHASES = ("ready", "hold", "relax")  # handles of a gesture's phases
+MOMENTS = ("earliest_exit", "ready", "stroke", "stroke_end", "relax")  # of Timing, seconds of the clip
 BANDS = ("prepare", "stroke", "hold", "retract")
 SNAP = 7  # pixels within which a handle comes to rest at a moment that does not jump
 
@@ -90,10 +91,12 @@ def moved(project: Project, action: Action, handle: str, seconds: float) -> dict
     shortest = 1 / entry.fps
     at = round(min(max(0.0, seconds), entry.duration), 3)
     if handle == "start":
-        return {"start": min(at, round(end - shortest, 3))}
+        at = min(at, round(end - shortest, 3))
+        return {"start": at, **_within(action, at, end)}
     if handle == "end":
         at = max(at, round(start + shortest, 3))
-        return {"end": None if at >= entry.duration - shortest / 2 else at}
+        whole = at >= entry.duration - shortest / 2
+        return {"end": None if whole else at, **_within(action, start, entry.duration if whole else at)}
     if handle == "in":
         return {"blend_in": round(min(max(0.0, at - start), end - start), 3)}
     if handle == "out":
@@ -107,6 +110,13 @@ def moved(project: Project, action: Action, handle: str, seconds: float) -> dict
         fields = dict(zip(PHASES, ("ready", "stroke_end", "relax"), strict=True))
         return {fields[handle]: round(min(max(at, order[place - 1]), order[place + 1]), 3)}
     return {"stroke": min(max(at, start), end)}
+
+
+def _within(action: Action, start: float, end: float) -> dict[str, Any]:
+    """Return the moments that have to follow when an action is from start to end: those outside."""
+    now = {name: getattr(action.timing, name) for name in MOMENTS}
+    then = {name: min(max(at, start), end) for name, at in now.items() if at is not None}
+    return {name: at for name, at in then.items() if at != now[name]}
 
 
 FIELDS = {
@@ -134,15 +144,33 @@ def retimed(project: Project, actions: Iterable[str], name: str, value: float) -
     return edits.update_each(project, changes)
 
 
-def verdict(costs: Mapping[str, float]) -> str:
-    """Say what beginning and ending cost: "Begins without a jump, ends 2.7 times what shows as one"."""
-    if max(costs.values()) <= 1:
+def verdict(costs: Mapping[str, float], far: Mapping[str, str] | None = None) -> str:
+    """Say what beginning and ending cost: "Begins without a jump, ends 2.7 times what shows as one". far: of
+    those that begin or end too far from their stance, what the problems say of it.
+    """
+    far = far or {}
+    if max(costs.values()) <= 1 and not far:
         return f"{' and '.join(costs)} without a jump"
     told: list[str] = []
     for what, cost in costs.items():
-        of = "one" if told else "a jump"
-        told.append(f"{what} without {of}" if cost <= 1 else f"{what} {cost:.1f} times what shows as {of}")
+        of = "one" if any("jump" in words for words in told) else "a jump"
+        if what in far:
+            told.append(far[what][:1].upper() + far[what][1:] if not told else far[what])
+        else:
+            told.append(
+                f"{what} without {of}" if cost <= 1 else f"{what} {cost:.1f} times what shows as {of}"
+            )
     return ", ".join(told)
+
+
+def far_ends(project: Project, action: Action) -> dict[str, str]:
+    """Return which ends of an action are too far from their stance, by how `verdict` calls them, in words."""
+    graph = project.graphs[action.layer]
+    return {
+        "Begins" if gap.edge == "begins" else "ends": end_gaps.gap_words(gap, graph.stances[gap.stance].name)
+        for gap in end_gaps.gaps(project, graph, action)
+        if gap.far and gap.stance in graph.stances
+    }
 
 
 def times_words(seen: Seen) -> str:
@@ -244,8 +272,10 @@ class TimingPlot(QWidget):
         start, end = project.span(action)
         first, last = seen.cost("start", start), seen.cost("end", end)
         costs = {"Repeats": last} if seen.loops else {"Begins": first, "ends": last}
-        self.verdict.setText(verdict(costs))
-        self.verdict.setStyleSheet(f"color: {t.dim if max(costs.values()) <= 1 else t.warning}")
+        far = far_ends(project, action)
+        self.verdict.setText(verdict(costs, far))
+        fine = max(costs.values()) <= 1 and not far
+        self.verdict.setStyleSheet(f"color: {t.dim if fine else t.warning}")
         self.use.setToolTip(f"{times_words(seen)}: it {seen.proposed.reason}")
 
     def _proposed(self) -> dict[str, Any]:

@@ -33,7 +33,7 @@ def seen_of(toy, project, name):
 def test_a_gesture_fits_at_its_ends_and_not_in_its_middle(toy, wide):
     _, seen = seen_of(toy, wide, "wide")
     first, *_, last = seen.spans()
-    assert first[0] == 0 and 0.2 < first[1] < 1.2 and 1.4 < last[0] < 2.4 and last[1] == pytest.approx(2.4)
+    assert first[0] == 0 and 0.1 < first[1] < 1.2 and 1.4 < last[0] < 2.4 and last[1] == pytest.approx(2.4)
     assert seen.cost("end", 1.5) > 1 > seen.cost("end", 2.4)
     assert len(seen.curve()) == len(seen.times) and np.isfinite(seen.curve()).all()
 
@@ -92,6 +92,21 @@ def test_a_loop_shows_its_seam(toy, wide):
 )
 def test_the_verdict_is_one_sentence(costs, words):
     assert verdict(costs) == words
+
+
+def test_what_the_problems_call_far_is_never_said_to_be_without_a_jump(toy, wide):
+    from app.features.properties.timing_plot import far_ends
+    from metagraph.graph.check import check
+
+    action = wide.action(toy.id(wide, "wide"))
+    far = far_ends(wide, action)
+    told = [p.message for p in check(wide) if p.code in ("far-start", "far-end") and p.action == action.id]
+    assert far and len(told) == len(far) and all(any(w in m for m in told) for w in far.values())
+    words = verdict({"Begins": 0.1, "ends": 0.2}, far)
+    assert "cm from stance 'rest'" in words and words[0].isupper()
+    assert verdict({"Begins": 0.1, "ends": 3.0}, {"Begins": "begins 20 cm from stance 'x'"}) == (
+        "Begins 20 cm from stance 'x', ends 3.0 times what shows as a jump"
+    )
 
 
 @pytest.fixture
@@ -158,7 +173,7 @@ def test_alt_leaves_the_marks_out(timed, monkeypatch):
 def test_proposed_times_are_taken_over_with_a_click_in_one_step(timed, toy, wide):
     drive = timed
     ident, plot = toy.id(wide, "wide"), drive.properties.plot
-    assert "times what shows as one" in plot.verdict.text()
+    assert "ends 94 cm from stance 'rest'" in plot.verdict.text()
     assert plot.strip.tip(QPointF(200, 20)).startswith("At ")
     proposed = plot.strip.seen.proposed
     QTest.mouseClick(plot.use, Qt.MouseButton.LeftButton)

@@ -69,6 +69,13 @@ def test_a_handle_stays_in_its_clip_and_in_order(project, wave, handle, seconds,
     assert moved(project, wave, handle, seconds) == fields
 
 
+def test_moments_that_would_lie_outside_follow_a_dragged_end(project, wave):
+    timing = replace(wave.timing, earliest_exit=0.9, stroke=0.3)
+    action = replace(wave, timing=timing)
+    assert moved(project, action, "end", 0.6) == {"end": 0.6, "earliest_exit": 0.6}
+    assert moved(project, action, "start", 0.5) == {"start": 0.5, "stroke": 0.5}
+
+
 @settings(max_examples=150, deadline=None)
 @given(
     handle=st.sampled_from(HANDLES),
