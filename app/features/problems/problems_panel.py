@@ -9,7 +9,9 @@ from collections.abc import Mapping, Sequence
 from PySide6.QtCore import (
     QAbstractItemModel,
     QEvent,
+    QLocale,
     QModelIndex,
+    QObject,
     QPersistentModelIndex,
     QPoint,
     QRect,
@@ -28,6 +30,7 @@ from PySide6.QtWidgets import (
     QStyle,
     QStyledItemDelegate,
     QStyleOptionViewItem,
+    QTreeView,
     QTreeWidget,
     QTreeWidgetItem,
     QVBoxLayout,
@@ -43,6 +46,9 @@ from metagraph.graph.problem import Problem
 
 MOST = 500  # rows; a project with more has one cause, seen long before
 FIX = 3  # the column of buttons
+WHERE = 170  # pixels wide, the column of places
+ICON, MARGIN = 26, 12  # pixels beside the words of a row: of its icon, of its edges
+SHARE = 0.55  # of the rest, that the problem itself has; what to do has the other part
 ROLE = Qt.ItemDataRole.UserRole
 
 
@@ -105,6 +111,28 @@ class FixButtons(QStyledItemDelegate):
         return super().editorEvent(event, model, option, index)
 
 
+def breakable(words: str) -> str:
+    """Return words whose names may go on in another line after each underscore."""
+    return words.replace("_", "_\u200b")
+
+
+class WrappedWords(QStyledItemDelegate):
+    """Makes rows as high as their words need in the width of their column."""
+
+    def sizeHint(self, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex) -> QSize:
+        found, tree = super().sizeHint(option, index), self.parent()
+        assert isinstance(tree, QTreeView)
+        icon = ICON if index.data(Qt.ItemDataRole.DecorationRole) is not None else 0
+        wide = max(40, tree.columnWidth(index.column()) - icon - MARGIN)
+        words = option.fontMetrics.boundingRect(
+            0, 0, wide, 10_000, Qt.TextFlag.TextWordWrap, breakable(str(index.data()))
+        )
+        return QSize(found.width(), max(24, words.height() + 8))
+
+    def displayText(self, value: object, locale: QLocale | QLocale.Language) -> str:
+        return breakable(str(value))
+
+
 class ProblemsPanel(QWidget):
     """mend_wanted: some `Fix`es were asked for."""
 
@@ -120,10 +148,14 @@ class ProblemsPanel(QWidget):
         self.tree.setColumnCount(4)
         self.tree.setHeaderLabels(["Problem", "Where", "What to do", ""])
         self.tree.setRootIsDecorated(False)
-        self.tree.setUniformRowHeights(True)
+        self.tree.setWordWrap(True)  # what to do is read whole, in as many lines as it takes
         self.tree.setAccessibleName("Problems")
         self.tree.header().setSectionResizeMode(QHeaderView.ResizeMode.Interactive)
+        self.tree.header().setStretchLastSection(False)
+        self.tree.header().sectionResized.connect(lambda *_: self.tree.scheduleDelayedItemsLayout())
+        self.tree.setItemDelegate(WrappedWords(self.tree))
         self.tree.setItemDelegateForColumn(FIX, FixButtons(self))
+        self.tree.viewport().installEventFilter(self)
         self.tree.setMouseTracking(True)
         self.tree.itemActivated.connect(self._go)
         self.tree.itemClicked.connect(self._go)
@@ -186,8 +218,7 @@ class ProblemsPanel(QWidget):
                 item.setToolTip(FIX, fix.tip)
             item.setData(0, ROLE, problem)
             self.tree.addTopLevelItem(item)
-        for column, width in enumerate((560, 170, 380)):
-            self.tree.setColumnWidth(column, width)
+        self._share_out()
         each = (
             "state can be reached and left"
             if self.session.onstage.mode == "manual"
@@ -198,6 +229,21 @@ class ProblemsPanel(QWidget):
         count = len(self.fixable())
         self.foot.setVisible(count > 1)
         self.all.setText(f"Mend {many(count, 'problem')}")
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.Resize and watched is self.tree.viewport():
+            self._share_out()
+        return super().eventFilter(watched, event)
+
+    def _share_out(self) -> None:
+        """Give each column its width: buttons and places what they need, the words the rest."""
+        self.tree.resizeColumnToContents(FIX)
+        room = max(300, self.tree.viewport().width() - WHERE - self.tree.columnWidth(FIX))
+        widths = round(SHARE * room), WHERE, room - round(SHARE * room)
+        if widths == tuple(self.tree.columnWidth(column) for column in range(FIX)):
+            return
+        for column, width in enumerate(widths):
+            self.tree.setColumnWidth(column, width)
 
     def fixable(self) -> list[Fix]:
         """Return everything that can be mended with a press."""

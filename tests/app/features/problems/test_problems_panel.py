@@ -5,12 +5,13 @@ press.
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from app.features.problems.problems_panel import FIX
+from app.features.problems.problems_panel import FIX, breakable
 from app.stage.compatibility_state import judge, merged, told
 from app.stage.fixes import Fix, bridges_for
 from metagraph.graph import edits
@@ -18,6 +19,42 @@ from metagraph.graph.check import check
 from metagraph.graph.expand import reachable
 from metagraph.graph.model import Project
 from metagraph.graph.problem import Problem
+
+
+def lines_cut(tree) -> list[str]:
+    """The words of rows that are not painted whole, by the font and the room they have."""
+    out = []
+    for n in range(tree.topLevelItemCount()):
+        item = tree.topLevelItem(n)
+        for column in range(3):
+            rect = tree.visualRect(tree.indexFromItem(item, column))
+            wide = rect.width() - (26 if column == 0 else 0) - 8
+            words = tree.fontMetrics().boundingRect(
+                0, 0, wide, 10_000, Qt.TextFlag.TextWordWrap, breakable(item.text(column))
+            )
+            if words.height() > rect.height() or words.width() > wide:
+                out.append(item.text(column))
+    return out
+
+
+@pytest.mark.window
+@pytest.mark.parametrize("width", [560, 900, 1600])
+def test_what_is_wrong_and_what_to_do_are_read_whole_at_any_width(toys, toy, width):
+    panel = toys.problems_panel
+    toys.show("problems")
+    long = Problem(
+        "warning",
+        "far-start",
+        "'on_hips__to__hands_at_sides' begins 22 cm from stance 'hands at sides'",
+        remedy="Trim it, lengthen the blend, or place it on the stance it fits.",
+        layer="arms",
+    )
+    panel.show_problems((long, replace(long, severity="hint", message="short")))
+    panel.tree.setFixedWidth(width)
+    toys.pause(50)
+    assert panel.tree.viewport().width() > 300 and lines_cut(panel.tree) == []
+    panel.tree.setMinimumWidth(0)
+    panel.tree.setMaximumWidth(16_777_215)
 
 
 @pytest.fixture(scope="module")
