@@ -213,8 +213,10 @@ def advance(words: str, font: str) -> float:
 
 
 @lru_cache(maxsize=8192)
-def elided(text: str, font: str, width: int) -> str:
-    return _measure(font).elidedText(text, Qt.TextElideMode.ElideRight, width)
+def elided(text: str, font: str, width: int, middle: bool = False) -> str:
+    """Return as much of a text as there is room for. middle: leave that out, and not the end of a name."""
+    mode = Qt.TextElideMode.ElideMiddle if middle else Qt.TextElideMode.ElideRight
+    return _measure(font).elidedText(text, mode, width)
 
 
 @lru_cache(maxsize=8)

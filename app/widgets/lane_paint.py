@@ -11,11 +11,12 @@ from dataclasses import dataclass
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
+from app.look.plural import short
 from app.look.theme import KIND_MARKS, Theme
 from app.stage.playback_source import Shown
 from app.widgets.lane_geometry import LEFT, RULER, TITLES, Mark, Scale, elided, lanes, rows
 from app.widgets.request_menu import STAGE
-from metagraph.graph.model import LAYERS, Layer
+from metagraph.graph.model import LAYERS, Action, Layer, Project
 
 INK = "#17181b"  # on the kinds' fills
 PLAIN = 5.0  # pixels up to which a bar is a plain stroke without words
@@ -153,12 +154,30 @@ def _layer(painter: QPainter, t: Theme, scene: LaneScene, layer: Layer) -> None:
             break
         left = scale.x(cue.start)
         rect = QRectF(left, area.top(), max(3.0, scale.x(cue.end) - left - 1), area.height())
-        words = f"{KIND_MARKS[cue.action.kind]} {cue.action.name}"
-        _bar(painter, t, rect, t.fill(cue.action.kind), words, INK, cue.action.id in scene.actions)
+        words = f"{KIND_MARKS[cue.action.kind]} {cue_words(shown.project, cue.action)}"
+        selected = cue.action.id in scene.actions
+        _bar(painter, t, rect, t.fill(cue.action.kind), words, INK, selected, middle=True)
+
+
+def cue_words(project: Project, action: Action) -> str:
+    """Return what tells an action from the others of its stance, which stands on the band behind it: without
+    the number of the take.
+    """
+    stance = project.stance(action.stance)
+    words = short(action.name, stance.name) if stance is not None else action.name
+    words = words.replace("_", " ").strip()
+    return words.rstrip("0123456789()").rstrip(" .-#") or words
 
 
 def _bar(
-    painter: QPainter, t: Theme, rect: QRectF, fill: QColor, words: str, ink: str, selected: bool
+    painter: QPainter,
+    t: Theme,
+    rect: QRectF,
+    fill: QColor,
+    words: str,
+    ink: str,
+    selected: bool,
+    middle: bool = False,
 ) -> None:
     if rect.width() <= PLAIN and not selected:
         painter.fillRect(rect, fill)
@@ -170,14 +189,14 @@ def _bar(
     inner = QRectF(left + 7, rect.top(), rect.right() - left - 10, rect.height())
     if inner.width() > 10 and words:
         painter.setPen(QColor(ink))
-        painter.drawText(inner, MIDDLE, _fitting(painter, words, inner.width()))
+        painter.drawText(inner, MIDDLE, _fitting(painter, words, inner.width(), middle))
 
 
-def _fitting(painter: QPainter, words: str, width: float) -> str:
+def _fitting(painter: QPainter, words: str, width: float, middle: bool = False) -> str:
     """Return as much of the words as there is room for; where there is none to speak of, the sign in front of
     them alone.
     """
-    out = elided(words, painter.font().toString(), int(width))
+    out = elided(words, painter.font().toString(), int(width), middle)
     return out if len(out) > 3 or out == words else words[:1]
 
 

@@ -103,8 +103,9 @@ def _box(
     painter.drawRoundedRect(rect.adjusted(width / 2, width / 2, -width / 2, -width / 2), RADIUS, RADIUS)
 
 
-def _elided(font: QFont, text: str, width: float) -> str:
-    return QFontMetricsF(font).elidedText(text, Qt.TextElideMode.ElideRight, width)
+def _elided(font: QFont, text: str, width: float, middle: bool = False) -> str:
+    mode = Qt.TextElideMode.ElideMiddle if middle else Qt.TextElideMode.ElideRight
+    return QFontMetricsF(font).elidedText(text, mode, width)
 
 
 def _curves(painter: QPainter, layout: Layout, look: GraphLook) -> None:
@@ -387,7 +388,7 @@ def _row(
     painter.drawText(
         QRectF(left, rect.top(), room, rect.height()),
         Qt.AlignmentFlag.AlignVCenter,
-        _elided(font, text, room),
+        _elided(font, text, room, middle=True),  # actions of a stance differ at their ends
     )
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(QColor(t.line))

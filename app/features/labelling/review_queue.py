@@ -54,6 +54,7 @@ class ReviewQueue(QWidget):
         self.list.setRootIsDecorated(False)
         self.list.setUniformRowHeights(True)
         self.list.setHeaderHidden(True)
+        self.list.setTextElideMode(Qt.TextElideMode.ElideMiddle)  # names of one set differ at their ends
         self.list.setColumnCount(2)
         self.list.setAccessibleName("Clips to look at")
         header = self.list.header()

@@ -18,6 +18,12 @@ from app.look.plural import many, short
         ("shrug", "idle", "shrug"),
         ("idle__", "idle", "idle__"),
         ("Idle - wave", "idle", "wave"),
+        ("ChrBrad@Idle01_Scratch01", "idle 1", "Scratch01"),
+        ("ChrBrad@Idle01_ToIdle03", "idle 1", "ToIdle03"),
+        ("ChrBrad@Idle10_Scratch01", "idle 1", "ChrBrad@Idle10_Scratch01"),
+        ("Hero|立ち01_頷く", "立ち 1", "頷く"),
+        ("wave_idle_left", "idle", "wave_idle_left"),
+        ("hands_at_sides__shrug", "", "hands_at_sides__shrug"),
     ],
 )
 def test_a_stances_name_in_front_of_its_actions_is_left_out(name, stance, expected):
