@@ -146,7 +146,7 @@ def requests() -> None:
         a.Play(action="shrug_bt_01", at=11.5),
         a.Go(stance="weight left", at=7.0),
     ):
-        stage.ask(ask)
+        stage.requests.ask(ask)
     session.onstage.select_requests(())
     session.transport.seek(2.0)
     wait(4000)
@@ -255,7 +255,7 @@ def motion_graph() -> None:
         dialog.count()
         wait(60000, lambda: not dialog.stop.isVisible())
         dialog.wishes.speech.setCurrentIndex(0)
-        dialog.find()
+        dialog.find_motion()
         wait(60000, lambda: not dialog.stop.isVisible())
         wait(1500)
         shoot(dialog, "motion-graph.png")
