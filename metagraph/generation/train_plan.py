@@ -1,4 +1,4 @@
-"""What a training is asked to do, and the folder that it works in: plan, takes and checkpoints. No torch here:
+"""What a training is asked to do, and the folder it works in: plan, takes, checkpoints. No torch here:
 the window and the command line make plans, the training reads them.
 """
 
@@ -17,8 +17,8 @@ from msgspec import Meta, Struct
 
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
-from metagraph.generation.networks import Kind, Size, Sizes, sizes_of
 from metagraph.generation.features import MELS
+from metagraph.generation.networks import Kind, Size, Sizes, sizes_of
 from metagraph.generation.poses import PoseRig
 from metagraph.generation.stored import SkeletonCard, TakeCard, skeleton_card
 from metagraph.generation.takes import Marks, Source, Take, check_split
@@ -93,7 +93,15 @@ class TrainingPlan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     def fingerprint(self) -> str:
         """Return what is the same for plans that can go on from each other's checkpoints."""
         free = msgspec.structs.replace(
-            self, minutes=0.0, seconds=0.0, steps=0, threads=0, device="cpu", checkpoint=1.0, judged=1.0, out=""
+            self,
+            minutes=0.0,
+            seconds=0.0,
+            steps=0,
+            threads=0,
+            device="cpu",
+            checkpoint=1.0,
+            judged=1.0,
+            out="",
         )
         return sha256(msgspec.json.encode(free)).hexdigest()
 

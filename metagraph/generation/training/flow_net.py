@@ -153,9 +153,7 @@ class Flow(nn.Module):
             total = total + norm.logs.sum() + step.linear.log_s.sum() + torch.log(scale).sum(-1)
         return z, total
 
-    def inverse(
-        self, noise: Tensor, context: Tensor, states: States | None = None
-    ) -> tuple[Tensor, States]:
+    def inverse(self, noise: Tensor, context: Tensor, states: States | None = None) -> tuple[Tensor, States]:
         """Return codes `[N, T, D]` and the states after them. states: None at a sequence's start."""
         z = noise
         after: States = []
@@ -245,5 +243,3 @@ class CvaeNet(ControlNet):
         """Return poses `[N, T, X]`."""
         hidden, _ = self.decoder(torch.cat([codes, context], -1))
         return self.decoder_out(self.drop(hidden))
-
-

@@ -13,7 +13,7 @@ from torch import Tensor, nn
 from torch.nn import functional as F
 
 from metagraph.generation import vae
-from metagraph.generation.networks import CvaeSizes, FlowSizes, MatchingSizes, Sizes
+from metagraph.generation.networks import CvaeSizes, MatchingSizes, Sizes
 from metagraph.generation.poses import NUMBERS
 from metagraph.generation.train_plan import Loss, Settings
 from metagraph.generation.training.data import Corpus, stretches
@@ -51,6 +51,9 @@ class Objective(nn.Module, ABC):
     def begin(self, corpus: Corpus, chance: torch.Generator) -> None:
         """Compute what is computed of the data."""
 
+    def resume(self, corpus: Corpus) -> None:
+        """Compute what is not kept, once weights are as they were."""
+
     @abstractmethod
     def loss(self, corpus: Corpus, chance: torch.Generator) -> tuple[Tensor, dict[str, float]]:
         """Return what is made small of one batch, and numbers to show."""
@@ -86,8 +89,7 @@ class FlowObjective(Objective):
         self.deviation = 1.0  # of the code before it is whitened, to be watched
 
     def begin(self, corpus: Corpus, chance: torch.Generator) -> None:
-        self.length = corpus.longest_crop(self.settings.frames)
-        self.length -= self.length % self.sizes.span
+        self.resume(corpus)
         if self.sizes.code == "pca":
             parts = vae.principal(stretches(corpus, self.sizes.span), self.sizes.dims, "code")
             load(self.net, weights_of(self.net) | parts)
@@ -98,6 +100,10 @@ class FlowObjective(Objective):
                 self.net.code.mean.copy_(code.mean((0, 1)))
                 self.net.code.deviation.copy_(code.std((0, 1)) + 1e-6)
             self.net.flow(self._whitened(code), context, begin=True)
+
+    def resume(self, corpus: Corpus) -> None:
+        self.length = corpus.longest_crop(self.settings.frames)
+        self.length -= self.length % self.sizes.span
 
     def loss(self, corpus: Corpus, chance: torch.Generator) -> tuple[Tensor, dict[str, float]]:
         poses, context, heard, starts = self._batch(corpus, chance)
@@ -151,11 +157,11 @@ class FlowObjective(Objective):
     def _renormed(self, code: Tensor) -> Tensor:
         """Return a code by its batch's mean and variance, and keep the running ones."""
         mean, spread = code.mean((0, 1)), code.std((0, 1)) + 1e-6
+        self._now = mean, spread
         with torch.no_grad():
             kept = self.net.code
             kept.mean.lerp_(mean, RUNNING)
             kept.deviation.lerp_(spread, RUNNING)
-        self._now = mean, spread
         return (code - mean) / spread
 
     def _whitened(self, code: Tensor) -> Tensor:
@@ -181,6 +187,9 @@ class CvaeObjective(Objective):
         net.drop.p = 0.2
 
     def begin(self, corpus: Corpus, chance: torch.Generator) -> None:
+        self.resume(corpus)
+
+    def resume(self, corpus: Corpus) -> None:
         self.length = corpus.longest_crop(self.settings.frames)
 
     def loss(self, corpus: Corpus, chance: torch.Generator) -> tuple[Tensor, dict[str, float]]:
@@ -219,7 +228,7 @@ class MatchingObjective(Objective):
         self.resume(corpus)
 
     def resume(self, corpus: Corpus) -> None:
-        """Compute every frame's token once, and what components weigh."""
+        # Every frame's token once, and what components weigh.
         sizes, kept = self.sizes, self.net.tokens
         rows = corpus.poses.unfold(0, sizes.frames, 1).transpose(1, 2)
         with torch.no_grad():
