@@ -289,14 +289,13 @@ def mean_pose(true: Sequence[Performance]) -> list[Performance]:
 
 
 def mismatched(true: Sequence[Performance]) -> list[Performance]:
-    """Return recorded motion to other speech: the next take's, or of one alone that of half of its length
-    later.
+    """Return recorded motion to other speech: the next take's, half of its length later, since the next may be
+    the other side of the same conversation.
     """
     out = []
     for n, m in enumerate(true):
         other = true[(n + 1) % len(true)]
-        shift = len(m) // 2 if len(true) == 1 else 0
-        take = (np.arange(len(m)) + shift) % len(other)
+        take = (np.arange(len(m)) + len(m) // 2) % len(other)
         out.append(replace(m, landmarks=other.landmarks[take], poses=other.poses[take]))
     return out
 
