@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,17 @@ def arguments(parser: ArgumentParser) -> None:
         out.set_defaults(run=run)
         return out
 
+    from app.cli import generate_judging, generate_motion
+
+    new = action("sample", "make motion to speech", generate_motion.sample)
+    generate_motion.model_argument(new)
+    generate_motion.speech_arguments(new, needed=True)
+    new.add_argument("-o", "--out", type=Path, required=True, help="a .bvh or .glb file")
+    judged = action("evaluate", "judge models on takes they have not seen", generate_judging.evaluate)
+    generate_judging.arguments(judged)
+    pieces = action("cut", "make minutes of motion and cut clips of them", generate_motion.cut)
+    generate_motion.cut_arguments(pieces)
+    generate_motion.model_argument(action("info", "tell what a model is", generate_motion.info))
     made = action("planted", "make takes of which the truth is known, to try models on", planted)
     made.add_argument("-o", "--out", type=Path, required=True, help="a folder")
     made.add_argument("--count", type=int, default=25, help="conversations, two takes each (default: 25)")
@@ -37,21 +47,11 @@ def run(options: Namespace) -> int:
     return int(options.run(options))
 
 
-def telling(options: Namespace, what: str) -> Any:
-    """Return what tells how far the work is, on a terminal."""
-    show = sys.stderr.isatty() and not options.json
-
-    def progress(done: int, total: int) -> None:
-        if show:
-            print(f"\r{what}: {done:,} of {total:,} ", end="", file=sys.stderr, flush=True)
-
-    return progress
-
-
 def planted(options: Namespace) -> int:
     """Write planted takes."""
     from app.cli.command_output import opened, say
     from app.cli.demo_command import SAMPLE
+    from app.cli.generate_takes import telling
     from metagraph.generation.planted import Planted, write_planted
 
     own = options.project is None

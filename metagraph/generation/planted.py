@@ -22,6 +22,8 @@ from metagraph.formats.gltf_writer import write_glb
 from metagraph.generation.features import RATE
 from metagraph.generation.networks import FPS
 from metagraph.generation.planted_speech import SHORTEST, Spoken, converse
+from metagraph.generation.poses import PoseRig, poses_of
+from metagraph.generation.takes import Take
 from metagraph.graph.conversation import Conversation
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
@@ -31,6 +33,7 @@ from metagraph.speech.drive import drive
 
 MINUTES = 3.0
 MOST = 10_000  # conversations
+AGAIN = 1_000_003  # added to moves for what stands beside planted takes
 CARD = "planted.json"  # what a folder of planted takes was made as
 
 
@@ -94,6 +97,18 @@ def write_planted(
             progress(n, planted.count)
         made += _write(project, folder, talk_of, planted, n)
     return made
+
+
+def again(project: Project, planted: Planted, take: Take, rig: PoseRig) -> Take:
+    """Return a planted take performed anew, by chance of its own: what a perfect model might do. Raises
+    ValueError for a take that was not planted.
+    """
+    number, _, side = take.source.name.removeprefix("planted-").partition("_")
+    if not (number.isdigit() and side in ("1", "2") and 1 <= int(number) <= planted.count):
+        raise ValueError(f"'{take.source.name}' is none of the takes that were planted")
+    other = msgspec.structs.replace(planted, moves=planted.moves + AGAIN)
+    clip = performed(project, talk_of(other, int(number) - 1).conversation, int(side) - 1)
+    return replace(take, source=replace(take.source, start=0.0), poses=poses_of(rig, clip, FPS))
 
 
 def _write(
