@@ -49,7 +49,8 @@ MEANINGS = {
     "diversity": "mean distance of the landmarks between two takes to the same speech, cm",
 }
 _STYLE = """
-body { max-width: 1180px; } table { font-size: 12px; } td:first-child { min-width: 110px; } td .dim { font-size: 11px; }
+body { max-width: 1180px; } svg { max-width: 1000px; } .wide-table { overflow-x: auto; }
+table { font-size: 12px; } td:first-child { min-width: 110px; } td .dim { font-size: 11px; }
 .box polygon { stroke: var(--text); stroke-width: .5; } .box .median { stroke: var(--inside); stroke-width: 1.5; }
 .box .whisker { stroke: var(--dim); } .box .beyond { opacity: .5; }
 polyline { fill: none; stroke-width: .8; } .bones path { fill: none; stroke-width: .6; stroke-opacity: .12; }
@@ -150,19 +151,18 @@ def page(judged: Judged, told: dict[str, Any], notes: Sequence[str]) -> str:
 
 
 def table_of(rows: Sequence[Row]) -> str:
-    """Return the table as HTML."""
-    head = "".join(f"<th>{escape(n.replace('_', ' '))}</th>" for n in ("", *NAMES))
+    """Return the table as HTML: a measure a line, a system a column."""
+    head = "".join(f"<th>{escape(n)}</th>" for n in ("", *(row.name for row in rows), "perfect"))
     body = []
-    for row in rows:
-        cells = [f"<td>{escape(row.name)}</td>"]
-        for n in NAMES:
+    for n in NAMES:
+        cells = [f"<td>{escape(n.replace('_', ' '))}</td>"]
+        for row in rows:
             low, high = row.spread.get(n, (float("nan"), float("nan")))
             more = f"<br><span class='dim'>{_number(low)} to {_number(high)}</span>" if isfinite(low) else ""
             cells.append(f"<td>{_number(row.values.get(n))}{more}</td>")
-        body.append(f"<tr>{''.join(cells)}</tr>")
-    perfect = "".join(f"<td class='dim'>{PERFECT[n]}</td>" for n in NAMES)
-    last = f"<tr><td class='dim'>perfect</td>{perfect}</tr>"
-    return f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(body)}{last}</tbody></table>"
+        body.append(f"<tr>{''.join(cells)}<td class='dim'>{PERFECT[n]}</td></tr>")
+    table = f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(body)}</tbody></table>"
+    return f"<div class='wide-table'>{table}</div>"
 
 
 def _figure(svg: str, caption: str) -> str:

@@ -141,7 +141,14 @@ def judge(
     other = None
     if floor is not None:
         other = tuple(performance(rig, p, t) for p, t in zip(floor, takes, strict=True))
-    both = [true] if other is None else [true, other]
-    own = row("true", [true], true, draws=draws)
-    own = Row(own.name, {**own.values, "diversity": diversity(both)}, own.spread)
+    own = truth(true, other, draws)
     return Judged(true, other, made, (own, *table(made, true, other, draws)))
+
+
+def truth(true: Sequence[Performance], other: Sequence[Performance] | None, draws: int) -> Row:
+    """Return the row of recorded motion itself: what it has of its own, and how far two draws of it are
+    apart.
+    """
+    own = row("true", [true], true, draws=draws)
+    both = [true] if other is None else [true, other]
+    return Row(own.name, {**own.values, "diversity": diversity(both)}, own.spread)

@@ -21,7 +21,6 @@ Array = NDArray[Any]
 
 LONGEST = 300.0  # seconds that are drawn
 SYSTEMS = 5  # that have a colour of their own
-_TOLD = {"left": "l.", "right": "r."}
 _KIND = ("wrist", "elbow", "head nose", "sternum shoulder")  # landmarks of one colour
 _NAMES = ("wrists", "elbows", "head, nose", "sternum, shoulders")
 _BONES = ((0, 1), (0, 2), (1, 3), (3, 5), (2, 4), (4, 6), (0, 7), (7, 8))
@@ -78,7 +77,7 @@ def boxes(systems: Mapping[str, Array], unit: str) -> str:
     shown = {name: v for name, v in list(systems.items())[:SYSTEMS] if len(v) > 1}
     if not shown:
         return svg(40, [text(WIDTH / 2, 24, "nothing to draw", "dim", "middle")], "Nothing to draw")
-    top, bottom, height = 12, 260, 322
+    top, bottom, height = 12, 260, 330
     low = min(0.0, *(float(v.min()) for v in shown.values()))
     high = max(1.0, *(float(v.max()) for v in shown.values()))
     parts = _across(low, high, top, bottom, unit)
@@ -87,14 +86,15 @@ def boxes(systems: Mapping[str, Array], unit: str) -> str:
     for n, landmark in enumerate(LANDMARKS):
         middle = _LEFT + slot * (n + 0.5)
         side, _, part = landmark.rpartition("_")
-        parts.append(text(middle, bottom + 16, f"{_TOLD.get(side, '')} {part}".strip(), "dim", "middle"))
+        parts.append(text(middle, bottom + 16, part, "dim", "middle"))
+        parts.append(text(middle, bottom + 30, side, "dim", "middle"))
         for k, values in enumerate(shown.values()):
             x = middle + (k - (len(shown) - 1) / 2) * wide * 1.15
             parts.append(f"<g class='box s{k}'>{_box(values[:, n], x, wide, low, high, top, bottom)}</g>")
     at = float(_LEFT)
     for k, name in enumerate(shown):
-        parts.append(f"<rect class='s{k}' x='{number(at)}' y='{height - 22}' width='12' height='12'/>")
-        parts.append(text(at + 18, height - 12, name[:16], "dim", "start"))
+        parts.append(f"<rect class='s{k}' x='{number(at)}' y='{height - 18}' width='12' height='12'/>")
+        parts.append(text(at + 18, height - 8, name[:16], "dim", "start"))
         at += 116
     return svg(height, parts, f"Notched boxes of each landmark, {unit}")
 
