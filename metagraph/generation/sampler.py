@@ -94,7 +94,7 @@ class Sampler:
         """Return the poses that are ready, local rotations `[n, joints, 4]` of the rig's joints. audio: `[C,
         N]` at `features.RATE`; activity: of the next frames `[m, 4]`. Raises FeatureError.
         """
-        return self._go(self._features.push(audio, activity), False)
+        return self._turns(self.numbers(self._features.push(audio, activity)))
 
     def push_features(self, frames: Array) -> Array:
         """Return the poses that are ready, as `push`. frames: `[n, audio + 4]`, as `features.features` gives
@@ -104,9 +104,15 @@ class Sampler:
 
     def finish(self) -> Array:
         """Return the poses that are left, as though silence followed."""
-        return self._go(self._features.finish(), True)
+        return self._turns(self.numbers(self._features.finish(), True))
 
-    def _go(self, frames: Array, last: bool) -> Array:
+    def _turns(self, poses: Array) -> Array:
+        return decode(self.model.rig, poses)
+
+    def numbers(self, frames: Array, last: bool = False) -> Array:
+        """Return the poses that are ready as numbers `[n, X]`, not standardised, of the next features `[m,
+        audio + 4]`. last: silence follows, and all that is left is made.
+        """
         self._known += len(frames)
         if len(frames):
             self._heard = np.concatenate([self._heard, self.model.heard(frames)])
@@ -138,7 +144,15 @@ class Sampler:
         for n, weight in enumerate(self._weights):
             out += weight * poses[n : n + count]
         self._out = poses[count:]
-        return decode(self.model.rig, self.model.poses.undo(out))
+        return self.model.poses.undo(out)
+
+
+def poses_to(model: Model, features: Array, seed: int = 1, temperature: float = 1.0, **options: Any) -> Array:
+    """Return the poses `[T, X]`, not standardised, to a whole recording's features `[T, audio + 4]`. options:
+    as for `Sampler`.
+    """
+    sampler = Sampler(model, seed, temperature, **options)
+    return sampler.numbers(features, True)
 
 
 def whole(
