@@ -17,14 +17,19 @@ def arguments(parser: ArgumentParser) -> None:
         out.set_defaults(run=run)
         return out
 
-    from app.cli import generate_judging, generate_motion
+    from app.cli import generate_judging, generate_motion, generate_training
 
+    generate_training.arguments(action("train", "learn a model from takes", generate_training.train))
     new = action("sample", "make motion to speech", generate_motion.sample)
     generate_motion.model_argument(new)
     generate_motion.speech_arguments(new, needed=True)
     new.add_argument("-o", "--out", type=Path, required=True, help="a .bvh or .glb file")
     judged = action("evaluate", "judge models on takes they have not seen", generate_judging.evaluate)
     generate_judging.arguments(judged)
+    ablated = action(
+        "ablate", "train with one thing changed at a time, and compare", generate_training.ablate
+    )
+    generate_training.ablate_arguments(ablated)
     pieces = action("cut", "make minutes of motion and cut clips of them", generate_motion.cut)
     generate_motion.cut_arguments(pieces)
     generate_motion.model_argument(action("info", "tell what a model is", generate_motion.info))

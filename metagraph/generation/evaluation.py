@@ -9,16 +9,14 @@ from concurrent.futures import CancelledError
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.poses import PoseRig
-from metagraph.generation.sampler import Sampler
+from metagraph.generation.sampler import poses_to
 from metagraph.generation.statistics import DRAWS, Performance, Row, diversity, performance, row, table
 from metagraph.generation.stored import Model
 from metagraph.generation.takes import HELD, SplitError, Take, split
-from metagraph.motion import rotation
 
 Array = NDArray[Any]
 
@@ -53,19 +51,15 @@ def generated(model: Model, heard: Array, seed: int, number: int, manner: Manner
     """Return a model's poses `[T, X]`, not standardised, to features `[T, audio + 4]`. number: of the take, so
     that two takes of one seed have other chances.
     """
-    sampler = Sampler(
+    return poses_to(
         model,
+        heard,
         seed,
         manner.temperature,
         take=number,
         lookahead=manner.lookahead,
         guidance=manner.guidance,
     )
-    turns = np.concatenate([sampler.push_features(heard), sampler.finish()])
-    rig = model.rig
-    away = rotation.multiply(rotation.conjugate(rig.base[list(rig.joints)]), turns)
-    rows = rotation.to_matrix(away)[..., :2, :]
-    return np.asarray(rows.reshape(len(turns), rig.numbers), np.float32)
 
 
 def unseen(model: Model, takes: Sequence[Take]) -> tuple[tuple[Take, ...], tuple[str, ...]]:

@@ -96,12 +96,6 @@ class Sampler:
         """
         return self._turns(self.numbers(self._features.push(audio, activity)))
 
-    def push_features(self, frames: Array) -> Array:
-        """Return the poses that are ready, as `push`. frames: `[n, audio + 4]`, as `features.features` gives
-        them: a take's. Either these are pushed or sound, not both.
-        """
-        return self._go(np.asarray(frames, np.float32), False)
-
     def finish(self) -> Array:
         """Return the poses that are left, as though silence followed."""
         return self._turns(self.numbers(self._features.finish(), True))

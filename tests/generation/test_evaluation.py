@@ -6,8 +6,8 @@ from msgspec.structs import replace as changed
 
 from metagraph.generation.evaluation import Manner, for_all, generated, judge, unseen
 from metagraph.generation.features import RATE, conversation_activity, features, frames_of
-from metagraph.generation.poses import encode, poses_of
-from metagraph.generation.sampler import whole
+from metagraph.generation.poses import decode, encode, poses_of
+from metagraph.generation.sampler import clip_of, whole
 from metagraph.generation.stored import TakeCard
 from metagraph.generation.takes import Marks, Source, SplitError, Take, split
 from tests.generation.makers import babble, conversation, moving, rig, untrained
@@ -47,7 +47,12 @@ def test_what_is_judged_is_what_a_user_gets(kind):
     clip = whole(model, samples, activity, seed=3, take=0)
     made = generated(model, features(samples, activity), 3, 0, Manner())
     assert made.shape == (count, model.rig.numbers)
-    assert np.allclose(made, encode(model.rig, clip.rotations), atol=1e-5)
+    whole_rotations = encode(model.rig, clip.rotations)
+    assert np.allclose(
+        encode(model.rig, clip_of(model, decode(model.rig, made), "again").rotations),
+        whole_rotations,
+        atol=1e-5,
+    )
     assert RATE == 16000
 
 
