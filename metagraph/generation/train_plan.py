@@ -81,7 +81,6 @@ class TrainingPlan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     seconds: _Weight = 0.0
     steps: Annotated[int, Meta(ge=0)] = 0
     threads: Annotated[int, Meta(ge=0, le=256)] = 0
-    device: Literal["cpu", "cuda"] = "cpu"
     checkpoint: _Positive = 60.0
     judged: _Positive = 60.0
     tracks: Annotated[int, Meta(ge=1, le=2)] = 1
@@ -92,17 +91,8 @@ class TrainingPlan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
     def fingerprint(self) -> str:
         """Return what is the same for plans that can go on from each other's checkpoints."""
-        free = msgspec.structs.replace(
-            self,
-            minutes=0.0,
-            seconds=0.0,
-            steps=0,
-            threads=0,
-            device="cpu",
-            checkpoint=1.0,
-            judged=1.0,
-            out="",
-        )
+        same = {"minutes": 0.0, "seconds": 0.0, "steps": 0, "threads": 0, "out": ""}
+        free = msgspec.structs.replace(self, **same, checkpoint=1.0, judged=1.0)
         return sha256(msgspec.json.encode(free)).hexdigest()
 
 

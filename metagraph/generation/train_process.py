@@ -164,7 +164,7 @@ def _last_words(said: list[str], code: int) -> str:
     """Return why a process ended that did not say so itself."""
     if code < 0:
         return (
-            f"the training was ended from outside (signal {-code}), perhaps since memory ran out. Go on from its "
-            "last checkpoint, or train a smaller model"
+            f"the training was ended from outside (signal {-code}), perhaps since memory ran out. Go on from "
+            "its last checkpoint, or train a smaller model"
         )
     return f"the training ended: {said[-1]}" if said else "the training ended without a word"

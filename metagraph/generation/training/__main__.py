@@ -51,7 +51,7 @@ def main(arguments: Sequence[str]) -> int:
         tell(
             {
                 "event": "error",
-                "text": "there is too little memory. Train a smaller model, or smaller batches",
+                "text": "too little memory: train a smaller model, or smaller batches",
             }
         )
         return 2

@@ -20,8 +20,8 @@ _TOLD = "told"
 
 
 class Told(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What is kept beside arrays. plan: fingerprint of the plan that it belongs to. seconds: of the processor,
-    minutes: of the clock that were used so far. numbers: last ones shown.
+    """What is kept beside arrays. plan: fingerprint of the plan that it belongs to. seconds: of the
+    processor, minutes: of the clock that were used so far. numbers: last ones shown.
     """
 
     format: int = FORMAT

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor
 
 from metagraph.generation import vae
@@ -13,6 +15,8 @@ from metagraph.generation.features import with_edges
 from metagraph.generation.networks import ACTIVITY, Control, MatchingSizes, Sizes
 from metagraph.generation.poses import NUMBERS, Scale
 from metagraph.generation.takes import Take
+
+Array = NDArray[Any]
 
 STILL = 0.01  # standardised, a frame: what is slower counts as this fast
 AVERAGED = 3  # frames over which speeds are averaged
@@ -48,7 +52,7 @@ class Corpus:
         self.first, self.counts = np.array(first), np.array(counts)
 
     def starts(self, chance: torch.Generator, count: int, length: int) -> Tensor:
-        """Return numbers of the first frames `[count]` of crops that lie within a take: each place as likely."""
+        """Return numbers of the first frames `[count]` of crops that lie within a take."""
         room = torch.from_numpy(np.maximum(0, self.counts - length + 1))
         ends = torch.cumsum(room, 0)
         at = torch.randint(int(ends[-1]), (count,), generator=chance)
@@ -64,14 +68,14 @@ class Corpus:
         return min(wanted, int(self.counts.min()))
 
 
-def _speeds(standard: np.ndarray) -> np.ndarray:
+def _speeds(standard: Array) -> Array:
     """Return how fast each joint turns `[T, X / 6]`, natural logarithms. standard: `[T, X]`."""
     steps = np.diff(standard, axis=0, prepend=standard[:1]).reshape(len(standard), -1, NUMBERS)
     fast = np.linalg.norm(steps, axis=-1)
     reach = AVERAGED // 2
     padded = np.pad(fast, ((reach, reach), (0, 0)), "edge")
     even = np.mean([padded[n : n + len(fast)] for n in range(AVERAGED)], 0)
-    return np.log(even + STILL)
+    return np.asarray(np.log(even + STILL))
 
 
 def edges_of(sizes: Sizes) -> tuple[int, int]:
@@ -82,7 +86,7 @@ def edges_of(sizes: Sizes) -> tuple[int, int]:
     return max(control.before, control.past), control.ahead
 
 
-def stretches(corpus: Corpus, span: int, most: int = 60000) -> np.ndarray:
+def stretches(corpus: Corpus, span: int, most: int = 60000) -> Array:
     """Return rows of `span` frames, flat, from evenly spread places: at most about `most`."""
     out = []
     step = max(1, int(corpus.counts.sum()) // most)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import torch
 from torch import Tensor, nn
-from torch.nn import functional as F
+from torch.nn import functional
 
 from metagraph.generation.flow import LEAST
 from metagraph.generation.networks import Control, CvaeSizes, FlowSizes
@@ -36,9 +36,9 @@ class Convolutions(nn.Module):
 
     def forward(self, frames: Tensor) -> Tensor:
         """Return `[N, T', width]` of `[N, T, inputs]`."""
-        x = F.relu(self.input(frames.transpose(1, 2)))
+        x = functional.relu(self.input(frames.transpose(1, 2)))
         for block, d in zip(self.blocks, self.dilations, strict=True):
-            x = (x if self.padded else x[:, :, d:-d]) + F.relu(block(x))
+            x = (x if self.padded else x[:, :, d:-d]) + functional.relu(block(x))
         return x.transpose(1, 2)
 
 
@@ -59,8 +59,8 @@ class ControlNet(nn.Module):
 
     def heard(self, frames: Tensor, lookahead: Tensor | None = None, span: int = 1) -> Tensor:
         """Return what is heard of every `span`th frame `[N, T // span, width]` (or its window, flat). frames:
-        `[N, before + T + ahead, inputs]`. lookahead: `[N]`, the same for all frames of a stretch; None: all is
-        known, and neighbours share their convolutions.
+        `[N, before + T + ahead, inputs]`. lookahead: `[N]`, the same for all frames of a stretch; None: all
+        is known, and neighbours share their convolutions.
         """
         how = self.how
         if how.kind == "encoder" and lookahead is None:
@@ -134,12 +134,15 @@ class Flow(nn.Module):
         self.half = sizes.dims // 2
         self.steps = nn.ModuleList(Step(sizes) for _ in range(sizes.steps))
 
+    def _each(self) -> list[Step]:
+        return [step for step in self.steps if isinstance(step, Step)]
+
     def forward(self, codes: Tensor, context: Tensor, begin: bool = False) -> tuple[Tensor, Tensor]:
         """Return noise `[N, T, D]` and the logarithm of the determinant `[N, T]`. begin: set actnorm so that
         what it gives has mean 0 and deviation 1.
         """
         z, total = codes, torch.zeros(codes.shape[:2], dtype=codes.dtype)
-        for step in self.steps:
+        for step in self._each():
             norm = step.actnorm
             if begin:
                 with torch.no_grad():
@@ -158,7 +161,7 @@ class Flow(nn.Module):
         z = noise
         after: States = []
         for k in reversed(range(len(self.steps))):
-            step = self.steps[k]
+            step = self._each()[k]
             a = z[..., : self.half]
             shift, scale, state = step.coupling(a, context, None if states is None else states[k])
             z = torch.cat([a, z[..., self.half :] / scale - shift], -1)

@@ -53,7 +53,7 @@ class Learner:
         s, n = self.plan.settings, self.step + 1
         rate = max(s.least if n > s.warm else 0.0, s.rate * min(n / s.warm, (s.warm / n) ** 0.5))
         left = min(1.0, max(0.0, 1 - share) / CALM)
-        return rate * (CALMEST + (1 - CALMEST) * left)
+        return float(rate) * (CALMEST + (1 - CALMEST) * left)
 
     def advance(self, share: float = 0.0) -> dict[str, float]:
         """Learn from one batch; return numbers to show. Raises TrainingError where nothing is finite."""

@@ -1,4 +1,4 @@
-"""What is made small: of the paper's model, of the same without its two faults, of flow matching, of the CVAE.
+"""What is made small: of the paper's model, of it without its two faults, of flow matching, of the CVAE.
 
 Each objective draws its own crops. `loss` returns what is made small and, in words, numbers to show.
 """
@@ -10,7 +10,7 @@ from math import log
 
 import torch
 from torch import Tensor, nn
-from torch.nn import functional as F
+from torch.nn import functional
 
 from metagraph.generation import vae
 from metagraph.generation.networks import CvaeSizes, MatchingSizes, Sizes
@@ -60,7 +60,7 @@ class Objective(nn.Module, ABC):
 
     def head(self, heard: Tensor, speeds: Tensor) -> Tensor:
         """Return how badly speeds are predicted."""
-        return F.mse_loss(self.speeds(heard), speeds)
+        return functional.mse_loss(self.speeds(heard), speeds)
 
     @property
     def frames(self) -> int:
@@ -121,7 +121,7 @@ class FlowObjective(Objective):
         out = self.alpha * bits
         told = {"likelihood": -float(nats.detach())}
         if self.what != "finished":
-            again = F.mse_loss(self.net.from_code(self._coloured(clean)), poses)
+            again = functional.mse_loss(self.net.from_code(self._coloured(clean)), poses)
             told |= {"reconstruction": float(again.detach()), "deviation": self.deviation}
             out = out + again
         else:
@@ -129,7 +129,7 @@ class FlowObjective(Objective):
         if self.third:
             # The states begin at 0 again: those of the sequence's end would tell the draw what comes.
             drawn, _ = self.net.flow.inverse(torch.randn(code.shape, generator=chance), context)
-            out = out + self.third * F.mse_loss(self.net.from_code(self._coloured(drawn)), poses)
+            out = out + self.third * functional.mse_loss(self.net.from_code(self._coloured(drawn)), poses)
         if self.settings.head and self.sizes.control.kind == "encoder":
             head = self.head(heard, corpus.rows(corpus.speeds, starts, 0, self.length)[:, :: self.sizes.span])
             out = out + self.settings.head * head * (1.0 if self.what == "finished" else 0.1)
@@ -204,7 +204,7 @@ class CvaeObjective(Objective):
         mean, spread = self.net.encoded(poses, heard)
         spread = spread.clamp(-12, 12)
         code = mean + torch.exp(0.5 * spread) * torch.randn(mean.shape, generator=chance)
-        again = F.mse_loss(self.net.decoded(code, heard), poses)
+        again = functional.mse_loss(self.net.decoded(code, heard), poses)
         apart = 0.5 * (mean**2 + spread.exp() - 1 - spread).sum(-1).mean() / self.sizes.pose
         out = again + apart
         told = {"reconstruction": float(again.detach()), "divergence": float(apart.detach())}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import torch
 from torch import Tensor, nn
-from torch.nn import functional as F
+from torch.nn import functional
 
 from metagraph.generation.networks import ACTIVITY, MatchingSizes
 from metagraph.generation.training.flow_net import Code, Convolutions, masked, told
@@ -33,11 +33,11 @@ class Block(nn.Module):
     def forward(self, x: Tensor, condition: Tensor) -> Tensor:
         s1, b1, s2, b2 = self.modulation(condition)[:, None].chunk(4, -1)
         count, places, wide = x.shape
-        parts = self.qkv(F.layer_norm(x, (wide,)) * (1 + s1) + b1)
+        parts = self.qkv(functional.layer_norm(x, (wide,)) * (1 + s1) + b1)
         q, k, v = parts.reshape(count, places, 3, self.heads, -1).permute(2, 0, 3, 1, 4)
-        mixed = F.scaled_dot_product_attention(q, k, v)
+        mixed = functional.scaled_dot_product_attention(q, k, v)
         x = x + self.proj(mixed.transpose(1, 2).reshape(count, places, wide))
-        return x + self.mlp(F.layer_norm(x, (wide,)) * (1 + s2) + b2)
+        return x + self.mlp(functional.layer_norm(x, (wide,)) * (1 + s2) + b2)
 
 
 class Final(nn.Module):
@@ -84,12 +84,12 @@ class MatchingNet(nn.Module):
         x = heard + self.place
         after = x.new_zeros(len(x), sizes.ahead, sizes.hidden)
         x = x + torch.cat([past, self.embed_new(noisy), after], 1)
-        condition = F.silu(self.time(_moments(moment, sizes.time)))
+        condition = functional.silu(self.time(_moments(moment, sizes.time)))
         for block in self.blocks:
             x = block(x, condition)
         scale, shift = self.final.modulation(condition)[:, None].chunk(2, -1)
         new = x[:, sizes.past : sizes.past + sizes.new]
-        return self.final.out(F.layer_norm(new, (sizes.hidden,)) * (1 + scale) + shift)
+        return self.final.out(functional.layer_norm(new, (sizes.hidden,)) * (1 + scale) + shift)
 
 
 def _moments(moment: Tensor, count: int) -> Tensor:
