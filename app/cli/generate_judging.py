@@ -77,8 +77,8 @@ def evaluate(options: Namespace) -> int:
     paths = [p for p in options.given if p.suffix.lower() == SUFFIX]
     options.takes = [p for p in options.given if p.suffix.lower() != SUFFIX]
     if not paths or not options.takes:
-        missing = "takes to judge them on" if paths else f"a model ({SUFFIX})"
-        raise ValueError(f"give models and takes: there is no {missing}")
+        missing = "are no takes to judge them on" if paths else f"is no model ({SUFFIX})"
+        raise ValueError(f"give models and takes: there {missing}")
     manner = manner_of(options)
     models = models_of(paths)
     first = next(iter(models.values()))

@@ -90,10 +90,10 @@ def heard_of(options: Namespace, tracks: int) -> Heard:
 
     from metagraph.errors import FileError
     from metagraph.formats.conversations import SOUNDS
+    from metagraph.formats.transcript_words import SUFFIXES as TRANSCRIPTS
     from metagraph.generation.features import RATE, conversation_activity, frames_of
     from metagraph.generation.loudness import loudness
     from metagraph.generation.sampler import heard_activity
-    from metagraph.formats.transcript_words import SUFFIXES as TRANSCRIPTS
     from metagraph.generation.take_files import Speech, TakeFiles, read_speech
 
     paths: list[Path] = options.speech or []
@@ -186,7 +186,7 @@ def made(options: Namespace, model: Model, heard: Heard, seed: int) -> Clip:
                 options.first, "has another skeleton than the model", remedy="Retarget it to the model's."
             )
         first = first_pose(stance)
-    clip = whole(
+    return whole(
         model,
         heard.samples,
         heard.activity,
@@ -197,7 +197,6 @@ def made(options: Namespace, model: Model, heard: Heard, seed: int) -> Clip:
         first=first,
         name=f"{heard.name}, {options.model.stem}, seed {seed}",
     )
-    return clip
 
 
 def sample(options: Namespace) -> int:
@@ -319,7 +318,7 @@ def _told(path: Path, card: ModelCard, count: int) -> list[str]:
         f"{', '.join(r.replace('_', ' ') for r in roles)}",
         f"  hears {'both voices apart' if card.tracks == 2 else 'both voices mixed'}, and who speaks",
         f"  loss '{card.loss or 'unknown'}', seed {card.seed}, {card.steps:,} steps on {card.hours:.2f} h",
-        f"  made with {', '.join(f'{n} {v}' for n, v in sorted(card.versions.items())) or 'unknown versions'}",
+        f"  made with {', '.join(f'{n} {v}' for n, v in sorted(card.versions.items())) or 'unknown'}",
     ]
     for what, takes in (("learned from", card.takes), ("held out", card.held_out)):
         licences = sorted({t.licence or "no licence told" for t in takes})

@@ -1,5 +1,5 @@
-"""What `metagraph generate evaluate` writes: one page with the table and figures 6 to 8, the same as JSON, and
-as CSV.
+"""What `metagraph generate evaluate` writes: one page with the table and figures 6 to 8, the same as JSON,
+and as CSV.
 """
 
 from __future__ import annotations
@@ -40,7 +40,8 @@ MEANINGS = {
     "speed": "mean speed over the true one; speed_w1: W1 likewise",
     "acceleration": "mean acceleration over the true one; more is trembling",
     "wrist_range": "range between quartiles of the wrists' distances over the true one",
-    "role": "mean change of the distances while speaking over that while listening; role_w1: W1 of figures 7, 8",
+    "role": "mean change of the distances while speaking over that while listening; role_w1: W1 of "
+    "figures 7, 8",
     "stroke": "speed of the hands within 0.25 s of own stresses over their mean speed",
     "nods": "vertical speed of the nose beside the head in the second after own responses, and after the "
     "partner's hesitations, over its mean",
@@ -51,11 +52,14 @@ MEANINGS = {
 _STYLE = """
 body { max-width: 1180px; } svg { max-width: 1000px; } .wide-table { overflow-x: auto; }
 table { font-size: 12px; } td:first-child { min-width: 110px; } td .dim { font-size: 11px; }
-.box polygon { stroke: var(--text); stroke-width: .5; } .box .median { stroke: var(--inside); stroke-width: 1.5; }
+.box polygon { stroke: var(--text); stroke-width: .5; }
+.box .median { stroke: var(--inside); stroke-width: 1.5; }
 .box .whisker { stroke: var(--dim); } .box .beyond { opacity: .5; }
 polyline { fill: none; stroke-width: .8; } .bones path { fill: none; stroke-width: .6; stroke-opacity: .12; }
-.mark0 { stroke: var(--s0); } .mark1 { stroke: var(--s2); } .mark2 { stroke: var(--s3); } .mark3 { stroke: var(--s4); }
-.fill0 { fill: var(--s0); } .fill1 { fill: var(--s2); } .fill2 { fill: var(--s3); } .fill3 { fill: var(--s4); }
+.mark0 { stroke: var(--s0); } .mark1 { stroke: var(--s2); }
+.mark2 { stroke: var(--s3); } .mark3 { stroke: var(--s4); }
+.fill0 { fill: var(--s0); } .fill1 { fill: var(--s2); }
+.fill2 { fill: var(--s3); } .fill3 { fill: var(--s4); }
 .line0 path { stroke: var(--s0); } .line1 path { stroke: var(--s1); } .line2 path { stroke: var(--s2); }
 .line3 path { stroke: var(--s3); } .line4 path { stroke: var(--s4); }
 """
@@ -100,7 +104,7 @@ def csv_of(rows: Sequence[Row]) -> str:
             if n in row.values:
                 low, high = row.spread.get(n, (float("nan"), float("nan")))
                 cells = (_number(v, 6) for v in (row.values[n], low, high))
-                name = '"' + row.name.replace('"', '""') + '"'
+                name = '"' + row.name.replace('"', '""') + '"' if set(row.name) & set(',"') else row.name
                 lines.append(",".join([name, n, *("" if c == "-" else c for c in cells)]))
     return "\n".join(lines) + "\n"
 
@@ -129,9 +133,9 @@ def page(judged: Judged, told: dict[str, Any], notes: Sequence[str]) -> str:
     parts += ["</div>", *(f"<p class='warn'>{escape(n)}</p>" for n in notes)]
     parts += ["<h2>Table</h2>", table_of(judged.rows)]
     parts.append(
-        "<p class='dim'>Under each value what 95 % of draws of blocks of 15 s give. <i>floor</i>: other motion as "
-        "true as the recorded one; <i>mismatched</i>: recorded motion to other speech; <i>mean pose</i>: somebody "
-        "who stands still. No value says more than what stands beside it.</p>"
+        "<p class='dim'>Under each value what 95 % of draws of blocks of 15 s give. <i>floor</i>: other "
+        "motion as true as the recorded one; <i>mismatched</i>: recorded motion to other speech; <i>mean "
+        "pose</i>: somebody who stands still. No value says more than what stands beside it.</p>"
     )
     words = "".join(f"<dt>{escape(k)}</dt><dd>{escape(v)}</dd>" for k, v in MEANINGS.items())
     parts += [f"<dl>{words}</dl>", "<h2>Figure 6: distance from the mean pose</h2>"]

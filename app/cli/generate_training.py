@@ -58,11 +58,10 @@ def model_arguments(parser: ArgumentParser, kind: str) -> None:
         "--size",
         choices=("small", "paper"),
         default="small",
-        help="'paper' is for a graphics card: hundreds of hours on a processor (default: small)",
+        help="'paper' learns for hundreds of hours on a processor (default: small)",
     )
     parser.add_argument("--two-tracks", action="store_true", help="hear both voices apart")
     parser.add_argument("--threads", type=int, default=0, help="of the processor (default: all)")
-    parser.add_argument("--device", choices=("cpu", "cuda"), default="cpu", help="(default: cpu)")
 
 
 def ablate_arguments(parser: ArgumentParser) -> None:
@@ -179,7 +178,7 @@ def _begin(options: Namespace) -> None:
 def _limits(options: Namespace) -> dict[str, Any]:
     seconds = options.seconds or 0.0
     minutes = options.minutes if options.minutes is not None else 0.0 if seconds else MINUTES
-    return {"minutes": minutes, "seconds": seconds, "threads": options.threads, "device": options.device}
+    return {"minutes": minutes, "seconds": seconds, "threads": options.threads}
 
 
 def _go_on(options: Namespace) -> None:
@@ -359,7 +358,6 @@ def _train_one(options: Namespace, rig: Any, tracks: int, job: Job) -> None:
         minutes=0.0,
         seconds=job.seconds,
         threads=options.threads,
-        device=options.device,
     )
     try:
         same = read_plan(folder).fingerprint() == plan.fingerprint()

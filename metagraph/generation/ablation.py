@@ -1,6 +1,6 @@
 """What each part of a model is good for: it is trained again and again on the same takes for the same time,
-one thing changed at a time. The paper changes several at once: its CVAE has neither past poses nor a flow, and
-MoGlow is six times as large.
+one thing changed at a time. The paper changes several at once: its CVAE has neither past poses nor a flow,
+and MoGlow is six times as large.
 """
 
 from __future__ import annotations
@@ -35,8 +35,9 @@ WHOLE = "whole"
 
 @dataclass(frozen=True)
 class Change:
-    """One thing that is changed. name: short; words: what it is. settings: of the training. hearing: what of a
-    take is left out. mirrored: twins of the takes are learned from as well. guidance: how it is sampled.
+    """One thing that is changed. name: short; words: what it is. settings: of the training. hearing: what
+    of a take is left out. mirrored: twins of the takes are learned from as well. guidance: how it is
+    sampled.
     """
 
     name: str
@@ -190,8 +191,8 @@ def ablate(
     draws: int = DRAWS,
     progress: Callable[[str], None] | None = None,
 ) -> Ablated:
-    """Train and judge a model with one thing changed at a time. folder: where models are kept, and found again
-    by the next run. trainings: seeds. twins: mirror twins of what is learned from. floor: as for
+    """Train and judge a model with one thing changed at a time. folder: where models are kept, and found
+    again by the next run. trainings: seeds. twins: mirror twins of what is learned from. floor: as for
     `evaluation.judge`. Raises FileError where the folder is of another ablation, and what trainings raise.
     """
     if not seconds > 0 or not 1 <= trainings <= 20:

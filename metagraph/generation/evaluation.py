@@ -1,5 +1,5 @@
-"""Models judged on takes that they have not seen: motion of several seeds to what the takes hear, and all that
-`statistics` says of it, with what stands beside it.
+"""Models judged on takes that they have not seen: motion of several seeds to what the takes hear, and all
+that `statistics` says of it, with what stands beside it.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ class Judged:
 
 
 def generated(model: Model, heard: Array, seed: int, number: int, manner: Manner) -> Array:
-    """Return a model's poses `[T, X]`, not standardised, to features `[T, audio + 4]`. number: of the take, so
-    that two takes of one seed have other chances.
+    """Return a model's poses `[T, X]`, not standardised, to features `[T, audio + 4]`. number: of the take,
+    so that two takes of one seed have other chances.
     """
     return poses_to(
         model,
@@ -100,16 +100,16 @@ def judge(
     models: Mapping[str, Model],
     takes: Sequence[Take],
     floor: Sequence[Array] | None = None,
-    manner: Manner = Manner(),  # noqa: B008
+    manner: Manner = Manner(),
     hear: Callable[[str, Take], Array] | None = None,
     draws: int = DRAWS,
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Judged:
-    """Judge models on takes. floor: poses `[T, X]` of each take, other true motion to the same speech; None:
-    half of the takes' blocks stands beside the other half. hear: what a model is given of a take, its features
-    unless given. Raises ValueError where there is too little to judge, CancelledError once `cancelled` says
-    so.
+    """Judge models on takes. floor: poses `[T, X]` of each take, other true motion to the same speech;
+    None: half of the takes' blocks stands beside the other half. hear: what a model is given of a take, its
+    features unless given. Raises ValueError where there is too little to judge, CancelledError once
+    `cancelled` says so.
     """
     if not takes:
         raise ValueError("there is no take to judge a model on")

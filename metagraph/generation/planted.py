@@ -1,7 +1,7 @@
 """Takes of which the truth is known: synthetic conversations, performed by the conversation driver. Clauses
-draw a gesture with 75 %, its stroke on the loudest moment; responses a nod with 58 %, the partner's hesitations
-with 30 %. Whoever learns from them can only find what was planted, and the same speech performed with other
-seeds is what a perfect model would do.
+draw a gesture with 75 %, its stroke on the loudest moment; responses a nod with 58 %, the partner's
+hesitations with 30 %. Whoever learns from them can only find what was planted, and the same speech
+performed with other seeds is what a perfect model would do.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ CARD = "planted.json"  # what a folder of planted takes was made as
 
 
 class Planted(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What planted takes are made of. count: conversations, two takes each. seconds: of each. seed: of what is
-    said. moves: of what is done with it: others on the same speech are other draws from the truth. project:
-    fingerprint of whose skeleton moves.
+    """What planted takes are made of. count: conversations, two takes each. seconds: of each. seed: of what
+    is said. moves: of what is done with it: others on the same speech are other draws from the truth.
+    project: fingerprint of whose skeleton moves.
     """
 
     count: int = 25
@@ -72,10 +72,10 @@ def write_planted(
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> int:
-    """Write planted takes as `take_files.read_takes` reads them; return how many conversations were made: those
-    that are there already are kept, so an end midway costs one. licence: what is written beside them. Raises
-    FileError, also for a folder that holds something else; ValueError for what cannot be made; CancelledError
-    once `cancelled` says so.
+    """Write planted takes as `take_files.read_takes` reads them; return how many conversations were made:
+    those that are there already are kept, so an end midway costs one. licence: what is written beside them.
+    Raises FileError, also for a folder that holds something else; ValueError for what cannot be made;
+    CancelledError once `cancelled` says so.
     """
     if not 1 <= planted.count <= MOST:
         raise ValueError(f"1 to {MOST:,} conversations are planted, not {planted.count:,}")

@@ -1,5 +1,5 @@
-"""Two who talk, made by number: voices of our own, with what they say known to the sample. Each clause has one
-stressed word, louder, higher and longer than the others; there are responses, and hesitations ("um").
+"""Two who talk, made by number: voices of our own, with what they say known to the sample. Each clause has
+one stressed word, louder, higher and longer than the others; there are responses, and hesitations ("um").
 """
 
 from __future__ import annotations

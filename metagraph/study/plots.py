@@ -117,9 +117,7 @@ def stacked(rows: Mapping[str, Mapping[str, float]], names: Mapping[str, str]) -
     for n, (condition, parts) in enumerate(rows.items()):
         at, total = 16 + row * n, sum(parts.values())
         out.append(
-            text(
-                left, at + 10, f"{names[condition]}: {seconds(total)} a task", f"label {condition}", "start"
-            )
+            text(left, at + 10, f"{names[condition]}: {seconds(total)} a task", f"label {condition}", "start")
         )
         edge = float(left)
         for k, (name, value) in enumerate(parts.items()):
