@@ -75,6 +75,11 @@ COMMANDS: dict[str, tuple[str, bool, str]] = {
         False,
         "graphs over the frames of long takes, motion that goes with speech, and how well that works",
     ),
+    "generate": (
+        "generate_command",
+        False,
+        "motion for conversations, learned from takes: train, sample, judge",
+    ),
     "info": ("info_command", False, "tell what is in a project, an export or a clip file"),
     "demo": (
         "demo_command",
@@ -82,7 +87,7 @@ COMMANDS: dict[str, tuple[str, bool, str]] = {
         "the main job without a window: sample project to performance, pictures, video and export",
     ),
 }
-GROUPS = ("study", "motion-graph")  # their own commands take --json
+GROUPS = ("study", "motion-graph", "generate")  # their own commands take --json
 
 
 def _parser(chosen: str) -> argparse.ArgumentParser:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -63,6 +64,7 @@ def _weighted(samples: Array, rate: int) -> Array:
     return out
 
 
+@lru_cache(maxsize=8)
 def _response(length: int, rate: int) -> Array:
     """Return the weighting at each frequency of a transform, complex: that of the standard's filters, which
     are given for 48 kHz.
@@ -73,4 +75,6 @@ def _response(length: int, rate: int) -> Array:
         1 - 1.69065929318241 * z + 0.73248077421585 * z * z
     )
     high_pass = (1 - 2 * z + z * z) / (1 - 1.99004745483398 * z + 0.99007225036621 * z * z)
-    return np.asarray(shelf * high_pass)
+    response = np.asarray(shelf * high_pass)
+    response.setflags(write=False)
+    return response

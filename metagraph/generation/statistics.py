@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -117,7 +118,8 @@ class _Truth:
     basis: Array
 
 
-def _truth(motion: Sequence[Performance]) -> _Truth:
+@lru_cache(maxsize=2)  # every row of a table is beside the same
+def _truth(motion: tuple[Performance, ...]) -> _Truth:
     poses = np.concatenate([m.poses for m in motion])
     scale = scale_of(poses)
     parts = principal(scale.apply(poses), min(SCORES, poses.shape[1]), "scores")
@@ -184,7 +186,7 @@ def measures(generated: Sequence[Performance], true: Sequence[Performance]) -> d
     """
     if not generated or not true or min(len(m) for m in (*generated, *true)) < 3:
         raise ValueError("there is no motion to compare: give takes of some seconds")
-    truth = _truth(true)
+    truth = _truth(tuple(true))
     return _compared(*(_together([_parts(m, truth) for m in motion]) for motion in (generated, true)))
 
 
@@ -289,14 +291,13 @@ def mean_pose(true: Sequence[Performance]) -> list[Performance]:
 
 
 def mismatched(true: Sequence[Performance]) -> list[Performance]:
-    """Return recorded motion to other speech: the next take's, or of one alone that of half of its length
-    later.
+    """Return recorded motion to other speech: the next take's, half of its length later, since the next may
+    be the other side of the same conversation.
     """
     out = []
     for n, m in enumerate(true):
         other = true[(n + 1) % len(true)]
-        shift = len(m) // 2 if len(true) == 1 else 0
-        take = (np.arange(len(m)) + shift) % len(other)
+        take = (np.arange(len(m)) + len(m) // 2) % len(other)
         out.append(replace(m, landmarks=other.landmarks[take], poses=other.poses[take]))
     return out
 
@@ -323,7 +324,7 @@ def row(
     whole = [measures(each, true) for each in generated]
     values = {m: float(np.mean([w[m] for w in whole])) for m in MEASURES}
     values["diversity"] = diversity(generated)
-    truth = _truth(true)
+    truth = _truth(tuple(true))
     pieces = [[_parts(b, truth) for b in blocks(each)] for each in generated]
     recorded = [_parts(b, truth) for b in blocks(true)]
     chance = np.random.default_rng(seed)

@@ -11,6 +11,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import CancelledError
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -182,12 +183,22 @@ def _take(rig: PoseRig, files: TakeFiles, clip: Clip, tracks: int, licences: dic
 
 def read_speech(files: TakeFiles) -> Speech:
     """Return what is heard with a take. Raises FileError."""
+    stamps = tuple(p.stat().st_mtime_ns for p in (*files.sounds, *files.transcripts) if p.exists())
+    speech = _speech(files.sounds, files.transcripts, stamps)
+    if len(speech.samples) == 2 and files.side == 1:
+        return replace(speech, samples=speech.samples[::-1], clipped=speech.clipped[::-1])
+    return speech
+
+
+@lru_cache(maxsize=1)  # both sides of a conversation are read one after the other
+def _speech(sounds: tuple[Path, ...], transcripts: tuple[Path, ...], stamps: tuple[int, ...]) -> Speech:
+    """stamps: when the files were written."""
     conversation: Conversation | None = None
     notes: tuple[str, ...] = ()
-    if files.transcripts:
-        read = read_conversation(files.sounds, files.transcripts)
+    if transcripts:
+        read = read_conversation(sounds, transcripts)
         conversation, notes = read.conversation, read.notes
-    recordings = [read_recording(p, LONGEST) for p in files.sounds]
+    recordings = [read_recording(p, LONGEST) for p in sounds]
     if len(recordings) > 1:
         voices = [at_rate(r.samples.mean(0)[None], r.rate)[0] for r in recordings[:2]]
         longest = max(map(len, voices))
@@ -197,12 +208,10 @@ def read_speech(files: TakeFiles) -> Speech:
         samples, clipped = at_rate(recordings[0].samples, recordings[0].rate), recordings[0].clipped
     if len(samples) > 2:
         raise FileError(
-            files.sounds[0],
+            sounds[0],
             f"has {len(samples)} channels, a conversation of two has one for each",
             remedy="Save the two speakers' channels as one file.",
         )
-    if len(samples) == 2 and files.side == 1:
-        samples, clipped = samples[::-1], clipped[::-1]
     return Speech(samples, clipped, conversation, notes)
 
 

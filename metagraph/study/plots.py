@@ -12,14 +12,9 @@ from html import escape
 from math import ceil, floor, isfinite, log10
 
 from metagraph.study.stats import Estimate
+from metagraph.svg import dot, line, number, svg, text
 
-WIDTH = 640
 Place = Callable[[float], float]
-
-
-def number(value: float) -> str:
-    """Return a coordinate, the same on every machine."""
-    return f"{value:.1f}".removesuffix(".0")
 
 
 def seconds(value: float) -> str:
@@ -44,17 +39,17 @@ def paired(
     for name, a, b in people:
         words = escape(f"{name}: {seconds(a)} and {seconds(b)}, {b / a:.2f} times")
         parts.append(
-            f"<g class='person'><title>{words}</title>{_line(xs[0], y(a), xs[1], y(b))}"
-            f"{_dot(xs[0], y(a), 3)}{_dot(xs[1], y(b), 3)}</g>"
+            f"<g class='person'><title>{words}</title>{line(xs[0], y(a), xs[1], y(b))}"
+            f"{dot(xs[0], y(a), 3)}{dot(xs[1], y(b), 3)}</g>"
         )
     for x, mean, css, name, side in zip(
         (xs[0] - 26, xs[1] + 26), means, ("meta", "manual"), names, (-1, 1), strict=True
     ):
         parts.append(f"<g class='{css}'>{_vertical(x, mean, y)}</g>")
         anchor = "end" if side < 0 else "start"
-        parts.append(_text(x + 12 * side, y(mean.value) + 4, seconds(mean.value), f"label {css}", anchor))
-        parts.append(_text(x - 13 * side, bottom + 26, name, f"label {css}", "middle"))
-    return _svg(height, parts, f"Times of {len(people)} people in both conditions")
+        parts.append(text(x + 12 * side, y(mean.value) + 4, seconds(mean.value), f"label {css}", anchor))
+        parts.append(text(x - 13 * side, bottom + 26, name, f"label {css}", "middle"))
+    return svg(height, parts, f"Times of {len(people)} people in both conditions")
 
 
 def ratios(rows: Sequence[tuple[str, Estimate]]) -> str:
@@ -70,15 +65,15 @@ def ratios(rows: Sequence[tuple[str, Estimate]]) -> str:
             f"<line class='{'one' if t == 1 else 'grid'}' x1='{number(x(t))}' x2='{number(x(t))}' y1='12' "
             f"y2='{bottom}'/>"
         )
-        parts.append(_text(x(t), bottom + 18, f"{t:g}", "dim", "middle"))
+        parts.append(text(x(t), bottom + 18, f"{t:g}", "dim", "middle"))
     for n, (name, e) in enumerate(rows):
         at = 18 + row * (n + 0.5)
-        parts.append(_text(left - 14, at + 4, name, "label", "end"))
+        parts.append(text(left - 14, at + 4, name, "label", "end"))
         if e.low is not None and e.high is not None:
-            parts.append(f"<g class='manual'>{_line(x(e.low), at, x(e.high), at, 'wide')}</g>")
-        parts.append(f"<g class='manual'>{_dot(x(e.value), at, 6 if n == 0 else 4)}</g>")
-        parts.append(_text(right + 14, at + 4, f"{e.value:.2f}", "label", "start"))
-    return _svg(height, parts, "Ratios of times with their intervals")
+            parts.append(f"<g class='manual'>{line(x(e.low), at, x(e.high), at, 'wide')}</g>")
+        parts.append(f"<g class='manual'>{dot(x(e.value), at, 6 if n == 0 else 4)}</g>")
+        parts.append(text(right + 14, at + 4, f"{e.value:.2f}", "label", "start"))
+    return svg(height, parts, "Ratios of times with their intervals")
 
 
 def curves(found: Mapping[str, tuple[Sequence[float], float, float]], names: Mapping[str, str]) -> str:
@@ -93,9 +88,9 @@ def curves(found: Mapping[str, tuple[Sequence[float], float, float]], names: Map
     y, ticks = _log_axis(min(every), max(every), bottom, top, _TIMES)
     x, across = _log_axis(1, max(2, longest), left, right, _COUNTS)
     parts = [_grid(x1=left, x2=right, y=y(t), words=seconds(t)) for t in ticks]
-    parts += [_text(x(t), bottom + 18, f"{t:g}", "dim", "middle") for t in across]
+    parts += [text(x(t), bottom + 18, f"{t:g}", "dim", "middle") for t in across]
     parts.append(
-        _text(
+        text(
             (left + right) / 2,
             bottom + 40,
             "how many clips were done before and with this one",
@@ -104,13 +99,13 @@ def curves(found: Mapping[str, tuple[Sequence[float], float, float]], names: Map
         )
     )
     for condition, (values, first, slope) in found.items():
-        dots = "".join(_dot(x(n), y(s), 3.5) for n, s in enumerate(values, 1))
+        dots = "".join(dot(x(n), y(s), 3.5) for n, s in enumerate(values, 1))
         end = first * len(values) ** slope
         parts.append(
-            f"<g class='{condition}'>{_line(x(1), y(first), x(len(values)), y(end), 'wide')}{dots}</g>"
+            f"<g class='{condition}'>{line(x(1), y(first), x(len(values)), y(end), 'wide')}{dots}</g>"
         )
-        parts.append(_text(x(len(values)) + 10, y(end) + 4, names[condition], f"label {condition}", "start"))
-    return _svg(height, parts, "Seconds a clip, from the first clip to the last")
+        parts.append(text(x(len(values)) + 10, y(end) + 4, names[condition], f"label {condition}", "start"))
+    return svg(height, parts, "Seconds a clip, from the first clip to the last")
 
 
 def stacked(rows: Mapping[str, Mapping[str, float]], names: Mapping[str, str]) -> str:
@@ -122,9 +117,7 @@ def stacked(rows: Mapping[str, Mapping[str, float]], names: Mapping[str, str]) -
     for n, (condition, parts) in enumerate(rows.items()):
         at, total = 16 + row * n, sum(parts.values())
         out.append(
-            _text(
-                left, at + 10, f"{names[condition]}: {seconds(total)} a task", f"label {condition}", "start"
-            )
+            text(left, at + 10, f"{names[condition]}: {seconds(total)} a task", f"label {condition}", "start")
         )
         edge = float(left)
         for k, (name, value) in enumerate(parts.items()):
@@ -135,14 +128,14 @@ def stacked(rows: Mapping[str, Mapping[str, float]], names: Mapping[str, str]) -
                 f"height='22'><title>{words}</title></rect>"
             )
             if wide > 34:
-                out.append(_text(edge + wide / 2, at + 33, f"{value / total:.0%}", "inside", "middle"))
+                out.append(text(edge + wide / 2, at + 33, f"{value / total:.0%}", "inside", "middle"))
             edge += wide
     edge = float(left)
     for k, name in enumerate(next(iter(rows.values()), {})):
         out.append(f"<rect class='s{k}' x='{number(edge)}' y='{height - 22}' width='12' height='12'/>")
-        out.append(_text(edge + 18, height - 12, name, "dim", "start"))
+        out.append(text(edge + 18, height - 12, name, "dim", "start"))
         edge += 110
-    return _svg(height, out, "What the time went into")
+    return svg(height, out, "What the time went into")
 
 
 def means(rows: Sequence[tuple[str, Mapping[str, Estimate]]], low: float = 0.0, high: float = 100.0) -> str:
@@ -159,16 +152,16 @@ def means(rows: Sequence[tuple[str, Mapping[str, Estimate]]], low: float = 0.0, 
     for k in range(5):
         t = low + (high - low) * k / 4
         parts.append(f"<line class='grid' x1='{number(x(t))}' x2='{number(x(t))}' y1='12' y2='{bottom}'/>")
-        parts.append(_text(x(t), bottom + 18, f"{t:g}", "dim", "middle"))
+        parts.append(text(x(t), bottom + 18, f"{t:g}", "dim", "middle"))
     for n, (name, found) in enumerate(rows):
         at = 16 + row * (n + 0.5)
-        parts.append(_text(left - 14, at + 4, name, "label", "end"))
+        parts.append(text(left - 14, at + 4, name, "label", "end"))
         for k, (condition, e) in enumerate(found.items()):
             y = at + (k - (len(found) - 1) / 2) * 14
-            bar = _line(x(e.low), y, x(e.high), y, "wide") if e.low is not None and e.high is not None else ""
-            parts.append(f"<g class='{condition}'>{bar}{_dot(x(e.value), y, 4.5)}</g>")
-            parts.append(_text(right + 14, y + 4, f"{e.value:.1f}", f"label {condition}", "start"))
-    return _svg(height, parts, "Means with their intervals")
+            bar = line(x(e.low), y, x(e.high), y, "wide") if e.low is not None and e.high is not None else ""
+            parts.append(f"<g class='{condition}'>{bar}{dot(x(e.value), y, 4.5)}</g>")
+            parts.append(text(right + 14, y + 4, f"{e.value:.1f}", f"label {condition}", "start"))
+    return svg(height, parts, "Means with their intervals")
 
 
 # --- axes and marks
@@ -215,33 +208,13 @@ def _log_axis(
 
 
 def _grid(x1: float, x2: float, y: float, words: str) -> str:
-    return f"{_line(x1, y, x2, y, 'grid')}{_text(x1 - 8, y + 4, words, 'dim', 'end')}"
+    return f"{line(x1, y, x2, y, 'grid')}{text(x1 - 8, y + 4, words, 'dim', 'end')}"
 
 
 def _vertical(x: float, mean: Estimate, y: Place) -> str:
     bar = (
-        _line(x, y(mean.low), x, y(mean.high), "wide")
+        line(x, y(mean.low), x, y(mean.high), "wide")
         if mean.low is not None and mean.high is not None
         else ""
     )
-    return f"{bar}{_dot(x, y(mean.value), 6)}"
-
-
-def _line(x1: float, y1: float, x2: float, y2: float, css: str = "") -> str:
-    named = f" class='{css}'" if css else ""
-    return f"<line{named} x1='{number(x1)}' y1='{number(y1)}' x2='{number(x2)}' y2='{number(y2)}'/>"
-
-
-def _dot(x: float, y: float, r: float) -> str:
-    return f"<circle cx='{number(x)}' cy='{number(y)}' r='{number(r)}'/>"
-
-
-def _text(x: float, y: float, words: str, css: str, anchor: str) -> str:
-    return (
-        f"<text class='{css}' x='{number(x)}' y='{number(y)}' text-anchor='{anchor}'>{escape(words)}</text>"
-    )
-
-
-def _svg(height: float, parts: Sequence[str], title: str) -> str:
-    shape = f"viewBox='0 0 {WIDTH} {number(height)}' role='img' aria-label='{escape(title, quote=True)}'"
-    return f"<svg xmlns='http://www.w3.org/2000/svg' {shape}>{''.join(parts)}</svg>"
+    return f"{bar}{dot(x, y(mean.value), 6)}"

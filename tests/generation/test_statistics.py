@@ -79,7 +79,7 @@ def test_motion_beside_itself_is_perfect():
 
 def test_other_speech_takes_the_coupling_and_leaves_the_space():
     wrong, same = measures(mismatched(TRUE), TRUE), measures(TRUE, TRUE)
-    assert wrong["speed"] == pytest.approx(1, abs=0.01)
+    assert wrong["speed"] == pytest.approx(1, abs=0.03)
     assert wrong["distance"] < 0.01
     assert wrong["stroke"] < 0.5 * same["stroke"]
     assert wrong["nods_responses"] < 0.8 * same["nods_responses"]

@@ -1,0 +1,77 @@
+"""`metagraph generate`: motion for conversations that is learned from takes."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+from typing import Any
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Add the actions of `generate`, each with its options."""
+    actions = parser.add_subparsers(dest="action", metavar="action", required=True)
+
+    def action(name: str, words: str, run: Any) -> ArgumentParser:
+        out = actions.add_parser(name, help=words, description=words[:1].upper() + words[1:] + ".")
+        out.add_argument("--json", action="store_true", help="print what a program can read")
+        out.set_defaults(run=run)
+        return out
+
+    from app.cli import generate_judging, generate_motion, generate_training
+
+    generate_training.arguments(action("train", "learn a model from takes", generate_training.train))
+    new = action("sample", "make motion to speech", generate_motion.sample)
+    generate_motion.model_argument(new)
+    generate_motion.speech_arguments(new, needed=True)
+    new.add_argument("-o", "--out", type=Path, required=True, help="a .bvh or .glb file")
+    judged = action("evaluate", "judge models on takes they have not seen", generate_judging.evaluate)
+    generate_judging.arguments(judged)
+    ablated = action(
+        "ablate", "train with one thing changed at a time, and compare", generate_training.ablate
+    )
+    generate_training.ablate_arguments(ablated)
+    pieces = action("cut", "make minutes of motion and cut clips of them", generate_motion.cut)
+    generate_motion.cut_arguments(pieces)
+    generate_motion.model_argument(action("info", "tell what a model is", generate_motion.info))
+    made = action("planted", "make takes of which the truth is known, to try models on", planted)
+    made.add_argument("-o", "--out", type=Path, required=True, help="a folder")
+    made.add_argument("--count", type=int, default=25, help="conversations, two takes each (default: 25)")
+    made.add_argument("-s", "--seconds", type=float, default=180.0, help="of each (default: 180)")
+    made.add_argument("--seed", type=int, default=1, help="of what is said (default: 1)")
+    made.add_argument(
+        "--moves",
+        type=int,
+        default=1,
+        help="of what is done with it: another number is another performance of the same speech (default: 1)",
+    )
+    made.add_argument("--project", type=Path, help="whose graph moves both (default: the sample project)")
+
+
+def run(options: Namespace) -> int:
+    """Do the action that was asked for."""
+    return int(options.run(options))
+
+
+def planted(options: Namespace) -> int:
+    """Write planted takes."""
+    from app.cli.command_output import opened, say
+    from app.cli.demo_command import SAMPLE
+    from app.cli.generate_takes import telling
+    from metagraph.generation.planted import Planted, write_planted
+
+    own = options.project is None
+    project = opened(SAMPLE if own else options.project)
+    for name in ("seed", "moves"):
+        if getattr(options, name) < 0:
+            raise ValueError(f"--{name} is a whole number from 0 on")
+    asked = Planted(count=options.count, seconds=options.seconds, seed=options.seed, moves=options.moves)
+    licence = "MIT: synthetic speech, and motion of Metagraph's own sample clips." if own else ""
+    new = write_planted(project, options.out, asked, licence, telling(options, "conversations"))
+    hours = 2 * asked.count * asked.seconds / 3600
+    words = (
+        f"{asked.count} conversations, {2 * asked.count} takes, {hours:.2f} h in {options.out} "
+        f"({new} new, {asked.count - new} were there)"
+    )
+    data = {"folder": str(options.out), "conversations": asked.count, "new": new, "hours": round(hours, 4)}
+    say(options, words, data)
+    return 0

@@ -1,0 +1,178 @@
+"""`metagraph generate evaluate`: models on takes that they have not seen."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:  # reading a command line must not wait for arrays
+    from metagraph.generation.evaluation import Manner
+    from metagraph.generation.poses import PoseRig
+    from metagraph.generation.stored import Model
+    from metagraph.generation.takes import Take
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Add the options of `evaluate`. What are models and what takes is told by their endings."""
+    from app.cli.generate_takes import speech_argument
+
+    parser.add_argument(
+        "given",
+        type=Path,
+        nargs="+",
+        metavar="MODEL... TAKES",
+        help="models (.mgmodel), and clips or folders of them that the models have not learned from; of "
+        "folders they have learned from, what was held out is taken",
+    )
+    speech_argument(parser)
+    parser.add_argument("-o", "--out", type=Path, help="write a page, JSON and CSV into this folder")
+    parser.add_argument(
+        "--floor",
+        type=Path,
+        metavar="FOLDER",
+        help="other true motion to the same speech, clips of the same names (default: of planted takes, "
+        "another performance; else half of the takes beside the other half)",
+    )
+    manner_arguments(parser)
+
+
+def manner_arguments(parser: ArgumentParser) -> None:
+    """Add the options that say how models are sampled and judged."""
+    parser.add_argument("--seeds", type=int, default=5, help="takes of each model (default: 5)")
+    parser.add_argument("--temperature", type=float, default=1.0, help="0 to 1.2 (default: 1)")
+    parser.add_argument(
+        "--lookahead", type=int, help="frames of sound ahead, 0 for live use (default: all the model uses)"
+    )
+    parser.add_argument(
+        "--guidance", type=float, help="how closely a matching model follows the speech (default: 2)"
+    )
+    parser.add_argument("--draws", type=int, default=200, help="draws of blocks for intervals (default: 200)")
+
+
+def manner_of(options: Namespace) -> Manner:
+    """Return how models are sampled. Raises ValueError."""
+    from metagraph.generation.chunks import GUIDANCE
+    from metagraph.generation.evaluation import Manner
+
+    if not 1 <= options.seeds <= 100:
+        raise ValueError(f"--seeds is 1 to 100, not {options.seeds}")
+    if not 0 <= options.draws <= 10000:
+        raise ValueError(f"--draws is 0 to 10000, not {options.draws}")
+    if options.lookahead is not None and options.lookahead < 0:
+        raise ValueError("--lookahead is 0 frames or more")
+    guidance = GUIDANCE if options.guidance is None else options.guidance
+    return Manner(options.seeds, options.temperature, options.lookahead, guidance)
+
+
+def evaluate(options: Namespace) -> int:
+    """Judge models; print the table, with `out` write it and the figures."""
+    from app.cli.command_output import say
+    from app.cli.generate_report import data_of, text_of, write_report
+    from app.cli.generate_takes import models_of, read_all, telling
+    from metagraph.generation.evaluation import for_all, judge
+    from metagraph.generation.stored import SUFFIX
+
+    paths = [p for p in options.given if p.suffix.lower() == SUFFIX]
+    options.takes = [p for p in options.given if p.suffix.lower() != SUFFIX]
+    if not paths or not options.takes:
+        missing = "are no takes to judge them on" if paths else f"is no model ({SUFFIX})"
+        raise ValueError(f"give models and takes: there {missing}")
+    manner = manner_of(options)
+    models = models_of(paths)
+    first = next(iter(models.values()))
+    alike(models)
+    batch = read_all(options, first.rig, first.card.tracks)
+    takes, left = for_all(models, batch.takes)
+    if left:
+        print(f"note: {len(left)} takes are left out, since a model has learned from them", file=sys.stderr)
+    floor = floor_of(options.floor, options.takes, takes, first.rig)
+    show = telling(options, "made")
+    judged = judge(first.rig, models, takes, floor, manner, draws=options.draws, progress=show)
+    notes = cautions(models, takes, judged.floor is not None)
+    said: dict[str, Any] = {
+        "takes": len(takes),
+        "minutes": round(sum(t.seconds for t in takes) / 60, 2),
+        "seeds": manner.seeds,
+        "temperature": manner.temperature,
+        "lookahead": manner.lookahead if manner.lookahead is not None else "all",
+        "guidance": manner.guidance,
+        "models": ", ".join(f"{n} ({m.card.kind}, {m.card.steps:,} steps)" for n, m in models.items()),
+    }
+    written = write_report(judged, said, notes, options.out) if options.out is not None else []
+    lines = [f"{len(takes)} takes, {said['minutes']:g} min, {manner.seeds} seeds of each model"]
+    lines += [text_of(judged.rows), *(f"note: {n}" for n in notes), *(f"written: {p}" for p in written)]
+    data = {**data_of(judged.rows, said), "notes": list(notes), "written": [str(p) for p in written]}
+    say(options, "\n".join(lines), data)
+    return 0
+
+
+def alike(models: dict[str, Model]) -> None:
+    """Raise ValueError where models cannot be judged on the same takes."""
+    first, *others = models.items()
+    for name, model in others:
+        if model.card.skeleton.fingerprint != first[1].card.skeleton.fingerprint:
+            raise ValueError(f"'{name}' is for another skeleton than '{first[0]}': judge them one by one")
+        if model.card.tracks != first[1].card.tracks or model.rig.roles != first[1].rig.roles:
+            raise ValueError(f"'{name}' hears or moves otherwise than '{first[0]}': judge them one by one")
+
+
+def floor_of(
+    folder: Path | None, given: list[Path], takes: tuple[Take, ...], rig: PoseRig
+) -> list[Any] | None:
+    """Return other true motion to the same speech, poses of each take; None where there is none. Raises
+    ValueError.
+    """
+    from metagraph.generation.take_files import find_takes, read_takes
+
+    if folder is not None:
+        batch = read_takes(find_takes([folder])[0], rig)
+        found = {t.source.name: t for t in batch.takes}
+        missing = [t.source.name for t in takes if t.source.name not in found]
+        if missing:
+            why = f" ({batch.failures[0]})" if batch.failures else ""
+            raise ValueError(f"{folder} holds no other motion for '{missing[0]}'{why}")
+        return [part_like(found[t.source.name], t) for t in takes]
+    return planted_floor(given, takes, rig)
+
+
+def part_like(whole: Take, take: Take) -> Any:
+    first = round(take.source.start * 25) - round(whole.source.start * 25)
+    return whole.poses[first : first + len(take.poses)]
+
+
+def planted_floor(given: list[Path], takes: tuple[Take, ...], rig: PoseRig) -> list[Any] | None:
+    """Return planted takes performed anew, None where they are not planted or not by the sample project."""
+    from app.cli.command_output import opened
+    from app.cli.demo_command import SAMPLE
+    from metagraph.generation.planted import again, read_planted
+
+    cards = [card for folder in given if folder.is_dir() and (card := read_planted(folder)) is not None]
+    if len(cards) != 1 or len(given) != 1:
+        return None
+    project = opened(SAMPLE)
+    if project.skeleton is None or project.skeleton.fingerprint != cards[0].project:
+        return None
+    return [part_like(again(project, cards[0], t, rig), t) for t in takes]
+
+
+def cautions(models: dict[str, Model], takes: tuple[Take, ...], floor: bool) -> tuple[str, ...]:
+    """Return what nobody should read into the table."""
+    out = []
+    seconds = sum(t.seconds for t in takes)
+    if seconds < 240:
+        out.append(f"{seconds:.0f} s are little to judge a model on: intervals are wide.")
+    if not floor:
+        out.append(
+            "The floor is half of the takes beside the other half, not other motion to the same speech."
+        )
+    if not any(t.marks.hesitations for t in takes):
+        out.append("No partner hesitates, or words are missing: nothing is said of listening.")
+    kinds = {m.card.kind for m in models.values()}
+    if len(kinds) > 1:
+        out.append(
+            "These models differ in several things at once (the CVAE has neither past poses nor a flow): "
+            "`ablate` changes one at a time."
+        )
+    return tuple(out)

@@ -1,0 +1,331 @@
+"""`metagraph generate sample`, `cut` and `info`: motion made by a model, and what a model is."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentParser, Namespace
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:  # reading a command line must not wait for arrays
+    from metagraph.generation.stored import Model, ModelCard
+    from metagraph.motion.clip import Clip
+
+OUT = (".bvh", ".glb")
+ROLES = ("speaking", "listening", "both", "none")
+LEAST = 1.0  # seconds of sound
+MINUTES = 60.0  # at most
+
+
+def model_argument(parser: ArgumentParser) -> None:
+    parser.add_argument("model", type=Path, help="a model (.mgmodel)")
+
+
+def speech_arguments(parser: ArgumentParser, needed: bool) -> None:
+    """Add the options that say what is heard, and how motion is made of it."""
+    more = "" if needed else " (default: planted speech)"
+    parser.add_argument(
+        "--speech",
+        type=Path,
+        nargs="+",
+        required=needed,
+        metavar="FILE",
+        help=f"a sound with one channel a speaker, or one file for each of the two{more}",
+    )
+    parser.add_argument(
+        "--words",
+        type=Path,
+        nargs="+",
+        metavar="FILE",
+        help="what is said: TextGrid, ELAN, WebVTT, SRT, JSON or CTM (default: as the sound is called, "
+        "else by loudness)",
+    )
+    parser.add_argument("--side", type=int, choices=(1, 2), default=1, help="whose motion (default: 1)")
+    parser.add_argument("--seed", type=int, default=1, help="another take (default: 1)")
+    parser.add_argument("--temperature", type=float, default=1.0, help="0 to 1.2 (default: 1)")
+    parser.add_argument("--guidance", type=float, help="how closely a matching model follows the speech")
+    parser.add_argument(
+        "--lookahead", type=int, help="frames of sound ahead, 0 for live use (default: all the model uses)"
+    )
+    parser.add_argument(
+        "--activity",
+        choices=ROLES,
+        help="whoever speaks, this is the role: 'listening' makes a listener (default: as it is)",
+    )
+    parser.add_argument(
+        "--from",
+        dest="first",
+        type=Path,
+        metavar="CLIP",
+        help="a clip whose first pose it goes on from, a stance say (default: the mean pose)",
+    )
+
+
+def cut_arguments(parser: ArgumentParser) -> None:
+    """Add the options of `cut`."""
+    model_argument(parser)
+    speech_arguments(parser, needed=False)
+    parser.add_argument("-o", "--out", type=Path, required=True, help="a folder for the pieces")
+    parser.add_argument(
+        "--minutes", type=float, default=3.0, help="how much is made to be cut, by several seeds (default: 3)"
+    )
+    parser.add_argument("--least", type=float, default=1.0, help="seconds of a piece (default: 1)")
+    parser.add_argument("--most", type=float, default=8.0, help="seconds of a piece (default: 8)")
+    parser.add_argument("--project", type=Path, help="add the pieces to this project")
+
+
+@dataclass(frozen=True, eq=False)
+class Heard:
+    """What a model is given. samples: `[C, N]`, own voice first; activity: `[T, 4]`."""
+
+    samples: Any
+    activity: Any
+    name: str
+
+
+def heard_of(options: Namespace, tracks: int) -> Heard:
+    """Return what is heard. Raises FileError, ValueError."""
+    import numpy as np
+
+    from metagraph.errors import FileError
+    from metagraph.formats.conversations import SOUNDS
+    from metagraph.formats.transcript_words import SUFFIXES as TRANSCRIPTS
+    from metagraph.generation.features import RATE, conversation_activity, frames_of
+    from metagraph.generation.loudness import loudness
+    from metagraph.generation.sampler import heard_activity
+    from metagraph.generation.take_files import Speech, TakeFiles, read_speech
+
+    paths: list[Path] = options.speech or []
+    if len(paths) > 2 or len(options.words or ()) > 2:
+        raise ValueError("a conversation of two has one or two sounds, and at most two files with words")
+    speech: Speech
+    if not paths:
+        from metagraph.generation.planted_speech import converse
+
+        spoken = converse(min(options.minutes, 3.0) * 60, options.seed, 1, "planted speech")
+        samples = spoken.samples[::-1] if options.side == 2 else spoken.samples
+        speech, name = Speech(samples, (0.0, 0.0), spoken.conversation), "planted speech"
+    else:
+        for path in paths:
+            if not path.is_file():
+                raise FileError(path, "there is no such sound", remedy="Check where the speech is.")
+            if path.suffix.lower() not in SOUNDS:
+                raise FileError(path, "is no sound", remedy=f"Sounds are {', '.join(SOUNDS)} files.")
+        words = options.words
+        if words is None:
+            near = [
+                p
+                for p in sorted(paths[0].parent.glob("*"))
+                if p.suffix.lower() in {s.lower() for s in TRANSCRIPTS} and p.stem == paths[0].stem
+            ]
+            words = near[:1]
+        sounds = (
+            tuple(reversed(paths)) if options.side == 2 and len(paths) == 2 and not words else tuple(paths)
+        )
+        files = TakeFiles(
+            paths[0], sounds, tuple(words), options.side - 1 if len(sounds) == 1 or words else 0
+        )
+        speech, name = read_speech(files), paths[0].stem
+    for note in speech.notes:
+        print(f"note: {note}", file=sys.stderr)
+    samples = np.atleast_2d(speech.samples)
+    seconds = samples.shape[1] / RATE
+    place = str(paths[0]) if paths else name
+    if not np.isfinite(samples).all():
+        raise FileError(place, "holds a sample that is not a number", remedy="Export it anew.")
+    if seconds < LEAST:
+        raise FileError(place, f"lasts {seconds:.2f} s", remedy=f"Give at least {LEAST:g} s of speech.")
+    if not any(np.isfinite(loudness(channel, RATE)) for channel in samples):
+        raise FileError(place, "is silent", remedy="Check the microphone, or what was exported.")
+    if max(speech.clipped, default=0.0) > 1e-4:
+        share = 100 * max(speech.clipped)
+        print(f"note: {share:.2g} % of the sound is cut off at full scale: record it softer", file=sys.stderr)
+    count = frames_of(samples.shape[1])
+    if speech.conversation is not None:
+        activity = conversation_activity(speech.conversation, options.side - 1, count)
+        if not speech.conversation.sides[options.side - 1].segments:
+            print(f"note: side {options.side} says nothing: it listens", file=sys.stderr)
+    else:
+        activity = heard_activity(samples)
+        if len(samples) == 1:
+            print("note: one voice only: it is its own, and the partner never speaks", file=sys.stderr)
+    if options.activity is not None:
+        activity = as_role(activity, options.activity)
+    if tracks == 2 and len(samples) == 1:
+        samples = np.concatenate([samples, np.zeros_like(samples)])
+    return Heard(samples, activity, name)
+
+
+def as_role(activity: Any, role: str) -> Any:
+    """Return activity in which whoever speaks, this is the role."""
+    import numpy as np
+
+    from metagraph.generation.features import BOTH, NONE, PARTNER, SELF
+
+    out = np.zeros_like(activity)
+    quiet = activity[:, NONE] > 0.5
+    chosen = {"speaking": SELF, "listening": PARTNER, "both": BOTH, "none": NONE}[role]
+    out[:, chosen] = ~quiet
+    out[:, NONE] = np.maximum(out[:, NONE], quiet)
+    return out
+
+
+def made(options: Namespace, model: Model, heard: Heard, seed: int) -> Clip:
+    """Return a model's motion. Raises ValueError, FileError."""
+    from metagraph.errors import FileError
+    from metagraph.formats.clips import read_clips
+    from metagraph.generation.chunks import GUIDANCE
+    from metagraph.generation.sampler import first_pose, whole
+
+    first = None
+    if options.first is not None:
+        stance = read_clips(options.first)[0]
+        if stance.skeleton != model.rig.skeleton:
+            raise FileError(
+                options.first, "has another skeleton than the model", remedy="Retarget it to the model's."
+            )
+        first = first_pose(stance)
+    return whole(
+        model,
+        heard.samples,
+        heard.activity,
+        seed=seed,
+        temperature=options.temperature,
+        lookahead=options.lookahead,
+        guidance=GUIDANCE if options.guidance is None else options.guidance,
+        first=first,
+        name=f"{heard.name}, {options.model.stem}, seed {seed}",
+    )
+
+
+def sample(options: Namespace) -> int:
+    """Make motion to speech and write it."""
+    from app.cli.command_output import say
+    from metagraph.formats.bvh import write_bvh
+    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.generation.stored import read_model
+
+    out: Path = options.out
+    if out.suffix.lower() not in OUT:
+        raise ValueError(f"motion is written as {' or '.join(OUT)}, not as '{out.suffix or out.name}'")
+    model = read_model(options.model)
+    heard = heard_of(options, model.card.tracks)
+    clip = made(options, model, heard, options.seed)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    if out.suffix.lower() == ".bvh":
+        write_bvh(clip, out)
+    else:
+        write_glb(out, [clip])
+    shares = {r: round(float(heard.activity[:, n].mean()), 3) for n, r in enumerate(ROLES)}
+    data = {
+        "out": str(out),
+        "frames": clip.frames,
+        "fps": clip.fps,
+        "seconds": round(clip.duration, 3),
+        "seed": options.seed,
+        "model": str(options.model),
+        "activity": shares,
+    }
+    words = ", ".join(f"{r} {100 * s:.0f} %" for r, s in shares.items())
+    say(options, f"{out}: {clip.duration:.1f} s by {options.model.name}, seed {options.seed} ({words})", data)
+    return 0
+
+
+def cut(options: Namespace) -> int:
+    """Make motion, cut it where that is safe, and write the pieces."""
+    import json
+
+    from app.cli.command_output import say
+    from metagraph.formats.atomic import write_atomically
+    from metagraph.formats.clips import digest
+    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.generation.stored import read_model
+    from metagraph.synthesis.cut import candidates
+
+    if not 0 < options.minutes <= MINUTES:
+        raise ValueError(f"--minutes is above 0 and at most {MINUTES:g}, not {options.minutes:g}")
+    model = read_model(options.model)
+    heard = heard_of(options, model.card.tracks)
+    out: Path = options.out
+    out.mkdir(parents=True, exist_ok=True)
+    known = digest(options.model)
+    entries: list[dict[str, Any]] = []
+    left, seed = options.minutes * 60, options.seed
+    while left > 0:
+        clip = made(options, model, heard, seed)
+        if clip.duration > left:
+            clip = clip.trimmed(0, max(2, round(left * clip.fps)))
+        left -= max(clip.duration, 0.1)
+        for start, end, score in candidates(clip, None, options.least, options.most):
+            piece = clip.trimmed(round(start * clip.fps), round(end * clip.fps) + 1)
+            name = f"{options.model.stem}_seed{seed}_{round(start * 10):05d}"
+            path = out / f"{name}.glb"
+            write_glb(path, [piece.renamed(name)])
+            told = {"file": path.name, "model": options.model.name, "sha256": known, "seed": seed}
+            entries.append({**told, "start": start, "end": end, "score": score, "speech": heard.name})
+        seed += 1
+    write_atomically(out / "pieces.json", (json.dumps(entries, indent=1) + "\n").encode())
+    lines = [
+        f"{len(entries)} pieces in {out}, {sum(e['end'] - e['start'] for e in entries):.1f} s of "
+        f"{options.minutes * 60:.0f} s, seeds {options.seed} to {seed - 1}"
+    ]
+    if not entries:
+        lines.append("it rests nowhere in one pose for long enough: ask for more minutes, or longer pieces")
+    added = _added(options.project, [out / e["file"] for e in entries]) if options.project and entries else 0
+    if added:
+        lines.append(f"{added} added to {options.project}")
+    data = {"folder": str(out), "pieces": entries, "minutes": options.minutes, "added": added}
+    say(options, "\n".join(lines), data)
+    return 0 if entries else 3
+
+
+def _added(path: Path, files: list[Path]) -> int:
+    """Add pieces to a project; return how many. Their names, and so their entries, tell model and seed."""
+    from app.cli.command_output import opened
+    from metagraph.formats.imports import import_files
+    from metagraph.formats.store import save_project
+
+    project = opened(path)
+    result = import_files(project, path.resolve().parent, files)
+    for failure in result.failures:
+        print(f"left out: {failure}", file=sys.stderr)
+    if result.loaded:
+        save_project(result.into(project), path, path)
+    return len(result.loaded)
+
+
+def info(options: Namespace) -> int:
+    """Tell what a model is."""
+    import msgspec
+
+    from app.cli.command_output import say
+    from metagraph.generation.networks import parameters
+    from metagraph.generation.stored import read_model
+
+    card = read_model(options.model).card  # its weights are read as well: a damaged file is told here
+    count = parameters(card.sizes)
+    data = {**msgspec.to_builtins(card), "parameters": count}
+    say(options, "\n".join(_told(options.model, card, count)), data)
+    return 0
+
+
+def _told(path: Path, card: ModelCard, count: int) -> list[str]:
+    roles = [r for r in card.skeleton.roles if r != "hips"]
+    lines = [
+        f"{path.name}: {card.kind}, {count:,} parameters, {path.stat().st_size / 2**20:.2f} MiB",
+        f"  moves {len(roles)} joints of {len(card.skeleton.names)} at {card.fps:g} frames a second: "
+        f"{', '.join(r.replace('_', ' ') for r in roles)}",
+        f"  hears {'both voices apart' if card.tracks == 2 else 'both voices mixed'}, and who speaks",
+        f"  loss '{card.loss or 'unknown'}', seed {card.seed}, {card.steps:,} steps on {card.hours:.2f} h",
+        f"  made with {', '.join(f'{n} {v}' for n, v in sorted(card.versions.items())) or 'unknown'}",
+    ]
+    for what, takes in (("learned from", card.takes), ("held out", card.held_out)):
+        licences = sorted({t.licence or "no licence told" for t in takes})
+        minutes = sum(t.seconds for t in takes) / 60
+        lines.append(f"  {what} {len(takes)} takes, {minutes:.1f} min" + (": " if takes else ""))
+        lines += [f"    {t.name}{' (mirrored)' if t.mirrored else ''}, {t.seconds:.1f} s" for t in takes[:10]]
+        lines += [f"    and {len(takes) - 10} more"] if len(takes) > 10 else []
+        lines += [f"    licence: {words}" for words in licences]
+    lines += [f"  {name}: {value:.4g}" for name, value in card.statistics.items()]
+    return lines + [f"  note: {note}" for note in card.notes]

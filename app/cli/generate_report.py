@@ -1,0 +1,177 @@
+"""What `metagraph generate evaluate` writes: one page with the table and figures 6 to 8, the same as JSON,
+and as CSV.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from html import escape
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from metagraph.formats.atomic import write_atomically
+from metagraph.generation import figures
+from metagraph.generation.evaluation import Judged
+from metagraph.generation.features import PARTNER, SELF
+from metagraph.generation.statistics import MEASURES, Row, mean_landmarks
+from metagraph.study.report_style import STYLE
+
+NAMES = (*MEASURES, "diversity")
+# What a perfect model has; "true": what recorded motion has itself.
+PERFECT = {
+    "distance": "floor",
+    "speed": "1",
+    "speed_w1": "floor",
+    "acceleration": "1",
+    "wrist_range": "1",
+    "role": "true",
+    "role_w1": "floor",
+    "stroke": "true",
+    "nods_responses": "true",
+    "nods_hesitations": "true",
+    "profile": "1",
+    "frechet": "floor",
+    "diversity": "true",
+}
+MEANINGS = {
+    "distance": "how the landmarks' distances from the mean pose are distributed: W1 over the mean distance",
+    "speed": "mean speed over the true one; speed_w1: W1 likewise",
+    "acceleration": "mean acceleration over the true one; more is trembling",
+    "wrist_range": "range between quartiles of the wrists' distances over the true one",
+    "role": "mean change of the distances while speaking over that while listening; role_w1: W1 of "
+    "figures 7, 8",
+    "stroke": "speed of the hands within 0.25 s of own stresses over their mean speed",
+    "nods": "vertical speed of the nose beside the head in the second after own responses, and after the "
+    "partner's hesitations, over its mean",
+    "profile": "correlation of the hands' mean speed about own stresses with the true one",
+    "frechet": "distance between Gaussians of seconds of motion",
+    "diversity": "mean distance of the landmarks between two takes to the same speech, cm",
+}
+_STYLE = """
+body { max-width: 1180px; } svg { max-width: 1000px; } .wide-table { overflow-x: auto; }
+table { font-size: 12px; } td:first-child { min-width: 110px; } td .dim { font-size: 11px; }
+.box polygon { stroke: var(--text); stroke-width: .5; }
+.box .median { stroke: var(--inside); stroke-width: 1.5; }
+.box .whisker { stroke: var(--dim); } .box .beyond { opacity: .5; }
+polyline { fill: none; stroke-width: .8; } .bones path { fill: none; stroke-width: .6; stroke-opacity: .12; }
+.mark0 { stroke: var(--s0); } .mark1 { stroke: var(--s2); }
+.mark2 { stroke: var(--s3); } .mark3 { stroke: var(--s4); }
+.fill0 { fill: var(--s0); } .fill1 { fill: var(--s2); }
+.fill2 { fill: var(--s3); } .fill3 { fill: var(--s4); }
+.line0 path { stroke: var(--s0); } .line1 path { stroke: var(--s1); } .line2 path { stroke: var(--s2); }
+.line3 path { stroke: var(--s3); } .line4 path { stroke: var(--s4); }
+"""
+
+
+def data_of(rows: Sequence[Row], told: dict[str, Any]) -> dict[str, Any]:
+    """Return the table as plain data; what is unknown is null. told: what stands beside the rows."""
+
+    def plain(value: float) -> float | None:
+        return round(value, 5) if isfinite(value) else None
+
+    out = [
+        {
+            "name": row.name,
+            "values": {n: plain(row.values[n]) for n in NAMES if n in row.values},
+            "intervals": {n: [plain(a), plain(b)] for n, (a, b) in row.spread.items()},
+        }
+        for row in rows
+    ]
+    return {**told, "rows": out}
+
+
+def text_of(rows: Sequence[Row]) -> str:
+    """Return the table as text, a line a system."""
+    wide = max([7, *(len(row.name) for row in rows)])
+    short = [n.replace("nods_", "nods ").replace("_", " ") for n in NAMES]
+    columns = [max(len(n), 6) for n in short]
+    head = "  ".join(n.rjust(w) for n, w in zip(short, columns, strict=True))
+    lines = [f"{'':{wide}}  {head}"]
+    for row in rows:
+        cells = (_number(row.values.get(n)).rjust(w) for n, w in zip(NAMES, columns, strict=True))
+        lines.append(f"{row.name:{wide}}  {'  '.join(cells)}".rstrip())
+    perfect = "  ".join(PERFECT[n].rjust(w) for n, w in zip(NAMES, columns, strict=True))
+    return "\n".join([*lines, f"{'perfect':{wide}}  {perfect}"])
+
+
+def csv_of(rows: Sequence[Row]) -> str:
+    """Return the table as CSV: name, measure, value and its interval a line."""
+    lines = ["system,measure,value,low,high"]
+    for row in rows:
+        for n in NAMES:
+            if n in row.values:
+                low, high = row.spread.get(n, (float("nan"), float("nan")))
+                cells = (_number(v, 6) for v in (row.values[n], low, high))
+                name = '"' + row.name.replace('"', '""') + '"' if set(row.name) & set(',"') else row.name
+                lines.append(",".join([name, n, *("" if c == "-" else c for c in cells)]))
+    return "\n".join(lines) + "\n"
+
+
+def write_report(judged: Judged, told: dict[str, Any], notes: Sequence[str], folder: Path) -> list[Path]:
+    """Write the page and the tables into a folder; return what was written. Raises FileError."""
+    content = {
+        "report.html": page(judged, told, notes),
+        "report.json": json.dumps({**data_of(judged.rows, told), "notes": list(notes)}, indent=1) + "\n",
+        "report.csv": csv_of(judged.rows),
+    }
+    for name, text in content.items():
+        write_atomically(folder / name, text.encode())
+    return [folder / name for name in content]
+
+
+def page(judged: Judged, told: dict[str, Any], notes: Sequence[str]) -> str:
+    """Return the page."""
+    mean = mean_landmarks(judged.true)
+    systems = {"true": judged.true}
+    systems |= {name: seeds[0] for name, seeds in judged.made.items()}
+    far = {name: figures.distances(motion, mean) for name, motion in systems.items()}
+    most = max(float(v.max()) for v in far.values())
+    parts = ["<h1>Generated motion beside recorded motion</h1>", "<div class='card'>"]
+    parts += [f"<p>{escape(str(k))}: {escape(str(v))}</p>" for k, v in told.items()]
+    parts += ["</div>", *(f"<p class='warn'>{escape(n)}</p>" for n in notes)]
+    parts += ["<h2>Table</h2>", table_of(judged.rows)]
+    parts.append(
+        "<p class='dim'>Under each value what 95 % of draws of blocks of 15 s give. <i>floor</i>: other "
+        "motion as true as the recorded one; <i>mismatched</i>: recorded motion to other speech; <i>mean "
+        "pose</i>: somebody who stands still. No value says more than what stands beside it.</p>"
+    )
+    words = "".join(f"<dt>{escape(k)}</dt><dd>{escape(v)}</dd>" for k, v in MEANINGS.items())
+    parts += [f"<dl>{words}</dl>", "<h2>Figure 6: distance from the mean pose</h2>"]
+    for name, motion in systems.items():
+        parts.append(_figure(figures.over_time(motion[0], mean, most), f"{name}: the first take"))
+    parts.append(_figure(figures.boxes(far, "cm"), "All takes; whiskers by Tukey, notches about the median"))
+    first = {name: motion[0] for name, motion in systems.items()}
+    parts.append(_figure(figures.overlaid(first), "Poses of the first take, one a second, from the front"))
+    for number, who, words in ((7, SELF, "oneself speaks"), (8, PARTNER, "the partner speaks")):
+        parts.append(f"<h2>Figure {number}: how fast that distance changes while {words}</h2>")
+        grown = {name: figures.changes(motion, mean, who) for name, motion in systems.items()}
+        parts.append(_figure(figures.boxes(grown, "cm/s"), "All takes; the first seed of each model"))
+    head = "<meta charset='utf-8'><title>Generated motion</title>"
+    return f"<!DOCTYPE html><html lang='en'><head>{head}<style>{STYLE}{_STYLE}</style></head><body>" + (
+        "\n".join(parts) + "</body></html>\n"
+    )
+
+
+def table_of(rows: Sequence[Row]) -> str:
+    """Return the table as HTML: a measure a line, a system a column."""
+    head = "".join(f"<th>{escape(n)}</th>" for n in ("", *(row.name for row in rows), "perfect"))
+    body = []
+    for n in NAMES:
+        cells = [f"<td>{escape(n.replace('_', ' '))}</td>"]
+        for row in rows:
+            low, high = row.spread.get(n, (float("nan"), float("nan")))
+            more = f"<br><span class='dim'>{_number(low)} to {_number(high)}</span>" if isfinite(low) else ""
+            cells.append(f"<td>{_number(row.values.get(n))}{more}</td>")
+        body.append(f"<tr>{''.join(cells)}<td class='dim'>{PERFECT[n]}</td></tr>")
+    table = f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(body)}</tbody></table>"
+    return f"<div class='wide-table'>{table}</div>"
+
+
+def _figure(svg: str, caption: str) -> str:
+    return f"<figure>{svg}<figcaption>{escape(caption)}</figcaption></figure>"
+
+
+def _number(value: float | None, digits: int = 3) -> str:
+    return "-" if value is None or not isfinite(value) else f"{value:.{digits}g}"

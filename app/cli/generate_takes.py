@@ -1,0 +1,98 @@
+"""What the actions of `metagraph generate` share: takes read and told of, models read."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:  # reading a command line must not wait for arrays
+    from metagraph.generation.poses import PoseRig
+    from metagraph.generation.stored import Model
+    from metagraph.generation.take_files import Batch
+
+SHOWN = 8  # notes that are printed
+
+
+def takes_arguments(parser: ArgumentParser) -> None:
+    """Add the options that say which takes."""
+    parser.add_argument(
+        "takes",
+        type=Path,
+        nargs="+",
+        metavar="TAKES",
+        help="clips, or folders of them, each with its sound beside it: talk.bvh and talk.wav, or talk_1.bvh "
+        "and talk_2.bvh for the sides of talk.wav",
+    )
+    speech_argument(parser)
+
+
+def speech_argument(parser: ArgumentParser) -> None:
+    parser.add_argument(
+        "--speech",
+        type=Path,
+        nargs="+",
+        default=[],
+        metavar="FILE",
+        help="sounds and words that lie elsewhere, or folders of them (default: beside the clips)",
+    )
+
+
+def telling(options: Namespace, what: str) -> Any:
+    """Return what tells how far the work is, on a terminal."""
+    show = sys.stderr.isatty() and not options.json
+
+    def progress(done: int, total: int) -> None:
+        if show:
+            print(f"\r{what}: {done:,} of {total:,} ", end="", file=sys.stderr, flush=True)
+
+    return progress
+
+
+def read_all(options: Namespace, rig: PoseRig | None = None, tracks: int = 1) -> Batch:
+    """Read the takes that are asked for, and say what there is to know of them. Raises ValueError where none
+    can be used.
+    """
+    from metagraph.errors import FileError
+    from metagraph.generation.take_files import find_takes, read_takes
+
+    for path in (*options.takes, *options.speech):
+        if not path.exists():
+            raise FileError(path, "there is no such file or folder", remedy="Check where the takes are.")
+    speech = [p for p in options.speech if p.is_dir()]
+    single = [p.parent for p in options.speech if p.is_file()]
+    files, without = find_takes(options.takes, list(dict.fromkeys((*speech, *single))))
+    show = telling(options, "takes")
+    batch = read_takes(files, rig, tracks=tracks, progress=lambda n, _: show(n, len(files)))
+    failures = (*without, *batch.failures)
+    for words in failures:
+        print(f"left out: {words}", file=sys.stderr)
+    told(batch.notes)
+    if not batch.takes:
+        place = ", ".join(str(p) for p in options.takes)
+        if not failures:
+            raise FileError(place, "holds no takes", remedy="Give clips with their sound beside them.")
+        raise ValueError(f"none of the {len(failures)} takes in {place} can be used: {failures[0]}")
+    return batch
+
+
+def told(notes: tuple[str, ...]) -> None:
+    """Print notes, the first of many."""
+    for note in notes[:SHOWN]:
+        print(f"note: {note}", file=sys.stderr)
+    if len(notes) > SHOWN:
+        print(f"note: and {len(notes) - SHOWN} more like these", file=sys.stderr)
+
+
+def models_of(paths: list[Path]) -> dict[str, Model]:
+    """Return models by the names of their files. Raises FileError, ValueError."""
+    from metagraph.generation.stored import read_model
+
+    names = [p.stem for p in paths]
+    twice = next((n for n in names if names.count(n) > 1), None)
+    if twice is not None:
+        raise ValueError(
+            f"two models are called '{twice}': rename one, so that the table can tell them apart"
+        )
+    return {p.stem: read_model(p) for p in paths}

@@ -1,0 +1,375 @@
+"""`metagraph generate train` and `ablate`: models learned from takes, in a process of their own."""
+
+from __future__ import annotations
+
+import shutil
+import signal
+import sys
+from argparse import ArgumentParser, Namespace
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from time import monotonic
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:  # reading a command line must not wait for arrays
+    from metagraph.generation.ablation import Job
+    from metagraph.generation.take_files import Batch
+    from metagraph.generation.takes import Take
+    from metagraph.generation.train_process import Event, TrainingProcess
+
+KINDS = ("flow-vae", "moglow", "cvae", "matching")
+MINUTES = 15.0
+EVERY = 30.0  # seconds between lines where nobody looks on
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Add the options of `train`."""
+    from app.cli.generate_takes import speech_argument
+
+    parser.add_argument(
+        "takes",
+        type=Path,
+        nargs="*",
+        metavar="TAKES",
+        help="clips, or folders of them, each with its sound beside it: talk.bvh and talk.wav, or talk_1.bvh "
+        "and talk_2.bvh for the sides of talk.wav",
+    )
+    speech_argument(parser)
+    parser.add_argument("-o", "--out", type=Path, required=True, help="the model (.mgmodel)")
+    model_arguments(parser, "matching")
+    parser.add_argument(
+        "--minutes", type=float, help=f"of the clock, all runs together (default: {MINUTES:g})"
+    )
+    parser.add_argument("--seconds", type=float, help="of the processor instead, all runs together")
+    parser.add_argument("--seed", type=int, default=1, help="another training (default: 1)")
+    parser.add_argument(
+        "--loss", choices=("paper", "whitened", "finished"), help="of a flow (default: what suits it)"
+    )
+    parser.add_argument(
+        "--mirror", action="store_true", help="learn from mirror twins as well; nobody is right-handed then"
+    )
+    parser.add_argument("--resume", action="store_true", help="go on where it was stopped")
+
+
+def model_arguments(parser: ArgumentParser, kind: str) -> None:
+    parser.add_argument("--model", choices=KINDS, default=kind, help=f"what is trained (default: {kind})")
+    parser.add_argument(
+        "--size",
+        choices=("small", "paper"),
+        default="small",
+        help="'paper' learns for hundreds of hours on a processor (default: small)",
+    )
+    parser.add_argument("--two-tracks", action="store_true", help="hear both voices apart")
+    parser.add_argument("--threads", type=int, default=0, help="of the processor (default: all)")
+
+
+def ablate_arguments(parser: ArgumentParser) -> None:
+    """Add the options of `ablate`."""
+    from app.cli.generate_judging import manner_arguments
+    from app.cli.generate_takes import takes_arguments
+
+    takes_arguments(parser)
+    parser.add_argument(
+        "-o", "--out", type=Path, required=True, help="a folder for models and table; what is there is kept"
+    )
+    model_arguments(parser, "flow-vae")
+    parser.add_argument(
+        "--seconds", type=float, default=300.0, help="of the processor for each training (default: 300)"
+    )
+    parser.add_argument("--trainings", type=int, default=1, help="of each kind, by seeds (default: 1)")
+    parser.add_argument(
+        "--change",
+        action="append",
+        metavar="NAME",
+        help="only this change, beside the whole model; as often as you like (default: all)",
+    )
+    parser.add_argument("--floor", type=Path, metavar="FOLDER", help="as for evaluate")
+    manner_arguments(parser)
+
+
+def check(options: Namespace) -> None:
+    """Raise ValueError, RuntimeError for what cannot be trained."""
+    from metagraph.generation.train_process import missing
+
+    for name in ("minutes", "seconds"):
+        value = getattr(options, name, None)
+        if value is not None and not 0 < value < 1e7:
+            raise ValueError(f"--{name} is more than 0, not {value:g}")
+    if not 0 <= options.threads <= 256:
+        raise ValueError(f"--threads is 0 to 256, not {options.threads}")
+    if words := missing():
+        raise RuntimeError(words)
+
+
+def train(options: Namespace) -> int:
+    """Train a model, or go on with it, and tell how it does."""
+    from app.cli.command_output import say
+    from metagraph.generation.stored import SUFFIX, read_model
+    from metagraph.generation.train_plan import folder_of
+
+    out: Path = options.out
+    if out.suffix.lower() != SUFFIX:
+        raise ValueError(f"a model is written as {SUFFIX}, not as '{out.suffix or out.name}'")
+    check(options)
+    _go_on(options) if options.resume else _begin(options)
+    process, stopped = _trained(options, out)
+    card = read_model(out).card
+    data = {
+        "model": str(out),
+        "kind": card.kind,
+        "steps": card.steps,
+        "hours": round(card.hours, 4),
+        "learned": len(card.takes),
+        "held_out": len(card.held_out),
+        "stopped": stopped,
+        "seconds": process.last.seconds,
+        "minutes": process.last.minutes,
+        "statistics": card.statistics,
+    }
+    lines = [
+        f"{out}: {card.kind}, {card.steps:,} steps in {process.last.minutes:.1f} min "
+        f"({process.last.seconds:.0f} s of the processor), learned from {len(card.takes)} takes, "
+        f"{len(card.held_out)} held out" + (", stopped" if stopped else "")
+    ]
+    lines += [f"  {name}: {value:.4g}" for name, value in card.statistics.items()]
+    if stopped:
+        lines.append("go on with: --resume")
+    else:
+        lines.append(f"what it would need to go on is in {folder_of(out)}")
+    say(options, "\n".join(lines), data)
+    return 0
+
+
+def _begin(options: Namespace) -> None:
+    """Read the takes and write the training's folder. Raises ValueError where that would lose something."""
+    from app.cli.generate_takes import read_all
+    from metagraph.generation.takes import split
+    from metagraph.generation.train_plan import PLAN, Settings, folder_of, plan_of, write_training
+
+    out: Path = options.out
+    if not options.takes:
+        raise ValueError("give takes to learn from, or --resume to go on")
+    if out.exists() or (folder_of(out) / PLAN).exists():
+        what = out if out.exists() else folder_of(out)
+        raise ValueError(f"{what} is there already: choose another name, or go on with --resume")
+    tracks = 2 if options.two_tracks else 1
+    batch = read_all(options, tracks=tracks)
+    assert batch.rig is not None
+    learned, held = split(batch.takes)
+    if options.mirror:
+        learned = (*learned, *twins_of(batch, learned))
+    plan = plan_of(
+        batch.rig,
+        learned,
+        held,
+        out,
+        options.model,
+        options.size,
+        tracks,
+        settings=Settings(loss=options.loss),
+        seed=options.seed,
+        **_limits(options),
+    )
+    out.parent.mkdir(parents=True, exist_ok=True)
+    write_training(folder_of(out), plan, learned, held)
+
+
+def _limits(options: Namespace) -> dict[str, Any]:
+    seconds = options.seconds or 0.0
+    minutes = options.minutes if options.minutes is not None else 0.0 if seconds else MINUTES
+    return {"minutes": minutes, "seconds": seconds, "threads": options.threads}
+
+
+def _go_on(options: Namespace) -> None:
+    """Give a training that was stopped its new limits."""
+    from msgspec.structs import replace
+
+    from metagraph.generation.train_plan import folder_of, read_plan, write_plan
+
+    folder = folder_of(options.out)
+    plan = read_plan(folder)
+    new = _limits(options)
+    if options.minutes is None and options.seconds is None:
+        new |= {"minutes": plan.minutes, "seconds": plan.seconds}
+    write_plan(folder, replace(plan, out=str(options.out.resolve()), **new))
+
+
+def twins_of(batch: Batch, takes: Sequence[Take]) -> list[Take]:
+    """Return takes' mirror twins. Raises TakeError."""
+    from metagraph.generation.takes import mirrored
+
+    assert batch.rig is not None
+    clips = {t.source.digests: c for t, c in zip(batch.takes, batch.clips, strict=True)}
+    return [mirrored(batch.rig, clips[t.source.digests], t) for t in takes]
+
+
+def _trained(options: Namespace, out: Path) -> tuple[TrainingProcess, bool]:
+    """Let a training run to its end, or until Ctrl+C or SIGTERM; return whether it was stopped."""
+    from metagraph.generation.train_process import TrainingProcess
+
+    process = TrainingProcess(out, _telling(options))
+    asked: list[int] = []
+    with _on_stop(lambda: (asked.append(1), process.stop())):
+        try:
+            process.wait()
+        except BaseException:
+            if process.running:
+                process.kill()
+            raise
+    return process, bool(asked)
+
+
+@contextmanager
+def _on_stop(act: Any) -> Iterator[None]:
+    """Act on Ctrl+C and SIGTERM instead of ending."""
+    before = {n: signal.signal(n, lambda *_: act()) for n in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _telling(options: Namespace, prefix: str = "") -> Any:
+    show = sys.stderr.isatty() and not options.json
+    told = [0.0]
+
+    def heard(event: Event) -> None:
+        if event.event == "note":
+            print(f"note: {event.text}", file=sys.stderr)
+        if event.event != "step" or options.json:
+            return
+        numbers = ", ".join(f"{n} {v:.3g}" for n, v in event.numbers.items() if n != "rate")
+        words = f"{prefix}{100 * event.share:3.0f} %, step {event.step:,}: {numbers}"
+        if show:
+            print(f"\r{words[:110]:<110}", end="\n" if event.share >= 1 else "", file=sys.stderr, flush=True)
+        elif monotonic() - told[0] > EVERY:
+            told[0] = monotonic()
+            print(words, file=sys.stderr, flush=True)
+
+    return heard
+
+
+def ablate(options: Namespace) -> int:
+    """Train a model with one thing changed at a time, and compare."""
+    import json
+
+    from app.cli.command_output import say
+    from app.cli.generate_judging import floor_of, manner_of
+    from app.cli.generate_report import csv_of, data_of, text_of
+    from app.cli.generate_takes import read_all
+    from metagraph.formats.atomic import write_atomically
+    from metagraph.generation import ablation
+    from metagraph.generation.features import MELS
+    from metagraph.generation.networks import sizes_of
+    from metagraph.generation.take_files import find_takes
+    from metagraph.generation.takes import split
+
+    check(options)
+    manner = manner_of(options)
+    changes = chosen(options.change)
+    tracks = 2 if options.two_tracks else 1
+    batch = read_all(options, tracks=tracks)
+    assert batch.rig is not None
+    rig = batch.rig
+    learned, held = split(batch.takes)
+    files, _ = find_takes(options.takes, [p for p in options.speech if p.is_dir()])
+    done = ablation.ablate(
+        options.out,
+        lambda job: _train_one(options, rig, tracks, job),
+        rig,
+        options.model,
+        sizes_of(options.model, options.size, rig.numbers, tracks * MELS),
+        learned,
+        held,
+        {f.clip.stem: f for f in files},
+        lambda: twins_of(batch, learned),
+        changes,
+        options.seconds,
+        options.trainings,
+        floor_of(options.floor, options.takes, held, rig),
+        manner,
+        options.draws,
+        lambda name: None if options.json else print(name, file=sys.stderr, flush=True),
+    )
+    said = {
+        "model": f"{options.model}, {options.size}",
+        "seconds": options.seconds,
+        "trainings": options.trainings,
+        "learned": len(learned),
+        "held_out": len(held),
+        "hours": round(sum(t.seconds for t in learned) / 3600, 3),
+        "seeds": manner.seeds,
+        "changes": {c.name: c.words for c in changes},
+        "trained_now": list(done.ran),
+        "kept": list(done.kept),
+        "left_out": list(done.left),
+    }
+    data = data_of(done.rows, said)
+    write_atomically(options.out / "table.json", (json.dumps(data, indent=1) + "\n").encode())
+    write_atomically(options.out / "table.csv", csv_of(done.rows).encode())
+    lines = [
+        f"{said['model']}: {options.seconds:g} s of the processor each, {len(learned)} takes "
+        f"({said['hours']:g} h), {len(held)} held out; {len(done.ran)} trained now, {len(done.kept)} kept",
+        text_of(done.rows),
+        *(f"  {c.name}: {c.words}" for c in changes if c.name not in done.left),
+        *(f"  left out, says nothing of such a model: {name}" for name in done.left),
+        f"written: {options.out / 'table.json'}, {options.out / 'table.csv'}",
+    ]
+    say(options, "\n".join(lines), data)
+    return 0
+
+
+def chosen(names: list[str] | None) -> list[Any]:
+    """Return changes by name, the whole model always first. Raises ValueError."""
+    from metagraph.generation.ablation import CHANGES, NAMES
+
+    odd = next((n for n in names or () if n not in NAMES), None)
+    if odd is not None:
+        raise ValueError(f"there is no change '{odd}'; they are {', '.join(NAMES[1:])}")
+    return [c for n, c in enumerate(CHANGES) if not n or names is None or c.name in names]
+
+
+def _train_one(options: Namespace, rig: Any, tracks: int, job: Job) -> None:
+    """Train one model of an ablation; of one that was cut short, go on."""
+    from metagraph.errors import FileError
+    from metagraph.generation.train_plan import (
+        Settings,
+        folder_of,
+        plan_of,
+        read_plan,
+        write_training,
+    )
+    from metagraph.generation.train_process import TrainingProcess
+
+    folder = folder_of(job.out)
+    plan = plan_of(
+        rig,
+        job.learned,
+        job.held,
+        job.out,
+        job.kind,
+        options.size,
+        tracks,
+        job.sizes,
+        settings=Settings(**job.settings),
+        seed=job.seed,
+        minutes=0.0,
+        seconds=job.seconds,
+        threads=options.threads,
+    )
+    try:
+        same = read_plan(folder).fingerprint() == plan.fingerprint()
+    except FileError:
+        same = False
+    if not same:
+        write_training(folder, plan, job.learned, job.held)
+    process = TrainingProcess(job.out, _telling(options, f"{job.out.stem}: "))
+    try:
+        process.wait()
+    except BaseException:  # its checkpoint stays; the next run goes on from it
+        if process.running:
+            process.kill()
+        raise
+    shutil.rmtree(folder, ignore_errors=True)
