@@ -235,7 +235,10 @@ def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path) -
 
     project = shown.project
     whole = shown.clip or shown.motion
-    motion = bake(shown.plan, project, seconds, fps) if whole is None else project.clips[whole].motion
+    if whole is None or (shown.clip is None and project.clips[whole].made_by):
+        motion = bake(shown.plan, project, seconds, fps, shown.pose)
+    else:
+        motion = project.clips[whole].motion
     assert motion is not None
     out.parent.mkdir(parents=True, exist_ok=True)
     if out.suffix == ".bvh":

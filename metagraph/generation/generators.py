@@ -5,6 +5,7 @@ arrays of the same shape, so that it does not matter in which pieces the sound c
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,10 @@ class Generator(ABC):
         """Return the next poses `[made, X]`, standardised. heard: features `[before + 1 + ahead, audio + 4]`,
         standardised. frame: the number of the first one made.
         """
+
+    def steps(self, heard: Array, seed: int, take: int, frame: int) -> Iterator[Array | None]:
+        """Do what `step` does in pieces of about a millisecond: yields None after each, the poses at last."""
+        yield self.step(heard, seed, take, frame)
 
 
 class FlowGenerator(Generator):
@@ -117,13 +122,22 @@ class MatchingGenerator(Generator):
         self.past = chunks.still_tokens(w, sizes, first)
 
     def step(self, heard: Array, seed: int, take: int, frame: int) -> Array:
+        *_, last = self.steps(heard, seed, take, frame)
+        assert last is not None
+        return last
+
+    def steps(self, heard: Array, seed: int, take: int, frame: int) -> Iterator[Array | None]:
         sizes = self.sizes
         told = encode_chunk(self.w, sizes, heard, self.lookahead)
         z = noise(seed, take, frame, sizes.new * sizes.dims).reshape(sizes.new, sizes.dims)
-        tokens = chunks.draw_chunk(self.w, sizes, z * self.temperature, self.past, told, self.guidance)
+        tokens = z
+        for tokens in chunks.drawing(
+            self.w, sizes, z * self.temperature, self.past, told, self.guidance
+        ):
+            yield None
         tokens = np.clip(tokens[: self.kept], -FURTHEST, FURTHEST)
         self.past = np.concatenate([self.past, tokens])[-sizes.past :]
-        return np.clip(chunks.poses_of(self.w, sizes, tokens), -FURTHEST, FURTHEST)
+        yield np.clip(chunks.poses_of(self.w, sizes, tokens), -FURTHEST, FURTHEST)
 
 
 def generator(

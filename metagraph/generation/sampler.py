@@ -4,7 +4,7 @@ to the bit, in whatever pieces the sound came.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -88,6 +88,7 @@ class Sampler:
         self._known = 0  # frames of sound that are known
         self._out = np.zeros((0, sizes.pose), np.float32)  # poses that are made, and still averaged over
         self._begun = False
+        self._steps: Iterator[Array | None] | None = None  # what `advance` is in the middle of
         self.delay = self._made.needed + len(self._weights) // 2
 
     def push(self, audio: Array, activity: Array) -> Array:
@@ -100,23 +101,52 @@ class Sampler:
         """Return the poses that are left, as though silence followed."""
         return self._go(self._features.finish(), True)
 
-    def _go(self, frames: Array, last: bool) -> Array:
+    def feed(self, audio: Array, activity: Array) -> None:
+        """Take in what `push` does, and leave the work to `advance`. Raises FeatureError."""
+        self._take(self._features.push(audio, activity))
+
+    def advance(self) -> Array | None:
+        """Do about a millisecond of what there is to do; return the poses that are ready, as `push` does, None
+        when nothing is left to be done.
+        """
+        if self._steps is None:
+            if self._next + self._made.needed >= self._known:
+                return None
+            self._steps = self._made.steps(self._window(), self.seed, self.take, self.start + self._next)
+        new = next(self._steps)
+        if new is None:
+            return np.zeros((0, len(self.model.rig.joints), 4))
+        self._steps = None
+        self._on(new)
+        return self._averaged(np.concatenate([self._out, new]), False)
+
+    def _take(self, frames: Array) -> None:
         self._known += len(frames)
         if len(frames):
             self._heard = np.concatenate([self._heard, self.model.heard(frames)])
-        made, size = self._made, self._made.before + 1 + self._made.ahead
-        poses = [self._out]
+
+    def _window(self) -> Array:
+        """Return what the next frame made hears."""
+        size = self._made.before + 1 + self._made.ahead
+        window = self._heard[:size]
+        if len(window) < size:
+            window = np.concatenate([window, np.repeat(self._quiet, size - len(window), 0)])
+        return window
+
+    def _on(self, new: Array) -> None:
+        self._heard = self._heard[self._made.made :]
+        self._next += len(new)
+
+    def _go(self, frames: Array, last: bool) -> Array:
+        self._take(frames)
+        made, poses = self._made, [self._out]
         while self._next < self._known:
             if self._next + made.needed >= self._known and not last:
                 break
-            window = self._heard[:size]
-            if len(window) < size:
-                window = np.concatenate([window, np.repeat(self._quiet, size - len(window), 0)])
-            new = made.step(window, self.seed, self.take, self.start + self._next)
+            new = made.step(self._window(), self.seed, self.take, self.start + self._next)
             new = new[: self._known - self._next] if last else new
             poses.append(new)
-            self._heard = self._heard[made.made :]
-            self._next += len(new)
+            self._on(new)
         return self._averaged(np.concatenate(poses), last)
 
     def _averaged(self, poses: Array, last: bool) -> Array:
