@@ -4,7 +4,7 @@ time.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -31,6 +31,7 @@ from metagraph.playback.planner import make_plan
 from metagraph.playback.player import morphs_at, pose_at
 
 if TYPE_CHECKING:
+    from metagraph.playback.overlay import Overlay
     from metagraph.speech.duet import Stand
 
 ASIDE = (
@@ -47,7 +48,7 @@ class Shown:
     Of a conversation: partner: the other one. side: 0 or 1, which of the two this is. stand: where it stands.
     asks: what it is asked. notes: what could not be read. folder: what paths in its project begin at. motion:
     the clip it moves with instead of its plan, which still says where it looks and what it says; of one that
-    was generated, what is above the hips.
+    was generated, what is above the hips. over: what generated motion lays over the plan at a time, live.
     """
 
     project: Project
@@ -62,6 +63,7 @@ class Shown:
     notes: tuple[str, ...] = ()
     folder: Path | None = None
     motion: str | None = None
+    over: Callable[[float], Overlay | None] | None = None
 
     @property
     def both(self) -> tuple[Shown, ...]:
@@ -89,6 +91,10 @@ class Shown:
             return manual_pose_at(self.manual, self.project, seconds)
         if self.motion is not None:
             return self._moved(seconds)
+        if self.over is not None and (laid := self.over(seconds)) is not None:
+            from metagraph.playback.overlay import overlaid
+
+            return overlaid(self.plan, self.project, seconds, laid)
         return pose_at(self.plan, self.project, seconds)
 
     def _moved(self, seconds: Any) -> Pose | None:

@@ -25,13 +25,14 @@ Array = NDArray[Any]
 class Generator(ABC):
     """A model that goes on and on. before, ahead: frames of features that are given beside the first one
     made. made: frames that `step` makes. needed: frames after the first that must be known, the others may be
-    anything.
+    anything. pieces: of how many `steps` consists.
     """
 
     before: int
     ahead: int
     made: int
     needed: int
+    pieces: int = 1
 
     @abstractmethod
     def step(self, heard: Array, seed: int, take: int, frame: int) -> Array:
@@ -118,7 +119,7 @@ class MatchingGenerator(Generator):
             raise ValueError(f"{kept} of {sizes.new} tokens cannot be kept")
         self.guidance, self.kept = guidance, kept
         self.before, self.ahead = sizes.past * sizes.frames, sizes.most
-        self.made, self.needed = kept * sizes.frames, self.lookahead
+        self.made, self.needed, self.pieces = kept * sizes.frames, self.lookahead, chunks.STEPS + 2
         self.past = chunks.still_tokens(w, sizes, first)
 
     def step(self, heard: Array, seed: int, take: int, frame: int) -> Array:
@@ -129,6 +130,7 @@ class MatchingGenerator(Generator):
     def steps(self, heard: Array, seed: int, take: int, frame: int) -> Iterator[Array | None]:
         sizes = self.sizes
         told = encode_chunk(self.w, sizes, heard, self.lookahead)
+        yield None
         z = noise(seed, take, frame, sizes.new * sizes.dims).reshape(sizes.new, sizes.dims)
         tokens = z
         for tokens in chunks.drawing(

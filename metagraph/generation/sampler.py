@@ -44,7 +44,8 @@ class Sampler:
     model follows the speech. channels, gains: of the sound, as `features.AudioStream`. first: local
     rotations `[J, 4]` of all joints that it goes on from, None for the mean pose. smooth: frames, the
     deviation of a Gaussian over the numbers of poses; None: SMOOTH for matching, 0 for others. delay: frames
-    by which poses come out later than the sound goes in.
+    by which poses come out later than the sound goes in. made, pieces: `advance` makes so many frames at
+    once, after it was called so often.
     """
 
     def __init__(
@@ -90,6 +91,7 @@ class Sampler:
         self._begun = False
         self._steps: Iterator[Array | None] | None = None  # what `advance` is in the middle of
         self.delay = self._made.needed + len(self._weights) // 2
+        self.made, self.pieces = self._made.made, self._made.pieces
 
     def push(self, audio: Array, activity: Array) -> Array:
         """Return the poses that are ready, local rotations `[n, joints, 4]` of the rig's joints. audio: `[C,

@@ -108,6 +108,11 @@ def _reach(parts: tuple[Part, ...]) -> Reach:
     return Reach(np.array([j for j, part in enumerate(parts) if part in MOVED], np.int64), None)
 
 
+def reached(project: Project) -> Array:
+    """Return the joints `[n]` that are laid over: spine, arms, neck and head; not the face."""
+    return _reach(anatomy.parts(project)).joints
+
+
 def clip_overlay(project: Project, clip: Clip, times: Array) -> Overlay:
     """Return a clip laid over a plan from its beginning on, at `times [N]`: it comes and goes within BLEND
     seconds, half of it for a short one. Raises ValueError for a clip of another skeleton.
