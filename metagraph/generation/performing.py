@@ -23,7 +23,7 @@ from metagraph.generation.features import (
 from metagraph.generation.features import RATE as SOUND_RATE
 from metagraph.generation.loudness import gain_of
 from metagraph.generation.poses import PoseError, PoseRig, rig_of
-from metagraph.generation.sampler import Sampler, clip_of
+from metagraph.generation.sampler import Sampler, clip_of, heard_activity
 from metagraph.generation.stored import Model
 from metagraph.graph import anatomy
 from metagraph.graph.conversation import Conversation, side_name
@@ -120,6 +120,25 @@ def side_sound(conversation: Conversation, side: int, folder: Path) -> tuple[Arr
     return out, tuple(notes)
 
 
+def heard_side(
+    project: Project, ident: str, side: int, folder: Path
+) -> tuple[Array, Array, tuple[str, ...]]:
+    """Return what is heard in a conversation, as `side_sound` does, who speaks `[T, 4]`, and what is missing."""
+    samples, notes = side_sound(project.conversations[ident], side, folder)
+    count = frames_of(samples.shape[1])
+    return samples, conversation_activity(project.conversations[ident], side, count), notes
+
+
+def heard_file(path: Path) -> tuple[Array, Array, tuple[str, ...]]:
+    """Return what is heard in a sound file `[C, N]`, at most two channels, the first one's own voice; who
+    speaks, by loudness; and what there is to know. Raises FileError.
+    """
+    recording = read_recording(path, LONGEST)
+    samples = at_rate(recording.samples, recording.rate)[:2]
+    notes = ("Loudness tells who speaks.",)
+    return samples, heard_activity(samples), notes
+
+
 def spoken(
     model: Model,
     samples: Array,
@@ -160,6 +179,19 @@ def spoken(
     return clip_of(model, np.concatenate(ready), name, first, chance.seed)
 
 
+def featured(model: Model, features: Array, chance: Chance, name: str, first: Array | None = None) -> Clip:
+    """Return a model's motion to features `[T, audio + 4]` of a take, on the model's skeleton."""
+    sampler = Sampler(
+        model,
+        chance.seed,
+        chance.temperature,
+        take=chance.take,
+        guidance=chance.guidance,
+        first=first,
+    )
+    return clip_of(model, sampler.heard(features), name, first, chance.seed)
+
+
 def side_clip(
     model: Model,
     project: Project,
@@ -174,9 +206,7 @@ def side_clip(
     """Return what moves one side of a project's conversation, and what there is to know of it, in words.
     folder: what paths begin at. Raises FileError, PoseError, RetargetError, FeatureError and CancelledError.
     """
-    conversation = project.conversations[ident]
-    samples, notes = side_sound(conversation, side, folder)
-    activity = conversation_activity(conversation, side, frames_of(samples.shape[1]))
+    samples, activity, notes = heard_side(project, ident, side, folder)
     first = first_of(model, project)
     clip = spoken(model, samples, activity, chance, name, first, progress, cancelled)
     clip, told = on_project(project, clip)

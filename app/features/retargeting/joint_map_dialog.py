@@ -24,7 +24,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.retargeting.stick_figures import StickFigures
+from app.widgets.stick_figures import StickFigures
 from app.look.theme import DARK, LIGHT, strengthen
 from app.project.jobs import Jobs
 from app.widgets.making import make_widget
