@@ -121,7 +121,9 @@ class Shown:
             return manual_morphs_at(self.manual, self.project, seconds)
         entry = self.project.clips.get(self.motion or "")
         if entry is not None and entry.made_by and entry.motion is not None:
-            return morphs_at(self.plan, self.project, seconds, composed=self._overlaid(entry.motion, seconds, False))
+            return morphs_at(
+                self.plan, self.project, seconds, composed=self._overlaid(entry.motion, seconds, False)
+            )
         return morphs_at(self.plan, self.project, seconds)
 
     def _overlaid(self, clip: Clip, seconds: Any, alive: bool = True) -> Pose:

@@ -132,10 +132,9 @@ class MatchingGenerator(Generator):
         told = encode_chunk(self.w, sizes, heard, self.lookahead)
         yield None
         z = noise(seed, take, frame, sizes.new * sizes.dims).reshape(sizes.new, sizes.dims)
-        tokens = z
-        for tokens in chunks.drawing(
-            self.w, sizes, z * self.temperature, self.past, told, self.guidance
-        ):
+        tokens = z * self.temperature
+        for drawn in chunks.drawing(self.w, sizes, tokens, self.past, told, self.guidance):
+            tokens = drawn
             yield None
         tokens = np.clip(tokens[: self.kept], -FURTHEST, FURTHEST)
         self.past = np.concatenate([self.past, tokens])[-sizes.past :]

@@ -13,8 +13,8 @@ SHIPPED = Path(__file__).resolve().parents[2] / "sample_clips" / "models" / f"{O
 
 
 def offered(folder: Path | None) -> dict[str, Path]:
-    """Return models by name: the program's own, where it is installed, then those in a project's folder and in
-    its FOLDER, by name. None is read.
+    """Return models by name: the program's own, where it is installed, then those in a project's folder and
+    in its FOLDER, by name. None is read.
     """
     out = {OWN: SHIPPED} if SHIPPED.is_file() else {}
     for place in () if folder is None else (folder / FOLDER, folder):

@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.generation.chunks import GUIDANCE
+from metagraph.generation.features import RATE as SOUND_RATE
 from metagraph.generation.features import (
     FeatureError,
     at_rate,
     conversation_activity,
     frames_of,
 )
-from metagraph.generation.features import RATE as SOUND_RATE
 from metagraph.generation.loudness import gain_of
 from metagraph.generation.poses import PoseError, PoseRig, rig_of
 from metagraph.generation.sampler import Sampler, clip_of, heard_activity
@@ -76,8 +76,8 @@ def first_of(model: Model, project: Project) -> Array | None:
 
 def on_project(project: Project, clip: Clip) -> tuple[Clip, tuple[str, ...]]:
     """Return what a model made as a clip of a project's figure: what no model moves is in the base pose; and
-    what there is to know of it, in words. A clip of another skeleton is retargeted, by the project's joint map
-    where it has one. Raises PoseError and RetargetError.
+    what there is to know of it, in words. A clip of another skeleton is retargeted, by the project's joint
+    map where it has one. Raises PoseError and RetargetError.
     """
     rig = project_rig(project)
     notes: tuple[str, ...] = ()
@@ -120,10 +120,10 @@ def side_sound(conversation: Conversation, side: int, folder: Path) -> tuple[Arr
     return out, tuple(notes)
 
 
-def heard_side(
-    project: Project, ident: str, side: int, folder: Path
-) -> tuple[Array, Array, tuple[str, ...]]:
-    """Return what is heard in a conversation, as `side_sound` does, who speaks `[T, 4]`, and what is missing."""
+def heard_side(project: Project, ident: str, side: int, folder: Path) -> tuple[Array, Array, tuple[str, ...]]:
+    """Return what is heard in a conversation, as `side_sound` does, who speaks `[T, 4]`, and what is missing.
+    Raises FileError.
+    """
     samples, notes = side_sound(project.conversations[ident], side, folder)
     count = frames_of(samples.shape[1])
     return samples, conversation_activity(project.conversations[ident], side, count), notes

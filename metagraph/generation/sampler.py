@@ -112,8 +112,8 @@ class Sampler:
         self._take(self._features.push(audio, activity))
 
     def advance(self) -> Array | None:
-        """Do about a millisecond of what there is to do; return the poses that are ready, as `push` does, None
-        when nothing is left to be done.
+        """Do about a millisecond of what there is to do; return the poses that are ready, as `push` does,
+        None when nothing is left to be done.
         """
         if self._steps is None:
             if self._next + self._made.needed >= self._known:

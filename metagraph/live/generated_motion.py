@@ -187,7 +187,7 @@ class GeneratedMotion:
     def overlay(self, plan: Plan, project: Project, now: float) -> Overlay | None:
         """Return what it lays over a plan at a time, None while there is nothing."""
         turns = self.turns(now)
-        if turns is None or now < self._started and self._before is None or self.over(now):
+        if turns is None or (now < self._started and self._before is None) or self.over(now):
             return None
         if self._shown is None:
             self._shown = now
@@ -305,7 +305,11 @@ class Generating:
         path = self.models.get(name)
         if path is None:
             known = ", ".join(list(self.models)[:6])
-            there = f"there are {known}" if known else f"put files of models beside the project, or into '{_folder()}'"
+            there = (
+                f"there are {known}"
+                if known
+                else f"put files of models beside the project, or into '{_folder()}'"
+            )
             raise ValueError(f"there is no model '{name[:60]}'; {there}")
         try:
             key = (name, path.stat().st_mtime_ns)

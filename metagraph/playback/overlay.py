@@ -44,9 +44,7 @@ class Overlay:
     head: Array
 
 
-def overlaid(
-    plan: Plan, project: Project, seconds: Any, overlay: Overlay | None, alive: bool = True
-) -> Pose:
+def overlaid(plan: Plan, project: Project, seconds: Any, overlay: Overlay | None, alive: bool = True) -> Pose:
     """Return the composed pose at `seconds`, a number or an array `[...]`, as `player.pose_at` does, with an
     overlay of as many times over it. Raises ValueError when the project has no skeleton.
     """

@@ -4,9 +4,10 @@ flood: a client in a process of its own sends 10,000 requests a second over WebS
 then a hundred to a message, while this process ticks at 60 Hz as a window would, planning and posing; the
 lines are in a child process (`Relay`). Counted are replies; measured is how long a tick holds the window up.
 Then the same in one process, as `metagraph live`. soak: an hour of session time, simulated, 100 requests a
-second from three clients, valid and hostile; memory after 10 and after 60 minutes, and what a tick costs. generate: ten minutes of session time with motion that a model of
-each kind (small, by chance) makes of sound, 25 pieces a second, and a gesture now and then: what a tick and the
-pose after it cost together, and memory.
+second from three clients, valid and hostile; memory after 10 and after 60 minutes, and what a tick costs.
+generate: ten minutes of session time with motion that a model of each kind (small, by chance) makes of sound,
+25 pieces a second, and a gesture now and then, then the same without it: what a tick and the pose after it cost
+together, and memory.
 """
 
 from __future__ import annotations
@@ -280,14 +281,17 @@ def generate(seconds: float) -> None:
     from tests.generation.makers import babble, rig, untrained
 
     voice = np.clip(babble(60.0) * 32768, -32768, 32767).astype("<i2")
-    pieces = [base64.b64encode(voice[n : n + 640].tobytes()).decode() for n in range(0, len(voice) - 640, 640)]
-    kinds: tuple[Kind, ...] = ("flow-vae", "cvae", "matching")
+    pieces = [
+        base64.b64encode(voice[n : n + 640].tobytes()).decode() for n in range(0, len(voice) - 640, 640)
+    ]
+    kinds: tuple[Kind | None, ...] = ("flow-vae", "cvae", "matching", None)
     print("model      minute   tick+pose  median    95 %    99 %    most ms   memory (of processor time)")
     with tempfile.TemporaryDirectory() as scratch:
         for kind in kinds:
             path = Path(scratch) / f"{kind}.mgmodel"
-            write_model(untrained(kind, sizes=sizes_of(kind, pose=rig().numbers)), path)
-            session = LiveSession(open_project(SAMPLE).project, models={kind: path})
+            if kind is not None:
+                write_model(untrained(kind, sizes=sizes_of(kind, pose=rig().numbers)), path)
+            session = LiveSession(open_project(SAMPLE).project, models={str(kind): path})
             session.warm()
             session.receive(1, json.dumps({"do": "generate", "model": kind}))
             ticks: list[float] = []
@@ -308,7 +312,10 @@ def generate(seconds: float) -> None:
                     some = sorted(ticks[60:])
                     at = (some[int(q * (len(some) - 1))] for q in (0.5, 0.95, 0.99, 1.0))
                     told = "".join(f"{x:8.2f}" for x in at)
-                    print(f"{kind:10s} {now / 60:6.1f}            {told}   {resident():5.0f} MB", flush=True)
+                    print(
+                        f"{kind or 'none':10s} {now / 60:6.1f}            {told}   {resident():5.0f} MB",
+                        flush=True,
+                    )
                     ticks.clear()
 
 

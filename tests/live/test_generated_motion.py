@@ -1,4 +1,4 @@
-"""Motion generated live: of what a client hears, until something is asked for by name; nobody can stall it."""
+"""Motion generated live: of what a client hears, until something is asked for by name."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ import msgspec
 import numpy as np
 import pytest
 
-from metagraph.formats.gltf import read_gltf_clips
 from metagraph.generation.features import RATE
 from metagraph.generation.networks import FlowSizes
 from metagraph.generation.stored import write_model
@@ -20,7 +19,7 @@ from metagraph.graph.model import Project
 from metagraph.live.live_session import LiveSession
 from metagraph.live.voice_detector import VoiceDetector
 from metagraph.playback.player import pose_at
-from tests.generation.makers import babble, rig, untrained
+from tests.generation.makers import babble, rig, stance, untrained
 
 TICK = 1 / 60
 
@@ -155,7 +154,7 @@ def test_what_cannot_be_generated_is_said_in_words(session, request_, words):
 
 
 def test_a_model_of_another_skeleton_and_one_too_large_are_refused(session, sample, models, tmp_path):
-    other = read_gltf_clips(Path(__file__).parents[2] / "sample_clips" / "clips" / "arms_crossed__beat_small_rt_01.glb")[0]
+    other = stance()
     names = tuple(f"x{n}" for n in other.skeleton.names)
     stranger = edits.add_clips(Project(), [("a.glb", 0, "", _renamed(other, names))])
     session = LiveSession(stranger, models=models)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from app.look.plural import many
 from app.project.new_clips import Loaded, pieces, save
 from metagraph.errors import FileError
 from metagraph.graph import edits
@@ -22,7 +23,7 @@ from metagraph.motion.clip import Clip
 
 if TYPE_CHECKING:
     from metagraph.generation.performing import Chance
-    from metagraph.generation.stored import Model
+    from metagraph.generation.stored import Model, ModelCard
     from metagraph.generation.take_files import Batch
 
 FOLDER = "generated"  # beside the project file, where new clips are kept
@@ -72,7 +73,9 @@ class Listing:
         return sum(take.seconds for take in self.batch.takes) if self.batch is not None else 0.0
 
 
-def list_takes(folders: Sequence[Path], project: Project, progress: Progress, cancelled: Cancelled) -> Listing:
+def list_takes(
+    folders: Sequence[Path], project: Project, progress: Progress, cancelled: Cancelled
+) -> Listing:
     """Look through folders, and read what can be learned from; what cannot is told, and spoils nothing else.
     Raises CancelledError.
     """
@@ -183,7 +186,9 @@ class Piece:
     sure: float = 0.0
 
 
-def cut_pieces(clips: Sequence[Clip], project: Project, progress: Progress, cancelled: Cancelled) -> list[Piece]:
+def cut_pieces(
+    clips: Sequence[Clip], project: Project, progress: Progress, cancelled: Cancelled
+) -> list[Piece]:
     """Cut takes at moments at which they rest alike, and say what each piece is taken for. Raises
     SynthesisError, and CancelledError.
     """
@@ -228,10 +233,15 @@ def keep_pieces(chosen: Sequence[Piece], project: Project, folder: Path) -> list
 
 
 def with_pieces(
-    project: Project, chosen: Sequence[Piece], loaded: Sequence[Loaded], named: str, seed: int, stance: str | None
+    project: Project,
+    chosen: Sequence[Piece],
+    loaded: Sequence[Loaded],
+    named: str,
+    seed: int,
+    stance: str | None,
 ) -> Project:
-    """Return the project with pieces in its library, and dropped on a stance of the arms' layer unless that is
-    None. Raises EditError.
+    """Return the project with pieces in its library, and dropped on a stance of the arms' layer unless that
+    is None. Raises EditError.
     """
     project = add_generated(project, loaded, named, seed)
     if stance is None:
@@ -250,3 +260,14 @@ def first_stance(project: Project) -> str | None:
     """
     graph = project.graphs["arms"]
     return graph.start if graph.start in graph.stances else next(iter(graph.stances), None)
+
+
+def about(card: ModelCard, project: Project) -> str:
+    """Return what a model is, in words: its kind, what it learned from, whose figure it moves."""
+    hours = f"{60 * card.hours:.0f} minutes" if card.hours < 1 else f"{card.hours:.1f} hours"
+    learned = f"{hours} of {many(len(card.takes), 'take')}" if card.takes else "nothing"
+    own = project.skeleton is not None and card.skeleton.fingerprint == project.skeleton.fingerprint
+    fits = "this project's figure" if own else "another figure: its motion is retargeted"
+    licences = sorted({t.licence for t in card.takes if t.licence and not t.licence.startswith("no licence")})
+    told = f" Takes under {'; '.join(licences)[:160]}." if licences else ""
+    return f"{card.kind}, learned from {learned}, {card.steps:,} steps; made for {fits}.{told}"

@@ -123,21 +123,21 @@ class LearnPage(QWidget):
         box = QVBoxLayout()
         box.setSpacing(6)
         box.addWidget(self._heading("Model"))
-        self.kind, self.size = ComboBox(self), ComboBox(self)
+        self.kind, self.how_large = ComboBox(self), ComboBox(self)
         self.kind.setAccessibleName("Kind of model")
-        self.size.setAccessibleName("Size")
+        self.how_large.setAccessibleName("Size")
         for n, (kind, words, tip) in enumerate(KINDS):
             self.kind.addItem(words, kind)
             self.kind.setItemData(n, tip, Qt.ItemDataRole.ToolTipRole)
         for size, words in SIZES:
-            self.size.addItem(words, size)
+            self.how_large.addItem(words, size)
         self.minutes = SpinBox(self, minimum=1, maximum=10000, value=15)
         self.minutes.setSuffix(" min")
         self.minutes.setAccessibleName("Minutes")
         self.name = QLineEdit("new model", self)
         self.name.setAccessibleName("Name of the model")
         row = QHBoxLayout()
-        for words, field in (("Kind", self.kind), ("Size", self.size), ("for", self.minutes)):
+        for words, field in (("Kind", self.kind), ("Size", self.how_large), ("for", self.minutes)):
             row.addWidget(QLabel(words, self))
             row.addWidget(field)
         row.addStretch(1)
@@ -231,8 +231,10 @@ class LearnPage(QWidget):
         rows = {i.row() for i in self.table.selectedItems()}
         item = self.table.item(min(rows), 3) if rows else None
         if item is None:
-            empty = "Each clip needs its sound beside it, under the same name: talk.bvh and talk.wav, its own voice"
-            empty += " in the first channel, the partner's in the second. Words (ELAN, TextGrid …) help."
+            empty = (
+                "Each clip needs its sound beside it, under the same name: talk.bvh and talk.wav, its own "
+            )
+            empty += "voice in the first channel, the partner's in the second. Words (ELAN, TextGrid …) help."
             self.note.setText("" if self.table.rowCount() else empty)
             return
         self.note.setText(item.text() or "Nothing is wrong with it.")
@@ -242,7 +244,7 @@ class LearnPage(QWidget):
     def _enable(self) -> None:
         busy, training = self._job is not None, self.run is not None
         ready = self.listing.batch is not None and can_train()
-        for widget in (self.add, self.clear, self.kind, self.size, self.minutes, self.name):
+        for widget in (self.add, self.clear, self.kind, self.how_large, self.minutes, self.name):
             widget.setEnabled(not busy and not training)
         self.train.setEnabled(ready and not busy and not training)
         self.train.setVisible(not training)
@@ -270,7 +272,7 @@ class LearnPage(QWidget):
             return
         wish = {
             "kind": self.kind.currentData(),
-            "size": self.size.currentData(),
+            "size": self.how_large.currentData(),
             "minutes": float(self.minutes.value()),
         }
         listing, begin = self.listing, self.begin

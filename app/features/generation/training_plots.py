@@ -1,4 +1,4 @@
-"""How a training goes: what it makes smaller, and the statistics of its samples beside what they should be."""
+"""How a training goes: what it makes smaller, and its samples' statistics beside what they should be."""
 
 from __future__ import annotations
 

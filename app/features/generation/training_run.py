@@ -87,20 +87,23 @@ def moment_of(line: Mapping[str, Any], minutes: float) -> TrainingMoment:
 
     def numbers(name: str) -> dict[str, float]:
         found = line.get(name)
-        return {k: float(v) for k, v in found.items() if _is_number(v)} if isinstance(found, Mapping) else {}
+        values = found.items() if isinstance(found, Mapping) else ()
+        return {str(k): x for k, v in values if (x := _number(v)) is not None}
 
-    seconds = float(line["seconds"]) if _is_number(line.get("seconds")) else 0.0
-    share = line.get("share")
+    seconds = _number(line.get("seconds")) or 0.0
+    share = _number(line.get("share"))
+    model = line.get("model")
     return TrainingMoment(
-        step=int(line["step"]) if _is_number(line.get("step")) else 0,
+        step=int(_number(line.get("step")) or 0),
         seconds=seconds,
-        share=float(share) if _is_number(share) else min(1.0, seconds / max(1.0, 60 * minutes)),
+        share=min(1.0, seconds / max(1.0, 60 * minutes)) if share is None else share,
         losses=numbers("losses"),
         statistics=numbers("statistics"),
         words=str(line.get("words", "")),
-        model=Path(line["model"]) if isinstance(line.get("model"), str) else None,
+        model=Path(model) if isinstance(model, str) and model else None,
     )
 
 
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+def _number(value: object) -> float | None:
+    fine = isinstance(value, int | float) and not isinstance(value, bool)
+    return float(value) if fine else None  # type: ignore[arg-type]

@@ -1,5 +1,5 @@
-"""Using a model: it moves a side of a conversation, or makes long takes that are cut into clips and dropped on
-the meta-graph.
+"""Using a model: it moves a side of a conversation, or makes long takes that are cut into clips and dropped
+on the meta-graph.
 """
 
 from __future__ import annotations
@@ -8,22 +8,20 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import Signal
 from PySide6.QtWidgets import (
     QFileDialog,
     QHBoxLayout,
-    QHeaderView,
     QLabel,
     QProgressBar,
     QPushButton,
-    QTableWidget,
-    QTableWidgetItem,
     QVBoxLayout,
     QWidget,
 )
 
 from app.features.generation.generation_jobs import (
     Piece,
+    about,
     cut_pieces,
     first_stance,
     keep_pieces,
@@ -31,6 +29,7 @@ from app.features.generation.generation_jobs import (
     with_pieces,
     with_side_moved,
 )
+from app.features.generation.pieces_table import PiecesTable
 from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.document import Document
@@ -40,12 +39,9 @@ from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from metagraph.errors import FileError
 from metagraph.generation.offered import offered, words_of
-from metagraph.generation.stored import SUFFIX, ModelCard, read_card
+from metagraph.generation.stored import SUFFIX, read_card
 from metagraph.graph.conversation import side_name
-from metagraph.graph.model import Project
 
-HEADS = ("Piece", "Length", "Taken for", "Arm")
-LIMBS = {"both": "both", "left": "left", "right": "right"}
 FILE = "file"  # a sound that is chosen
 
 
@@ -77,7 +73,9 @@ class UsePage(QWidget):
         box.addSpacing(8)
         box.addWidget(self._heading("Clips for the meta-graph"))
         box.addLayout(self._takes_row())
-        box.addWidget(self._table(), 1)
+        self.table = PiecesTable(self)
+        self.table.itemChanged.connect(lambda _: self._enable())
+        box.addWidget(self.table, 1)
         box.addLayout(self._drop_row())
         self.fill()
 
@@ -152,27 +150,13 @@ class UsePage(QWidget):
         )
         return self._row(("To", self.speech), ("for", self.minutes), ("", self.cut_button))
 
-    def _table(self) -> QTableWidget:
-        self.table = QTableWidget(0, len(HEADS), self)
-        self.table.setHorizontalHeaderLabels(list(HEADS))
-        self.table.setAccessibleName("Pieces")
-        self.table.verticalHeader().hide()
-        self.table.setShowGrid(False)
-        self.table.setSelectionBehavior(QTableWidget.SelectionBehavior.SelectRows)
-        self.table.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
-        header = self.table.horizontalHeader()
-        header.setHighlightSections(False)
-        header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
-        header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
-        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
-        self.table.itemChanged.connect(lambda _: self._enable())
-        return self.table
-
     def _drop_row(self) -> QHBoxLayout:
         self.stance = ComboBox(self)
         self.stance.setAccessibleName("Stance they leave and come back to")
         self.stance.setMinimumWidth(200)
-        self.drop_button = self._button("Drop", "In the library, and on the arms' layer of the graph", self.drop)
+        self.drop_button = self._button(
+            "Drop", "In the library, and on the arms' layer of the graph", self.drop
+        )
         strengthen(self.drop_button)
         self.progress = make_widget(QProgressBar, self, maximumWidth=180, textVisible=False)
         self.progress.hide()
@@ -319,7 +303,9 @@ class UsePage(QWidget):
         talk = project.conversations[ident]
         if talk.sides[side].project is not None:
             who = side_name(talk, side)
-            self._failed(ValueError(f"{who} is moved by another project: clear that in Sounds and names first"))
+            self._failed(
+                ValueError(f"{who} is moved by another project: clear that in Sounds and names first")
+            )
             return
 
         def work(job: Job) -> Any:
@@ -362,9 +348,10 @@ class UsePage(QWidget):
             from metagraph.generation.performing import heard_file, heard_side, long_takes
             from metagraph.generation.stored import read_model
 
-            heard, activity, notes = (
-                heard_file(sound) if speech == FILE and sound is not None else heard_side(project, *speech, folder)
-            )
+            if speech == FILE and sound is not None:
+                heard, activity, notes = heard_file(sound)
+            else:
+                heard, activity, notes = heard_side(project, speech[0], speech[1], folder)
             made, told = long_takes(
                 read_model(path),
                 project,
@@ -381,7 +368,7 @@ class UsePage(QWidget):
         def done(made: Any) -> None:
             found, notes = made
             self.pieces, self._of = found, (named, chance.seed)
-            self._show_pieces()
+            self.table.show_pieces(self.pieces)
             told = " ".join(notes)
             if not found:
                 self.said.emit(
@@ -392,30 +379,9 @@ class UsePage(QWidget):
 
         self._start("Generating takes", work, done)
 
-    def _show_pieces(self) -> None:
-        self.table.blockSignals(True)
-        self.table.setRowCount(len(self.pieces))
-        for n, piece in enumerate(self.pieces):
-            name = QTableWidgetItem(piece.clip.name)
-            name.setFlags(
-                Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable | Qt.ItemFlag.ItemIsUserCheckable
-            )
-            name.setCheckState(Qt.CheckState.Checked)
-            self.table.setItem(n, 0, name)
-            sure = f"  {100 * piece.sure:.0f} %" if piece.sure > 0 else ""
-            for column, text in enumerate((f"{piece.clip.duration:.1f} s", f"{piece.kind}{sure}", piece.limb), 1):
-                self.table.setItem(n, column, QTableWidgetItem(text))
-        self.table.blockSignals(False)
-        self._enable()
-
     def chosen(self) -> list[Piece]:
         """Return the pieces that are checked."""
-        items = [self.table.item(n, 0) for n in range(self.table.rowCount())]
-        return [
-            piece
-            for piece, item in zip(self.pieces, items, strict=False)
-            if item is not None and item.checkState() == Qt.CheckState.Checked
-        ]
+        return self.table.chosen()
 
     def drop(self) -> None:
         """Keep the checked pieces as files, and drop them on the graph: one step of undo."""
@@ -433,7 +399,7 @@ class UsePage(QWidget):
             ids = tuple(e.id for e in self.document.project.clips.values() if e.path in new)
             self.session.selection.select_clips(ids)
             self.pieces = [p for p in self.pieces if p not in chosen]
-            self._show_pieces()
+            self.table.show_pieces(self.pieces)
             place = "dropped on the arms' layer" if where else "in the library"
             self.said.emit(f"{many(len(ids), 'clip')} {place}; they say that '{named}' made them.")
 
@@ -442,14 +408,3 @@ class UsePage(QWidget):
     def close_down(self) -> None:
         if self._job is not None:
             self._job.cancel()
-
-
-def about(card: ModelCard, project: Project) -> str:
-    """Return what a model is, in words: kind, what it learned from, whether it moves this project's figure."""
-    hours = f"{60 * card.hours:.0f} minutes" if card.hours < 1 else f"{card.hours:.1f} hours"
-    learned = f"learned from {hours} of {many(len(card.takes), 'take')}" if card.takes else "learned from nothing"
-    own = project.skeleton is not None and card.skeleton.fingerprint == project.skeleton.fingerprint
-    fits = "this project's figure" if own else "another figure: its motion is retargeted"
-    licences = sorted({t.licence for t in card.takes if t.licence and not t.licence.startswith("no licence")})
-    told = f" Takes under {'; '.join(licences)[:160]}." if licences else ""
-    return f"{card.kind}, {learned}, {card.steps:,} steps; made for {fits}.{told}"
