@@ -179,19 +179,6 @@ def spoken(
     return clip_of(model, np.concatenate(ready), name, first, chance.seed)
 
 
-def featured(model: Model, features: Array, chance: Chance, name: str, first: Array | None = None) -> Clip:
-    """Return a model's motion to features `[T, audio + 4]` of a take, on the model's skeleton."""
-    sampler = Sampler(
-        model,
-        chance.seed,
-        chance.temperature,
-        take=chance.take,
-        guidance=chance.guidance,
-        first=first,
-    )
-    return clip_of(model, sampler.heard(features), name, first, chance.seed)
-
-
 def side_clip(
     model: Model,
     project: Project,

@@ -99,10 +99,6 @@ class Sampler:
         """
         return self._go(self._features.push(audio, activity), False)
 
-    def heard(self, features: Array) -> Array:
-        """Return the poses to features `[T, audio + 4]` that are known already, all of them."""
-        return self._go(features, True)
-
     def finish(self) -> Array:
         """Return the poses that are left, as though silence followed."""
         return self._go(self._features.finish(), True)

@@ -8,7 +8,7 @@ frames at once is spread over the ticks before they are shown.
 from __future__ import annotations
 
 from collections import deque
-from math import ceil, floor
+from math import floor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -35,7 +35,6 @@ GIVES_WAY = 0.25  # seconds in which generated motion gives way to what is asked
 MOST = 4_000_000  # numbers of a model: larger ones do not keep up
 WAITS = 3.0  # seconds of sound that may wait to be heard
 BEHIND = 12  # frames it may be late before some are left out
-SPARE = 1.25  # of the work that is due, so that it is done before it is needed
 SIDES = {"self": (True, False), "partner": (False, True), "both": (True, True), "none": (False, False)}
 
 
@@ -131,17 +130,17 @@ class GeneratedMotion:
         if due > BEHIND:  # nobody looked for a while: what is missed is not made up for
             self._begun += (due - 1) / self._fps
             due = 1
-        self._work += SPARE * (now - self._last) * self._fps * self.sampler.pieces / self.sampler.made
+        self._work += (now - self._last) * self._fps * self.sampler.pieces / self.sampler.made
         self._last = now
         for _ in range(due):
             self._feed(plan, self._begun + self._fed / self._fps)
-        most = 2 * BEHIND * self.sampler.pieces
-        self._work = min(self._work, most)
-        pieces = max(1, ceil(self._work)) if due or self._work >= 1 else 0
+        self._work = min(self._work, 2.0 * BEHIND * self.sampler.pieces)
+        # What comes frame by frame is made at once, what takes many pieces one after the other.
+        pieces = floor(self._work + 1e-6) if self.sampler.pieces > 1 else due
         for _ in range(pieces):
             ready = self.sampler.advance()
             if ready is None:
-                self._work = 0.0
+                self._work = 0.0  # nothing has come to be worked on
                 break
             self._work -= 1
             for turns in ready:

@@ -9,7 +9,7 @@ from PySide6.QtGui import QCloseEvent
 from PySide6.QtWidgets import QDialog, QHBoxLayout, QLabel, QPushButton, QTabWidget, QVBoxLayout, QWidget
 
 from app.features.generation.learn_page import LearnPage
-from app.features.generation.training_process import begin
+from app.features.generation.training_run import begin
 from app.features.generation.use_page import UsePage
 from app.project.document import Document
 from app.project.jobs import Jobs

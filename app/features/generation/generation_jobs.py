@@ -8,7 +8,7 @@ from __future__ import annotations
 import importlib.util
 from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -66,7 +66,6 @@ class Listing:
 
     rows: tuple[TakeRow, ...] = ()
     batch: Batch | None = None
-    clips: dict[str, Clip] = field(default_factory=dict)  # by the take's name, to show them
 
     @property
     def seconds(self) -> float:
@@ -105,8 +104,7 @@ def list_takes(
             TakeRow(take.source.name, take.seconds, "who speaks, by loudness" if wordless else "words", told)
         )
     rows += [TakeRow(_file_of(w), wrong=_after_file(w), bad=True) for w in (*batch.failures, *without)]
-    clips = {t.source.name: c for t, c in zip(batch.takes, batch.clips, strict=True)}
-    return Listing(tuple(rows), batch if batch.takes else None, clips)
+    return Listing(tuple(rows), batch if batch.takes else None)
 
 
 def _rig_for(files: Sequence[Any], project: Project) -> Any:

@@ -4,7 +4,8 @@ goes, with somebody who moves as the model would by now.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections import deque
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,7 @@ from PySide6.QtWidgets import (
 from app.features.generation.generation_jobs import NO_TORCH, Listing, can_train, list_takes
 from app.features.generation.sample_preview import SamplePreview
 from app.features.generation.training_plots import RATIOS, TrainingPlots
-from app.features.generation.training_run import Process, TrainingMoment, TrainingRun
+from app.features.generation.training_run import Begin, Process, TrainingRun, losses
 from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.document import Document
@@ -43,7 +44,6 @@ KINDS = (
 )
 SIZES = (("small", "small, for this machine"), ("paper", "as in the paper, for a graphics card"))
 HEADS = ("Take", "Length", "Speech", "What to know")
-Begin = Callable[[Listing, Mapping[str, Any], Path], Process]
 
 
 class LearnPage(QWidget):
@@ -157,7 +157,7 @@ class LearnPage(QWidget):
         box.addWidget(self.needs)
         self.plots = TrainingPlots(self.session, self)
         box.addWidget(self.plots, 2)
-        self.preview = SamplePreview(self.document, self.jobs, self)
+        self.preview = SamplePreview(self)
         box.addWidget(self.preview, 3)
         row = QHBoxLayout()
         self.progress = make_widget(QProgressBar, self, textVisible=False)
@@ -275,16 +275,17 @@ class LearnPage(QWidget):
             "size": self.how_large.currentData(),
             "minutes": float(self.minutes.value()),
         }
-        listing, begin = self.listing, self.begin
+        batch, begin = self.listing.batch, self.begin
+        said: deque[Any] = deque()
         self.said.emit("Preparing…")
         self.plots.clear()
 
         def work(_: Job) -> Process:
             out.parent.mkdir(parents=True, exist_ok=True)
-            return begin(listing, wish, out)
+            return begin(batch, wish, out, said.append)
 
         job = self.jobs.start(
-            "Preparing the training", work, lambda process: self._started(process, out), self._failed
+            "Preparing the training", work, lambda process: self._started(process, said), self._failed
         )
         self._job = job
         job.ended.connect(self._read)
@@ -294,28 +295,29 @@ class LearnPage(QWidget):
         text = str(error)
         self.said.emit(f"{text[:1].upper()}{text[1:].rstrip('.')}.")
 
-    def _started(self, process: Process, out: Path) -> None:
-        self.run = TrainingRun(process, out, self.minutes.value(), self)
+    def _started(self, process: Process, said: deque[Any]) -> None:
+        self.run = TrainingRun(process, said, self)
         self.run.moved.connect(self._moved)
         self.run.ended.connect(self._ended)
         self.progress.setValue(0)
         self.progress.show()
-        self.said.emit("Training: you can go on working, also with this window closed to a side.")
+        self.said.emit("Training in a process of its own: go on working meanwhile.")
         self._enable()
         self.preview.begin(self.listing)
 
-    def _moved(self, moment: TrainingMoment) -> None:
-        minutes = moment.seconds / 60
-        ratios = {RATIOS[k]: v for k, v in moment.statistics.items() if k in RATIOS}
-        if moment.losses or ratios:
-            self.plots.add(minutes, moment.losses, ratios)
-        self.progress.setValue(round(1000 * moment.share))
-        if moment.step:
-            self.stands.setText(f"{moment.step:,} steps, {minutes:.1f} min")
-        if moment.words:
-            self.said.emit(moment.words)
-        if moment.model is not None:
-            self.preview.show_model(moment.model)
+    def _moved(self, event: Any) -> None:
+        """Show what a training's event says."""
+        ratios = {words: event.statistics[name] for name, words in RATIOS.items() if name in event.statistics}
+        found = losses(event)
+        if found or ratios:
+            self.plots.add(event.minutes, found, ratios)
+        self.progress.setValue(round(1000 * event.share))
+        if event.step:
+            self.stands.setText(f"{event.step:,} steps, {event.minutes:.1f} min")
+        if event.landmarks:
+            self.preview.show_sample(event.landmarks)
+        if event.event == "note" and event.text:
+            self.said.emit(event.text)
 
     def end(self) -> None:
         """Stop soon, and keep the model as it is."""
@@ -331,7 +333,6 @@ class LearnPage(QWidget):
             self.said.emit(error or "The training ended without a model.")
         else:
             self.said.emit(f"The model '{model.stem}' is kept in {model.parent.name}.")
-            self.preview.show_model(model)
             self.trained.emit(model)
         self._enable()
 

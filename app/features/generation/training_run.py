@@ -1,74 +1,87 @@
-"""A training at work in a process of its own, followed by what it writes, a line of JSON each."""
+"""A training at work in a process of its own: takes that were read are written for it, and what it says is
+heard on the window's thread.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-LOOKS = 250  # milliseconds between two looks at what was written
+if TYPE_CHECKING:
+    from metagraph.generation.train_process import Event
+
+LOOKS = 200  # milliseconds between two looks at what was said
 
 
 class Process(Protocol):
-    """The process: what it has written since it was asked last; whether it still runs; asked to stop it keeps
-    what it has and ends by itself. error: why it ended, in words, "" where it ended well.
+    """`train_process.TrainingProcess`: asked to stop it writes the model and ends by itself. error: why it
+    ended, path: the model's file, each "" where there is none.
     """
 
-    def lines(self) -> list[Mapping[str, Any]]: ...
+    error: str
+    path: str
 
     @property
     def running(self) -> bool: ...
-
-    @property
-    def error(self) -> str: ...
 
     def stop(self) -> None: ...
 
     def kill(self) -> None: ...
 
 
-@dataclass(frozen=True)
-class TrainingMoment:
-    """Where a training stands. share: 0..1 of what it was asked for. losses, statistics: by name. model: a
-    file with the model as it is now, where it was just written.
-    """
+Hear = Callable[["Event"], None]
+Begin = Callable[[Any, Mapping[str, Any], Path, Hear], Process]
 
-    step: int = 0
-    seconds: float = 0.0
-    share: float = 0.0
-    losses: Mapping[str, float] = field(default_factory=dict)
-    statistics: Mapping[str, float] = field(default_factory=dict)
-    words: str = ""
-    model: Path | None = None
+
+def begin(batch: Any, wish: Mapping[str, Any], out: Path, hear: Hear) -> Process:
+    """Begin to train with the takes that were read; on a job's thread. wish: kind, size and minutes. Raises
+    SplitError, FileError, TrainingFailedError.
+    """
+    from metagraph.generation.train_plan import folder_of, plan_of, write_training
+    from metagraph.generation.train_process import TrainingProcess
+
+    from metagraph.generation.takes import split
+
+    learned, held = split(batch.takes)
+    plan = plan_of(batch.rig, learned, held, out, **wish)
+    folder = folder_of(out)
+    folder.mkdir(parents=True, exist_ok=True)
+    write_training(folder, plan, learned, held)
+    return TrainingProcess(out, hear)
 
 
 class TrainingRun(QObject):
-    """moved: it stands elsewhere. ended: the model's file, None where there is none, and words."""
+    """moved: something happened, an Event. ended: the model's file, None where there is none, and words."""
 
     moved = Signal(object)
     ended = Signal(object, str)
 
-    def __init__(self, process: Process, out: Path, minutes: float, parent: QObject | None = None) -> None:
+    def __init__(self, process: Process, said: deque[Event], parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self.process, self.out, self.minutes = process, out, minutes
+        self.process, self.said = process, said
         self.stopping = False
+        self._last = 0  # looks after it has ended: its last words are read on another thread
         self._timer = QTimer(self, interval=LOOKS)
         self._timer.timeout.connect(self.look)
         self._timer.start()
 
     def look(self) -> None:
-        """Read what was written since."""
-        running = self.process.running  # asked first: what it wrote last is read after it has ended
-        for line in self.process.lines():
-            self.moved.emit(moment_of(line, self.minutes))
-        if not running:
+        """Pass on what was said since."""
+        running = self.process.running
+        ended = False
+        while self.said:
+            event = self.said.popleft()
+            ended = ended or event.event in ("end", "error")
+            self.moved.emit(event)
+        self._last += 0 if running else 1
+        if not running and (ended or self.process.path or self._last > 5):
             self._timer.stop()
-            error = self.process.error
-            found = self.out if self.out.is_file() else None
-            self.ended.emit(None if error and not found else found, error)
+            path = Path(self.process.path) if self.process.path else None
+            self.ended.emit(path, self.process.error)
 
     def stop(self) -> None:
         """Let it end soon, keeping what it has."""
@@ -77,33 +90,20 @@ class TrainingRun(QObject):
             self.process.stop()
 
     def kill(self) -> None:
-        """End it now: the window closes."""
+        """End it now: the window closes. What it kept last can be gone on from."""
         self._timer.stop()
         self.process.kill()
 
 
-def moment_of(line: Mapping[str, Any], minutes: float) -> TrainingMoment:
-    """Return what a line says; what it does not know, or says otherwise, is left out."""
-
-    def numbers(name: str) -> dict[str, float]:
-        found = line.get(name)
-        values = found.items() if isinstance(found, Mapping) else ()
-        return {str(k): x for k, v in values if (x := _number(v)) is not None}
-
-    seconds = _number(line.get("seconds")) or 0.0
-    share = _number(line.get("share"))
-    model = line.get("model")
-    return TrainingMoment(
-        step=int(_number(line.get("step")) or 0),
-        seconds=seconds,
-        share=min(1.0, seconds / max(1.0, 60 * minutes)) if share is None else share,
-        losses=numbers("losses"),
-        statistics=numbers("statistics"),
-        words=str(line.get("words", "")),
-        model=Path(model) if isinstance(model, str) and model else None,
+def losses(event: Event) -> dict[str, float]:
+    """Return what an event tells of likelihood and errors, as people read it; more likelihood is less to
+    do.
+    """
+    names: Sequence[tuple[str, str, float]] = (
+        ("likelihood", "-likelihood", -1.0),
+        ("matching", "matching", 1.0),
+        ("reconstruction", "reconstruction", 1.0),
+        ("speeds", "speeds", 1.0),
     )
-
-
-def _number(value: object) -> float | None:
-    fine = isinstance(value, int | float) and not isinstance(value, bool)
-    return float(value) if fine else None  # type: ignore[arg-type]
+    found = {words: sign * event.numbers[name] for name, words, sign in names if name in event.numbers}
+    return found or ({"loss": event.numbers["loss"]} if "loss" in event.numbers else {})
