@@ -97,11 +97,11 @@ class Sampler:
         """Return the poses that are ready, local rotations `[n, joints, 4]` of the rig's joints. audio: `[C,
         N]` at `features.RATE`; activity: of the next frames `[m, 4]`. Raises FeatureError.
         """
-        return self._go(self._features.push(audio, activity), False)
+        return self._turns(self.numbers(self._features.push(audio, activity)))
 
     def finish(self) -> Array:
         """Return the poses that are left, as though silence followed."""
-        return self._go(self._features.finish(), True)
+        return self._turns(self.numbers(self._features.finish(), True))
 
     def feed(self, audio: Array, activity: Array) -> None:
         """Take in what `push` does, and leave the work to `advance`. Raises FeatureError."""
@@ -120,7 +120,10 @@ class Sampler:
             return np.zeros((0, len(self.model.rig.joints), 4))
         self._steps = None
         self._on(new)
-        return self._averaged(np.concatenate([self._out, new]), False)
+        return self._turns(self._averaged(np.concatenate([self._out, new]), False))
+
+    def _turns(self, poses: Array) -> Array:
+        return decode(self.model.rig, poses)
 
     def _take(self, frames: Array) -> None:
         self._known += len(frames)
@@ -139,7 +142,10 @@ class Sampler:
         self._heard = self._heard[self._made.made :]
         self._next += len(new)
 
-    def _go(self, frames: Array, last: bool) -> Array:
+    def numbers(self, frames: Array, last: bool = False) -> Array:
+        """Return the poses that are ready as numbers `[n, X]`, not standardised, of the next features `[m,
+        audio + 4]`. last: silence follows, and all that is left is made.
+        """
         self._take(frames)
         made, poses = self._made, [self._out]
         while self._next < self._known:
@@ -152,7 +158,7 @@ class Sampler:
         return self._averaged(np.concatenate(poses), last)
 
     def _averaged(self, poses: Array, last: bool) -> Array:
-        """Return rotations of the poses of which all neighbours are known."""
+        """Return the poses of which all neighbours are known, not standardised."""
         reach = len(self._weights) // 2
         if not self._begun and len(poses):
             poses = np.concatenate([np.repeat(poses[:1], reach, 0), poses])
@@ -164,7 +170,15 @@ class Sampler:
         for n, weight in enumerate(self._weights):
             out += weight * poses[n : n + count]
         self._out = poses[count:]
-        return decode(self.model.rig, self.model.poses.undo(out))
+        return self.model.poses.undo(out)
+
+
+def poses_to(model: Model, features: Array, seed: int = 1, temperature: float = 1.0, **options: Any) -> Array:
+    """Return the poses `[T, X]`, not standardised, to a whole recording's features `[T, audio + 4]`. options:
+    as for `Sampler`.
+    """
+    sampler = Sampler(model, seed, temperature, **options)
+    return sampler.numbers(features, True)
 
 
 def whole(

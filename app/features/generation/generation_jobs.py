@@ -5,7 +5,6 @@ Pure functions and values; whoever calls them does so on a job's thread.
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError
 from dataclasses import dataclass
@@ -28,18 +27,8 @@ if TYPE_CHECKING:
 
 FOLDER = "generated"  # beside the project file, where new clips are kept
 LEAST, MOST = 1.0, 8.0  # seconds of clips cut from takes
-INSTALL = "pip install torch --index-url https://download.pytorch.org/whl/cpu"
-NO_TORCH = (
-    f"Training needs PyTorch, which is not installed: {INSTALL} (190 MB to load, 750 MB on disk), then open "
-    "this window again. Models that are trained already work without it."
-)
 Progress = Callable[[int, int], None]
 Cancelled = Callable[[], bool]
-
-
-def can_train() -> bool:
-    """Whether what training needs is installed; nothing is loaded."""
-    return importlib.util.find_spec("torch") is not None
 
 
 # --- takes

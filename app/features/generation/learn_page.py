@@ -24,7 +24,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.generation.generation_jobs import NO_TORCH, Listing, can_train, list_takes
+from app.features.generation.generation_jobs import Listing, list_takes
 from app.features.generation.sample_preview import SamplePreview
 from app.features.generation.training_plots import RATIOS, TrainingPlots
 from app.features.generation.training_run import Begin, Process, TrainingRun, losses
@@ -44,6 +44,13 @@ KINDS = (
 )
 SIZES = (("small", "small, for this machine"), ("paper", "as in the paper, for a graphics card"))
 HEADS = ("Take", "Length", "Speech", "What to know")
+
+
+def missing() -> str | None:
+    """Return what has to be installed before anything can be trained, in words; None where all is there."""
+    from metagraph.generation import train_process
+
+    return train_process.missing()
 
 
 class LearnPage(QWidget):
@@ -151,7 +158,7 @@ class LearnPage(QWidget):
         row.addWidget(self.train)
         row.addWidget(self.stop)
         box.addLayout(row)
-        self.needs = QLabel("" if can_train() else NO_TORCH, self, wordWrap=True)
+        self.needs = QLabel(missing() or "", self, wordWrap=True)
         self.needs.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.needs.setVisible(bool(self.needs.text()))
         box.addWidget(self.needs)
@@ -243,7 +250,7 @@ class LearnPage(QWidget):
 
     def _enable(self) -> None:
         busy, training = self._job is not None, self.run is not None
-        ready = self.listing.batch is not None and can_train()
+        ready = self.listing.batch is not None and missing() is None
         for widget in (self.add, self.clear, self.kind, self.how_large, self.minutes, self.name):
             widget.setEnabled(not busy and not training)
         self.train.setEnabled(ready and not busy and not training)

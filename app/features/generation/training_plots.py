@@ -14,7 +14,7 @@ from app.look.theme import theme
 from app.stage.session import Session
 
 # Statistics of which 1 is right, as people read them; others are told in words.
-RATIOS = {"speed": "speed", "acceleration": "jitter", "spread": "reach", "role": "role", "stroke": "stroke"}
+RATIOS = {"speed": "speed", "acceleration": "trembling", "wrist_range": "reach", "profile": "goes with stresses"}
 STYLES = (
     Qt.PenStyle.SolidLine,
     Qt.PenStyle.DashLine,

@@ -1,0 +1,98 @@
+"""Takes as one row of frames, and random crops of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+
+from metagraph.generation import vae
+from metagraph.generation.features import with_edges
+from metagraph.generation.networks import ACTIVITY, Control, MatchingSizes, Sizes
+from metagraph.generation.poses import NUMBERS, Scale
+from metagraph.generation.takes import Take
+
+Array = NDArray[Any]
+
+STILL = 0.01  # standardised, a frame: what is slower counts as this fast
+AVERAGED = 3  # frames over which speeds are averaged
+
+
+class Corpus:
+    """Standardised takes, one after the other. Around each is what is heard and seen before it begins and
+    after it ends: silence, and the mean pose. poses: `[N, X]`; heard: `[N, audio + 4]`; speeds: of each joint
+    `[N, X / 6]`, logarithms, standardised; first: of each take, the number of its first frame; counts: frames
+    of each.
+    """
+
+    def __init__(self, takes: Sequence[Take], poses: Scale, audio: Scale, before: int, after: int) -> None:
+        rows, heard, speeds, first, counts, at = [], [], [], [], [], 0
+        for take in takes:
+            count = len(take.poses)
+            standard = poses.apply(take.poses)
+            rows.append(np.pad(standard, ((before, after), (0, 0))))
+            edged = with_edges(take.features, before, after)
+            told = [audio.apply(edged[:, :-ACTIVITY]), edged[:, -ACTIVITY:]]
+            heard.append(np.concatenate(told, 1).astype(np.float32))
+            speeds.append(np.pad(_speeds(standard), ((before, after), (0, 0))))
+            first.append(at + before)
+            counts.append(count)
+            at += before + count + after
+        self.poses = torch.from_numpy(np.concatenate(rows))
+        self.heard = torch.from_numpy(np.concatenate(heard))
+        inside = np.concatenate([np.arange(f, f + c) for f, c in zip(first, counts, strict=True)])
+        told_speeds = np.concatenate(speeds)
+        known = told_speeds[inside]
+        spread = (told_speeds - known.mean(0)) / np.maximum(known.std(0), 1e-3)
+        self.speeds = torch.from_numpy(spread.astype(np.float32))
+        self.first, self.counts = np.array(first), np.array(counts)
+
+    def starts(self, chance: torch.Generator, count: int, length: int) -> Tensor:
+        """Return numbers of the first frames `[count]` of crops that lie within a take."""
+        room = torch.from_numpy(np.maximum(0, self.counts - length + 1))
+        ends = torch.cumsum(room, 0)
+        at = torch.randint(int(ends[-1]), (count,), generator=chance)
+        which = torch.searchsorted(ends, at, right=True)
+        return torch.from_numpy(self.first)[which] + at - (ends - room)[which]
+
+    def rows(self, what: Tensor, starts: Tensor, first: int, last: int) -> Tensor:
+        """Return rows first to last, excluded, counted from starts `[B]`: `[B, last - first, ...]`."""
+        return what[starts[:, None] + torch.arange(first, last)]
+
+    def longest_crop(self, wanted: int) -> int:
+        """Return how many frames a crop has, so that every take has one."""
+        return min(wanted, int(self.counts.min()))
+
+
+def _speeds(standard: Array) -> Array:
+    """Return how fast each joint turns `[T, X / 6]`, natural logarithms. standard: `[T, X]`."""
+    steps = np.diff(standard, axis=0, prepend=standard[:1]).reshape(len(standard), -1, NUMBERS)
+    fast = np.linalg.norm(steps, axis=-1)
+    reach = AVERAGED // 2
+    padded = np.pad(fast, ((reach, reach), (0, 0)), "edge")
+    even = np.mean([padded[n : n + len(fast)] for n in range(AVERAGED)], 0)
+    return np.asarray(np.log(even + STILL))
+
+
+def edges_of(sizes: Sizes) -> tuple[int, int]:
+    """Return how many frames before a crop and after it are looked at."""
+    if isinstance(sizes, MatchingSizes):
+        return sizes.past * sizes.frames, sizes.ahead * sizes.frames
+    control: Control = sizes.control
+    return max(control.before, control.past), control.ahead
+
+
+def stretches(corpus: Corpus, span: int, most: int = 60000) -> Array:
+    """Return rows of `span` frames, flat, from evenly spread places: at most about `most`."""
+    out = []
+    step = max(1, int(corpus.counts.sum()) // most)
+    for first, count in zip(corpus.first, corpus.counts, strict=True):
+        rows = corpus.poses[first : first + count].numpy()
+        for shift in range(span):
+            out.append(vae.spans(rows[shift:], span)[:: max(1, step)])
+    return np.concatenate(out)

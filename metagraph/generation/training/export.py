@@ -1,0 +1,64 @@
+"""From what was learned to a model's file, with everything there is to know about it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import torch
+
+from metagraph.generation.networks import Weights
+from metagraph.generation.poses import Scale
+from metagraph.generation.stored import Model, ModelCard, versions, write_model
+from metagraph.generation.train_plan import TrainingPlan
+from metagraph.generation.training.learner import Learner, check_weights
+from metagraph.generation.training.losses import suited
+
+
+def model_of(
+    plan: TrainingPlan,
+    weights: Weights,
+    poses: Scale,
+    audio: Scale,
+    steps: int,
+    statistics: Mapping[str, float] | None = None,
+    notes: tuple[str, ...] = (),
+) -> Model:
+    """Return a model. poses, audio: what standardises them. Raises TrainingError for weights that are no
+    numbers.
+    """
+    check_weights(plan, weights)
+    card = ModelCard(
+        kind=plan.kind,
+        sizes=plan.sizes,
+        skeleton=plan.skeleton,
+        pose_mean=tuple(poses.mean.tolist()),
+        pose_deviation=tuple(poses.deviation.tolist()),
+        audio_mean=tuple(audio.mean.tolist()),
+        audio_deviation=tuple(audio.deviation.tolist()),
+        tracks=plan.tracks,
+        loss=plan.settings.loss or suited(plan.sizes),
+        seed=plan.seed,
+        steps=steps,
+        hours=round(sum(t.seconds for t in plan.takes) / 3600, 4),
+        takes=plan.takes,
+        held_out=plan.held,
+        versions={**versions(), "torch": torch.__version__},
+        statistics=dict(statistics or {}),
+        notes=notes,
+    )
+    return Model(card, weights)
+
+
+def model_so_far(
+    learner: Learner, statistics: Mapping[str, float] | None = None, notes: tuple[str, ...] = ()
+) -> Model:
+    """Return what a training has learned so far, as a model. Raises TrainingError."""
+    return model_of(
+        learner.plan, learner.weights(), learner.poses, learner.audio, learner.step, statistics, notes
+    )
+
+
+def export(model: Model, out: Path) -> None:
+    """Write a model, whole or not at all. Raises FileError."""
+    write_model(model, out)

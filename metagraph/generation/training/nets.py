@@ -1,0 +1,38 @@
+"""Torch's nets of a model's sizes, and their weights from and to arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+import torch
+from torch import nn
+
+from metagraph.generation.networks import CvaeSizes, FlowSizes, Sizes, Weights, shapes_of
+from metagraph.generation.training.flow_net import CvaeNet, FlowNet
+from metagraph.generation.training.matching_net import MatchingNet
+
+Net = FlowNet | CvaeNet | MatchingNet
+
+
+def net_of(sizes: Sizes, weights: Weights | None = None) -> Net:
+    """Return a net. weights: what it begins with, as `networks.shapes_of` names them."""
+    out: Net
+    if isinstance(sizes, FlowSizes):
+        out = FlowNet(sizes)
+    elif isinstance(sizes, CvaeSizes):
+        out = CvaeNet(sizes)
+    else:
+        out = MatchingNet(sizes)
+    if weights is not None:
+        load(out, weights)
+    return out
+
+
+def load(net: nn.Module, weights: Weights) -> None:
+    """Give a net its weights. Raises RuntimeError where names or shapes are others."""
+    net.load_state_dict({n: torch.from_numpy(np.array(w, np.float32)) for n, w in weights.items()})
+
+
+def weights_of(net: Net) -> Weights:
+    """Return a net's weights, float32, in `shapes_of`'s order."""
+    state = net.state_dict()
+    return {n: state[n].detach().cpu().numpy().astype(np.float32, copy=True) for n in shapes_of(net.sizes)}

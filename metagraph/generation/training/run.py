@@ -1,0 +1,146 @@
+"""The training loop: what it learns, tells and keeps, and when it ends."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from metagraph.errors import FileError
+from metagraph.generation.networks import parameters
+from metagraph.generation.train_plan import STOP, TrainingPlan, read_plan, read_takes
+from metagraph.generation.training.checkpoint import Checkpoint, Told, read_checkpoint, write_checkpoint
+from metagraph.generation.training.export import export, model_so_far
+from metagraph.generation.training.judge import LONGEST, SHORT, judged
+from metagraph.generation.training.learner import Learner
+
+Tell = Callable[[Mapping[str, Any]], None]
+EVERY = 1.0  # seconds between numbers told
+_SMOOTH = 0.95  # of numbers told
+
+
+class Run:
+    """A training in a folder. Raises FileError for one that cannot be read, ValueError for settings that do
+    not fit its takes. tell: is given what happens, as `train_process.Event` has it. stopped: asked after each
+    step.
+    """
+
+    def __init__(
+        self, folder: Path, tell: Tell, stopped: Callable[[], bool] = lambda: False, resume: bool = True
+    ) -> None:
+        self.folder, self.tell, self._stopped = folder, tell, stopped
+        self.plan: TrainingPlan = read_plan(folder)
+        if self.plan.threads:
+            torch.set_num_threads(self.plan.threads)
+        takes, self.held = read_takes(folder, self.plan)
+        self.learner = Learner(self.plan, takes)
+        self.seconds = self.minutes = 0.0
+        self.numbers: dict[str, float] = {}
+        point, notes = read_checkpoint(folder, self.plan.fingerprint()) if resume else (None, [])
+        for note in notes:
+            tell({"event": "note", "text": note})
+        if point is not None:
+            self.learner.restore(point.told.step, point.arrays)
+            self.seconds, self.minutes = point.told.seconds, point.told.minutes
+            self.numbers = dict(point.told.numbers)
+        self._kept = self.learner.step  # at the last checkpoint
+
+    @property
+    def share(self) -> float:
+        """How much of the training is over, 0..1."""
+        p = self.plan
+        used = ((self.seconds, p.seconds), (self.minutes, p.minutes), (float(self.learner.step), p.steps))
+        return min(1.0, max((value / most for value, most in used if most), default=0.0))
+
+    def go(self) -> Path:
+        """Learn until it is over or stopped; return the model's file. Raises FileError where it cannot be
+        written, TrainingError where nothing is learned; the last checkpoint stays.
+        """
+        plan, learner = self.plan, self.learner
+        self.tell(
+            {
+                "event": "begin",
+                "step": learner.step,
+                "parameters": parameters(plan.sizes),
+                "frames": int(learner.corpus.counts.sum()),
+                "threads": torch.get_num_threads(),
+                "kind": plan.kind,
+            }
+        )
+        told = kept = shown = time.monotonic()
+        stopped = False
+        while self.share < 1 and not stopped:
+            clock, used = time.monotonic(), time.process_time()
+            found = learner.advance(self.share)
+            for name, value in found.items():
+                before = self.numbers.get(name, value)
+                self.numbers[name] = value if name == "rate" else _SMOOTH * before + (1 - _SMOOTH) * value
+            self.seconds += time.process_time() - used
+            self.minutes += (time.monotonic() - clock) / 60
+            now = time.monotonic()
+            stopped = self._stopped() or (self.folder / STOP).exists()
+            if now - told >= EVERY or self.share >= 1 or stopped:
+                told = now
+                self.tell(self._told("step", frames=round(learner.step * learner.objective.frames)))
+            if now - kept >= plan.checkpoint:
+                self.keep()
+                kept = time.monotonic()
+            if now - shown >= plan.judged and self.held:
+                self.judge()
+                shown = time.monotonic()
+        self.keep()
+        (self.folder / STOP).unlink(missing_ok=True)
+        return self.finish(stopped)
+
+    def _told(self, event: str, **more: Any) -> dict[str, Any]:
+        return {
+            "event": event,
+            "step": self.learner.step,
+            "seconds": round(self.seconds, 2),
+            "minutes": round(self.minutes, 4),
+            "share": round(self.share, 4),
+            "numbers": {n: round(v, 6) for n, v in self.numbers.items()},
+            **more,
+        }
+
+    def keep(self) -> None:
+        """Write a checkpoint where there is something new. One that cannot be written is told, and tried
+        again the next time: what was learned is still in memory, and the one before is as it was.
+        """
+        if self._kept == self.learner.step:
+            return
+        told = Told(
+            plan=self.plan.fingerprint(),
+            step=self.learner.step,
+            seconds=self.seconds,
+            minutes=self.minutes,
+            numbers=self.numbers,
+        )
+        try:
+            path = write_checkpoint(self.folder, Checkpoint(told, self.learner.state()))
+        except FileError as error:
+            self.tell({"event": "note", "text": f"The training goes on, but is not kept: {error}"})
+            return
+        self._kept = self.learner.step
+        self.tell({"event": "checkpoint", "step": self.learner.step, "path": str(path)})
+
+    def judge(self) -> None:
+        """Tell the statistics of a short sample, and some of its poses."""
+        found, poses = judged(model_so_far(self.learner), self.held, SHORT)
+        self.tell(self._told("statistics", statistics=found))
+        self.tell({"event": "poses", "step": self.learner.step, "landmarks": poses})
+
+    def finish(self, stopped: bool = False) -> Path:
+        """Write the model's file of what was learned so far."""
+        notes = ("stopped before its time was over",) if stopped else ()
+        model = model_so_far(self.learner, notes=notes)
+        found: dict[str, float] = {}
+        if self.held:
+            found, _ = judged(model, self.held, SHORT if stopped else LONGEST)
+        out = Path(self.plan.out)
+        export(model_so_far(self.learner, found, notes), out)
+        self.tell(self._told("end", path=str(out), statistics=found, stopped=stopped))
+        return out
