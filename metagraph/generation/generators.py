@@ -119,7 +119,7 @@ class MatchingGenerator(Generator):
             raise ValueError(f"{kept} of {sizes.new} tokens cannot be kept")
         self.guidance, self.kept = guidance, kept
         self.before, self.ahead = sizes.past * sizes.frames, sizes.most
-        self.made, self.needed, self.pieces = kept * sizes.frames, self.lookahead, chunks.STEPS + 2
+        self.made, self.needed, self.pieces = kept * sizes.frames, self.lookahead, chunks.STEPS + 1
         self.past = chunks.still_tokens(w, sizes, first)
 
     def step(self, heard: Array, seed: int, take: int, frame: int) -> Array:
@@ -133,9 +133,10 @@ class MatchingGenerator(Generator):
         yield None
         z = noise(seed, take, frame, sizes.new * sizes.dims).reshape(sizes.new, sizes.dims)
         tokens = z * self.temperature
-        for drawn in chunks.drawing(self.w, sizes, tokens, self.past, told, self.guidance):
+        for n, drawn in enumerate(chunks.drawing(self.w, sizes, tokens, self.past, told, self.guidance), 1):
             tokens = drawn
-            yield None
+            if n < chunks.STEPS:
+                yield None
         tokens = np.clip(tokens[: self.kept], -FURTHEST, FURTHEST)
         self.past = np.concatenate([self.past, tokens])[-sizes.past :]
         yield np.clip(chunks.poses_of(self.w, sizes, tokens), -FURTHEST, FURTHEST)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QCloseEvent
 from PySide6.QtWidgets import QDialog, QHBoxLayout, QLabel, QPushButton, QTabWidget, QVBoxLayout, QWidget
 
 from app.features.generation.learn_page import LearnPage
@@ -48,6 +47,7 @@ class GenerationDialog(QDialog):
         for page in (self.use, self.learn):
             page.said.connect(self.said.setText)
         self.learn.trained.connect(self._trained)
+        self.finished.connect(self._ended)
         document.changed.connect(self._follow)
         document.loaded.connect(self._leave)
         if self.use.model.count() == 0:
@@ -71,10 +71,7 @@ class GenerationDialog(QDialog):
         self.use.fill()
         self.said.setText("")
 
-    def closeEvent(self, event: QCloseEvent) -> None:
+    def _ended(self) -> None:
+        """It closes: nothing goes on unseen."""
         self.use.close_down()
         self.learn.close_down()
-        super().closeEvent(event)
-
-    def reject(self) -> None:
-        self.close()  # Escape closes as the button does

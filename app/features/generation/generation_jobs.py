@@ -5,6 +5,7 @@ Pure functions and values; whoever calls them does so on a job's thread.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError
 from dataclasses import dataclass
@@ -29,6 +30,12 @@ FOLDER = "generated"  # beside the project file, where new clips are kept
 LEAST, MOST = 1.0, 8.0  # seconds of clips cut from takes
 Progress = Callable[[int, int], None]
 Cancelled = Callable[[], bool]
+
+
+def sentence(error: Exception) -> str:
+    """Return what went wrong as a sentence; a file's name stays as it is written."""
+    text = str(error).rstrip(".")
+    return f"{text}." if isinstance(error, FileError) else f"{text[:1].upper()}{text[1:]}."
 
 
 # --- takes
@@ -76,23 +83,22 @@ def list_takes(
         try:
             found, alone = find_takes([folder])
         except FileError as error:
-            rows.append(TakeRow(folder.name, wrong=str(error), bad=True))
+            rows.append(TakeRow(folder.name, wrong=_without_name(str(error), folder.name), bad=True))
             continue
         files += [f for f in found if f not in files]
         without += alone
     rig = _rig_for(files, project)
     batch = read_takes(files, rig, progress=lambda n, _: progress(n, len(files)), cancelled=cancelled)
-    words: dict[str, list[str]] = {}
-    for note in batch.notes:
-        name = next((t.source.name for t in batch.takes if t.source.name in note), "")
-        words.setdefault(name, []).append(note)
     for take in batch.takes:
-        told = " ".join(_without_name(n, take.source.name) for n in words.get(take.source.name, ()))
-        wordless = "has no words" in told
-        rows.append(
-            TakeRow(take.source.name, take.seconds, "who speaks, by loudness" if wordless else "words", told)
-        )
-    rows += [TakeRow(_file_of(w), wrong=_after_file(w), bad=True) for w in (*batch.failures, *without)]
+        name = take.source.name
+        told = [left for n in (*take.notes, *batch.notes) if (left := _without_name(n, name)) != n]
+        wordless = any("no words" in n for n in told)
+        heard = "by loudness" if wordless else "words"
+        rows.append(TakeRow(name, take.seconds, heard, " ".join(dict.fromkeys(told))))
+    rows += [
+        TakeRow(_file_of(w), wrong=_without_name(w, _file_of(w)), bad=True)
+        for w in (*batch.failures, *without)
+    ]
     return Listing(tuple(rows), batch if batch.takes else None)
 
 
@@ -115,15 +121,14 @@ def _file_of(words: str) -> str:
     return words.split("'")[1] if words.startswith("'") else words.split(":")[0].split(",")[0]
 
 
-def _after_file(words: str) -> str:
-    name = _file_of(words)
-    return _without_name(words, name)
-
-
 def _without_name(words: str, name: str) -> str:
-    """Return words about a take without its name, which stands beside them."""
-    out = words.removeprefix(f"'{name}'").removeprefix(name).lstrip(" ,:")
-    return f"{out[:1].upper()}{out[1:]}"
+    """Return words about a take without its name, which stands beside them; those about others as they
+    are.
+    """
+    stem = re.escape(name)
+    found = re.match(rf"(?:'{stem}'|{stem}(?:\.\w+)?)[:,]? +", words)
+    left = words[found.end() :] if found else words
+    return f"{left[:1].upper()}{left[1:]}" if found else words
 
 
 # --- motion

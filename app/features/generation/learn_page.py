@@ -24,10 +24,10 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.generation.generation_jobs import Listing, list_takes
+from app.features.generation.generation_jobs import Listing, list_takes, sentence
 from app.features.generation.sample_preview import SamplePreview
 from app.features.generation.training_plots import RATIOS, TrainingPlots
-from app.features.generation.training_run import Begin, Process, TrainingRun, losses
+from app.features.generation.training_run import Begin, Process, TrainingRun, goal
 from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.document import Document
@@ -141,6 +141,7 @@ class LearnPage(QWidget):
         self.minutes = SpinBox(self, minimum=1, maximum=10000, value=15)
         self.minutes.setSuffix(" min")
         self.minutes.setAccessibleName("Minutes")
+        self.minutes.lineEdit().setTextMargins(6, 0, 0, 0)
         self.name = QLineEdit("new model", self)
         self.name.setAccessibleName("Name of the model")
         row = QHBoxLayout()
@@ -200,7 +201,7 @@ class LearnPage(QWidget):
             "Reading takes",
             lambda job: list_takes(chosen, project, job.tell, lambda: job.cancelled),
             self._listed,
-            lambda error: self.said.emit(str(error)),
+            self._failed,
         )
         self._job = job
         job.progress.connect(self._tell_reading)
@@ -299,8 +300,7 @@ class LearnPage(QWidget):
         self._enable()
 
     def _failed(self, error: Exception) -> None:
-        text = str(error)
-        self.said.emit(f"{text[:1].upper()}{text[1:].rstrip('.')}.")
+        self.said.emit(sentence(error))
 
     def _started(self, process: Process, said: deque[Any]) -> None:
         self.run = TrainingRun(process, said, self)
@@ -315,9 +315,9 @@ class LearnPage(QWidget):
     def _moved(self, event: Any) -> None:
         """Show what a training's event says."""
         ratios = {words: event.statistics[name] for name, words in RATIOS.items() if name in event.statistics}
-        found = losses(event)
-        if found or ratios:
-            self.plots.add(event.minutes, found, ratios)
+        words, value = goal(event)
+        if words or ratios:
+            self.plots.add(event.minutes, {words: value} if words else {}, ratios)
         self.progress.setValue(round(1000 * event.share))
         if event.step:
             self.stands.setText(f"{event.step:,} steps, {event.minutes:.1f} min")

@@ -96,6 +96,5 @@ class SamplePreview(QWidget):
         painter.setPen(pen)
         for a, b in LINES:
             painter.drawLine(places[a], places[b])
-        painter.setBrush(self.palette().text())
-        painter.drawEllipse(places[LANDMARKS.index("head")], 0.09 * scale, 0.11 * scale)
-        painter.setBrush(Qt.BrushStyle.NoBrush)
+        head, nose = places[LANDMARKS.index("head")], places[LANDMARKS.index("nose")]
+        painter.drawEllipse(head + (nose - head) / 3, 0.09 * scale, 0.11 * scale)

@@ -1,4 +1,4 @@
-"""How a training goes: what it makes smaller, and its samples' statistics beside what they should be."""
+"""How a training goes: how near it is to its goal, and its samples' statistics beside what they should be."""
 
 from __future__ import annotations
 
@@ -14,7 +14,12 @@ from app.look.theme import theme
 from app.stage.session import Session
 
 # Statistics of which 1 is right, as people read them; others are told in words.
-RATIOS = {"speed": "speed", "acceleration": "trembling", "wrist_range": "reach", "profile": "goes with stresses"}
+RATIOS = {
+    "speed": "speed",
+    "acceleration": "trembling",
+    "wrist_range": "reach",
+    "profile": "goes with stresses",
+}
 STYLES = (
     Qt.PenStyle.SolidLine,
     Qt.PenStyle.DashLine,
@@ -32,13 +37,16 @@ class TrainingPlots(QWidget):
     def __init__(self, session: Session, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.session = session
-        self.losses: dict[str, list[tuple[float, float]]] = {}
+        self.goals: dict[str, list[tuple[float, float]]] = {}
         self.ratios: dict[str, list[tuple[float, float]]] = {}
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(10)
         self.left, self.right = (self._plot() for _ in range(2))
-        for plot, name in ((self.left, "Likelihood and errors"), (self.right, "Statistics of the samples")):
+        for plot, name in (
+            (self.left, "How near the training is to its goal"),
+            (self.right, "Statistics of the samples"),
+        ):
             plot.setAccessibleName(name)
             layout.addWidget(plot)
         self.setMinimumHeight(150)
@@ -56,12 +64,12 @@ class TrainingPlots(QWidget):
         return plot
 
     def clear(self) -> None:
-        self.losses, self.ratios = {}, {}
+        self.goals, self.ratios = {}, {}
         self._draw()
 
-    def add(self, minutes: float, losses: Mapping[str, float], ratios: Mapping[str, float]) -> None:
-        """Add a moment. losses: what is made smaller, by name. ratios: statistics of which 1 is right."""
-        for lines, values in ((self.losses, losses), (self.ratios, ratios)):
+    def add(self, minutes: float, goals: Mapping[str, float], ratios: Mapping[str, float]) -> None:
+        """Add a moment. goals: how near it is to its goal, by what that is. ratios: statistics of which 1 is right."""
+        for lines, values in ((self.goals, goals), (self.ratios, ratios)):
             for name, value in values.items():
                 if isfinite(value):
                     line = lines.setdefault(name, [])
@@ -74,7 +82,7 @@ class TrainingPlots(QWidget):
         look = theme(self.session.look.name)
         colours = (look.text, look.warning, look.dim, look.error, look.text)
         for plot, words, lines in (
-            (self.left, "what training makes smaller", self.losses),
+            (self.left, next(iter(self.goals), "what training is after"), self.goals),
             (self.right, "samples beside takes: 1 is right", self.ratios),
         ):
             plot.clear()
@@ -84,8 +92,9 @@ class TrainingPlots(QWidget):
                 plot.getAxis(axis).setTextPen(look.dim)
             plot.setLabel("bottom", "minutes", color=look.dim)
             plot.setTitle(words, color=look.dim, size="9pt")
-            legend = plot.addLegend(offset=(-6, 4), labelTextColor=look.dim, labelTextSize="8pt")
-            legend.clear()
+            if lines is self.ratios:
+                legend = plot.addLegend(offset=(-6, 4), labelTextColor=look.dim, labelTextSize="8pt")
+                legend.clear()
             for n, (name, points) in enumerate(lines.items()):
                 high = HIGHEST if lines is self.ratios else float("inf")
                 pen = pg.mkPen(colours[n % 5], width=2, style=STYLES[n % 5])

@@ -5,7 +5,7 @@ heard on the window's thread.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -14,6 +14,12 @@ from PySide6.QtCore import QObject, QTimer, Signal
 if TYPE_CHECKING:
     from metagraph.generation.train_process import Event
 
+# What an event's numbers tell, the most telling first.
+GOALS = {
+    "likelihood": "likelihood: more is better",
+    "matching": "error of the flow: less is better",
+    "loss": "error: less is better",
+}
 LOOKS = 200  # milliseconds between two looks at what was said
 
 
@@ -41,10 +47,9 @@ def begin(batch: Any, wish: Mapping[str, Any], out: Path, hear: Hear) -> Process
     """Begin to train with the takes that were read; on a job's thread. wish: kind, size and minutes. Raises
     SplitError, FileError, TrainingFailedError.
     """
+    from metagraph.generation.takes import split
     from metagraph.generation.train_plan import folder_of, plan_of, write_training
     from metagraph.generation.train_process import TrainingProcess
-
-    from metagraph.generation.takes import split
 
     learned, held = split(batch.takes)
     plan = plan_of(batch.rig, learned, held, out, **wish)
@@ -95,15 +100,11 @@ class TrainingRun(QObject):
         self.process.kill()
 
 
-def losses(event: Event) -> dict[str, float]:
-    """Return what an event tells of likelihood and errors, as people read it; more likelihood is less to
-    do.
+def goal(event: Event) -> tuple[str, float]:
+    """Return what an event tells of how near the training is to its goal, in words and as a number; "" where it
+    says nothing of it.
     """
-    names: Sequence[tuple[str, str, float]] = (
-        ("likelihood", "-likelihood", -1.0),
-        ("matching", "matching", 1.0),
-        ("reconstruction", "reconstruction", 1.0),
-        ("speeds", "speeds", 1.0),
-    )
-    found = {words: sign * event.numbers[name] for name, words, sign in names if name in event.numbers}
-    return found or ({"loss": event.numbers["loss"]} if "loss" in event.numbers else {})
+    for name, words in GOALS.items():
+        if name in event.numbers:
+            return words, event.numbers[name]
+    return "", 0.0

@@ -25,6 +25,7 @@ from app.features.generation.generation_jobs import (
     cut_pieces,
     first_stance,
     keep_pieces,
+    sentence,
     side_motion,
     with_pieces,
     with_side_moved,
@@ -42,7 +43,7 @@ from metagraph.generation.offered import offered, words_of
 from metagraph.generation.stored import SUFFIX, read_card
 from metagraph.graph.conversation import side_name
 
-FILE = "file"  # a sound that is chosen
+FILE, CHOOSE = "file", "choose"  # a sound that was chosen, and choosing one
 
 
 class UsePage(QWidget):
@@ -77,6 +78,8 @@ class UsePage(QWidget):
         self.table.itemChanged.connect(lambda _: self._enable())
         box.addWidget(self.table, 1)
         box.addLayout(self._drop_row())
+        for field in (self.seed, self.temperature, self.guidance, self.minutes):
+            field.lineEdit().setTextMargins(6, 0, 0, 0)
         self.fill()
 
     # --- building
@@ -157,6 +160,7 @@ class UsePage(QWidget):
         self.drop_button = self._button(
             "Drop", "In the library, and on the arms' layer of the graph", self.drop
         )
+        self.drop_button.setMinimumWidth(120)
         strengthen(self.drop_button)
         self.progress = make_widget(QProgressBar, self, maximumWidth=180, textVisible=False)
         self.progress.hide()
@@ -182,7 +186,7 @@ class UsePage(QWidget):
             if box is self.speech:
                 if self._sound is not None:
                     box.addItem(self._sound.name, FILE)
-                box.addItem("Choose a sound…", None)
+                box.addItem("Choose a sound…", CHOOSE)
             box.setCurrentIndex(max(0, box.findData(chosen)))
         stance = self.stance.currentData()
         self.stance.clear()
@@ -229,7 +233,8 @@ class UsePage(QWidget):
         self._enable()
 
     def _speech_chosen(self) -> None:
-        if self.speech.currentData() is not None:
+        self._enable()
+        if self.speech.currentData() != CHOOSE:
             return
         from app.project.speech_files import SOUNDS
 
@@ -246,7 +251,7 @@ class UsePage(QWidget):
     def _enable(self) -> None:
         free = self._job is None and self.model.currentData() is not None
         self.move_button.setEnabled(free and self.side.count() > 0)
-        self.cut_button.setEnabled(free and self.speech.currentData() is not None)
+        self.cut_button.setEnabled(free and self.speech.currentData() != CHOOSE)
         count = len(self.chosen())
         self.drop_button.setEnabled(self._job is None and count > 0)
         self.drop_button.setText(f"Drop {many(count, 'clip')}" if count else "Drop")
@@ -273,8 +278,7 @@ class UsePage(QWidget):
         self._enable()
 
     def _failed(self, error: Exception) -> None:
-        text = str(error)
-        self.said.emit(f"{text[:1].upper()}{text[1:].rstrip('.')}.")
+        self.said.emit(sentence(error))
 
     def cancel(self) -> None:
         if self._job is not None:
@@ -339,7 +343,7 @@ class UsePage(QWidget):
     def make_pieces(self) -> None:
         """Make long takes and cut them."""
         path, speech = self.model.currentData(), self.speech.currentData()
-        if path is None or speech is None:
+        if path is None or speech == CHOOSE:
             return
         project, chance, named = self.document.project, self._chance(), self.model.currentText()
         seconds, folder, sound = 60 * self.minutes.value(), self.document.folder or Path(), self._sound
