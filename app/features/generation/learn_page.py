@@ -75,6 +75,7 @@ class LearnPage(QWidget):
         columns.setSpacing(18)
         columns.addLayout(self._left(), 5)
         columns.addLayout(self._right(), 6)
+        self._show_note()
         self._enable()
 
     def _heading(self, words: str) -> QLabel:

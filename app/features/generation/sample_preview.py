@@ -70,10 +70,10 @@ class SamplePreview(QWidget):
         half = self.width() / 2
         for n, words in enumerate(("as recorded", "as the model moves by now")):
             box = QRectF(n * half, 0, half, self.height())
-            painter.setPen(self.palette().placeholderText().color())
-            painter.drawText(box, Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignBottom, words)
             points = self.moves[n]
             if points is not None and len(points):
+                painter.setPen(self.palette().placeholderText().color())
+                painter.drawText(box, Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignBottom, words)
                 self._figure(painter, box.adjusted(6, 4, -6, -22), points)
         painter.end()
 

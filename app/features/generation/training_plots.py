@@ -68,7 +68,7 @@ class TrainingPlots(QWidget):
         self._draw()
 
     def add(self, minutes: float, goals: Mapping[str, float], ratios: Mapping[str, float]) -> None:
-        """Add a moment. goals: how near it is to its goal, by what that is. ratios: statistics of which 1 is right."""
+        """Add a moment. goals: how near it is to its goal, by what that is. ratios: of which 1 is right."""
         for lines, values in ((self.goals, goals), (self.ratios, ratios)):
             for name, value in values.items():
                 if isfinite(value):

@@ -101,8 +101,8 @@ class TrainingRun(QObject):
 
 
 def goal(event: Event) -> tuple[str, float]:
-    """Return what an event tells of how near the training is to its goal, in words and as a number; "" where it
-    says nothing of it.
+    """Return what an event tells of how near the training is to its goal, in words and as a number; "" where
+    it says nothing of it.
     """
     for name, words in GOALS.items():
         if name in event.numbers:
