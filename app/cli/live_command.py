@@ -49,7 +49,11 @@ def run(options: Namespace) -> int:
     import asyncio
     import gc
 
+    # A small model's sums are too short for several threads, which only wait for each other.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
     from app.project.opening import open_whole
+    from metagraph.generation.offered import offered
     from metagraph.live.live_session import LiveSession
     from metagraph.live.server import Options, checked
 
@@ -66,7 +70,12 @@ def run(options: Namespace) -> int:
     opened = open_whole(options.project)
     for note in opened.notes:
         print(f"note: {note}", file=sys.stderr)
-    session = LiveSession(opened.project, options.seed, idle=not options.no_idle)
+    session = LiveSession(
+        opened.project,
+        options.seed,
+        idle=not options.no_idle,
+        models=offered(options.project.resolve().parent),
+    )
     session.warm()
     gc.freeze()  # what was loaded stays; looking through it again and again would show as a hitch
     with contextlib.suppress(KeyboardInterrupt):

@@ -13,6 +13,7 @@ import numpy as np
 from app.cli.command_output import opened, performance_arguments, say, staged
 from app.stage.playback_source import ASIDE, Shown, alone
 from metagraph.graph.model import Project
+from metagraph.motion.clip import Clip
 from metagraph.playback.bake import bake
 from metagraph.playback.plan import Plan
 
@@ -235,7 +236,10 @@ def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path) -
 
     project = shown.project
     whole = shown.clip or shown.motion
-    motion = bake(shown.plan, project, seconds, fps) if whole is None else project.clips[whole].motion
+    if whole is None or (shown.clip is None and project.clips[whole].made_by):
+        motion: Clip | None = bake(shown.plan, project, seconds, fps, shown.pose)
+    else:
+        motion = project.clips[whole].motion
     assert motion is not None
     out.parent.mkdir(parents=True, exist_ok=True)
     if out.suffix == ".bvh":

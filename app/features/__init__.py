@@ -16,6 +16,7 @@ FEATURES = (
     "manual",
     "labelling",
     "motion_graph",
+    "generation",
     "life",
     "timeline",
     "mimic",

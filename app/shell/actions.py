@@ -20,6 +20,7 @@ MENUS: dict[str, tuple[str, ...]] = {
     "&File": ("project", "save", "import", "character", "write", "quit"),
     "&Edit": ("history", "selection", "properties", "find"),
     "&Graph": ("author", "label", "layers", "stances", "skeleton"),
+    "&Motion": ("make",),
     "&Play": ("transport", "live", "show"),
     "&Conversation": ("read", "settings", "stage", "write", "remove"),
     "&View": ("character", "graph", "look"),

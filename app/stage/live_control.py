@@ -40,7 +40,7 @@ class LiveControl(QObject):
             return
         self.session.onstage.set_performance(None)
         self.session.transport.show_plan()
-        self.stage, self.following = LiveStage(project, options, self), True
+        self.stage, self.following = LiveStage(project, options, self, self.document.folder), True
         self.stage.ticked.connect(self.ticked)
         self.stage.told.connect(lambda _: self.changed.emit())
         self.session.transport.set_playing(True)

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 import msgspec
 from PySide6.QtCore import QElapsedTimer, QObject, Qt, QTimer, Signal
 
+from metagraph.generation.offered import offered
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyRequest, Performance
 from metagraph.live import OSC_PORT, PORT
@@ -58,16 +60,22 @@ class _Counted(LiveSession):
 
 
 class LiveStage(QObject):
-    """ticked: the plan went on. told: words about who can connect, or why nobody can."""
+    """ticked: the plan went on. told: words about who can connect, or why nobody can. folder: beside which
+    models are looked for.
+    """
 
     ticked = Signal()
     told = Signal(str)
 
     def __init__(
-        self, project: Project, options: Options | None = None, parent: QObject | None = None
+        self,
+        project: Project,
+        options: Options | None = None,
+        parent: QObject | None = None,
+        folder: Path | None = None,
     ) -> None:
         super().__init__(parent)
-        self.session = _Counted(project)
+        self.session = _Counted(project, models=offered(folder))
         self.session.tape = self.tape = _Shown()
         self.session.join(WINDOW)
         self.options = options or Options(port=PORT, osc=OSC_PORT)

@@ -215,8 +215,9 @@ class Performance(QObject):
         plan = (
             live.session.plan if self.live.following else live.session.plan_at(self.session.transport.seconds)
         )
-        if plan is not self.shown.plan:
-            self.shown = Shown(live.session.project, plan, plan.end)
+        over = live.session.overlay if self.live.following else None
+        if plan is not self.shown.plan or (over is None) != (self.shown.over is None):
+            self.shown = Shown(live.session.project, plan, plan.end, over=over)
             self.changed.emit()
 
     def plan_beyond(self, seconds: float) -> None:

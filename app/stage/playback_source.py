@@ -4,7 +4,7 @@ time.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,7 @@ import numpy as np
 from metagraph.graph.edits import EditError, place
 from metagraph.graph.model import Layer, Project
 from metagraph.graph.requests import AnyRequest
+from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.life.evaluate import enliven
 from metagraph.playback.manual_playback import (
@@ -30,6 +31,7 @@ from metagraph.playback.planner import make_plan
 from metagraph.playback.player import morphs_at, pose_at
 
 if TYPE_CHECKING:
+    from metagraph.playback.overlay import Overlay
     from metagraph.speech.duet import Stand
 
 ASIDE = (
@@ -45,7 +47,8 @@ class Shown:
 
     Of a conversation: partner: the other one. side: 0 or 1, which of the two this is. stand: where it stands.
     asks: what it is asked. notes: what could not be read. folder: what paths in its project begin at. motion:
-    the clip it moves with instead of its plan, which still says where it looks and what it says.
+    the clip it moves with instead of its plan, which still says where it looks and what it says; of one that
+    was generated, what is above the hips. over: what generated motion lays over the plan at a time, live.
     """
 
     project: Project
@@ -60,6 +63,7 @@ class Shown:
     notes: tuple[str, ...] = ()
     folder: Path | None = None
     motion: str | None = None
+    over: Callable[[float], Overlay | None] | None = None
 
     @property
     def both(self) -> tuple[Shown, ...]:
@@ -76,8 +80,8 @@ class Shown:
             return motion.skeleton if motion is not None else None
         return self.project.skeleton
 
-    def pose(self, seconds: float) -> Pose | None:
-        """Return the pose at a time, None when there is nothing to show."""
+    def pose(self, seconds: Any) -> Pose | None:
+        """Return the pose at a time, or at many, None when there is nothing to show."""
         if self.clip is not None:
             motion = self.project.clips[self.clip].motion
             return motion.pose_at(seconds) if motion is not None else None
@@ -87,13 +91,20 @@ class Shown:
             return manual_pose_at(self.manual, self.project, seconds)
         if self.motion is not None:
             return self._moved(seconds)
+        if self.over is not None and (laid := self.over(seconds)) is not None:
+            from metagraph.playback.overlay import overlaid
+
+            return overlaid(self.plan, self.project, seconds, laid)
         return pose_at(self.plan, self.project, seconds)
 
     def _moved(self, seconds: Any) -> Pose | None:
         """Return the pose of the clip it moves with, alive: eyes, lids and lips are the plan's."""
-        clip = self.project.clips[self.motion or ""].motion
+        entry = self.project.clips[self.motion or ""]
+        clip = entry.motion
         if clip is None:
             return None
+        if entry.made_by:
+            return self._overlaid(clip, seconds)
         times = np.asarray(seconds, np.float64).reshape(-1)
         pose = clip.pose_at(np.clip(times, 0.0, clip.duration))
         if self.project.life.on and self.plan.life.end > 0:
@@ -108,7 +119,19 @@ class Shown:
             return motion.morphs_at(seconds) if motion is not None else {}
         if self.manual is not None:
             return manual_morphs_at(self.manual, self.project, seconds)
+        entry = self.project.clips.get(self.motion or "")
+        if entry is not None and entry.made_by and entry.motion is not None:
+            return morphs_at(
+                self.plan, self.project, seconds, composed=self._overlaid(entry.motion, seconds, False)
+            )
         return morphs_at(self.plan, self.project, seconds)
+
+    def _overlaid(self, clip: Clip, seconds: Any, alive: bool = True) -> Pose:
+        """Return the pose of a generated clip: it moves what is above the hips, the plan moves the rest."""
+        from metagraph.playback.overlay import clip_overlay, overlaid
+
+        over = clip_overlay(self.project, clip, np.asarray(seconds, np.float64).reshape(-1))
+        return overlaid(self.plan, self.project, seconds, over, alive)
 
 
 def alone(project: Project, clip: str) -> Shown:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -66,6 +67,22 @@ def draw_chunk(
     steps: int = STEPS,
 ) -> Array:
     """Return new tokens `[new, D]` of noise `[new, D]`, by Euler's steps."""
+    *_, last = drawing(w, sizes, noise, past, heard, guidance, steps)
+    return last
+
+
+def drawing(
+    w: Layers,
+    sizes: MatchingSizes,
+    noise: Array,
+    past: Array,
+    heard: Array,
+    guidance: float = GUIDANCE,
+    steps: int = STEPS,
+) -> Iterator[Array]:
+    """Yield what noise `[new, D]` has become after each of Euler's steps, tokens after the last: for who has
+    no time for all of them at once.
+    """
     x, t = noise, np.zeros(1 if guidance == 1 else 2, noise.dtype)
     # With and without control at once: one batch of two.
     if guidance != 1:
@@ -78,7 +95,7 @@ def draw_chunk(
             own, free = velocity(w, sizes, np.stack([x, x]), (t + n / steps).astype(x.dtype), before, both)
             v = (1 - guidance) * free + guidance * own
         x = (x + v / steps).astype(noise.dtype)
-    return x
+        yield x
 
 
 def _moments(w: Layers, sizes: MatchingSizes, moment: Array) -> Array:

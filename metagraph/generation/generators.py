@@ -5,6 +5,7 @@ arrays of the same shape, so that it does not matter in which pieces the sound c
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -24,19 +25,24 @@ Array = NDArray[Any]
 class Generator(ABC):
     """A model that goes on and on. before, ahead: frames of features that are given beside the first one
     made. made: frames that `step` makes. needed: frames after the first that must be known, the others may be
-    anything.
+    anything. pieces: of how many `steps` consists.
     """
 
     before: int
     ahead: int
     made: int
     needed: int
+    pieces: int = 1
 
     @abstractmethod
     def step(self, heard: Array, seed: int, take: int, frame: int) -> Array:
         """Return the next poses `[made, X]`, standardised. heard: features `[before + 1 + ahead, audio + 4]`,
         standardised. frame: the number of the first one made.
         """
+
+    def steps(self, heard: Array, seed: int, take: int, frame: int) -> Iterator[Array | None]:
+        """Do what `step` does in pieces of about a millisecond: yields None after each, the poses at last."""
+        yield self.step(heard, seed, take, frame)
 
 
 class FlowGenerator(Generator):
@@ -113,17 +119,27 @@ class MatchingGenerator(Generator):
             raise ValueError(f"{kept} of {sizes.new} tokens cannot be kept")
         self.guidance, self.kept = guidance, kept
         self.before, self.ahead = sizes.past * sizes.frames, sizes.most
-        self.made, self.needed = kept * sizes.frames, self.lookahead
+        self.made, self.needed, self.pieces = kept * sizes.frames, self.lookahead, chunks.STEPS + 1
         self.past = chunks.still_tokens(w, sizes, first)
 
     def step(self, heard: Array, seed: int, take: int, frame: int) -> Array:
+        *_, last = self.steps(heard, seed, take, frame)
+        assert last is not None
+        return last
+
+    def steps(self, heard: Array, seed: int, take: int, frame: int) -> Iterator[Array | None]:
         sizes = self.sizes
         told = encode_chunk(self.w, sizes, heard, self.lookahead)
+        yield None
         z = noise(seed, take, frame, sizes.new * sizes.dims).reshape(sizes.new, sizes.dims)
-        tokens = chunks.draw_chunk(self.w, sizes, z * self.temperature, self.past, told, self.guidance)
+        tokens = z * self.temperature
+        for n, drawn in enumerate(chunks.drawing(self.w, sizes, tokens, self.past, told, self.guidance), 1):
+            tokens = drawn
+            if n < chunks.STEPS:
+                yield None
         tokens = np.clip(tokens[: self.kept], -FURTHEST, FURTHEST)
         self.past = np.concatenate([self.past, tokens])[-sizes.past :]
-        return np.clip(chunks.poses_of(self.w, sizes, tokens), -FURTHEST, FURTHEST)
+        yield np.clip(chunks.poses_of(self.w, sizes, tokens), -FURTHEST, FURTHEST)
 
 
 def generator(

@@ -37,7 +37,9 @@ def gelu(x: Array) -> Array:
 
 def linear(w: Layers, name: str, x: Array) -> Array:
     """Return `[..., out]` of `[..., in]`."""
-    return np.asarray(x @ w[f"{name}.weight"].T + w[f"{name}.bias"])
+    weight = w[f"{name}.weight"]
+    flat = x.reshape(-1, x.shape[-1]) if x.ndim > 2 else x  # one product, not one for each of a batch
+    return np.asarray((flat @ weight.T).reshape(*x.shape[:-1], len(weight)) + w[f"{name}.bias"])
 
 
 def conv1d(w: Layers, name: str, x: Array, dilation: int = 1) -> Array:

@@ -4,7 +4,7 @@ to the bit, in whatever pieces the sound came.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -44,7 +44,8 @@ class Sampler:
     model follows the speech. channels, gains: of the sound, as `features.AudioStream`. first: local
     rotations `[J, 4]` of all joints that it goes on from, None for the mean pose. smooth: frames, the
     deviation of a Gaussian over the numbers of poses; None: SMOOTH for matching, 0 for others. delay: frames
-    by which poses come out later than the sound goes in.
+    by which poses come out later than the sound goes in. made, pieces: `advance` makes so many frames at
+    once, after it was called so often.
     """
 
     def __init__(
@@ -88,7 +89,9 @@ class Sampler:
         self._known = 0  # frames of sound that are known
         self._out = np.zeros((0, sizes.pose), np.float32)  # poses that are made, and still averaged over
         self._begun = False
+        self._steps: Iterator[Array | None] | None = None  # what `advance` is in the middle of
         self.delay = self._made.needed + len(self._weights) // 2
+        self.made, self.pieces = self._made.made, self._made.pieces
 
     def push(self, audio: Array, activity: Array) -> Array:
         """Return the poses that are ready, local rotations `[n, joints, 4]` of the rig's joints. audio: `[C,
@@ -100,33 +103,62 @@ class Sampler:
         """Return the poses that are left, as though silence followed."""
         return self._turns(self.numbers(self._features.finish(), True))
 
+    def feed(self, audio: Array, activity: Array) -> None:
+        """Take in what `push` does, and leave the work to `advance`. Raises FeatureError."""
+        self._take(self._features.push(audio, activity))
+
+    def advance(self) -> Array | None:
+        """Do about a millisecond of what there is to do; return the poses that are ready, as `push` does,
+        None when nothing is left to be done.
+        """
+        if self._steps is None:
+            if self._next + self._made.needed >= self._known:
+                return None
+            self._steps = self._made.steps(self._window(), self.seed, self.take, self.start + self._next)
+        new = next(self._steps)
+        if new is None:
+            return np.zeros((0, len(self.model.rig.joints), 4))
+        self._steps = None
+        self._on(new)
+        return self._turns(self._averaged(np.concatenate([self._out, new]), False))
+
     def _turns(self, poses: Array) -> Array:
         return decode(self.model.rig, poses)
+
+    def _take(self, frames: Array) -> None:
+        self._known += len(frames)
+        if len(frames):
+            self._heard = np.concatenate([self._heard, self.model.heard(frames)])
+
+    def _window(self) -> Array:
+        """Return what the next frame made hears."""
+        size = self._made.before + 1 + self._made.ahead
+        window = self._heard[:size]
+        if len(window) < size:
+            window = np.concatenate([window, np.repeat(self._quiet, size - len(window), 0)])
+        return window
+
+    def _on(self, new: Array) -> None:
+        self._heard = self._heard[self._made.made :]
+        self._next += len(new)
 
     def numbers(self, frames: Array, last: bool = False) -> Array:
         """Return the poses that are ready as numbers `[n, X]`, not standardised, of the next features `[m,
         audio + 4]`. last: silence follows, and all that is left is made.
         """
-        self._known += len(frames)
-        if len(frames):
-            self._heard = np.concatenate([self._heard, self.model.heard(frames)])
-        made, size = self._made, self._made.before + 1 + self._made.ahead
-        poses = [self._out]
+        self._take(frames)
+        made, poses = self._made, [self._out]
         while self._next < self._known:
             if self._next + made.needed >= self._known and not last:
                 break
-            window = self._heard[:size]
-            if len(window) < size:
-                window = np.concatenate([window, np.repeat(self._quiet, size - len(window), 0)])
-            new = made.step(window, self.seed, self.take, self.start + self._next)
+            new = made.step(self._window(), self.seed, self.take, self.start + self._next)
             new = new[: self._known - self._next] if last else new
             poses.append(new)
-            self._heard = self._heard[made.made :]
-            self._next += len(new)
+            self._on(new)
         return self._averaged(np.concatenate(poses), last)
 
     def _averaged(self, poses: Array, last: bool) -> Array:
-        """Return rotations of the poses of which all neighbours are known."""
+        """Return the poses of which all neighbours are known, not standardised."""
         reach = len(self._weights) // 2
         if not self._begun and len(poses):
             poses = np.concatenate([np.repeat(poses[:1], reach, 0), poses])

@@ -259,7 +259,9 @@ class ClipEntry:
 
     digest: SHA-256 of the file, hex. frames, fps: as last read. as_is: names of repairs that are not made
     when it is read (`formats.takes.REPAIRS`). brought_from: fingerprint of the skeleton it is retargeted
-    from, "" where the file has the project's own. motion: the loaded clip, None while the file is missing.
+    from, "" where the file has the project's own. made_by, made_seed: the learned model that made it, and
+    with what chance; "" for clips that were not generated. motion: the loaded clip, None while the file is
+    missing.
     """
 
     id: str
@@ -272,6 +274,8 @@ class ClipEntry:
     motion: Clip | None = field(default=None, compare=False, repr=False)
     as_is: tuple[str, ...] = ()
     brought_from: str = ""
+    made_by: str = ""
+    made_seed: int = 0
 
     @property
     def duration(self) -> float:

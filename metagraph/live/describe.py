@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from typing import Any, Protocol
 
 import msgspec
@@ -12,6 +13,7 @@ from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.words import MODES
 from metagraph.live import limits, messages
+from metagraph.live.generated_motion import Generating
 from metagraph.live.ledger import Ledger
 from metagraph.live.pose_stream import Stream
 from metagraph.live.tick_work import Client
@@ -25,6 +27,8 @@ class DescribedSession(Protocol):
     ledger: Ledger
     clients: dict[int, Client]
     now: float
+
+    generating: Generating
 
     @property
     def plan(self) -> Plan: ...
@@ -87,12 +91,15 @@ def status(session: DescribedSession) -> bytes:
         else {"line": spoken.line, "text": spoken.text, "until": round(spoken.end, 4)},
         "waiting": session.ledger.pending(now),
         "clients": len(session.clients),
+        "generating": session.generating.status(),
     }
     return messages.encode(out)
 
 
-def describe(project: Project) -> bytes:
-    """Return what may be asked of a character: its joints, stances, actions, tags, lines and points."""
+def describe(project: Project, models: Sequence[str] = ()) -> bytes:
+    """Return what may be asked of a character: its joints, stances, actions, tags, lines and points. models:
+    those that can generate motion.
+    """
     skeleton, parts = project.skeleton, anatomy.parts(project) if project.skeleton is not None else ()
     layers = {}
     for layer in LAYERS:
@@ -118,6 +125,7 @@ def describe(project: Project) -> bytes:
         "layers": layers,
         "lines": [{"id": ident, "text": line.text} for ident, line in list(project.lines.items())[:LINES]],
         "points": dict(list(project.points.items())[:POINTS]),
+        "models": list(models),
     }  # fmt: skip
     return messages.encode(out)
 

@@ -15,6 +15,7 @@ from metagraph.live.limits import Limits
 OVER = 2.0  # seconds for which an ask that has ended is remembered
 MOMENTS = ("place", "blink", "mode")  # asks that are over as soon as they have begun
 _SAFE = re.compile(r"[\w# -]{1,100}")
+_CLIENTS = re.compile(r"c\d+/")
 _NAMED = re.compile(r"'c(\d+)/([^']*)'")
 
 
@@ -25,6 +26,11 @@ def key_of(client: int, ident: str) -> str:
     if _SAFE.fullmatch(ident) or not ident:
         return f"c{client}/{ident}"
     return f"c{client}/~{hashlib.blake2s(ident.encode('utf-8', 'surrogatepass'), digest_size=12).hexdigest()}"
+
+
+def asked_by_client(meta: str) -> bool:
+    """Whether what plays in the plan was asked for, and not written by a model or the character's own."""
+    return _CLIENTS.match(meta) is not None
 
 
 def told(why: str, client: int) -> str:

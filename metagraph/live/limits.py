@@ -32,6 +32,8 @@ RATES = {
     "mode": 16,
     "withdraw": 240,
     "keypoints": 960,
+    "generate": 8,
+    "hear": 960,
 }  # in SPAN seconds
 
 BUSY = "too much at once; try again in a moment"

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -20,6 +21,7 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.live import describe
 from metagraph.live.answers import FoundAnswer, find, owner_of
 from metagraph.live.camera_mimicry import see
+from metagraph.live.generated_motion import Generating
 from metagraph.live.happenings import happenings
 from metagraph.live.ledger import Known, Ledger, key_of, told
 from metagraph.live.limits import (
@@ -37,6 +39,8 @@ from metagraph.live.limits import (
 from metagraph.live.messages import (
     Describe,
     Event,
+    Generate,
+    Hear,
     HeardMessage,
     Hello,
     Keypoints,
@@ -51,7 +55,9 @@ from metagraph.live.messages import (
 from metagraph.live.pose_stream import Stream, due
 from metagraph.live.tape import Tape
 from metagraph.live.tick_work import Client, Open, Out, TickWork, thinned
+from metagraph.motion.skeleton import Pose
 from metagraph.playback.bml import Block, read_block
+from metagraph.playback.overlay import Overlay, overlaid
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan
 from metagraph.playback.running_plan import CUT, RECENT, RunningPlan
@@ -64,7 +70,7 @@ TOLD = 100  # of what was told to others than those who ask, the last are kept
 
 class LiveSession:
     """One character, played live. Arguments as for `perform`; history: seconds of past that are kept; ahead:
-    of plan.
+    of plan. models: those that may be asked to generate motion, by name.
     """
 
     def __init__(
@@ -75,12 +81,14 @@ class LiveSession:
         history: float = 600.0,
         ahead: float = 20.0,
         stances: Mapping[Layer, str] | None = None,
+        models: Mapping[str, Path] | None = None,
     ) -> None:
         self.project, self.history = project, history
         self.running = RunningPlan(project, seed, stances, idle, ahead)
         self.now = 0.0
         self.clients: dict[int, Client] = {}
         self.ledger = Ledger()
+        self.generating = Generating(dict(models or {}))
         self._words = RequestWords(project)
         self._names: set[str] = set()
         self._queue: list[tuple[int, HeardMessage | Reply]] = []
@@ -150,6 +158,7 @@ class LiveSession:
                 found = self._take(self.clients[client], item, work, place)
                 out.replies.append(Reply() if found is None else found)
         self._plan(work, out)
+        self.generating.reach(self.now, self.plan, self.project, self.clients)
         out.events += happenings(self.plan, self.ledger, before, self.now, self.clients.values())
         self._tidy()
         self.warm(1)
@@ -158,6 +167,7 @@ class LiveSession:
             self.plan,
             self.project,
             [(c.number, c.stream) for c in self.clients.values() if c.stream],
+            self.overlay,
         )
         return out
 
@@ -166,6 +176,12 @@ class LiveSession:
         message = heard.message
         if isinstance(message, Keypoints):
             return self._keypoints(client, message, work, place)
+        if isinstance(message, Generate | Hear):
+            if self.ledger.limits.refusal(str(message.__struct_config__.tag), self.now, 0.0, 0, self.now):
+                return Reply(id=message.id or None, state="refused", why=BUSY)
+            if isinstance(message, Hear):
+                return self.generating.hear(client.number, message)
+            return self.generating.generate(client.number, message, self.project, self.now)
         if isinstance(message, OwnMessage):
             return self._own(client, message)
         ident = message.id
@@ -196,7 +212,7 @@ class LiveSession:
             if self.ledger.limits.characters >= BML_PER_TICK:
                 return Reply(id=message.id or None, state="refused", why=BUSY)
             if "project" not in self._told:
-                self._told["project"] = describe.describe(self.project)
+                self._told["project"] = describe.describe(self.project, tuple(self.generating.models))
             self.ledger.limits.characters += len(self._told["project"])
             return describe.named(self._told["project"], message.id)
         client.name = message.name or client.name
@@ -473,6 +489,14 @@ class LiveSession:
         )
         requests = tuple(r for r in plan.requests if r.id in near or owner(r.id))
         self.running.plan = replace(plan, reports=reports, requests=requests, track=thinned(plan, now))
+
+    def overlay(self, seconds: float) -> Overlay | None:
+        """Return what generated motion lays over the plan at a time about now, None for nothing."""
+        return self.generating.overlay(self.plan, self.project, seconds)
+
+    def pose(self, seconds: float) -> Pose:
+        """Return the pose at a time about now, generated motion and all."""
+        return overlaid(self.plan, self.project, seconds, self.overlay(seconds))
 
     def plan_at(self, seconds: float) -> Plan:
         """Return the plan that knows what was shown at a time: the running one, or for the past one of

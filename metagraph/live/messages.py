@@ -81,8 +81,38 @@ class Keypoints(_Own, frozen=True, tag="keypoints"):
     priority: Annotated[int, Meta(ge=-1000, le=1000)] = 1
 
 
-OwnMessage = Hello | Status | Describe | Keypoints
-Message = Union[a.AnyRequest, Hello, Status, Describe, Keypoints]  # noqa: UP007
+Sound = Annotated[bytes, Meta(max_length=48 * 1024)]
+
+
+class Generate(_Own, frozen=True, tag="generate"):
+    """Motion made live by a learned model, of what is heard, in the place of the arms' and the head's layers;
+    what is asked of these by name comes first. model: its name, as describe lists them; null ends it. side:
+    whether the character listens to whom is heard, or speaks itself. seed: other numbers move otherwise.
+    temperature: how much happens by chance. ahead: seconds by which it may lag behind the sound, to know what
+    comes.
+    """
+
+    model: Annotated[str, Meta(max_length=200)] | None
+    side: Literal["listener", "speaker"] = "listener"
+    seed: Annotated[int, Meta(ge=0, le=2**32 - 1)] = 1
+    temperature: Annotated[float, Meta(ge=0, le=1.2)] = 1.0
+    ahead: Annotated[float, Meta(ge=0, le=1)] = 0.2
+
+
+class Hear(_Own, frozen=True, tag="hear"):
+    """What is heard from now on, for motion that is generated. audio: the next samples of the partner of a
+    listener, of a speaker itself; other: of the other one at the same time, silence without. 16-bit
+    little-endian numbers, 16,000 a second, one channel, in base64. speaks: who speaks from now on, as the
+    character sees it; "sound" lets loudness tell, as at first; nothing said leaves it.
+    """
+
+    audio: Sound = b""
+    other: Sound = b""
+    speaks: Literal["self", "partner", "both", "none", "sound"] | None = None
+
+
+OwnMessage = Hello | Status | Describe | Keypoints | Generate | Hear
+Message = Union[a.AnyRequest, Hello, Status, Describe, Keypoints, Generate, Hear]  # noqa: UP007
 WORDS: tuple[str, ...] = (*a.WORDS, *(str(kind.__struct_config__.tag) for kind in get_args(OwnMessage)))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from math import floor
 from typing import Any
@@ -16,8 +16,9 @@ from metagraph.graph.requests import RequestError
 from metagraph.live.messages import Poses, encode
 from metagraph.live.osc_bytes import padded
 from metagraph.motion.skeleton import Pose
+from metagraph.playback.overlay import Overlay, overlaid
 from metagraph.playback.plan import Plan
-from metagraph.playback.player import morphs_at, pose_at
+from metagraph.playback.player import morphs_at
 
 Array = NDArray[Any]
 
@@ -73,8 +74,14 @@ class Stream:
         return self.wish.format, self.wish.space, self.wish.translations, self.names
 
 
-def due(now: float, plan: Plan, project: Project, streams: Sequence[tuple[int, Stream]]) -> list[PoseFrame]:
-    """Return the poses that are due at `now`, and say when the next are."""
+def due(
+    now: float,
+    plan: Plan,
+    project: Project,
+    streams: Sequence[tuple[int, Stream]],
+    over: Callable[[float], Overlay | None] = lambda _: None,
+) -> list[PoseFrame]:
+    """Return the poses that are due at `now`, and say when the next are. over: what is laid over the plan."""
     groups: dict[Any, list[tuple[int, Stream]]] = {}
     for client, stream in streams:
         if stream.next <= now and project.skeleton is not None:
@@ -84,9 +91,11 @@ def due(now: float, plan: Plan, project: Project, streams: Sequence[tuple[int, S
             groups.setdefault(stream.key, []).append((client, stream))
     if not groups or project.skeleton is None:
         return []
-    pose = pose_at(plan, project, now)
+    laid = over(now)
+    pose = overlaid(plan, project, now, laid)
     turned = project.skeleton.globals(pose) if any(key[1] == "model" for key in groups) else None
-    weights = morphs_at(plan, project, now)
+    still = None if laid is None else overlaid(plan, project, now, laid, alive=False)
+    weights = morphs_at(plan, project, now, composed=still)
     out = []
     for group in groups.values():
         stream = group[0][1]

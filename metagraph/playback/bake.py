@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Pose
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import morphs_at, pose_at
 
@@ -18,16 +20,22 @@ Array = NDArray[Any]
 STILL = 1e-6  # metres: a joint that moves less than this from its rest translation keeps it
 
 
-def bake(plan: Plan, project: Project, seconds: float, fps: float = 30.0) -> Clip:
+def bake(
+    plan: Plan,
+    project: Project,
+    seconds: float,
+    fps: float = 30.0,
+    poses: Callable[[Array], Pose | None] | None = None,
+) -> Clip:
     """Return `seconds` of a plan as a clip on the project's skeleton, with the life layers and morph targets
-    that move.
+    that move. poses: of times `[N]`, where they are not the plan's alone.
 
     Raises ValueError when the project has no skeleton.
     """
     if project.skeleton is None:
         raise ValueError("a project without clips cannot be posed")
     times = np.arange(max(1, round(seconds * fps) + 1)) / fps
-    pose = pose_at(plan, project, times)
+    pose = (poses(times) if poses is not None else None) or pose_at(plan, project, times)
     away = np.abs(pose.translations - project.skeleton.rest_translations).max(axis=(0, 2))
     moved = (0, *(int(j) for j in np.flatnonzero(away > STILL) if j > 0))
     turned = rotation.continuous(pose.rotations)

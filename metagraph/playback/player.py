@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.model import LAYERS, Action, Project
+from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
@@ -40,15 +40,20 @@ def pose_at(plan: Plan, project: Project, seconds: Any, alive: bool = True) -> P
     at = np.asarray(seconds, np.float64)
     times = at.reshape(-1)
     frame = rig(project)
-    layers = {}
-    for layer in LAYERS:
-        if plan.layers[layer].rests and len(times):
-            layers[layer] = _layer(plan.layers[layer], project, frame.ground, frame.reach[layer], times)
-    pose = frame.compose(layers, len(times))
+    pose = frame.compose(layers_at(plan, project, times), len(times))
     if alive and project.life.on and plan.life.end > 0 and len(times):
         pose = enliven(pose, project, plan.life, plan.track, times)
     shape = (*at.shape, len(frame.ground.skeleton))
     return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
+
+
+def layers_at(plan: Plan, project: Project, times: Array) -> dict[Layer, Sample]:
+    """Return what each layer adds at `times [N]`, on the joints it reaches."""
+    frame, out = rig(project), {}
+    for layer in LAYERS:
+        if plan.layers[layer].rests and len(times):
+            out[layer] = _layer(plan.layers[layer], project, frame.ground, frame.reach[layer], times)
+    return out
 
 
 def cue_weight(cue: Cue, times: Array) -> Array:
@@ -242,9 +247,11 @@ def sample(ground: Ground, reach: Reach, clip: Clip, seconds: Array) -> Sample:
     return mixed, away
 
 
-def morphs_at(plan: Plan, project: Project, seconds: float, alive: bool = True) -> dict[str, float]:
+def morphs_at(
+    plan: Plan, project: Project, seconds: float, alive: bool = True, composed: Pose | None = None
+) -> dict[str, float]:
     """Return morph target weights, 0..1, at one time: the layers' sums, and with `alive` the life layers' on
-    top.
+    top. composed: the pose `[J]` without life, where it is not the plan's alone.
     """
     out: dict[str, float] = {}
     for layer in LAYERS:
@@ -272,9 +279,8 @@ def morphs_at(plan: Plan, project: Project, seconds: float, alive: bool = True) 
                     out[name] = out.get(name, 0.0) + share * value
     if alive and project.life.on and plan.life.end > 0:
         by_morphs = project.skeleton is not None and bool(body_of(project).face.morphs)
-        composed = (
-            pose_at(plan, project, seconds, alive=False) if by_morphs else None
-        )  # what the eyes hold against
+        if by_morphs and composed is None:  # what the eyes hold against
+            composed = pose_at(plan, project, seconds, alive=False)
         for name, value in face_weights(project, plan.life, plan.track, seconds, composed).items():
             out[name] = out.get(name, 0.0) + value
     return {name: min(1.0, max(0.0, value)) for name, value in out.items()}

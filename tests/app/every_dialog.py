@@ -131,6 +131,7 @@ DIALOGS: dict[str, Open] = {
     "patterns": _command("patterns"),
     "compatibility": _command("compatibility"),
     "motion graph": _command("motion_graph"),
+    "generate motion": _command("generate_motion"),
     "skeleton": _command("skeleton"),
     "meshes": _command("meshes"),
     "render": _command("render"),

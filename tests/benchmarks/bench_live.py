@@ -1,10 +1,12 @@
-"""The live session under load: python tests/benchmarks/bench_live.py [flood|soak] [seconds]
+"""The live session under load: python tests/benchmarks/bench_live.py [flood|soak|generate] [seconds]
 
 flood: a client in a process of its own sends 10,000 requests a second over WebSocket, one to a message and
 then a hundred to a message, while this process ticks at 60 Hz as a window would, planning and posing; the
 lines are in a child process (`Relay`). Counted are replies; measured is how long a tick holds the window up.
 Then the same in one process, as `metagraph live`. soak: an hour of session time, simulated, 100 requests a
 second from three clients, valid and hostile; memory after 10 and after 60 minutes, and what a tick costs.
+generate: ten minutes of session time with motion that a model of each kind (small, by chance) makes of sound,
+25 pieces a second, and a gesture now and then, then without it: what a tick and a pose cost, and memory.
 """
 
 from __future__ import annotations
@@ -265,6 +267,68 @@ def soak(seconds: float, rate: int = 100) -> None:
     print(f"took {time.perf_counter() - begin:.0f} s; replies: {states}")
 
 
+def generate(seconds: float) -> None:
+    import base64
+    import tempfile
+
+    import numpy as np
+
+    from metagraph.formats.store import open_project
+    from metagraph.generation.networks import Kind, sizes_of
+    from metagraph.generation.stored import write_model
+    from metagraph.live.live_session import LiveSession
+    from tests.generation.makers import babble, rig, untrained
+
+    voice = np.clip(babble(60.0) * 32768, -32768, 32767).astype("<i2")
+    pieces = [
+        base64.b64encode(voice[n : n + 640].tobytes()).decode() for n in range(0, len(voice) - 640, 640)
+    ]
+    kinds: tuple[Kind | None, ...] = ("flow-vae", "cvae", "matching", None)
+    print("ms of processor time, what the model takes, then tick and pose: median, 95 %, 99 %, most")
+    with tempfile.TemporaryDirectory() as scratch:
+        for kind in kinds:
+            path = Path(scratch) / f"{kind}.mgmodel"
+            if kind is not None:
+                write_model(untrained(kind, sizes=sizes_of(kind, pose=rig().numbers)), path)
+            session = LiveSession(open_project(SAMPLE).project, models={str(kind): path})
+            session.warm()
+            session.receive(1, json.dumps({"do": "generate", "model": kind}))
+            ticks: list[float] = []
+            own: list[float] = []
+            reach = session.generating.reach
+
+            def timed(*arguments: Any, reach: Any = reach, own: list[float] = own) -> None:
+                start = time.process_time()
+                reach(*arguments)
+                own.append((time.process_time() - start) * 1e3)
+
+            session.generating.reach = timed  # type: ignore[method-assign]
+            heard, shown = 0, 60.0
+            for n in range(1, int(seconds * 60) + 1):
+                now = n / 60
+                while heard < now * 25:
+                    session.receive(1, json.dumps({"do": "hear", "audio": pieces[heard % len(pieces)]}))
+                    heard += 1
+                if n % 900 == 0:
+                    session.receive(1, json.dumps({"do": "gesture"}))
+                start = time.process_time()
+                session.tick(now)
+                session.pose(now)
+                ticks.append((time.process_time() - start) * 1e3)
+                if now >= shown or n == int(seconds * 60):
+                    shown += max(60.0, seconds - 60.0)
+                    told = ""
+                    for some in (sorted(own[60:]), sorted(ticks[60:])):
+                        at = (some[int(q * (len(some) - 1))] for q in (0.5, 0.95, 0.99, 1.0))
+                        told += "".join(f"{x:8.2f}" for x in at) + "  "
+                    print(
+                        f"{kind or 'none':10s} {now / 60:6.1f}            {told}   {resident():5.0f} MB",
+                        flush=True,
+                    )
+                    ticks.clear()
+                    own.clear()
+
+
 if __name__ == "__main__":
     what = sys.argv[1] if len(sys.argv) > 1 else "flood"
     length = float(sys.argv[2]) if len(sys.argv) > 2 else 0.0
@@ -272,3 +336,5 @@ if __name__ == "__main__":
         flood(length or 10.0)
     elif what == "soak":
         soak(length or 3600.0)
+    elif what == "generate":
+        generate(length or 600.0)

@@ -64,6 +64,7 @@ from app.stage.thumbnails import Thumbnails
 from app.widgets.making import make_widget
 from app.widgets.mime import drag_picture, load_of, mime
 from metagraph.graph import edits
+from metagraph.graph.generated import origin
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry, Kind, Project
 
 Index = QModelIndex | QPersistentModelIndex
@@ -127,9 +128,10 @@ class ClipModel(QAbstractListModel):
             uses = uses or (
                 "drawn as a state" if entry.id in self.document.project.drawn else "not placed yet"
             )
+            made = f"\n{origin(entry)}" if entry.made_by else ""
             return (
                 f"{entry.name}\n{entry.duration:.2f} s, {entry.frames} frames at {entry.fps:g} "
-                f"fps\n{entry.path}\n{uses}{notes}"
+                f"fps\n{entry.path}{made}\n{uses}{notes}"
             )
         if role == Qt.ItemDataRole.AccessibleTextRole:
             return f"{entry.name}, {entry.duration:.1f} seconds"

@@ -29,8 +29,6 @@ from app.features.motion_graph.synthesis_jobs import (
     MOST,
     FoundMotion,
     Takes,
-    pieces,
-    save,
     synthesise,
     table,
     takes_of,
@@ -39,6 +37,7 @@ from app.features.motion_graph.takes_list import TakesList
 from app.look.plural import many
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
+from app.project.new_clips import pieces, save
 from app.stage.session import Session
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import DoubleSpinBox, SpinBox

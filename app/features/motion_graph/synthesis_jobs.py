@@ -6,25 +6,21 @@ Pure functions and values; whoever calls them does so on a job's thread.
 
 from __future__ import annotations
 
-import re
 import time
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import msgspec
 
 from app.look.plural import many
 from metagraph.graph.conversation import SOUNDS, Segment, Sound, heard_by
-from metagraph.graph.edits import free_name
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 
 FOLDER = "motion-graph"  # beside the project file, where new clips are kept
 LONG = 6.0  # seconds from which a clip is a take; shorter ones are chosen by hand
 LEAST, MOST = 1.0, 8.0  # seconds of clips cut from takes
-Loaded = tuple[str, int, str, Clip]  # what `add_clips` takes
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,41 +196,3 @@ def table(
             kept = (0, 0)
         out[k] = (*whole.size, *kept)
     return out
-
-
-def pieces(clip: Clip, spans: Sequence[tuple[float, float]]) -> list[Clip]:
-    """Return a clip cut into stretches from start to end, seconds, numbered."""
-    out = []
-    for n, (start, end) in enumerate(spans, 1):
-        first, last = round(start * clip.fps), round(end * clip.fps) + 1
-        out.append(clip.trimmed(first, last).renamed(f"{clip.name}_{n:02d}"))
-    return out
-
-
-def save(clips: Sequence[Clip], folder: Path, inside: str, taken: Collection[str] = ()) -> list[Loaded]:
-    """Write each clip as a GLB of its own in a folder of the project's; return what `add_clips` takes. taken:
-    names of clips there are.
-
-    Raises FileError.
-    """
-    from metagraph.formats.clips import digest
-    from metagraph.formats.gltf_writer import write_glb
-
-    out: list[Loaded] = []
-    names = set(taken)
-    place = folder / inside
-    place.mkdir(parents=True, exist_ok=True)
-    for clip in clips:
-        name = free_name(clip.name, names)
-        while (place / f"{_file(name)}.glb").exists():
-            names.add(name)
-            name = free_name(clip.name, names)
-        names.add(name)
-        path = place / f"{_file(name)}.glb"
-        write_glb(path, [clip.renamed(name)])
-        out.append((f"{inside}/{path.name}", 0, digest(path), clip.renamed(name)))
-    return out
-
-
-def _file(name: str) -> str:
-    return re.sub(r"[^\w .()-]", "_", name).strip(" .") or "clip"

@@ -24,11 +24,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.retargeting.stick_figures import StickFigures
 from app.look.theme import DARK, LIGHT, strengthen
 from app.project.jobs import Jobs
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
+from app.widgets.stick_figures import StickFigures
 from metagraph.formats.imports import Strangers
 from metagraph.graph.project_retargeting import Bringing
 from metagraph.motion.clip import Clip

@@ -11,14 +11,13 @@ from app.features.motion_graph.synthesis_jobs import (
     Wish,
     during,
     left_out,
-    pieces,
-    save,
     speech_of,
     synthesise,
     table,
     takes_of,
     usable,
 )
+from app.project.new_clips import pieces, save
 from metagraph.formats.clips import read_clips
 from metagraph.graph.conversation import Conversation, Segment, Side
 from metagraph.graph.model import Project

@@ -1,0 +1,32 @@
+"""Motion that is learned from takes and made from speech."""
+
+from __future__ import annotations
+
+from app.shell.actions import Command
+from app.shell.context import Contribution, Shell
+
+
+def contribute(shell: Shell) -> Contribution:
+    def show() -> None:
+        from app.features.generation.generation_dialog import GenerationDialog
+
+        widget = shell.widget
+        dialog = widget.findChild(GenerationDialog) or GenerationDialog(
+            shell.document, shell.stage.session, shell.jobs, widget
+        )
+        dialog.show()
+        dialog.raise_()
+        dialog.activateWindow()
+
+    return Contribution(
+        commands=(
+            Command(
+                "generate_motion",
+                "&Motion",
+                "make",
+                "&Generate…",
+                show,
+                tip="Learn from takes how people move when they talk, and let characters move so",
+            ),
+        ),
+    )

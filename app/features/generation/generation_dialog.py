@@ -1,0 +1,77 @@
+"""The window of generated motion: learning from takes, and using what was learned."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QDialog, QHBoxLayout, QLabel, QPushButton, QTabWidget, QVBoxLayout, QWidget
+
+from app.features.generation.learn_page import LearnPage
+from app.features.generation.training_run import begin
+from app.features.generation.use_page import UsePage
+from app.project.document import Document
+from app.project.jobs import Jobs
+from app.stage.session import Session
+from metagraph.graph.model import Project
+
+
+class GenerationDialog(QDialog):
+    """Stays open beside the window; a training ends with it, and keeps what it has."""
+
+    def __init__(
+        self, document: Document, session: Session, jobs: Jobs, parent: QWidget | None = None
+    ) -> None:
+        super().__init__(parent)
+        self.document = document
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setWindowTitle("Generate motion")
+        self.resize(1120, 680)
+        self.use = UsePage(document, session, jobs, self)
+        self.learn = LearnPage(document, session, jobs, begin, self)
+        self.tabs = QTabWidget(self)
+        self.tabs.addTab(self.use, "Generate")
+        self.tabs.addTab(self.learn, "Learn from takes")
+        self.said = QLabel(self, wordWrap=True)
+        self.said.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        close = QPushButton("Close", self, autoDefault=False)
+        close.clicked.connect(self.close)
+        foot = QHBoxLayout()
+        foot.addWidget(self.said, 1)
+        foot.addWidget(close)
+        box = QVBoxLayout(self)
+        box.setContentsMargins(14, 12, 14, 12)
+        box.setSpacing(10)
+        box.addWidget(self.tabs, 1)
+        box.addLayout(foot)
+        for page in (self.use, self.learn):
+            page.said.connect(self.said.setText)
+        self.learn.trained.connect(self._trained)
+        self.finished.connect(self._ended)
+        document.changed.connect(self._follow)
+        document.loaded.connect(self._leave)
+        if self.use.model.count() == 0:
+            self.tabs.setCurrentWidget(self.learn)
+
+    def _trained(self, model: Path) -> None:
+        self.use.show_model(model)
+
+    def _follow(self, before: Project, after: Project) -> None:
+        if (
+            before.conversations is not after.conversations
+            or before.graphs is not after.graphs
+            or before.skeleton is not after.skeleton
+        ):
+            self.use.fill()
+
+    def _leave(self) -> None:
+        """Another project comes: what is being made for the one before is not for it."""
+        self.use.close_down()
+        self.use.pieces = []
+        self.use.fill()
+        self.said.setText("")
+
+    def _ended(self) -> None:
+        """It closes: nothing goes on unseen."""
+        self.use.close_down()
+        self.learn.close_down()

@@ -1,0 +1,353 @@
+"""Learning from takes: which there are and what is wrong with them, what is trained for how long, and how it
+goes, with somebody who moves as the model would by now.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import (
+    QFileDialog,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QLineEdit,
+    QProgressBar,
+    QPushButton,
+    QTableWidget,
+    QTableWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.generation.generation_jobs import Listing, list_takes, sentence
+from app.features.generation.sample_preview import SamplePreview
+from app.features.generation.training_plots import RATIOS, TrainingPlots
+from app.features.generation.training_run import Begin, Process, TrainingRun, goal
+from app.look.plural import many
+from app.look.theme import strengthen
+from app.project.document import Document
+from app.project.jobs import Job, Jobs
+from app.stage.session import Session
+from app.widgets.making import make_widget
+from app.widgets.quiet_fields import ComboBox, SpinBox
+
+KINDS = (
+    ("matching", "Matching", "Follows the speech best for the time it takes: 15 minutes are a beginning"),
+    ("flow-vae", "Flow-VAE", "As in the paper: a code of poses and a flow over it; needs longer"),
+    ("moglow", "MoGlow", "The paper's comparison: a flow over the poses themselves"),
+    ("cvae", "CVAE", "The paper's other comparison: moves little"),
+)
+SIZES = (("small", "small, for this machine"), ("paper", "as in the paper, for a graphics card"))
+HEADS = ("Take", "Length", "Speech", "What to know")
+
+
+def missing() -> str | None:
+    """Return what has to be installed before anything can be trained, in words; None where all is there."""
+    from metagraph.generation import train_process
+
+    return train_process.missing()
+
+
+class LearnPage(QWidget):
+    """said: words for the foot of the window. trained: a model's file is there. begin: starts a training's
+    process; replaced in tests.
+    """
+
+    said = Signal(str)
+    trained = Signal(object)
+
+    def __init__(
+        self, document: Document, session: Session, jobs: Jobs, begin: Begin, parent: QWidget | None = None
+    ) -> None:
+        super().__init__(parent)
+        self.document, self.session, self.jobs, self.begin = document, session, jobs, begin
+        self.folders: list[Path] = []
+        self.listing = Listing()
+        self.run: TrainingRun | None = None
+        self._job: Job | None = None
+        columns = QHBoxLayout(self)
+        columns.setContentsMargins(0, 8, 0, 0)
+        columns.setSpacing(18)
+        columns.addLayout(self._left(), 5)
+        columns.addLayout(self._right(), 6)
+        self._show_note()
+        self._enable()
+
+    def _heading(self, words: str) -> QLabel:
+        out = QLabel(words, self)
+        out.setProperty("heading", True)
+        return out
+
+    def _button(self, words: str, tip: str, run: Callable[[], object]) -> QPushButton:
+        out = QPushButton(words, self, autoDefault=False)
+        out.setToolTip(tip)
+        out.clicked.connect(lambda: run())
+        return out
+
+    # --- building
+
+    def _left(self) -> QVBoxLayout:
+        box = QVBoxLayout()
+        box.setSpacing(6)
+        self.title = self._heading("Takes")
+        box.addWidget(self.title)
+        row = QHBoxLayout()
+        self.add = self._button(
+            "Add folder…", "Clips with sound beside them: talk.bvh and talk.wav", self.choose_folder
+        )
+        self.clear = self._button("Clear", "Forget the folders", self.forget)
+        row.addWidget(self.add)
+        row.addWidget(self.clear)
+        row.addStretch(1)
+        box.addLayout(row)
+        self.table = QTableWidget(0, len(HEADS), self)
+        self.table.setHorizontalHeaderLabels(list(HEADS))
+        self.table.setAccessibleName("Takes to learn from")
+        self.table.verticalHeader().hide()
+        self.table.setShowGrid(False)
+        self.table.setWordWrap(False)
+        self.table.setSelectionBehavior(QTableWidget.SelectionBehavior.SelectRows)
+        self.table.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
+        header = self.table.horizontalHeader()
+        header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
+        header.setHighlightSections(False)
+        header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
+        header.setSectionResizeMode(3, QHeaderView.ResizeMode.Stretch)
+        self.table.itemSelectionChanged.connect(self._show_note)
+        box.addWidget(self.table, 1)
+        self.note = QLabel(self, wordWrap=True)
+        self.note.setProperty("dim", True)
+        self.note.setMinimumHeight(3 * self.note.fontMetrics().lineSpacing())
+        self.note.setAlignment(Qt.AlignmentFlag.AlignTop)
+        box.addWidget(self.note)
+        return box
+
+    def _right(self) -> QVBoxLayout:
+        box = QVBoxLayout()
+        box.setSpacing(6)
+        box.addWidget(self._heading("Model"))
+        self.kind, self.how_large = ComboBox(self), ComboBox(self)
+        self.kind.setAccessibleName("Kind of model")
+        self.how_large.setAccessibleName("Size")
+        for n, (kind, words, tip) in enumerate(KINDS):
+            self.kind.addItem(words, kind)
+            self.kind.setItemData(n, tip, Qt.ItemDataRole.ToolTipRole)
+        for size, words in SIZES:
+            self.how_large.addItem(words, size)
+        self.minutes = SpinBox(self, minimum=1, maximum=10000, value=15)
+        self.minutes.setSuffix(" min")
+        self.minutes.setAccessibleName("Minutes")
+        self.minutes.lineEdit().setTextMargins(6, 0, 0, 0)
+        self.name = QLineEdit("new model", self)
+        self.name.setAccessibleName("Name of the model")
+        row = QHBoxLayout()
+        for words, field in (("Kind", self.kind), ("Size", self.how_large), ("for", self.minutes)):
+            row.addWidget(QLabel(words, self))
+            row.addWidget(field)
+        row.addStretch(1)
+        box.addLayout(row)
+        row = QHBoxLayout()
+        self.train = self._button("Train", "In a process of its own, beside your work", self.start)
+        strengthen(self.train)
+        self.stop = self._button("Stop and keep", "End now, and keep what was learned so far", self.end)
+        row.addWidget(QLabel("Name", self))
+        row.addWidget(self.name, 1)
+        row.addWidget(self.train)
+        row.addWidget(self.stop)
+        box.addLayout(row)
+        self.needs = QLabel(missing() or "", self, wordWrap=True)
+        self.needs.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.needs.setVisible(bool(self.needs.text()))
+        box.addWidget(self.needs)
+        self.plots = TrainingPlots(self.session, self)
+        box.addWidget(self.plots, 2)
+        self.preview = SamplePreview(self)
+        box.addWidget(self.preview, 3)
+        row = QHBoxLayout()
+        self.progress = make_widget(QProgressBar, self, textVisible=False)
+        self.progress.setRange(0, 1000)
+        self.stands = QLabel(self)
+        self.stands.setProperty("dim", True)
+        row.addWidget(self.progress, 1)
+        row.addWidget(self.stands)
+        box.addLayout(row)
+        self.progress.hide()
+        return box
+
+    # --- takes
+
+    def choose_folder(self) -> None:
+        start = str(self.folders[-1] if self.folders else self.document.folder or Path.home())
+        name = QFileDialog.getExistingDirectory(self, "A folder of takes", start)
+        if name:
+            self.look_through([*self.folders, Path(name)])
+
+    def forget(self) -> None:
+        self.folders = []
+        self._listed(Listing())
+
+    def look_through(self, folders: list[Path]) -> None:
+        """List the takes of folders; a second look waits for the first."""
+        if self._job is not None or self.run is not None:
+            return
+        self.folders = list(dict.fromkeys(folders))
+        project, chosen = self.document.project, list(self.folders)
+        self.said.emit("Reading takes…")
+        job = self.jobs.start(
+            "Reading takes",
+            lambda job: list_takes(chosen, project, job.tell, lambda: job.cancelled),
+            self._listed,
+            self._failed,
+        )
+        self._job = job
+        job.progress.connect(self._tell_reading)
+        job.ended.connect(self._read)
+        self._enable()
+
+    def _tell_reading(self, done: int, total: int, _: str) -> None:
+        self.said.emit(f"Reading takes: {done} of {total}")
+
+    def _read(self) -> None:
+        self._job = None
+        self._enable()
+
+    def _listed(self, listing: Listing) -> None:
+        self.listing = listing
+        rows = sorted(listing.rows, key=lambda r: not r.bad)
+        self.table.setRowCount(len(rows))
+        for n, take in enumerate(rows):
+            length = f"{take.seconds:.0f} s" if not take.bad else "left out"
+            for column, text in enumerate((take.name, length, take.heard, take.wrong)):
+                item = QTableWidgetItem(text)
+                item.setToolTip(text)
+                self.table.setItem(n, column, item)
+        self.table.setColumnWidth(0, min(220, self.table.columnWidth(0)))
+        good, bad = sum(not r.bad for r in rows), sum(r.bad for r in rows)
+        self.title.setText(f"Takes · {good}, {listing.seconds / 60:.1f} min" if rows else "Takes")
+        left = f" {many(bad, 'clip')} left out: the first rows say why." if bad else ""
+        short = " That is little: an hour or more is better." if good and listing.seconds < 1800 else ""
+        self.said.emit(f"{many(good, 'take')} can be learned from.{left}{short}" if rows else "")
+        self._show_note()
+        self._enable()
+
+    def _show_note(self) -> None:
+        """Say what there is to know of the selected take, as a whole."""
+        rows = {i.row() for i in self.table.selectedItems()}
+        item = self.table.item(min(rows), 3) if rows else None
+        if item is None:
+            empty = (
+                "Each clip needs its sound beside it, under the same name: talk.bvh and talk.wav, its own "
+            )
+            empty += "voice in the first channel, the partner's in the second. Words (ELAN, TextGrid …) help."
+            self.note.setText("" if self.table.rowCount() else empty)
+            return
+        self.note.setText(item.text() or "Nothing is wrong with it.")
+
+    # --- training
+
+    def _enable(self) -> None:
+        busy, training = self._job is not None, self.run is not None
+        ready = self.listing.batch is not None and missing() is None
+        for widget in (self.add, self.clear, self.kind, self.how_large, self.minutes, self.name):
+            widget.setEnabled(not busy and not training)
+        self.train.setEnabled(ready and not busy and not training)
+        self.train.setVisible(not training)
+        self.stop.setVisible(training)
+        self.stop.setEnabled(training and self.run is not None and not self.run.stopping)
+
+    def start(self) -> None:
+        """Begin to train, in a process of its own."""
+        from metagraph.generation.offered import FOLDER
+        from metagraph.generation.stored import SUFFIX
+
+        folder = self.document.folder
+        if folder is None:
+            self.said.emit("Save the project first: the model is kept as a file beside it.")
+            return
+        if self.listing.batch is None or self.run is not None or self._job is not None:
+            return
+        name = self.name.text().strip().strip(".") or "new model"
+        if any(c in name for c in '/\\:*?"<>|'):
+            self.said.emit("The model's name is a file's name: leave out / \\ : * ? \" < > |.")
+            return
+        out = folder / FOLDER / f"{name}{SUFFIX}"
+        if out.exists():
+            self.said.emit(f"There is a model '{name}' already: choose another name, so that it is not lost.")
+            return
+        wish = {
+            "kind": self.kind.currentData(),
+            "size": self.how_large.currentData(),
+            "minutes": float(self.minutes.value()),
+        }
+        batch, begin = self.listing.batch, self.begin
+        said: deque[Any] = deque()
+        self.said.emit("Preparing…")
+        self.plots.clear()
+
+        def work(_: Job) -> Process:
+            out.parent.mkdir(parents=True, exist_ok=True)
+            return begin(batch, wish, out, said.append)
+
+        job = self.jobs.start(
+            "Preparing the training", work, lambda process: self._started(process, said), self._failed
+        )
+        self._job = job
+        job.ended.connect(self._read)
+        self._enable()
+
+    def _failed(self, error: Exception) -> None:
+        self.said.emit(sentence(error))
+
+    def _started(self, process: Process, said: deque[Any]) -> None:
+        self.run = TrainingRun(process, said, self)
+        self.run.moved.connect(self._moved)
+        self.run.ended.connect(self._ended)
+        self.progress.setValue(0)
+        self.progress.show()
+        self.said.emit("Training in a process of its own: go on working meanwhile.")
+        self._enable()
+        self.preview.begin(self.listing)
+
+    def _moved(self, event: Any) -> None:
+        """Show what a training's event says."""
+        ratios = {words: event.statistics[name] for name, words in RATIOS.items() if name in event.statistics}
+        words, value = goal(event)
+        if words or ratios:
+            self.plots.add(event.minutes, {words: value} if words else {}, ratios)
+        self.progress.setValue(round(1000 * event.share))
+        if event.step:
+            self.stands.setText(f"{event.step:,} steps, {event.minutes:.1f} min")
+        if event.landmarks:
+            self.preview.show_sample(event.landmarks)
+        if event.event == "note" and event.text:
+            self.said.emit(event.text)
+
+    def end(self) -> None:
+        """Stop soon, and keep the model as it is."""
+        if self.run is not None:
+            self.run.stop()
+            self.said.emit("Stopping: the model is being written…")
+            self._enable()
+
+    def _ended(self, model: Path | None, error: str) -> None:
+        self.run = None
+        self.progress.hide()
+        if model is None:
+            self.said.emit(error or "The training ended without a model.")
+        else:
+            self.said.emit(f"The model '{model.stem}' is kept in {model.parent.name}.")
+            self.trained.emit(model)
+        self._enable()
+
+    def close_down(self) -> None:
+        """The window closes: nothing goes on unseen."""
+        if self._job is not None:
+            self._job.cancel()
+        if self.run is not None:
+            self.run.kill()
+        self.preview.still()

@@ -1,0 +1,106 @@
+"""How a training goes: how near it is to its goal, and its samples' statistics beside what they should be."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import isfinite
+from typing import Any
+
+import pyqtgraph as pg
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QHBoxLayout, QWidget
+
+from app.look.theme import theme
+from app.stage.session import Session
+
+# Statistics of which 1 is right, as people read them; others are told in words.
+RATIOS = {
+    "speed": "speed",
+    "acceleration": "trembling",
+    "wrist_range": "reach",
+    "profile": "goes with stresses",
+}
+STYLES = (
+    Qt.PenStyle.SolidLine,
+    Qt.PenStyle.DashLine,
+    Qt.PenStyle.DotLine,
+    Qt.PenStyle.DashDotLine,
+    Qt.PenStyle.DashDotDotLine,
+)
+HIGHEST = 3.0  # of a ratio, as far as it is drawn
+MOST = 2000  # points of a line, the rest is thinned out
+
+
+class TrainingPlots(QWidget):
+    """Two plots beside each other, over minutes."""
+
+    def __init__(self, session: Session, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.session = session
+        self.goals: dict[str, list[tuple[float, float]]] = {}
+        self.ratios: dict[str, list[tuple[float, float]]] = {}
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(10)
+        self.left, self.right = (self._plot() for _ in range(2))
+        for plot, name in (
+            (self.left, "How near the training is to its goal"),
+            (self.right, "Statistics of the samples"),
+        ):
+            plot.setAccessibleName(name)
+            layout.addWidget(plot)
+        self.setMinimumHeight(150)
+        session.look.changed.connect(self._draw)
+        self._draw()
+
+    def _plot(self) -> Any:
+        plot = pg.PlotWidget(self)
+        plot.setMenuEnabled(False)
+        plot.setMouseEnabled(False, False)
+        plot.hideButtons()
+        plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        for axis in ("left", "bottom"):
+            plot.getAxis(axis).enableAutoSIPrefix(False)
+        return plot
+
+    def clear(self) -> None:
+        self.goals, self.ratios = {}, {}
+        self._draw()
+
+    def add(self, minutes: float, goals: Mapping[str, float], ratios: Mapping[str, float]) -> None:
+        """Add a moment. goals: how near it is to its goal, by what that is. ratios: of which 1 is right."""
+        for lines, values in ((self.goals, goals), (self.ratios, ratios)):
+            for name, value in values.items():
+                if isfinite(value):
+                    line = lines.setdefault(name, [])
+                    line.append((minutes, value))
+                    if len(line) > MOST:
+                        del line[1 : MOST // 2 : 2]
+        self._draw()
+
+    def _draw(self) -> None:
+        look = theme(self.session.look.name)
+        colours = (look.text, look.warning, look.dim, look.error, look.text)
+        for plot, words, lines in (
+            (self.left, next(iter(self.goals), "what training is after"), self.goals),
+            (self.right, "samples beside takes: 1 is right", self.ratios),
+        ):
+            plot.clear()
+            plot.setBackground(look.panel)
+            for axis in ("left", "bottom"):
+                plot.getAxis(axis).setPen(look.line)
+                plot.getAxis(axis).setTextPen(look.dim)
+            plot.setLabel("bottom", "minutes", color=look.dim)
+            plot.setTitle(words, color=look.dim, size="9pt")
+            if lines is self.ratios:
+                legend = plot.addLegend(offset=(-6, 4), labelTextColor=look.dim, labelTextSize="8pt")
+                legend.clear()
+            for n, (name, points) in enumerate(lines.items()):
+                high = HIGHEST if lines is self.ratios else float("inf")
+                pen = pg.mkPen(colours[n % 5], width=2, style=STYLES[n % 5])
+                xs, ys = [p[0] for p in points], [min(p[1], high) for p in points]
+                dot = "o" if len(points) == 1 else None
+                plot.addItem(pg.PlotDataItem(xs, ys, pen=pen, name=name, symbol=dot, symbolSize=5))
+            if lines is self.ratios:
+                plot.setYRange(0, HIGHEST / 2 if not lines else HIGHEST, padding=0)
+                plot.addItem(pg.InfiniteLine(1.0, 0, pg.mkPen(look.line, width=1)))

@@ -1,0 +1,110 @@
+"""A training at work in a process of its own: takes that were read are written for it, and what it says is
+heard on the window's thread.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+if TYPE_CHECKING:
+    from metagraph.generation.train_process import Event
+
+# What an event's numbers tell, the most telling first.
+GOALS = {
+    "likelihood": "likelihood: more is better",
+    "matching": "error of the flow: less is better",
+    "loss": "error: less is better",
+}
+LOOKS = 200  # milliseconds between two looks at what was said
+
+
+class Process(Protocol):
+    """`train_process.TrainingProcess`: asked to stop it writes the model and ends by itself. error: why it
+    ended, path: the model's file, each "" where there is none.
+    """
+
+    error: str
+    path: str
+
+    @property
+    def running(self) -> bool: ...
+
+    def stop(self) -> None: ...
+
+    def kill(self) -> None: ...
+
+
+Hear = Callable[["Event"], None]
+Begin = Callable[[Any, Mapping[str, Any], Path, Hear], Process]
+
+
+def begin(batch: Any, wish: Mapping[str, Any], out: Path, hear: Hear) -> Process:
+    """Begin to train with the takes that were read; on a job's thread. wish: kind, size and minutes. Raises
+    SplitError, FileError, TrainingFailedError.
+    """
+    from metagraph.generation.takes import split
+    from metagraph.generation.train_plan import folder_of, plan_of, write_training
+    from metagraph.generation.train_process import TrainingProcess
+
+    learned, held = split(batch.takes)
+    plan = plan_of(batch.rig, learned, held, out, **wish)
+    folder = folder_of(out)
+    folder.mkdir(parents=True, exist_ok=True)
+    write_training(folder, plan, learned, held)
+    return TrainingProcess(out, hear)
+
+
+class TrainingRun(QObject):
+    """moved: something happened, an Event. ended: the model's file, None where there is none, and words."""
+
+    moved = Signal(object)
+    ended = Signal(object, str)
+
+    def __init__(self, process: Process, said: deque[Event], parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.process, self.said = process, said
+        self.stopping = False
+        self._last = 0  # looks after it has ended: its last words are read on another thread
+        self._timer = QTimer(self, interval=LOOKS)
+        self._timer.timeout.connect(self.look)
+        self._timer.start()
+
+    def look(self) -> None:
+        """Pass on what was said since."""
+        running = self.process.running
+        ended = False
+        while self.said:
+            event = self.said.popleft()
+            ended = ended or event.event in ("end", "error")
+            self.moved.emit(event)
+        self._last += 0 if running else 1
+        if not running and (ended or self.process.path or self._last > 5):
+            self._timer.stop()
+            path = Path(self.process.path) if self.process.path else None
+            self.ended.emit(path, self.process.error)
+
+    def stop(self) -> None:
+        """Let it end soon, keeping what it has."""
+        if not self.stopping:
+            self.stopping = True
+            self.process.stop()
+
+    def kill(self) -> None:
+        """End it now: the window closes. What it kept last can be gone on from."""
+        self._timer.stop()
+        self.process.kill()
+
+
+def goal(event: Event) -> tuple[str, float]:
+    """Return what an event tells of how near the training is to its goal, in words and as a number; "" where
+    it says nothing of it.
+    """
+    for name, words in GOALS.items():
+        if name in event.numbers:
+            return words, event.numbers[name]
+    return "", 0.0

@@ -1,0 +1,414 @@
+"""Using a model: it moves a side of a conversation, or makes long takes that are cut into clips and dropped
+on the meta-graph.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import (
+    QFileDialog,
+    QHBoxLayout,
+    QLabel,
+    QProgressBar,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.generation.generation_jobs import (
+    Piece,
+    about,
+    cut_pieces,
+    first_stance,
+    keep_pieces,
+    sentence,
+    side_motion,
+    with_pieces,
+    with_side_moved,
+)
+from app.features.generation.pieces_table import PiecesTable
+from app.look.plural import many
+from app.look.theme import strengthen
+from app.project.document import Document
+from app.project.jobs import Job, Jobs
+from app.stage.session import Session
+from app.widgets.making import make_widget
+from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
+from metagraph.errors import FileError
+from metagraph.generation.offered import offered, words_of
+from metagraph.generation.stored import SUFFIX, read_card
+from metagraph.graph.conversation import side_name
+
+FILE, CHOOSE = "file", "choose"  # a sound that was chosen, and choosing one
+
+
+class UsePage(QWidget):
+    """said: words for the foot of the window."""
+
+    said = Signal(str)
+
+    def __init__(
+        self, document: Document, session: Session, jobs: Jobs, parent: QWidget | None = None
+    ) -> None:
+        super().__init__(parent)
+        self.document, self.session, self.jobs = document, session, jobs
+        self.pieces: list[Piece] = []
+        self._of: tuple[str, int] = ("", 1)  # the model and the seed of the pieces
+        self._extra: dict[str, Path] = {}  # models chosen as files
+        self._sound: Path | None = None
+        self._job: Job | None = None
+        box = QVBoxLayout(self)
+        box.setContentsMargins(0, 8, 0, 0)
+        box.setSpacing(6)
+        box.addLayout(self._model_row())
+        self.about = QLabel(self, wordWrap=True)
+        self.about.setProperty("dim", True)
+        box.addWidget(self.about)
+        box.addSpacing(8)
+        box.addWidget(self._heading("A side of a conversation"))
+        box.addLayout(self._side_row())
+        box.addSpacing(8)
+        box.addWidget(self._heading("Clips for the meta-graph"))
+        box.addLayout(self._takes_row())
+        self.table = PiecesTable(self)
+        self.table.itemChanged.connect(lambda _: self._enable())
+        box.addWidget(self.table, 1)
+        box.addLayout(self._drop_row())
+        for field in (self.seed, self.temperature, self.guidance, self.minutes):
+            field.lineEdit().setTextMargins(6, 0, 0, 0)
+        self.fill()
+
+    # --- building
+
+    def _heading(self, words: str) -> QLabel:
+        out = QLabel(words, self)
+        out.setProperty("heading", True)
+        return out
+
+    def _button(self, words: str, tip: str, run: Callable[[], object]) -> QPushButton:
+        out = QPushButton(words, self, autoDefault=False)
+        out.setToolTip(tip)
+        out.clicked.connect(lambda: run())
+        return out
+
+    def _row(self, *fields: tuple[str, QWidget]) -> QHBoxLayout:
+        row = QHBoxLayout()
+        for words, field in fields:
+            if words:
+                row.addWidget(QLabel(words, self))
+            row.addWidget(field)
+            row.addSpacing(6)
+        row.addStretch(1)
+        return row
+
+    def _model_row(self) -> QHBoxLayout:
+        self.model = ComboBox(self)
+        self.model.setAccessibleName("Model")
+        self.model.setMinimumWidth(220)
+        self.model.currentIndexChanged.connect(self._about)
+        choose = self._button("Choose file…", "A model from elsewhere", self.choose_model)
+        self.seed = SpinBox(self, minimum=1, maximum=9999, value=1)
+        self.seed.setAccessibleName("Seed")
+        self.seed.setToolTip("Another number moves otherwise to the same speech")
+        self.temperature = DoubleSpinBox(self, minimum=0, maximum=1.2, singleStep=0.1, decimals=1, value=0.9)
+        self.temperature.setAccessibleName("Chance")
+        self.temperature.setToolTip("How much happens by chance: 0 moves least, 1 as was learned")
+        self.guidance = DoubleSpinBox(self, minimum=0, maximum=5, singleStep=0.5, decimals=1, value=2.0)
+        self.guidance.setAccessibleName("Follows the speech")
+        self.guidance.setToolTip("How closely it follows the speech; 1 as was learned. Matching models alone")
+        return self._row(
+            ("Model", self.model),
+            ("", choose),
+            ("Seed", self.seed),
+            ("Chance", self.temperature),
+            ("Follows the speech", self.guidance),
+        )
+
+    def _side_row(self) -> QHBoxLayout:
+        self.side = ComboBox(self)
+        self.side.setAccessibleName("Who moves so")
+        self.side.setMinimumWidth(260)
+        self.move_button = self._button(
+            "Let it move so",
+            "Arms, head and spine move to the whole conversation; legs, eyes and lips as before",
+            self.move_side,
+        )
+        strengthen(self.move_button)
+        return self._row(("Who", self.side), ("", self.move_button))
+
+    def _takes_row(self) -> QHBoxLayout:
+        self.speech = ComboBox(self)
+        self.speech.setAccessibleName("To whose speech")
+        self.speech.setMinimumWidth(260)
+        self.speech.activated.connect(self._speech_chosen)
+        self.minutes = DoubleSpinBox(self, minimum=0.2, maximum=10, singleStep=0.5, decimals=1, value=3)
+        self.minutes.setSuffix(" min")
+        self.minutes.setAccessibleName("Minutes")
+        self.cut_button = self._button(
+            "Make and cut", "Cut at still moments that are alike, so that no jump shows", self.make_pieces
+        )
+        return self._row(("To", self.speech), ("for", self.minutes), ("", self.cut_button))
+
+    def _drop_row(self) -> QHBoxLayout:
+        self.stance = ComboBox(self)
+        self.stance.setAccessibleName("Stance they leave and come back to")
+        self.stance.setMinimumWidth(200)
+        self.drop_button = self._button(
+            "Drop", "In the library, and on the arms' layer of the graph", self.drop
+        )
+        self.drop_button.setMinimumWidth(120)
+        strengthen(self.drop_button)
+        self.progress = make_widget(QProgressBar, self, maximumWidth=180, textVisible=False)
+        self.progress.hide()
+        self.cancel_button = self._button("Cancel", "Nothing is changed then", self.cancel)
+        self.cancel_button.hide()
+        row = self._row(("On", self.stance), ("", self.drop_button))
+        row.addWidget(self.progress)
+        row.addWidget(self.cancel_button)
+        return row
+
+    # --- what there is
+
+    def fill(self) -> None:
+        """List models, sides and stances as they are now."""
+        self._fill_models()
+        project = self.document.project
+        for box, none in ((self.side, ""), (self.speech, "")):
+            chosen = box.currentData()
+            box.clear()
+            for ident, talk in project.conversations.items():
+                for n in range(2):
+                    box.addItem(f"{talk.name}: {side_name(talk, n)}{none}", (ident, n))
+            if box is self.speech:
+                if self._sound is not None:
+                    box.addItem(self._sound.name, FILE)
+                box.addItem("Choose a sound…", CHOOSE)
+            box.setCurrentIndex(max(0, box.findData(chosen)))
+        stance = self.stance.currentData()
+        self.stance.clear()
+        for s in project.graphs["arms"].stances.values():
+            self.stance.addItem(f"arms · {s.name}", s.id)
+        self.stance.addItem("the library alone", "")
+        wanted = stance if stance is not None else first_stance(project)
+        self.stance.setCurrentIndex(max(0, self.stance.findData(wanted)))
+        self._enable()
+
+    def _fill_models(self, wanted: Path | None = None) -> None:
+        found = {**offered(self.document.folder), **self._extra}
+        now = wanted or self.model.currentData()
+        self.model.blockSignals(True)
+        self.model.clear()
+        for name, path in found.items():
+            self.model.addItem(words_of(name), path)
+        self.model.setCurrentIndex(max(0, self.model.findData(now)) if found else -1)
+        self.model.blockSignals(False)
+        self._about()
+
+    def show_model(self, path: Path) -> None:
+        """Choose a model: one that was just trained, say."""
+        if path not in offered(self.document.folder).values():
+            self._extra[path.stem] = path
+        self._fill_models(path)
+
+    def choose_model(self) -> None:
+        start = str(self.document.folder or Path.home())
+        name, _ = QFileDialog.getOpenFileName(self, "Choose a model", start, f"Models (*{SUFFIX})")
+        if name:
+            self.show_model(Path(name))
+
+    def _about(self) -> None:
+        """Say what the chosen model is."""
+        path = self.model.currentData()
+        if path is None:
+            self.about.setText("There is no model yet: train one, or choose a file.")
+        else:
+            try:
+                self.about.setText(about(read_card(path), self.document.project))
+            except FileError as error:
+                self.about.setText(str(error))
+        self._enable()
+
+    def _speech_chosen(self) -> None:
+        self._enable()
+        if self.speech.currentData() != CHOOSE:
+            return
+        from app.project.speech_files import SOUNDS
+
+        start, kinds = str(self.document.folder or Path.home()), " ".join(f"*{s}" for s in SOUNDS)
+        name, _ = QFileDialog.getOpenFileName(self, "Choose a sound", start, f"Sounds ({kinds})")
+        if name:
+            self._sound = Path(name)
+        self.fill()
+        if name:
+            self.speech.setCurrentIndex(self.speech.findData(FILE))
+
+    # --- jobs
+
+    def _enable(self) -> None:
+        free = self._job is None and self.model.currentData() is not None
+        self.move_button.setEnabled(free and self.side.count() > 0)
+        self.cut_button.setEnabled(free and self.speech.currentData() != CHOOSE)
+        count = len(self.chosen())
+        self.drop_button.setEnabled(self._job is None and count > 0)
+        self.drop_button.setText(f"Drop {many(count, 'clip')}" if count else "Drop")
+
+    def _start(self, title: str, work: Callable[[Job], Any], done: Callable[[Any], None]) -> None:
+        self.said.emit("Working…")
+        job = self.jobs.start(title, work, done, self._failed)
+        self._job = job
+        self.progress.setRange(0, 0)
+        self.progress.show()
+        self.cancel_button.show()
+        job.progress.connect(self._tell)
+        job.ended.connect(self._ended)
+        self._enable()
+
+    def _tell(self, done: int, total: int, _: str) -> None:
+        self.progress.setRange(0, total)
+        self.progress.setValue(done)
+
+    def _ended(self) -> None:
+        self._job = None
+        self.progress.hide()
+        self.cancel_button.hide()
+        self._enable()
+
+    def _failed(self, error: Exception) -> None:
+        self.said.emit(sentence(error))
+
+    def cancel(self) -> None:
+        if self._job is not None:
+            self._job.cancel()
+            self.said.emit("Cancelled; nothing was changed.")
+
+    def _folder(self) -> Path | None:
+        if self.document.folder is None:
+            self._failed(ValueError("save the project first: new clips are kept as files beside it"))
+        return self.document.folder
+
+    def _chance(self) -> Any:
+        from metagraph.generation.performing import Chance
+
+        return Chance(self.seed.value(), self.temperature.value(), self.guidance.value())
+
+    # --- a side
+
+    def move_side(self) -> None:
+        """Let the chosen side move as the model says."""
+        path, chosen, folder = self.model.currentData(), self.side.currentData(), self._folder()
+        if path is None or chosen is None or folder is None:
+            return
+        project, chance, named = self.document.project, self._chance(), self.model.currentText()
+        ident, side = chosen
+        talk = project.conversations[ident]
+        if talk.sides[side].project is not None:
+            who = side_name(talk, side)
+            self._failed(
+                ValueError(f"{who} is moved by another project: clear that in Sounds and names first")
+            )
+            return
+
+        def work(job: Job) -> Any:
+            from metagraph.generation.stored import read_model
+
+            return side_motion(
+                read_model(path), named, project, ident, side, folder, chance, job.tell, lambda: job.cancelled
+            )
+
+        def done(made: Any) -> None:
+            loaded, notes = made
+            if ident not in self.document.project.conversations:
+                self._failed(ValueError("the conversation is gone; the clip is kept in its folder"))
+                return
+            self.document.edit(
+                "Move by a model",
+                lambda p: with_side_moved(p, loaded, named, chance.seed, ident, side),
+            )
+            self.session.onstage.set_conversation(ident)
+            self.session.onstage.set_side(side)
+            self.session.transport.show_plan()
+            self.session.transport.seek(0.0)
+            self.session.transport.set_playing(True)
+            told = " ".join(notes)
+            self.said.emit(f"{side_name(talk, side)} moves by '{named}', seed {chance.seed}. {told}".rstrip())
+
+        self._start("Generating motion", work, done)
+
+    # --- clips
+
+    def make_pieces(self) -> None:
+        """Make long takes and cut them."""
+        path, speech = self.model.currentData(), self.speech.currentData()
+        if path is None or speech == CHOOSE:
+            return
+        project, chance, named = self.document.project, self._chance(), self.model.currentText()
+        seconds, folder, sound = 60 * self.minutes.value(), self.document.folder or Path(), self._sound
+
+        def work(job: Job) -> Any:
+            from metagraph.generation.performing import heard_file, heard_side, long_takes
+            from metagraph.generation.stored import read_model
+
+            if speech == FILE and sound is not None:
+                heard, activity, notes = heard_file(sound)
+            else:
+                heard, activity, notes = heard_side(project, speech[0], speech[1], folder)
+            made, told = long_takes(
+                read_model(path),
+                project,
+                heard,
+                activity,
+                seconds,
+                chance,
+                f"{named} {chance.seed}",
+                job.tell,
+                lambda: job.cancelled,
+            )
+            return cut_pieces(made, project, job.tell, lambda: job.cancelled), (*notes, *told)
+
+        def done(made: Any) -> None:
+            found, notes = made
+            self.pieces, self._of = found, (named, chance.seed)
+            self.table.show_pieces(self.pieces)
+            told = " ".join(notes)
+            if not found:
+                self.said.emit(
+                    f"No still moments were found that it leaves and comes back to: make more minutes. {told}"
+                )
+                return
+            self.said.emit(f"{many(len(found), 'piece')}, not kept yet: drop those you like. {told}".rstrip())
+
+        self._start("Generating takes", work, done)
+
+    def chosen(self) -> list[Piece]:
+        """Return the pieces that are checked."""
+        return self.table.chosen()
+
+    def drop(self) -> None:
+        """Keep the checked pieces as files, and drop them on the graph: one step of undo."""
+        chosen, folder, (named, seed) = self.chosen(), self._folder(), self._of
+        if not chosen or folder is None:
+            return
+        project, stance = self.document.project, self.stance.currentData() or None
+
+        def done(loaded: Any) -> None:
+            where = stance if stance in self.document.project.graphs["arms"].stances else None
+            self.document.edit(
+                "Drop generated clips", lambda p: with_pieces(p, chosen, loaded, named, seed, where)
+            )
+            new = {path for path, *_ in loaded}
+            ids = tuple(e.id for e in self.document.project.clips.values() if e.path in new)
+            self.session.selection.select_clips(ids)
+            self.pieces = [p for p in self.pieces if p not in chosen]
+            self.table.show_pieces(self.pieces)
+            place = "dropped on the arms' layer" if where else "in the library"
+            self.said.emit(f"{many(len(ids), 'clip')} {place}; they say that '{named}' made them.")
+
+        self._start("Keeping clips", lambda _: keep_pieces(chosen, project, folder), done)
+
+    def close_down(self) -> None:
+        if self._job is not None:
+            self._job.cancel()

@@ -1,0 +1,123 @@
+"""Motion laid over a plan: arms, head and spine as something else says, a learned model for one; legs and
+root stay with the body's layer.
+
+It takes the place of the arms' and the head's layers, so it is added to what the body's layer does, as they
+are: somebody who shifts the weight while gesturing shifts it here, too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph import anatomy
+from metagraph.graph.model import Layer, Part, Project
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Pose
+from metagraph.playback.composer import Reach, rig
+from metagraph.playback.life.evaluate import enliven
+from metagraph.playback.plan import Plan
+from metagraph.playback.player import ease, layers_at, sample
+
+Array = NDArray[Any]
+
+BLEND = 0.3  # seconds from and to the plan at both ends of a clip
+MOVED: tuple[Part, ...] = ("spine", "arms", "head")
+
+
+@dataclass(frozen=True, eq=False)
+class Overlay:
+    """What is laid over a plan at times `[N]`. joints `[n]`, and their offsets from the base pose `turns [N,
+    n, 4]`. weight `[N]`: how much of it shows, 0..1. arms, head `[N]`: how much of what those layers play
+    shows instead, 0..1; a gesture takes the head along, a nod the head alone.
+    """
+
+    joints: Array
+    turns: Array
+    weight: Array
+    arms: Array
+    head: Array
+
+
+def overlaid(plan: Plan, project: Project, seconds: Any, overlay: Overlay | None, alive: bool = True) -> Pose:
+    """Return the composed pose at `seconds`, a number or an array `[...]`, as `player.pose_at` does, with an
+    overlay of as many times over it. Raises ValueError when the project has no skeleton.
+    """
+    at = np.asarray(seconds, np.float64)
+    times = at.reshape(-1)
+    frame = rig(project)
+    layers = layers_at(plan, project, times)
+    if overlay is None or not overlay.weight.any():
+        pose = frame.compose(layers, len(times))
+    else:
+        body: dict[Layer, Any] = {"body": layers.pop("body")} if "body" in layers else {}
+        pose = _over(frame.compose(body, len(times)), project, layers, overlay)
+    if alive and project.life.on and plan.life.end > 0 and len(times):
+        pose = enliven(pose, project, plan.life, plan.track, times)
+    shape = (*at.shape, len(frame.ground.skeleton))
+    return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
+
+
+def _over(pose: Pose, project: Project, layers: dict[Layer, Any], over: Overlay) -> Pose:
+    """Return the body's pose `[N, J]` with the other two layers, and the overlay in their place."""
+    count, size = pose.rotations.shape[:2]
+    parts = anatomy.parts(project)
+    heads = np.array([parts[j] == "head" for j in over.joints])
+    both = np.maximum(over.arms, over.head)
+    share = np.zeros((count, size), np.float32)
+    share[:, over.joints] = over.weight[:, None] * (1 - np.where(heads, both[:, None], over.arms[:, None]))
+    rotations, translations = pose.rotations, pose.translations
+    turned, away = _whole(project, layers, "arms", count, size)
+    turns = rotation.identity((count, size), np.float32)
+    turns[:, over.joints] = over.turns
+    rotations = rotation.multiply(rotations, rotation.nlerp(turned, turns, share))
+    translations = translations + away * (1 - share[..., None])
+    # The head's layer has no part of its own in the overlay: what is not asked of it, is not to be seen.
+    share = np.zeros((count, size), np.float32)
+    share[:, over.joints] = (over.weight * (1 - both))[:, None]
+    turned, away = _whole(project, layers, "head", count, size)
+    still = rotation.identity((count, size), np.float32)
+    rotations = rotation.multiply(rotations, rotation.nlerp(turned, still, share))
+    return Pose(rotation.normalize(rotations), translations + away * (1 - share[..., None]))
+
+
+def _whole(
+    project: Project, layers: dict[Layer, Any], layer: Layer, count: int, size: int
+) -> tuple[Array, Array]:
+    """Return what a layer adds on every joint `[count, size]`."""
+    rotations = rotation.identity((count, size), np.float32)
+    translations = np.zeros((count, size, 3), np.float32)
+    if layer in layers:
+        reach = rig(project).reach[layer]
+        turned, away = layers[layer]
+        if reach.weights is not None:
+            turned, away = rotation.power(turned, reach.weights[:, 0]), away * reach.weights
+        rotations[:, reach.joints], translations[:, reach.joints] = turned, away
+    return rotations, translations
+
+
+@lru_cache(maxsize=16)
+def _reach(parts: tuple[Part, ...]) -> Reach:
+    return Reach(np.array([j for j, part in enumerate(parts) if part in MOVED], np.int64), None)
+
+
+def reached(project: Project) -> Array:
+    """Return the joints `[n]` that are laid over: spine, arms, neck and head; not the face."""
+    return _reach(anatomy.parts(project)).joints
+
+
+def clip_overlay(project: Project, clip: Clip, times: Array) -> Overlay:
+    """Return a clip laid over a plan from its beginning on, at `times [N]`: it comes and goes within BLEND
+    seconds, half of it for a short one. Raises ValueError for a clip of another skeleton.
+    """
+    reach = _reach(anatomy.parts(project))
+    turns, _ = sample(rig(project).ground, reach, clip, np.clip(times, 0.0, clip.duration))
+    blend = max(1e-6, min(BLEND, clip.duration / 2))
+    weight = ease(times / blend) * ease((clip.duration - times) / blend)
+    none = np.zeros(len(times))
+    return Overlay(reach.joints, turns, weight, none, none)

@@ -1,0 +1,164 @@
+"""Models at work for a project: on its own skeleton or another, to a conversation's sound."""
+
+from __future__ import annotations
+
+from concurrent.futures import CancelledError
+from dataclasses import replace
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+import soundfile
+
+from metagraph.errors import FileError
+from metagraph.generation.features import RATE, FeatureError
+from metagraph.generation.offered import offered
+from metagraph.generation.performing import (
+    Chance,
+    fits,
+    heard_file,
+    heard_side,
+    long_takes,
+    on_project,
+    project_rig,
+    side_clip,
+    side_sound,
+    spoken,
+)
+from metagraph.generation.poses import PoseError
+from metagraph.generation.sampler import heard_activity, whole
+from metagraph.graph import anatomy, edits
+from metagraph.graph.generated import add_generated, origin
+from metagraph.graph.model import Project
+from metagraph.motion.clip import Clip
+from metagraph.motion.skeleton import Skeleton
+from tests.generation.makers import babble, conversation, moving, stance, untrained
+
+
+@pytest.fixture(scope="module")
+def model():
+    return untrained("flow-vae")
+
+
+def talking(project: Project, folder: Path, seconds: float = 6.0) -> Project:
+    sound = np.stack([babble(seconds, 1), babble(seconds, 2)], 1)
+    soundfile.write(folder / "talk.wav", sound, RATE)
+    talk = conversation(seconds)
+    sides = tuple(
+        msgspec.structs.replace(s, name=("Ada", "Ben")[n], audio="talk.wav", channel=n)
+        for n, s in enumerate(talk.sides)
+    )
+    return replace(project, conversations={"v1": msgspec.structs.replace(talk, sides=sides)})
+
+
+def taller(by: float = 1.2) -> Project:
+    """A project whose figure is another: other names before the joints', longer bones."""
+    clip = stance()
+    s = clip.skeleton
+    names = tuple(f"rig:{n}" for n in s.names)
+    other = Skeleton(names, s.parents, s.rest_rotations, s.rest_translations * by)
+    moved = Clip("stance", other, clip.fps, clip.rotations, clip.translations * by, clip.translated)
+    return edits.place(edits.add_clips(Project(), [("a.glb", 0, "", moved)]), ["c1"], "arms", "stance", None)
+
+
+def test_only_what_the_model_moves_leaves_the_base_pose(sample, model, tmp_path):
+    project = talking(sample, tmp_path)
+    assert fits(model, project)
+    clip, notes = side_clip(model, project, "v1", 0, tmp_path, Chance(3), "ada")
+    assert clip.skeleton == project.skeleton and clip.duration == pytest.approx(6.0, abs=0.05) and not notes
+    base = anatomy.base_pose(project)
+    moved = {j for line in project_rig(project).lines for j in line}
+    still = [j for j in range(len(project.skeleton)) if j not in moved]
+    assert np.abs(clip.rotations[:, still] - base.rotations[still]).max() < 1e-6
+    assert np.abs(clip.rotations[:, sorted(moved)] - base.rotations[sorted(moved)]).max() > 0.01
+    assert np.allclose(clip.poses().translations, base.translations, atol=1e-6)
+
+
+def test_another_figure_gets_the_motion_retargeted_and_is_told(model, tmp_path):
+    project = talking(taller(), tmp_path)
+    assert not fits(model, project)
+    clip, notes = side_clip(model, project, "v1", 1, tmp_path, Chance(), "ben")
+    assert clip.skeleton == project.skeleton and "retargeted" in notes[-1]
+    arm = anatomy.roles(project)["left_upper_arm"]
+    assert np.ptp(clip.rotations[:, arm], axis=0).max() > 0.01
+    feet = [j for j, part in enumerate(anatomy.parts(project)) if part == "legs"]
+    assert np.abs(clip.rotations[:, feet] - anatomy.base_pose(project).rotations[feet]).max() < 1e-6
+
+
+def test_the_same_chance_gives_the_same_clip_and_pieces_do_not_matter(model):
+    sound = np.stack([babble(4.3, 1), babble(4.3, 2)])
+    told = heard_activity(sound)
+    one = spoken(model, sound, told, Chance(5, 0.8), "a")
+    assert (one.rotations == spoken(model, sound, told, Chance(5, 0.8), "a").rotations).all()
+    assert (one.rotations == whole(model, sound, told, seed=5, temperature=0.8).rotations).all()
+    assert (one.rotations != spoken(model, sound, told, Chance(6, 0.8), "a").rotations).any()
+
+
+def test_a_short_sound_is_moved_to_again_each_time_otherwise(sample, model):
+    sound = babble(5.0)[None]
+    made, _ = long_takes(model, sample, sound, heard_activity(sound), 14.0, Chance(), "long")
+    assert [round(c.duration) for c in made] == [5, 5, 4]
+    assert (made[0].rotations[:90] != made[1].rotations[:90]).any()
+
+
+def test_sides_hear_their_own_voice_first_and_what_is_missing_is_told(sample, tmp_path):
+    project = talking(sample, tmp_path)
+    talk = project.conversations["v1"]
+    ada, ben = (side_sound(talk, n, tmp_path)[0] for n in (0, 1))
+    assert np.allclose(ada, ben[::-1]) and ada.shape == (2, 6 * RATE)
+    mute = msgspec.structs.replace(
+        talk, sides=(msgspec.structs.replace(talk.sides[0], audio=None, channel=None), talk.sides[1])
+    )
+    samples, notes = side_sound(mute, 0, tmp_path)
+    assert (
+        not samples[0].any()
+        and samples[1].any()
+        and notes == ("Ada has no sound: who speaks when is all that is heard.",)
+    )
+
+
+def test_a_sound_that_is_gone_is_an_error_that_names_it(sample, tmp_path):
+    project = talking(sample, tmp_path)
+    (tmp_path / "talk.wav").unlink()
+    with pytest.raises(FileError, match=r"talk\.wav"):
+        heard_side(project, "v1", 0, tmp_path)
+
+
+def test_a_file_of_one_voice_is_heard(tmp_path):
+    soundfile.write(tmp_path / "one.wav", babble(2.0), RATE)
+    samples, activity, _ = heard_file(tmp_path / "one.wav")
+    assert samples.shape == (1, 2 * RATE) and activity.shape[1] == 4 and not activity[:, 1:3].any()
+
+
+def test_it_can_be_cancelled_and_nothing_cannot_be_moved_to(sample, model):
+    sound = babble(5.0)[None]
+    with pytest.raises(CancelledError):
+        spoken(model, sound, heard_activity(sound), Chance(), "a", cancelled=lambda: True)
+    with pytest.raises(FeatureError):
+        spoken(model, sound[:, :0], heard_activity(sound), Chance(), "a")
+    with pytest.raises(PoseError, match="nobody to move"):
+        on_project(Project(), moving(1.0))
+
+
+def test_clips_say_who_made_them_and_still_do_when_read_again(sample, tmp_path):
+    clip = moving(2.0)
+    project = add_generated(sample, [("generated/a.glb", 0, "x", clip)], "anna", 7)
+    entry = next(e for e in project.clips.values() if e.path == "generated/a.glb")
+    assert origin(entry) == "made by the model 'anna', seed 7"
+    assert {origin(e) for e in project.clips.values() if e is not entry} == {""}
+    again = edits.add_clips(project, [("generated/a.glb", 0, "y", clip)])
+    assert origin(again.clips[entry.id]) == origin(entry)
+
+
+def test_models_are_offered_from_beside_the_project_and_its_folder(tmp_path, monkeypatch):
+    from metagraph.generation import offered as module
+
+    monkeypatch.setattr(module, "SHIPPED", tmp_path / "none.mgmodel")
+    assert offered(None) == {} and offered(tmp_path / "gone") == {}
+    (tmp_path / "models").mkdir()
+    for name in ("b.mgmodel", "models/a.mgmodel", "models/b.mgmodel", "models/no.txt"):
+        (tmp_path / name).touch()
+    assert offered(tmp_path) == {n: tmp_path / "models" / f"{n}.mgmodel" for n in ("a", "b")}
+    monkeypatch.setattr(module, "SHIPPED", tmp_path / "b.mgmodel")
+    assert list(offered(tmp_path)) == ["own", "a", "b"]
