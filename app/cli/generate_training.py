@@ -209,8 +209,13 @@ def _trained(options: Namespace, out: Path) -> tuple[TrainingProcess, bool]:
     from metagraph.generation.train_process import TrainingProcess
 
     process = TrainingProcess(out, _telling(options))
-    asked: list[int] = []
-    with _on_stop(lambda: (asked.append(1), process.stop())):
+    asked: list[bool] = []
+
+    def stop() -> None:
+        asked.append(True)
+        process.stop()
+
+    with _on_stop(stop):
         try:
             process.wait()
         except BaseException:
