@@ -24,8 +24,8 @@ LOOKS = 200  # milliseconds between two looks at what was said
 
 
 class Process(Protocol):
-    """`train_process.TrainingProcess`: asked to stop it writes the model and ends by itself. wait: the model's
-    file once it has ended; raises RuntimeError, in words, where there is none, TimeoutError.
+    """`train_process.TrainingProcess`: asked to stop it writes the model and ends by itself. wait: the
+    model's file once it has ended; raises RuntimeError, in words, where there is none, TimeoutError.
     """
 
     @property
