@@ -43,7 +43,7 @@ def model_of(
         hours=round(sum(t.seconds for t in plan.takes) / 3600, 4),
         takes=plan.takes,
         held_out=plan.held,
-        versions={**versions(), "torch": torch.__version__},
+        versions={**versions(), "torch": str(torch.__version__)},
         statistics=dict(statistics or {}),
         notes=notes,
     )

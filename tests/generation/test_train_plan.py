@@ -1,0 +1,89 @@
+"""What a training is asked to do is kept whole; what is damaged is told."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+
+from metagraph.errors import FileError
+from metagraph.generation.features import RATE
+from metagraph.generation.takes import Source, SplitError, Take, take_of
+from metagraph.generation.train_plan import (
+    PLAN,
+    TAKES,
+    Settings,
+    TrainingPlan,
+    folder_of,
+    plan_of,
+    read_plan,
+    read_takes,
+    write_training,
+)
+from tests.generation.makers import babble, conversation, moving, rig
+
+
+@pytest.fixture(scope="module")
+def takes() -> tuple[Take, Take]:
+    out = []
+    for seed in (1, 2):
+        sound = np.stack([babble(8.0, seed), babble(8.0, seed + 50)])
+        source = Source(f"take {seed}", (f"motion {seed}",), "CC0", 2.0)
+        out.append(take_of(rig(), moving(8.0, seed), sound, RATE, source, conversation(8.0, seed)))
+    return out[0], out[1]
+
+
+def plan(takes: tuple[Take, Take], out: Path, **options: Any) -> TrainingPlan:
+    return plan_of(rig(), takes[:1], takes[1:], out, **options)
+
+
+def test_takes_and_plan_come_back_as_they_were(takes: Any, tmp_path: Path) -> None:
+    own = plan(takes, tmp_path / "a.mgmodel")
+    folder = folder_of(tmp_path / "a.mgmodel")
+    write_training(folder, own, takes[:1], takes[1:])
+    again = read_plan(folder)
+    assert again == own and again.fingerprint() == own.fingerprint()
+    learned, held = read_takes(folder, again)
+    for one, other in zip((*learned, *held), takes, strict=True):
+        assert np.array_equal(one.poses, other.poses) and np.array_equal(one.features, other.features)
+        assert one.marks == other.marks and one.source == other.source
+
+
+def test_what_is_held_out_is_not_learned_from(takes: Any, tmp_path: Path) -> None:
+    with pytest.raises(SplitError):
+        plan_of(rig(), takes, takes[1:], tmp_path / "a.mgmodel")
+
+
+def test_more_time_goes_on_and_other_settings_do_not(takes: Any, tmp_path: Path) -> None:
+    own = plan(takes, tmp_path / "a.mgmodel")
+    longer = msgspec.structs.replace(own, minutes=90.0, threads=2, out="elsewhere")
+    other = msgspec.structs.replace(own, settings=Settings(rate=1e-4))
+    assert longer.fingerprint() == own.fingerprint() != other.fingerprint()
+
+
+def test_a_training_begun_anew_forgets_the_one_before(takes: Any, tmp_path: Path) -> None:
+    own, folder = plan(takes, tmp_path / "a.mgmodel"), folder_of(tmp_path / "a.mgmodel")
+    folder.mkdir()
+    for name in ("checkpoint.0.npz", "stop"):
+        (folder / name).write_bytes(b"old")
+    write_training(folder, own, takes[:1], takes[1:])
+    assert sorted(p.name for p in folder.iterdir()) == sorted([PLAN, TAKES])
+
+
+def test_what_is_missing_or_damaged_is_told(takes: Any, tmp_path: Path) -> None:
+    own, folder = plan(takes, tmp_path / "a.mgmodel"), folder_of(tmp_path / "a.mgmodel")
+    with pytest.raises(FileError, match="no training to go on with"):
+        read_plan(folder)
+    write_training(folder, own, takes[:1], takes[1:])
+    content = (folder / TAKES).read_bytes()
+    for spoiled in (b"", content[: len(content) // 2], b"PK\x03\x04" + bytes(200)):
+        (folder / TAKES).write_bytes(spoiled)
+        with pytest.raises(FileError, match="damaged"):
+            read_takes(folder, own)
+    for text in (b"{", b"[]", b'{"kind": "matching"}', b"\xff"):
+        (folder / PLAN).write_bytes(text)
+        with pytest.raises(FileError, match="no training's plan"):
+            read_plan(folder)

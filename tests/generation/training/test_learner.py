@@ -1,0 +1,148 @@
+"""What is learned: the toy's coupling, a clip by heart; and that a training goes on as though never cut."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch", reason="training needs torch, which is not installed")
+
+from metagraph.generation import chunks, generators, vae  # noqa: E402
+from metagraph.generation.features import with_edges  # noqa: E402
+from metagraph.generation.landmarks import landmarks_of  # noqa: E402
+from metagraph.generation.networks import FlowSizes, Kind, sizes_of  # noqa: E402
+from metagraph.generation.stored import skeleton_card  # noqa: E402
+from metagraph.generation.train_plan import Settings, TrainingPlan  # noqa: E402
+from metagraph.generation.training.learner import FUTILE, Learner, TrainingError  # noqa: E402
+from metagraph.graph.model import Project  # noqa: E402
+from metagraph.playback.bake import bake  # noqa: E402
+from metagraph.speech.drive import drive  # noqa: E402
+from tests.generation.makers import conversation, rig  # noqa: E402
+from tests.generation.training.planting import plan, stroke, take, toy, toy_sizes  # noqa: E402
+
+SMALL = Settings(batch=4, frames=40, warm=20)
+KINDS: tuple[Kind, ...] = ("flow-vae", "moglow", "cvae", "matching")
+
+
+@pytest.fixture(scope="module")
+def takes() -> Any:
+    return take(8.0, 1), take(8.0, 2)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_training_that_was_cut_goes_on_to_the_bit(kind: Kind, takes: Any) -> None:
+    own = plan((takes[0],), (takes[1],), kind, settings=SMALL)
+    whole = Learner(own, [takes[0]])
+    for n in range(8):
+        whole.advance(n / 8)
+    first = Learner(own, [takes[0]])
+    for n in range(5):
+        first.advance(n / 8)
+    again = Learner(own, [takes[0]])
+    again.restore(5, first.state())
+    for n in range(5, 8):
+        again.advance(n / 8)
+    expected, found = whole.weights(), again.weights()
+    assert all(np.array_equal(expected[name], found[name]) for name in expected)
+
+
+def test_a_checkpoint_of_another_net_is_refused(takes: Any) -> None:
+    one = Learner(plan((takes[0],), (takes[1],), "cvae", settings=SMALL), [takes[0]])
+    other = Learner(plan((takes[0],), (takes[1],), "matching", settings=SMALL), [takes[0]])
+    with pytest.raises(ValueError, match="another net"):
+        other.restore(1, one.state())
+
+
+def test_the_head_is_learned_with_and_not_kept(takes: Any) -> None:
+    own = Learner(plan((takes[0],), (takes[1],), "matching", settings=SMALL), [takes[0]])
+    before = own.objective.speeds.weight.detach().clone()
+    for _ in range(3):
+        own.advance()
+    assert not torch.equal(before, own.objective.speeds.weight)
+    assert not any("speeds" in name for name in own.weights())
+
+
+def test_steps_without_a_number_change_nothing_and_end_after_a_while(takes: Any) -> None:
+    own = Learner(plan((takes[0],), (takes[1],), "matching", settings=SMALL), [takes[0]])
+    own.advance()
+    before = own.weights()
+    own.corpus.heard[:] = torch.nan
+    for _ in range(FUTILE - 1):
+        own.advance()
+    after = own.weights()
+    assert all(np.array_equal(before[name], after[name]) for name in before)
+    with pytest.raises(TrainingError, match="lower rate"):
+        own.advance()
+
+
+def test_the_rate_rises_falls_and_calms_down(takes: Any) -> None:
+    own = Learner(plan((takes[0],), (takes[1],), "cvae", settings=Settings(warm=100)), [takes[0]])
+    rates = []
+    for own.step in (0, 49, 99, 399, 99_999):
+        rates.append(own.rate(0.0))
+    assert np.allclose(rates, [1.5e-5, 7.5e-4, 1.5e-3, 7.5e-4, 1.5e-4])
+    assert own.rate(1.0) < 0.11 * own.rate(0.5)
+
+
+def test_takes_shorter_than_a_crop_are_learned_from(takes: Any) -> None:
+    short = takes[0].part(0, 101)
+    own = Learner(plan((short,), (takes[1],), "flow-vae", settings=Settings(batch=3, frames=500)), [short])
+    assert np.isfinite(own.advance()["loss"]) and own.objective.length == 101
+
+
+def test_a_clip_of_ten_seconds_is_learned_by_heart(sample: Project) -> None:
+    _, performed = drive(conversation(10.0), 0, sample)
+    one, other = take(10.0, 1, bake(performed, sample, 10.0, 25.0)), take(10.0, 2)
+    sizes = msgspec.structs.replace(sizes_of("flow-vae"), code="autoencoder", dims=24, span=1)
+    assert isinstance(sizes, FlowSizes)
+    settings = Settings(loss="whitened", batch=8, frames=64, warm=30, rate=4e-3, kept=0.9, head=0.0)
+    own = Learner(plan((one,), (other,), sizes=sizes, settings=settings, kind="flow-vae"), [one])
+    for n in range(250):
+        own.advance(n / 250)
+    weights, standard = own.weights(), own.poses.apply(one.poses)
+    again = vae.decode(weights, sizes, vae.encode(weights, sizes, standard))
+    apart = landmarks_of(rig(), own.poses.undo(again)) - landmarks_of(rig(), one.poses)
+    assert 100 * np.linalg.norm(apart, axis=-1).mean() < 0.5
+
+
+@pytest.mark.parametrize(("kind", "steps"), [("matching", 500), ("flow-vae", 250)])
+def test_what_is_planted_is_found_with_what_is_heard_and_not_without(kind: Kind, steps: int) -> None:
+    learned, held, other = [toy(1500, n) for n in range(4)], toy(1500, 99), toy(1500, 7)
+    sizes = toy_sizes(kind)
+    settings = Settings(batch=32, frames=96, warm=100, rate=3e-3, known=1.0, kept=0.99)
+    own = Learner(
+        TrainingPlan(
+            kind=kind,
+            sizes=sizes,
+            settings=settings,
+            skeleton=skeleton_card(rig()),
+            takes=(),
+            held=(),
+            out="toy",
+        ),
+        learned,
+    )
+    for n in range(steps):
+        own.advance(n / steps)
+    weights = own.weights()
+
+    def made(told: Any) -> Any:
+        maker = generators.generator(weights, sizes, np.zeros(18, np.float32))
+        heard = np.concatenate([own.audio.apply(told[:, :-4]), told[:, -4:]], 1)
+        heard = with_edges(heard, maker.before, maker.ahead + 64)
+        reach = maker.before + 1 + maker.ahead
+        rows = [maker.step(heard[f : f + reach], 1, 0, f) for f in range(0, len(told), maker.made)]
+        return own.poses.undo(chunks.smoothed(np.concatenate(rows)[: len(told)]))
+
+    deaf = held.features.copy()
+    deaf[:, :27] = other.features[:, :27]  # what is said to somebody else
+    poses = made(held.features)
+    true, wrong = stroke(held.poses, held), stroke(other.poses, held)
+    assert stroke(poses, held) > wrong + 0.5 * (true - wrong)
+    assert abs(stroke(made(deaf), held) - wrong) < 0.25 * (true - wrong)
+    peaks = [round(25 * p) for p in held.marks.peaks]
+    first = [poses[p, :3].mean() > poses[p, 6:9].mean() for p in peaks]
+    assert 0.15 < np.mean(first) < 0.85

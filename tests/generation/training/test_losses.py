@@ -1,0 +1,123 @@
+"""What is made small, and what goes wrong with the paper's loss."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch", reason="training needs torch, which is not installed")
+
+from metagraph.generation.networks import Control, FlowSizes, MatchingSizes  # noqa: E402
+from metagraph.generation.takes import scales_of  # noqa: E402
+from metagraph.generation.train_plan import Settings  # noqa: E402
+from metagraph.generation.training.data import Corpus, edges_of  # noqa: E402
+from metagraph.generation.training.learner import Learner  # noqa: E402
+from metagraph.generation.training.losses import ALPHA, objective_of  # noqa: E402
+from metagraph.generation.training.nets import net_of  # noqa: E402
+from tests.generation.makers import rig, shaken, tiny  # noqa: E402
+from tests.generation.training.planting import plan, take  # noqa: E402
+
+FLOW = FlowSizes(control=Control(width=12), between=32, dims=8, steps=2, units=12)
+
+
+@pytest.fixture(scope="module")
+def takes() -> Any:
+    return take(10.0, 1), take(8.0, 2)
+
+
+def deviation(takes: Any, **changes: Any) -> float:
+    """Of the code that the flow sees, after some hundred steps."""
+    settings = Settings(batch=8, frames=40, warm=20, rate=5e-3, least=5e-3, head=0.0, known=1.0, **changes)
+    own = Learner(plan(takes[:1], takes[1:], "flow-vae", sizes=FLOW, settings=settings), [takes[0]])
+    for _ in range(200):
+        own.advance()
+    poses = torch.from_numpy(own.poses.apply(takes[0].poses))
+    with torch.no_grad():
+        net = own.objective.net
+        code = (net.to_code(poses) - net.code.mean) / net.code.deviation
+    return float(code.std(0).mean())
+
+
+def test_a_whitened_code_stays_as_wide_as_it_is(takes: Any) -> None:
+    assert 0.5 < deviation(takes, loss="whitened") < 2
+
+
+def test_the_papers_code_shrinks_where_its_likelihood_weighs_more(takes: Any) -> None:
+    # So the test above can fail: nothing but the smallness of alpha holds that code.
+    assert not 0.5 < deviation(takes, loss="paper", alpha=100 * ALPHA["paper"], third=0.0) < 2
+
+
+def test_the_draw_of_the_third_term_begins_without_memory(takes: Any) -> None:
+    """Codes that the draw gives, of the noise of the way there, are the same codes."""
+    sizes = tiny("flow-vae")
+    net = net_of(sizes, shaken(sizes))
+    chance = torch.Generator().manual_seed(1)
+    codes = torch.randn(2, 30, sizes.dims, generator=chance)
+    context = torch.randn(2, 30, sizes.control.context(sizes.pose), generator=chance)
+    with torch.no_grad():
+        z, _ = net.flow(codes, context)
+        again, _ = net.flow.inverse(z, context)
+    assert float((again - codes).abs().max()) < 1e-4
+
+
+@pytest.mark.parametrize("loss", ["paper", "whitened", None])
+def test_the_third_term_is_the_papers_alone(takes: Any, loss: Any) -> None:
+    objective = objective_of(net_of(FLOW), Settings(loss=loss))
+    assert objective.third == (1.0 if loss == "paper" else 0.0)
+
+
+def test_losses_of_other_models_are_refused() -> None:
+    with pytest.raises(ValueError, match="not for a flow on code"):
+        objective_of(net_of(tiny("moglow")), Settings(loss="paper"))
+    with pytest.raises(ValueError, match="is for a flow"):
+        objective_of(net_of(tiny("matching")), Settings(loss="whitened"))
+
+
+def corpus(takes: Any, sizes: Any) -> Corpus:
+    return Corpus(takes, *scales_of(takes), *edges_of(sizes))
+
+
+def test_crops_lie_within_takes_and_reach_both_ends(takes: Any) -> None:
+    sizes = tiny("flow-vae")
+    own = corpus(takes, sizes)
+    starts = own.starts(torch.Generator().manual_seed(1), 20000, 150).numpy()
+    for first, count in zip(own.first, own.counts, strict=True):
+        inside = starts[(starts >= first) & (starts < first + count)]
+        assert inside.min() == first and inside.max() == first + count - 150
+    assert len(set(starts.tolist())) == int((own.counts - 149).sum())
+
+
+def test_around_a_take_nobody_speaks_and_the_mean_pose_is_held(takes: Any) -> None:
+    sizes = MatchingSizes()
+    own = corpus(takes, sizes)
+    starts = torch.from_numpy(own.first[1:])
+    before = own.rows(own.heard, starts, -sizes.past * sizes.frames, 0)[0]
+    assert torch.equal(before[:, -1], torch.ones(len(before))) and not before[:, -4:-1].any()
+    assert not own.rows(own.poses, starts, -sizes.past * sizes.frames, 0).any()
+
+
+@pytest.mark.parametrize("kind", ["flow-vae", "matching"])
+def test_what_comes_after_the_look_ahead_changes_nothing(kind: Any) -> None:
+    sizes = tiny(kind)
+    net = net_of(sizes, shaken(sizes))
+    frames = torch.randn(1, 60 if kind == "flow-vae" else sizes.tokens * sizes.frames, 31)
+    other = frames.clone()
+    with torch.no_grad():
+        if kind == "flow-vae":
+            other[:, 5 + 4 + 1 :] += 1.0  # the first frame knows 4 ahead
+            a, b = (net.heard(x, torch.tensor([4]))[:, 0] for x in (frames, other))
+            more = net.heard(other, torch.tensor([5]))[:, 0]
+        else:
+            other[:, sizes.past * sizes.frames + 4 + 1 :] += 1.0
+            a, b = (net.frames(x, torch.tensor([4])) for x in (frames, other))
+            more = net.frames(other, torch.tensor([5]))
+    assert torch.equal(a, b) and not torch.allclose(b, more)
+
+
+def test_a_clip_that_hardly_moves_has_speeds_that_are_numbers() -> None:
+    still = take(8.0, 1)
+    held = type(still)(still.source, np.repeat(still.poses[:1], len(still.poses), 0), still.features)
+    own = corpus([held], tiny("matching"))
+    assert torch.isfinite(own.speeds).all() and rig().numbers == 78

@@ -1,0 +1,153 @@
+"""Torch's nets do what NumPy's do, with the same weights and noise."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch", reason="training needs torch, which is not installed")
+
+from metagraph.generation import chunks  # noqa: E402
+from metagraph.generation.features import with_edges  # noqa: E402
+from metagraph.generation.networks import (  # noqa: E402
+    Control,
+    CvaeSizes,
+    FlowSizes,
+    Kind,
+    MatchingSizes,
+    Sizes,
+    parameters,
+)
+from metagraph.generation.noise import noise  # noqa: E402
+from metagraph.generation.poses import FURTHEST  # noqa: E402
+from metagraph.generation.sampler import poses_to  # noqa: E402
+from metagraph.generation.stored import Model  # noqa: E402
+from metagraph.generation.training.flow_net import CvaeNet, FlowNet  # noqa: E402
+from metagraph.generation.training.matching_net import MatchingNet  # noqa: E402
+from metagraph.generation.training.nets import net_of, weights_of  # noqa: E402
+from tests.generation.makers import shaken, tiny, untrained  # noqa: E402
+
+KINDS: tuple[Kind, ...] = ("flow-vae", "moglow", "cvae", "matching")
+FRAMES = 50
+
+
+def features(frames: int, seed: int = 3) -> Any:
+    chance = np.random.default_rng(seed)
+    out = np.zeros((frames, 31), np.float32)
+    out[:, :27] = chance.normal(-5, 3, (frames, 27))
+    out[np.arange(frames), 27 + chance.integers(0, 4, frames)] = 1
+    return out
+
+
+def drawn(model: Model, told: Any, seed: int, lookahead: int | None) -> Any:
+    """What torch makes of a recording: poses `[T, X]`, standardised, before they are averaged."""
+    sizes = model.card.sizes
+    net = net_of(sizes, model.weights).eval()
+    with torch.no_grad():
+        if isinstance(net, MatchingNet):
+            return _chunks(net, model, told, seed, lookahead)
+        return _frames(net, model, told, seed, lookahead)
+
+
+def _frames(net: FlowNet | CvaeNet, model: Model, told: Any, seed: int, lookahead: int | None) -> Any:
+    sizes = net.sizes
+    control = sizes.control
+    heard = torch.from_numpy(model.heard(with_edges(told, control.before, control.ahead)))[None]
+    ahead = None if lookahead is None else torch.tensor([lookahead])
+    heard = net.heard(heard, ahead)
+    span = sizes.span if isinstance(sizes, FlowSizes) else 1
+    past = torch.zeros(1, 1, max(1, control.past), sizes.pose)
+    out: list[Any] = []
+    state: Any = None
+    for t in range(0, len(told), span):
+        z = torch.from_numpy(noise(seed, 0, t, sizes.dims))[None, None]
+        context = net.context(heard[:, t : t + 1], past)
+        if isinstance(net, FlowNet):
+            code, state = net.flow.inverse(z, context, state)
+            poses = net.from_code(code * net.code.deviation if net.sizes.code != "none" else code)
+        else:
+            hidden, state = net.decoder(torch.cat([z, context], -1), state)
+            poses = net.decoder_out(hidden)
+        poses = poses.clamp(-FURTHEST, FURTHEST).reshape(1, 1, span, -1)
+        past = torch.cat([past, poses], 2)[:, :, -max(1, control.past) :]
+        out.append(poses[0, 0])
+    return torch.cat(out).numpy()[: len(told)]
+
+
+def _chunks(net: MatchingNet, model: Model, told: Any, seed: int, lookahead: int | None) -> Any:
+    s = net.sizes
+    before = s.past * s.frames
+    heard = torch.from_numpy(model.heard(with_edges(told, before, (s.new + s.ahead) * s.frames)))
+    past = torch.from_numpy(chunks.still_tokens(model.weights, s, np.zeros(s.pose, np.float32)))
+    known = s.most if lookahead is None else lookahead
+    ahead, kept_tokens = torch.tensor([known]), min(s.new, max(1, (known + 1) // s.frames))
+    out = []
+    for t in range(0, len(told), kept_tokens * s.frames):
+        window = heard[t : t + s.tokens * s.frames][None]
+        own = net.heard(net.frames(window, ahead))
+        x = torch.from_numpy(noise(seed, 0, t, s.new * s.dims).reshape(1, s.new, s.dims))
+        for n in range(chunks.STEPS):
+            moment, before_it = torch.tensor([n / chunks.STEPS]), net.embed_past(past[None])
+            with_control = net.velocity(x, moment, before_it, own)
+            without = net.velocity(x, moment, before_it, net.no_control.expand_as(own))
+            v = (1 - chunks.GUIDANCE) * without + chunks.GUIDANCE * with_control
+            x = x + v / chunks.STEPS
+        tokens = x[0, :kept_tokens].clamp(-FURTHEST, FURTHEST)
+        past = torch.cat([past, tokens])[-s.past :]
+        kept = net.tokens
+        rows = (tokens * kept.deviation) @ kept.basis + kept.mean
+        out.append(rows.reshape(-1, s.pose).clamp(-FURTHEST, FURTHEST))
+    return torch.cat(out).numpy()[: len(told)]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_weights_are_stored_without_renaming(kind: Kind) -> None:
+    weights = shaken(tiny(kind))
+    found = weights_of(net_of(tiny(kind), weights))
+    assert list(found) == list(weights)
+    assert all(np.array_equal(found[name], weights[name]) for name in weights)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_is_learned_is_what_is_counted(kind: Kind) -> None:
+    sizes = tiny(kind)
+    learned = sum(p.numel() for p in net_of(sizes).parameters())
+    triangles = sum(
+        p.numel() - len(p) * (len(p) - 1) // 2
+        for n, p in net_of(sizes).named_parameters()
+        if n.endswith(("lower", "upper"))
+    )
+    computed = 4 * 78 * 6 + 4 * 78 + 6 if isinstance(sizes, MatchingSizes) else 0  # the tokens' components
+    assert learned - triangles + computed == parameters(sizes)
+
+
+def odd(kind: Kind) -> Sizes:
+    """Sizes unlike the usual ones: spans, components, the paper's window, two layers."""
+    if kind == "cvae":
+        near = Control(kind="window", past=0, before=0, ahead=0)
+        return CvaeSizes(control=near, dims=5, units=6, layers=3)
+    if kind == "moglow":
+        far = Control(kind="window", ahead=20)
+        return FlowSizes(control=far, code="none", dims=78, steps=2, units=5, layers=2)
+    if kind == "flow-vae":
+        return FlowSizes(control=Control(width=8), code="pca", dims=7, steps=2, units=6, span=4)
+    return MatchingSizes(dims=5, past=1, new=2, ahead=0, hidden=12, heads=3, layers=1, time=6, width=5)
+
+
+@pytest.mark.parametrize("lookahead", [None, 3])
+@pytest.mark.parametrize("sizes", [tiny, odd])
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_sampler_makes_what_torch_makes_of_the_same_noise(
+    kind: Kind, sizes: Any, lookahead: int | None
+) -> None:
+    model = untrained(kind, 0.1, sizes(kind))
+    if kind == "cvae" and sizes is odd:
+        lookahead = None  # it knows nothing ahead anyway
+    told = features(FRAMES)
+    options: dict[str, Any] = {"smooth": 0.0, "lookahead": lookahead}
+    made = model.poses.apply(poses_to(model, told, 7, **options))
+    expected = drawn(model, told, 7, lookahead)
+    assert np.abs(expected).max() > 0.1
+    assert np.abs(made - expected).max() < 1e-4
