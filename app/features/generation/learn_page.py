@@ -5,7 +5,6 @@ goes, with somebody who moves as the model would by now.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,6 @@ from PySide6.QtWidgets import (
     QLabel,
     QLineEdit,
     QProgressBar,
-    QPushButton,
     QTableWidget,
     QTableWidgetItem,
     QVBoxLayout,
@@ -25,6 +23,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.generation.generation_jobs import Listing, list_takes, sentence
+from app.features.generation.page import Page
 from app.features.generation.sample_preview import SamplePreview
 from app.features.generation.training_plots import RATIOS, TrainingPlots
 from app.features.generation.training_run import Begin, Process, TrainingRun, goal
@@ -53,12 +52,11 @@ def missing() -> str | None:
     return train_process.missing()
 
 
-class LearnPage(QWidget):
-    """said: words for the foot of the window. trained: a model's file is there. begin: starts a training's
+class LearnPage(Page):
+    """trained: a model's file is there. begin: starts a training's
     process; replaced in tests.
     """
 
-    said = Signal(str)
     trained = Signal(object)
 
     def __init__(
@@ -78,29 +76,18 @@ class LearnPage(QWidget):
         self._show_note()
         self._enable()
 
-    def _heading(self, words: str) -> QLabel:
-        out = QLabel(words, self)
-        out.setProperty("heading", True)
-        return out
-
-    def _button(self, words: str, tip: str, run: Callable[[], object]) -> QPushButton:
-        out = QPushButton(words, self, autoDefault=False)
-        out.setToolTip(tip)
-        out.clicked.connect(lambda: run())
-        return out
-
     # --- building
 
     def _left(self) -> QVBoxLayout:
         box = QVBoxLayout()
         box.setSpacing(6)
-        self.title = self._heading("Takes")
+        self.title = self.heading("Takes")
         box.addWidget(self.title)
         row = QHBoxLayout()
-        self.add = self._button(
+        self.add = self.button(
             "Add folder…", "Clips with sound beside them: talk.bvh and talk.wav", self.choose_folder
         )
-        self.clear = self._button("Clear", "Forget the folders", self.forget)
+        self.clear = self.button("Clear", "Forget the folders", self.forget)
         row.addWidget(self.add)
         row.addWidget(self.clear)
         row.addStretch(1)
@@ -130,7 +117,7 @@ class LearnPage(QWidget):
     def _right(self) -> QVBoxLayout:
         box = QVBoxLayout()
         box.setSpacing(6)
-        box.addWidget(self._heading("Model"))
+        box.addWidget(self.heading("Model"))
         self.kind, self.how_large = ComboBox(self), ComboBox(self)
         self.kind.setAccessibleName("Kind of model")
         self.how_large.setAccessibleName("Size")
@@ -152,9 +139,9 @@ class LearnPage(QWidget):
         row.addStretch(1)
         box.addLayout(row)
         row = QHBoxLayout()
-        self.train = self._button("Train", "In a process of its own, beside your work", self.start)
+        self.train = self.button("Train", "In a process of its own, beside your work", self.start)
         strengthen(self.train)
-        self.stop = self._button("Stop and keep", "End now, and keep what was learned so far", self.end)
+        self.stop = self.button("Stop and keep", "End now, and keep what was learned so far", self.end)
         row.addWidget(QLabel("Name", self))
         row.addWidget(self.name, 1)
         row.addWidget(self.train)

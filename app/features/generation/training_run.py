@@ -24,15 +24,14 @@ LOOKS = 200  # milliseconds between two looks at what was said
 
 
 class Process(Protocol):
-    """`train_process.TrainingProcess`: asked to stop it writes the model and ends by itself. error: why it
-    ended, path: the model's file, each "" where there is none.
+    """`train_process.TrainingProcess`: asked to stop it writes the model and ends by itself. wait: the
+    model's file once it has ended; raises RuntimeError, in words, where there is none, TimeoutError.
     """
-
-    error: str
-    path: str
 
     @property
     def running(self) -> bool: ...
+
+    def wait(self, seconds: float | None = None) -> Path: ...
 
     def stop(self) -> None: ...
 
@@ -69,24 +68,26 @@ class TrainingRun(QObject):
         super().__init__(parent)
         self.process, self.said = process, said
         self.stopping = False
-        self._last = 0  # looks after it has ended: its last words are read on another thread
         self._timer = QTimer(self, interval=LOOKS)
         self._timer.timeout.connect(self.look)
         self._timer.start()
 
     def look(self) -> None:
         """Pass on what was said since."""
-        running = self.process.running
-        ended = False
-        while self.said:
-            event = self.said.popleft()
-            ended = ended or event.event in ("end", "error")
-            self.moved.emit(event)
-        self._last += 0 if running else 1
-        if not running and (ended or self.process.path or self._last > 5):
+        running = self.process.running  # asked first: what it says last is read after it has ended
+        if not running:
             self._timer.stop()
-            path = Path(self.process.path) if self.process.path else None
-            self.ended.emit(path, self.process.error)
+        path, error = (None, "") if running else self._result()
+        while self.said:
+            self.moved.emit(self.said.popleft())
+        if not running:
+            self.ended.emit(path, error)
+
+    def _result(self) -> tuple[Path | None, str]:
+        try:
+            return self.process.wait(1.0), ""
+        except (RuntimeError, TimeoutError) as error:
+            return None, str(error)
 
     def stop(self) -> None:
         """Let it end soon, keeping what it has."""

@@ -8,13 +8,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import Signal
 from PySide6.QtWidgets import (
     QFileDialog,
     QHBoxLayout,
     QLabel,
     QProgressBar,
-    QPushButton,
     QVBoxLayout,
     QWidget,
 )
@@ -30,6 +28,7 @@ from app.features.generation.generation_jobs import (
     with_pieces,
     with_side_moved,
 )
+from app.features.generation.page import Page
 from app.features.generation.pieces_table import PiecesTable
 from app.look.plural import many
 from app.look.theme import strengthen
@@ -46,11 +45,7 @@ from metagraph.graph.conversation import side_name
 FILE, CHOOSE = "file", "choose"  # a sound that was chosen, and choosing one
 
 
-class UsePage(QWidget):
-    """said: words for the foot of the window."""
-
-    said = Signal(str)
-
+class UsePage(Page):
     def __init__(
         self, document: Document, session: Session, jobs: Jobs, parent: QWidget | None = None
     ) -> None:
@@ -69,10 +64,10 @@ class UsePage(QWidget):
         self.about.setProperty("dim", True)
         box.addWidget(self.about)
         box.addSpacing(8)
-        box.addWidget(self._heading("A side of a conversation"))
+        box.addWidget(self.heading("A side of a conversation"))
         box.addLayout(self._side_row())
         box.addSpacing(8)
-        box.addWidget(self._heading("Clips for the meta-graph"))
+        box.addWidget(self.heading("Clips for the meta-graph"))
         box.addLayout(self._takes_row())
         self.table = PiecesTable(self)
         self.table.itemChanged.connect(lambda _: self._enable())
@@ -83,17 +78,6 @@ class UsePage(QWidget):
         self.fill()
 
     # --- building
-
-    def _heading(self, words: str) -> QLabel:
-        out = QLabel(words, self)
-        out.setProperty("heading", True)
-        return out
-
-    def _button(self, words: str, tip: str, run: Callable[[], object]) -> QPushButton:
-        out = QPushButton(words, self, autoDefault=False)
-        out.setToolTip(tip)
-        out.clicked.connect(lambda: run())
-        return out
 
     def _row(self, *fields: tuple[str, QWidget]) -> QHBoxLayout:
         row = QHBoxLayout()
@@ -110,7 +94,7 @@ class UsePage(QWidget):
         self.model.setAccessibleName("Model")
         self.model.setMinimumWidth(220)
         self.model.currentIndexChanged.connect(self._about)
-        choose = self._button("Choose file…", "A model from elsewhere", self.choose_model)
+        choose = self.button("Choose file…", "A model from elsewhere", self.choose_model)
         self.seed = SpinBox(self, minimum=1, maximum=9999, value=1)
         self.seed.setAccessibleName("Seed")
         self.seed.setToolTip("Another number moves otherwise to the same speech")
@@ -132,7 +116,7 @@ class UsePage(QWidget):
         self.side = ComboBox(self)
         self.side.setAccessibleName("Who moves so")
         self.side.setMinimumWidth(260)
-        self.move_button = self._button(
+        self.move_button = self.button(
             "Let it move so",
             "Arms, head and spine move to the whole conversation; legs, eyes and lips as before",
             self.move_side,
@@ -148,7 +132,7 @@ class UsePage(QWidget):
         self.minutes = DoubleSpinBox(self, minimum=0.2, maximum=10, singleStep=0.5, decimals=1, value=3)
         self.minutes.setSuffix(" min")
         self.minutes.setAccessibleName("Minutes")
-        self.cut_button = self._button(
+        self.cut_button = self.button(
             "Make and cut", "Cut at still moments that are alike, so that no jump shows", self.make_pieces
         )
         return self._row(("To", self.speech), ("for", self.minutes), ("", self.cut_button))
@@ -157,14 +141,14 @@ class UsePage(QWidget):
         self.stance = ComboBox(self)
         self.stance.setAccessibleName("Stance they leave and come back to")
         self.stance.setMinimumWidth(200)
-        self.drop_button = self._button(
+        self.drop_button = self.button(
             "Drop", "In the library, and on the arms' layer of the graph", self.drop
         )
         self.drop_button.setMinimumWidth(120)
         strengthen(self.drop_button)
         self.progress = make_widget(QProgressBar, self, maximumWidth=180, textVisible=False)
         self.progress.hide()
-        self.cancel_button = self._button("Cancel", "Nothing is changed then", self.cancel)
+        self.cancel_button = self.button("Cancel", "Nothing is changed then", self.cancel)
         self.cancel_button.hide()
         row = self._row(("On", self.stance), ("", self.drop_button))
         row.addWidget(self.progress)

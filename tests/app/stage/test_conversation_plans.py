@@ -213,6 +213,39 @@ def test_a_side_can_move_with_a_clip_instead_of_its_graph_and_still_speaks_and_a
     assert lost.motion is None and any("missing" in note for note in lost.notes)
 
 
+def test_a_generated_clip_moves_what_is_above_the_hips_and_is_written_so(talking, tmp_path):
+    from app.cli.render_command import bake_to
+    from metagraph.formats.bvh import read_bvh
+    from metagraph.graph import anatomy
+
+    project = open_project(talking).project
+    talk = project.conversations["v9000"]
+    clip = next(e for e in project.clips.values() if e.name.endswith("wave_hello_rt_01"))
+
+    def shown(made_by: str, motion: str | None = clip.id):
+        sides = (msgspec.structs.replace(talk.sides[0], motion=motion), talk.sides[1])
+        clips = {**project.clips, clip.id: replace(clip, made_by=made_by)}
+        talks = {"v9000": msgspec.structs.replace(talk, sides=sides)}
+        return ConversationPlans().show(
+            replace(project, clips=clips, conversations=talks), "v9000", talking.parent
+        )
+
+    plain, made = shown("", None), shown("anna")
+    parts = np.array(anatomy.parts(project))
+    times = np.linspace(0.4, clip.duration - 0.4, 9)
+    apart = np.abs(plain.pose(times).rotations - made.pose(times).rotations).max((0, 2))
+    assert apart[parts == "legs"].max() < 1e-6 and apart[parts == "arms"].max() > 0.1
+    after = clip.duration + 0.5
+    assert np.allclose(plain.pose(after).rotations, made.pose(after).rotations, atol=1e-6)
+    assert made.morphs(1.0).keys() == plain.morphs(1.0).keys()
+    bake_to(tmp_path / "made.bvh", made, 2.0, 30.0, talking.parent)
+    written = read_bvh(tmp_path / "made.bvh")
+    arm = project.skeleton.names[int(np.argmax(apart * (parts == "arms")))]
+    at = written.skeleton.names.index(arm)
+    wanted = made.pose(1.0).rotations[project.skeleton.index(arm)]
+    assert abs(float(written.pose_at(1.0).rotations[at] @ wanted)) > 0.999
+
+
 def test_it_is_written_from_the_command_line_as_a_video_with_sound_and_as_motion_for_each(talking, tmp_path):
     def run(*words: str) -> subprocess.CompletedProcess[str]:
         whole = [

@@ -197,7 +197,7 @@ class Made:
 
     def __init__(self, out: Path, hear) -> None:
         self.out, self.hear = out, hear
-        self.error = self.path = ""
+        self.error, self.path = "", out.with_name("none")
         self.running, self.stopped, self.killed = True, 0, False
 
     def say(self, **what) -> None:
@@ -209,8 +209,13 @@ class Made:
 
     def end(self, model: Path) -> None:
         shutil.copy(model, self.out)
-        self.path, self.running = str(self.out), False
+        self.path, self.running = self.out, False
         self.say(event="end")
+
+    def wait(self, seconds: float | None = None) -> Path:
+        if self.error:
+            raise RuntimeError(self.error)
+        return self.path
 
     def kill(self) -> None:
         self.killed, self.running = True, False
