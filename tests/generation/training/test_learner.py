@@ -41,8 +41,9 @@ def test_a_training_that_was_cut_goes_on_to_the_bit(kind: Kind, takes: Any) -> N
     first = Learner(own, [takes[0]])
     for n in range(5):
         first.advance(n / 8)
+    kept = first.state()
     again = Learner(own, [takes[0]])
-    again.restore(5, first.state())
+    again.restore(5, kept)
     for n in range(5, 8):
         again.advance(n / 8)
     expected, found = whole.weights(), again.weights()
