@@ -159,8 +159,8 @@ def planted_floor(given: list[Path], takes: tuple[Take, ...], rig: PoseRig) -> l
 
 
 def cautions(models: dict[str, Model], takes: tuple[Take, ...], beside: set[str]) -> tuple[str, ...]:
-    """Return what nobody should read into the table. beside: names of its rows where the floor is no other motion
-    to the same speech.
+    """Return what nobody should read into the table. beside: names of its rows where the floor is no other
+    motion to the same speech.
     """
     out = []
     seconds = sum(t.seconds for t in takes)
