@@ -221,7 +221,7 @@ Size = Literal["small", "paper"]
 def sizes_of(kind: Kind, size: Size = "small", pose: int = 78, audio: int = 27) -> Sizes:
     """Return the sizes of a model. pose: numbers a frame (6 a joint). audio: numbers of audio a frame."""
     if kind == "matching":
-        return MatchingSizes(pose=pose, audio=audio, dims=min(32, 4 * pose))
+        return MatchingSizes(pose=pose, audio=audio, dims=min(48, 4 * pose))
     if kind == "cvae":
         if size == "paper":
             own = Control(kind="window", audio=audio, past=0, before=0, ahead=0)

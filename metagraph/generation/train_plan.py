@@ -174,7 +174,8 @@ def read_takes(folder: Path, plan: TrainingPlan) -> tuple[tuple[Take, ...], tupl
     """Read the takes to learn from, and those held out. Raises FileError."""
     path, out = folder / TAKES, []
     try:
-        with np.load(path, allow_pickle=False) as arrays:
+        # The file is opened here: NumPy leaves open what it cannot read.
+        with path.open("rb") as content, np.load(content, allow_pickle=False) as arrays:
             for n, card in enumerate((*plan.takes, *plan.held)):
                 marks = Marks(*(tuple(arrays[f"{n}.{mark}"].tolist()) for mark in _MARKS))
                 source = Source(

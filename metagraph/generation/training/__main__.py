@@ -25,15 +25,9 @@ def tell(event: Mapping[str, Any]) -> None:
         print(json.dumps(event, allow_nan=False), flush=True)
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Train; return 0, or 2 after telling what went wrong."""
+def main(arguments: Sequence[str], asked: Sequence[int] = ()) -> int:
+    """Train; return 0, or 2 after telling what went wrong. asked: filled once it is to stop."""
     folder = Path(arguments[0])
-    if hasattr(os, "nice"):
-        with suppress(OSError):
-            os.nice(10)
-    asked: list[int] = []
-    for kind in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(kind, lambda number, _: asked.append(number))
     try:
         from metagraph.generation.training.learner import TrainingError
         from metagraph.generation.training.run import Run
@@ -61,5 +55,16 @@ def main(arguments: Sequence[str]) -> int:
     return 0
 
 
+def alone() -> int:
+    """Train in a process that is there for nothing else: behind all others, and stopped by signals."""
+    if hasattr(os, "nice"):
+        with suppress(OSError):
+            os.nice(10)
+    asked: list[int] = []
+    for kind in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(kind, lambda number, _: asked.append(number))
+    return main(sys.argv[1:], asked)
+
+
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(alone())

@@ -69,7 +69,8 @@ def read_checkpoint(folder: Path, plan: str) -> tuple[Checkpoint | None, list[st
 
 
 def _read(path: Path) -> Checkpoint:
-    with np.load(path, allow_pickle=False) as file:
+    # The file is opened here: NumPy leaves open what it cannot read.
+    with path.open("rb") as content, np.load(content, allow_pickle=False) as file:
         arrays = {name: file[name] for name in file.files}
     told = msgspec.json.decode(arrays.pop(_TOLD).tobytes(), type=Told)
     if told.format != FORMAT:

@@ -114,11 +114,11 @@ class Step(nn.Module):
 
     def __init__(self, sizes: FlowSizes) -> None:
         super().__init__()
-        self.half = sizes.dims // 2
+        self.first = sizes.dims // 2
         self.actnorm, self.linear = ActNorm(sizes.dims), Invertible(sizes.dims)
-        heard = self.half + sizes.control.context(sizes.pose)
+        heard = self.first + sizes.control.context(sizes.pose)
         self.lstm = nn.LSTM(heard, sizes.units, sizes.layers, batch_first=True)
-        self.out = nn.Linear(sizes.units, 2 * (sizes.dims - self.half))
+        self.out = nn.Linear(sizes.units, 2 * (sizes.dims - self.first))
 
     def coupling(
         self, a: Tensor, context: Tensor, state: tuple[Tensor, Tensor] | None
@@ -131,7 +131,7 @@ class Step(nn.Module):
 class Flow(nn.Module):
     def __init__(self, sizes: FlowSizes) -> None:
         super().__init__()
-        self.half = sizes.dims // 2
+        self.first = sizes.dims // 2
         self.steps = nn.ModuleList(Step(sizes) for _ in range(sizes.steps))
 
     def _each(self) -> list[Step]:
@@ -150,7 +150,7 @@ class Flow(nn.Module):
                     norm.logs.copy_(-torch.log(z.std((0, 1)) + 1e-6))
             z = (z + norm.bias) * torch.exp(norm.logs)
             z = z @ step.linear.matrix().T
-            a, b = z[..., : self.half], z[..., self.half :]
+            a, b = z[..., : self.first], z[..., self.first :]
             shift, scale, _ = step.coupling(a, context, None)
             z = torch.cat([a, (b + shift) * scale], -1)
             total = total + norm.logs.sum() + step.linear.log_s.sum() + torch.log(scale).sum(-1)
@@ -162,9 +162,9 @@ class Flow(nn.Module):
         after: States = []
         for k in reversed(range(len(self.steps))):
             step = self._each()[k]
-            a = z[..., : self.half]
+            a = z[..., : self.first]
             shift, scale, state = step.coupling(a, context, None if states is None else states[k])
-            z = torch.cat([a, z[..., self.half :] / scale - shift], -1)
+            z = torch.cat([a, z[..., self.first :] / scale - shift], -1)
             z = torch.linalg.solve(step.linear.matrix(), z.flatten(0, 1).T).T.reshape(z.shape)
             z = z * torch.exp(-step.actnorm.logs) - step.actnorm.bias
             after.insert(0, state)

@@ -1,4 +1,4 @@
-"""Takes to learn from that take no time: somebody who moves by chance, and a toy of which the truth is known."""
+"""Takes that take no time: somebody who moves by chance, and a toy of which the truth is known."""
 
 from __future__ import annotations
 
@@ -12,15 +12,16 @@ from metagraph.generation.features import RATE
 from metagraph.generation.networks import Control, FlowSizes, Kind, MatchingSizes, Sizes
 from metagraph.generation.takes import Marks, Source, Take, take_of
 from metagraph.generation.train_plan import TrainingPlan, plan_of
+from metagraph.motion.clip import Clip
 from tests.generation.makers import babble, conversation, moving, rig, tiny
 
 torch.set_num_threads(1)  # tests run beside each other
 
 
-def take(seconds: float, seed: int) -> Take:
+def take(seconds: float, seed: int, clip: Clip | None = None) -> Take:
     sound = np.stack([babble(seconds, seed), babble(seconds, seed + 50)])
     source = Source(f"take {seed}", (f"motion {seed}", f"sound {seed}"), "made for a test")
-    return take_of(rig(), moving(seconds, seed), sound, RATE, source, conversation(seconds, seed))
+    return take_of(rig(), clip or moving(seconds, seed), sound, RATE, source, conversation(seconds, seed))
 
 
 def plan(

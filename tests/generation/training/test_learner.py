@@ -17,7 +17,10 @@ from metagraph.generation.networks import FlowSizes, Kind, sizes_of  # noqa: E40
 from metagraph.generation.stored import skeleton_card  # noqa: E402
 from metagraph.generation.train_plan import Settings, TrainingPlan  # noqa: E402
 from metagraph.generation.training.learner import FUTILE, Learner, TrainingError  # noqa: E402
-from tests.generation.makers import rig  # noqa: E402
+from metagraph.graph.model import Project  # noqa: E402
+from metagraph.playback.bake import bake  # noqa: E402
+from metagraph.speech.drive import drive  # noqa: E402
+from tests.generation.makers import conversation, rig  # noqa: E402
 from tests.generation.training.planting import plan, stroke, take, toy, toy_sizes  # noqa: E402
 
 SMALL = Settings(batch=4, frames=40, warm=20)
@@ -32,13 +35,15 @@ def takes() -> Any:
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_training_that_was_cut_goes_on_to_the_bit(kind: Kind, takes: Any) -> None:
     own = plan((takes[0],), (takes[1],), kind, settings=SMALL)
-    whole, first = Learner(own, [takes[0]]), Learner(own, [takes[0]])
+    whole = Learner(own, [takes[0]])
     for n in range(8):
         whole.advance(n / 8)
+    first = Learner(own, [takes[0]])
     for n in range(5):
         first.advance(n / 8)
+    kept = first.state()
     again = Learner(own, [takes[0]])
-    again.restore(5, first.state())
+    again.restore(5, kept)
     for n in range(5, 8):
         again.advance(n / 8)
     expected, found = whole.weights(), again.weights()
@@ -89,8 +94,9 @@ def test_takes_shorter_than_a_crop_are_learned_from(takes: Any) -> None:
     assert np.isfinite(own.advance()["loss"]) and own.objective.length == 101
 
 
-def test_a_clip_of_ten_seconds_is_learned_by_heart() -> None:
-    one, other = take(10.0, 1), take(10.0, 2)
+def test_a_clip_of_ten_seconds_is_learned_by_heart(sample: Project) -> None:
+    _, performed = drive(conversation(10.0), 0, sample)
+    one, other = take(10.0, 1, bake(performed, sample, 10.0, 25.0)), take(10.0, 2)
     sizes = msgspec.structs.replace(sizes_of("flow-vae"), code="autoencoder", dims=24, span=1)
     assert isinstance(sizes, FlowSizes)
     settings = Settings(loss="whitened", batch=8, frames=64, warm=30, rate=4e-3, kept=0.9, head=0.0)
