@@ -10,6 +10,7 @@ import json
 import re
 import shlex
 import shutil
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -90,10 +91,16 @@ def test_commands_in_the_pages_run(
         assert program == "metagraph"
         if words[0] == "render":
             words += ["-s", "0.3", "--size", "96x64", "--frames", "2"]  # as written, but short and small
+        if words[:2] == ["generate", "train"]:
+            if find_spec("torch") is None:
+                pytest.skip("training needs torch")
+            words += ["--seconds", "0.5", "--threads", "1"]
+        if words[:2] == ["generate", "evaluate"]:
+            words += ["--draws", "2"]
         assert main(words) == 0, (line, capsys.readouterr().err)
         if "-o" in words:
             out = samples / words[words.index("-o") + 1]
-            assert out.is_file() or (out / "sample.glb").is_file()
+            assert out.is_file() or any(out.iterdir())
 
 
 @pytest.mark.parametrize(("page", "n"), of("yaml"))

@@ -90,7 +90,8 @@ def evaluate(options: Namespace) -> int:
     floor = floor_of(options.floor, options.takes, takes, first.rig)
     show = telling(options, "made")
     judged = judge(first.rig, models, takes, floor, manner, draws=options.draws, progress=show)
-    notes = cautions(models, takes, judged.floor is not None)
+    beside = {r.name for r in judged.rows} if judged.floor is None else {"other motion"}
+    notes = cautions(models, takes, beside)
     said: dict[str, Any] = {
         "takes": len(takes),
         "minutes": round(sum(t.seconds for t in takes) / 60, 2),
@@ -157,16 +158,20 @@ def planted_floor(given: list[Path], takes: tuple[Take, ...], rig: PoseRig) -> l
     return [part_like(again(project, cards[0], t, rig), t) for t in takes]
 
 
-def cautions(models: dict[str, Model], takes: tuple[Take, ...], floor: bool) -> tuple[str, ...]:
-    """Return what nobody should read into the table."""
+def cautions(models: dict[str, Model], takes: tuple[Take, ...], beside: set[str]) -> tuple[str, ...]:
+    """Return what nobody should read into the table. beside: names of its rows where the floor is no other
+    motion to the same speech.
+    """
     out = []
     seconds = sum(t.seconds for t in takes)
     if seconds < 240:
         out.append(f"{seconds:.0f} s are little to judge a model on: intervals are wide.")
-    if not floor:
+    if "floor" in beside:
         out.append(
             "The floor is half of the takes beside the other half, not other motion to the same speech."
         )
+    elif "other motion" not in beside:
+        out.append("There is too little motion for a floor.")
     if not any(t.marks.hesitations for t in takes):
         out.append("No partner hesitates, or words are missing: nothing is said of listening.")
     kinds = {m.card.kind for m in models.values()}

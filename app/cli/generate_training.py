@@ -6,7 +6,7 @@ import shutil
 import signal
 import sys
 from argparse import ArgumentParser, Namespace
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from time import monotonic
@@ -226,7 +226,7 @@ def _trained(options: Namespace, out: Path) -> tuple[TrainingProcess, bool]:
 
 
 @contextmanager
-def _on_stop(act: Any) -> Iterator[None]:
+def _on_stop(act: Callable[[], None]) -> Iterator[None]:
     """Act on Ctrl+C and SIGTERM instead of ending."""
     before = {n: signal.signal(n, lambda *_: act()) for n in (signal.SIGINT, signal.SIGTERM)}
     try:

@@ -376,6 +376,7 @@ def test_each_bad_take_fails_alone_and_in_words(
     ):
         assert words in told.err, words
     assert "'alone' has one voice only" in told.err
+    assert "half of the takes beside the other half" in told.out
     assert "\n3 takes, " in f"\n{told.out}"
 
 
