@@ -130,8 +130,7 @@ class Model:
 
     def heard(self, features: Array) -> Array:
         """Return features `[T, audio + 4]` as networks hear them: audio standardised, activity as it is."""
-        audio = self.audio.apply(features[:, :-ACTIVITY])
-        return np.concatenate([audio, features[:, -ACTIVITY:]], 1).astype(np.float32)
+        return self.audio.heard(features, ACTIVITY)
 
 
 def _scale(mean: _Numbers, deviation: _Numbers) -> Scale:

@@ -31,6 +31,7 @@ from metagraph.motion.mirror import mirror, pairs_of
 Array = NDArray[Any]
 
 SHORTEST = 4.0  # seconds of a take
+LEAST_SOUND = 1.0  # deviation of a mel, of natural logarithms: less is a band that one recording lacks
 SPOKEN = 0.5  # seconds somebody speaks in a take at least
 APART = 6.0  # seconds between what is learned from and what is held out of one take
 HELD = 0.15  # of all takes' length is held out
@@ -228,7 +229,7 @@ def mirrored(rig: PoseRig, clip: Clip, take: Take) -> Take:
 def scales_of(takes: Sequence[Take]) -> tuple[Scale, Scale]:
     """Return what standardises poses, and audio, of takes."""
     audio = np.concatenate([t.features[:, :-ACTIVITY] for t in takes])
-    return scale_of(np.concatenate([t.poses for t in takes])), scale_of(audio)
+    return scale_of(np.concatenate([t.poses for t in takes])), scale_of(audio, LEAST_SOUND)
 
 
 # --- splits

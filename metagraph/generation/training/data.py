@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from metagraph.generation import vae
-from metagraph.generation.features import with_edges
+from metagraph.generation.features import MELS, with_edges
 from metagraph.generation.networks import ACTIVITY, Control, MatchingSizes, Sizes
-from metagraph.generation.poses import NUMBERS, Scale
+from metagraph.generation.poses import LOUDEST, NUMBERS, Scale
 from metagraph.generation.takes import Take
 
 Array = NDArray[Any]
@@ -35,9 +35,7 @@ class Corpus:
             count = len(take.poses)
             standard = poses.apply(take.poses)
             rows.append(np.pad(standard, ((before, after), (0, 0))))
-            edged = with_edges(take.features, before, after)
-            told = [audio.apply(edged[:, :-ACTIVITY]), edged[:, -ACTIVITY:]]
-            heard.append(np.concatenate(told, 1).astype(np.float32))
+            heard.append(audio.heard(with_edges(take.features, before, after), ACTIVITY))
             speeds.append(np.pad(_speeds(standard), ((before, after), (0, 0))))
             first.append(at + before)
             counts.append(count)
@@ -62,6 +60,20 @@ class Corpus:
     def rows(self, what: Tensor, starts: Tensor, first: int, last: int) -> Tensor:
         """Return rows first to last, excluded, counted from starts `[B]`: `[B, last - first, ...]`."""
         return what[starts[:, None] + torch.arange(first, last)]
+
+    def hear(self, starts: Tensor, first: int, last: int, voices: float, chance: torch.Generator) -> Tensor:
+        """Return what is heard, as `rows`, each crop as though others spoke elsewhere: a smooth curve over
+        the mels is added, its three parts of deviation `voices`; 0 leaves the sound as it is.
+        """
+        rows = self.rows(self.heard, starts, first, last)
+        if voices <= 0:
+            return rows
+        mels = torch.linspace(-1, 1, MELS)
+        shapes = torch.stack([torch.ones(MELS), mels, 1.5 * mels**2 - 0.5])
+        curve = (voices * torch.randn(len(starts), 3, generator=chance)) @ shapes
+        curve = curve.repeat(1, (rows.shape[-1] - ACTIVITY) // MELS)
+        audio = (rows[..., :-ACTIVITY] + curve[:, None]).clamp(-LOUDEST, LOUDEST)
+        return torch.cat([audio, rows[..., -ACTIVITY:]], -1)
 
     def longest_crop(self, wanted: int) -> int:
         """Return how many frames a crop has, so that every take has one."""

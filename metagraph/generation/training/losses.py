@@ -141,7 +141,8 @@ class FlowObjective(Objective):
         control, span, batch = self.sizes.control, self.sizes.span, self.settings.batch
         starts = corpus.starts(chance, batch, self.length)
         poses = corpus.rows(corpus.poses, starts, 0, self.length)
-        features = corpus.rows(corpus.heard, starts, -control.before, self.length + control.ahead)
+        last = self.length + control.ahead
+        features = corpus.hear(starts, -control.before, last, self.settings.voices, chance)
         ahead: Tensor | None = None
         if control.ahead and float(torch.rand(1, generator=chance)) >= self.settings.known:
             ahead = torch.randint(control.ahead + 1, (batch,), generator=chance)
@@ -196,7 +197,8 @@ class CvaeObjective(Objective):
         control, batch = self.sizes.control, self.settings.batch
         starts = corpus.starts(chance, batch, self.length)
         poses = corpus.rows(corpus.poses, starts, 0, self.length)
-        features = corpus.rows(corpus.heard, starts, -control.before, self.length + control.ahead)
+        last = self.length + control.ahead
+        features = corpus.hear(starts, -control.before, last, self.settings.voices, chance)
         ahead: Tensor | None = None
         if control.ahead and float(torch.rand(1, generator=chance)) >= self.settings.known:
             ahead = torch.randint(control.ahead + 1, (batch,), generator=chance)
@@ -249,7 +251,7 @@ class MatchingObjective(Objective):
         tokens = self._tokens[starts[:, None] + places]
         past, new = tokens[:, : sizes.past], tokens[:, sizes.past :]
         first, last = -sizes.past * frames, (sizes.new + sizes.ahead) * frames
-        features = corpus.rows(corpus.heard, starts, first, last)
+        features = corpus.hear(starts, first, last, s.voices, chance)
         ahead = torch.randint(sizes.most + 1, (batch,), generator=chance)
         full = torch.rand(batch, generator=chance) < s.known
         told = net.frames(features, torch.where(full, sizes.most, ahead))
