@@ -74,7 +74,7 @@ window = open_window(Path(sys.argv[1]))
 shell = window.shell
 shell.files.opened.connect(lambda: print("opened", window.windowTitle(), shell.document.project.settings.seed, flush=True))
 shell.document.saved.connect(lambda: print("saved", shell.document.path.name, flush=True))
-QTimer.singleShot(120000, lambda: app.exit(9))
+QTimer.singleShot(600000, lambda: app.exit(9))
 sys.exit(app.exec())
 """
 
