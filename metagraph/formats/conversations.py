@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Sequence
 from concurrent.futures import CancelledError
 from dataclasses import dataclass, field
@@ -79,13 +80,13 @@ def read_conversation(
     for path, transcript in told:
         reading.notes += [f"{path.name}: {note}." for note in transcript.notes]
     voices = _voices(reading, list(audio), bool(told))
-    length = max(v.heard.duration for v in voices)
+    length = max(_length(v) for v in voices)
     sides = sides_of(reading.notes, voices, told)
     made = tuple(_side(reading, n, voices, sides[n], folder, responses, hesitations) for n in (0, 1))
     title = name or Path(audio[0]).stem
     made_of = Conversation(
         name=title[:200],
-        length=round(max(length, SHORTEST), 3),
+        length=max(length, SHORTEST),
         sides=made,
         responses=tuple(responses),
         hesitations=tuple(hesitations),
@@ -94,6 +95,11 @@ def read_conversation(
 
 
 # --- the sound
+
+
+def _length(voice: Voice) -> float:
+    """Return how long a sound is in whole milliseconds: nothing that is written down ends after it."""
+    return math.floor(voice.heard.duration * 1000 + 1e-6) / 1000
 
 
 def _voices(reading: _Reading, audio: list[Path], worded: bool) -> tuple[Voice, Voice]:
@@ -240,7 +246,7 @@ def _side(
     voice, other = voices[n], voices[1 - n]
     mixed = voice is other
     called = f"{told.name} ({voice.called})" if told.name else voice.called
-    words = within(reading.notes, called, told, voice.heard.duration)
+    words = within(reading.notes, called, told, _length(voice))
     if told.segments is not None:
         found = _kept(reading, called, told.segments, voice)
     elif words or not mixed:
@@ -259,7 +265,7 @@ def _side(
 
 def _kept(reading: _Reading, called: str, given: Sequence[Segment], voice: Voice) -> tuple[Segment, ...]:
     """Return segments a file holds, as far as the sound goes; clauses that have no peak get theirs."""
-    length, tones = voice.heard.duration, smooth(voice.pitch)
+    length, tones = _length(voice), smooth(voice.pitch)
     out = []
     for s in given:
         end = min(s.end, length)
