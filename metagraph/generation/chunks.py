@@ -15,7 +15,7 @@ from metagraph.generation.vae import spans
 Array = NDArray[Any]
 
 STEPS = 8  # of Euler a chunk
-GUIDANCE = 2.0  # 0 does not hear, 1 hears as in training, above follows what is said more closely
+GUIDANCE = 2.0  # 0 sees who speaks alone, 1 hears as in training, above follows what is said more closely
 SMOOTH = 1.5  # frames: deviation of the Gaussian over the rotations' numbers
 
 
@@ -37,16 +37,15 @@ def still_tokens(w: Layers, sizes: MatchingSizes, pose: Array) -> Array:
 
 
 def velocity(
-    w: Layers, sizes: MatchingSizes, noisy: Array, moment: Array, past: Array | None, heard: Array | None
+    w: Layers, sizes: MatchingSizes, noisy: Array, moment: Array, past: Array | None, heard: Array
 ) -> Array:
     """Return the velocity `[..., new, D]` at x_t `[..., new, D]`. moment: t `[...]`, 0..1. past: tokens
     `[..., past, D]`, None without. heard: of every place `[..., tokens, hidden]`, as `encoder.encode_chunk`
-    gives it, None without.
+    gives it.
     """
     batch, dtype = noisy.shape[:-2], noisy.dtype
     x = np.zeros((*batch, sizes.tokens, sizes.hidden), dtype)
-    x += w["no_control"] if heard is None else heard
-    x += w["place"]
+    x += heard + w["place"]
     x[..., : sizes.past, :] += w["no_past"] if past is None else linear(w, "embed_past", past)
     x[..., sizes.past : sizes.past + sizes.new, :] += linear(w, "embed_new", noisy)
     condition = silu(_moments(w, sizes, np.asarray(moment, dtype)))
@@ -63,11 +62,14 @@ def draw_chunk(
     noise: Array,
     past: Array,
     heard: Array,
+    deaf: Array,
     guidance: float = GUIDANCE,
     steps: int = STEPS,
 ) -> Array:
-    """Return new tokens `[new, D]` of noise `[new, D]`, by Euler's steps."""
-    *_, last = drawing(w, sizes, noise, past, heard, guidance, steps)
+    """Return new tokens `[new, D]` of noise `[new, D]`, by Euler's steps. heard, deaf: with and without sound,
+    as `encoder.encode_chunk` gives it.
+    """
+    *_, last = drawing(w, sizes, noise, past, heard, deaf, guidance, steps)
     return last
 
 
@@ -77,6 +79,7 @@ def drawing(
     noise: Array,
     past: Array,
     heard: Array,
+    deaf: Array,
     guidance: float = GUIDANCE,
     steps: int = STEPS,
 ) -> Iterator[Array]:
@@ -84,9 +87,9 @@ def drawing(
     no time for all of them at once.
     """
     x, t = noise, np.zeros(1 if guidance == 1 else 2, noise.dtype)
-    # With and without control at once: one batch of two.
+    # With and without sound at once: one batch of two.
     if guidance != 1:
-        both = np.stack([heard, np.broadcast_to(w["no_control"], heard.shape)])
+        both = np.stack([heard, deaf])
         before = np.broadcast_to(past, (2, *past.shape))
     for n in range(steps):
         if guidance == 1:

@@ -54,16 +54,23 @@ def encode_past(w: Layers, control: Control, poses: Array) -> Array:
     return linear(w, "past.2", relu(linear(w, "past.0", flat)))
 
 
-def encode_chunk(w: Layers, sizes: MatchingSizes, features: Array, lookahead: int) -> Array:
+def encode_chunk(
+    w: Layers, sizes: MatchingSizes, features: Array, lookahead: int, sound: bool = True
+) -> Array:
     """Return what is heard of each token `[..., tokens, hidden]`. features: `[..., tokens * frames, inputs]`,
-    standardised. lookahead: frames after the chunk's first new one that are known, 0..most.
+    standardised. lookahead: frames after the chunk's first new one that are known, 0..most. sound: False for
+    who sees who speaks and hears nothing.
     """
+    if not sound:
+        features = features.copy()
+        features[..., : sizes.audio] = 0
     known = masked(features, sizes.past * sizes.frames + lookahead)
     x = relu(conv1d(w, "control.input", _told(known, _share(lookahead, sizes.most))))
     for n, dilation in enumerate(sizes.dilations):
         edge = [(0, 0)] * (x.ndim - 2) + [(dilation, dilation), (0, 0)]
         x = x + relu(conv1d(w, f"control.blocks.{n}", np.pad(x, edge), dilation))
-    return linear(w, "control.token", x.reshape(*x.shape[:-2], sizes.tokens, -1))
+    told = linear(w, "control.token", x.reshape(*x.shape[:-2], sizes.tokens, -1))
+    return told if sound else told + w["no_sound"]
 
 
 def windows(features: Array, frames: int) -> Array:

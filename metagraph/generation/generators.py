@@ -130,10 +130,12 @@ class MatchingGenerator(Generator):
     def steps(self, heard: Array, seed: int, take: int, frame: int) -> Iterator[Array | None]:
         sizes = self.sizes
         told = encode_chunk(self.w, sizes, heard, self.lookahead)
+        deaf = told if self.guidance == 1 else encode_chunk(self.w, sizes, heard, self.lookahead, False)
         yield None
         z = noise(seed, take, frame, sizes.new * sizes.dims).reshape(sizes.new, sizes.dims)
         tokens = z * self.temperature
-        for n, drawn in enumerate(chunks.drawing(self.w, sizes, tokens, self.past, told, self.guidance), 1):
+        guided = chunks.drawing(self.w, sizes, tokens, self.past, told, deaf, self.guidance)
+        for n, drawn in enumerate(guided, 1):
             tokens = drawn
             if n < chunks.STEPS:
                 yield None

@@ -29,7 +29,7 @@ def initial(sizes: Sizes, seed: int = 1) -> Weights:
             out[name] = np.ones(shape, np.float32)
         elif last == "basis":
             out[name] = np.eye(*shape, dtype=np.float32)
-        elif last in ("place", "no_past", "no_control"):
+        elif last in ("place", "no_past", "no_sound"):
             out[name] = (0.02 * chance.standard_normal(shape)).astype(np.float32)
         else:
             around = name.replace(".bias", ".weight") if last == "bias" else name

@@ -64,8 +64,10 @@ as above but PADDED with zeros to the same length, then `frames` frames in a row
 `control.token` to `hidden`. g counts from the chunk's first frame, 0..most = (new + ahead) * frames - 1.
 Each token's place has the sum of: `embed_past` of a past token or `embed_new` of x_t (future places have
 neither), its control, `place [past + new + ahead, hidden]`. Without past (dropped) every past embedding is
-`no_past [hidden]`; without control every control is `no_control [hidden]`. e = `time.2`(silu(`time.0`([sin,
-cos of t * 1000 / 10000^(i/F)]))) with F = time // 2, i < F, all sines first. Block i, `hidden` wide:
+`no_past [hidden]`. Without sound the audio is 0 (standardised) and `no_sound [hidden]` is added to every
+control; the activity stays: what guidance exaggerates is the answer to what is heard, not to who speaks.
+e = `time.2`(silu(`time.0`([sin, cos of t * 1000 / 10000^(i/F)]))) with F = time // 2, i < F, all sines
+first. Block i, `hidden` wide:
 
     s1, b1, s2, b2 = split(`blocks.i.modulation`(silu(e)))
     x <- x + `proj`(attention(`qkv`(norm(x) * (1 + s1) + b1)))      qkv: all q, then k, then v; heads in a row
@@ -332,7 +334,7 @@ def _matching(s: MatchingSizes) -> Shapes:
     out |= _convolutions(s.audio + ACTIVITY + 1, s.width, s.dilations)
     out |= linear("control.token", s.frames * s.width, s.hidden)
     out |= linear("embed_past", s.dims, s.hidden) | linear("embed_new", s.dims, s.hidden)
-    out |= {"place": (s.tokens, s.hidden), "no_past": (s.hidden,), "no_control": (s.hidden,)}
+    out |= {"place": (s.tokens, s.hidden), "no_past": (s.hidden,), "no_sound": (s.hidden,)}
     out |= linear("time.0", s.time, s.time) | linear("time.2", s.time, s.time)
     for n in range(s.layers):
         block = f"blocks.{n}"

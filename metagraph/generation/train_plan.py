@@ -40,9 +40,9 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     a code that is finished beforehand; None: what suits the sizes. batch: crops a step; frames: of a crop.
     rate, least, warm: of Noam's decay: the largest and smallest rate, steps to the largest. clip: norm of
     the gradient. past_dropped: share of past frames (of pasts, for tokens) not told; past_noise: deviation
-    of noise on past tokens; control_dropped: share of chunks that hear nothing. alpha: weight of the
-    likelihood, in bits; third: of the paper's third term; noise: deviation on a whitened code. head: weight
-    of the head that predicts speeds. known: share of stretches that know all ahead. kept: of the running
+    of noise on past tokens; sound_dropped: share of chunks that see who speaks and hear nothing. alpha:
+    weight of the likelihood, in bits; third: of the paper's third term; noise: deviation on a whitened code.
+    head: weight of the head that predicts speeds. known: share of stretches that know all ahead. kept: of the running
     mean of weights, a step. voices: deviation of the curve over the mels, standardised, by which each crop
     sounds otherwise, so that a model does not learn one voice in one room.
     """
@@ -56,7 +56,7 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     clip: _Positive = 5.0
     past_dropped: _Share = 0.4
     past_noise: _Weight = 0.05
-    control_dropped: _Share = 0.1
+    sound_dropped: _Share = 0.1
     alpha: _Weight | None = None
     third: _Weight | None = None
     noise: _Weight = 0.01

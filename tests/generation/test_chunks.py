@@ -83,7 +83,6 @@ def test_a_velocity_depends_on_all_it_is_given():
         chunks.velocity(w, sizes, noise, np.array(0.3), past + 1, heard),
         chunks.velocity(w, sizes, noise, np.array(0.3), None, heard),
         chunks.velocity(w, sizes, noise, np.array(0.3), past, heard[::-1]),
-        chunks.velocity(w, sizes, noise, np.array(0.3), past, None),
     ):
         assert np.abs(other - own).max() > 1e-3
     ahead = heard.copy()
@@ -111,9 +110,9 @@ def test_guidance_is_between_and_beyond_both_velocities():
     sizes = tiny("matching")
     assert isinstance(sizes, MatchingSizes)
     w, heard, past, noise = _places(sizes)
-    free = np.broadcast_to(w["no_control"], heard.shape)
-    drawn = [chunks.draw_chunk(w, sizes, noise, past, heard, g, 1) for g in (0.0, 1.0, 2.0)]
-    told = chunks.draw_chunk(w, sizes, noise, past, free, 1.0, 1)
+    free = heard[::-1] + 0.3
+    drawn = [chunks.draw_chunk(w, sizes, noise, past, heard, free, g, 1) for g in (0.0, 1.0, 2.0)]
+    told = chunks.draw_chunk(w, sizes, noise, past, free, free, 1.0, 1)
     assert np.abs(drawn[0] - told).max() < 1e-12
     assert np.abs(drawn[2] - (2 * drawn[1] - drawn[0])).max() < 1e-12
 
@@ -125,7 +124,7 @@ def test_eulers_steps_follow_a_straight_line_exactly():
     w, heard, past, noise = _places(sizes)
     w["final.out.weight"] *= 0
     for steps in (1, 8):
-        out = chunks.draw_chunk(w, sizes, noise, past, heard, 2.0, steps)
+        out = chunks.draw_chunk(w, sizes, noise, past, heard, -heard, 2.0, steps)
         assert np.abs(out - (noise + w["final.out.bias"])).max() < 1e-12
 
 

@@ -254,10 +254,9 @@ class MatchingObjective(Objective):
         features = corpus.hear(starts, first, last, s.voices, chance)
         ahead = torch.randint(sizes.most + 1, (batch,), generator=chance)
         full = torch.rand(batch, generator=chance) < s.known
-        told = net.frames(features, torch.where(full, sizes.most, ahead))
-        heard = net.heard(told)
-        deaf = torch.rand(batch, generator=chance) < s.control_dropped
-        heard = torch.where(deaf[:, None, None], net.no_control, heard)
+        deaf = torch.rand(batch, generator=chance) < s.sound_dropped
+        told = net.frames(features, torch.where(full, sizes.most, ahead), deaf)
+        heard = net.heard(told, deaf)
         past = net.embed_past(past + s.past_noise * torch.randn(past.shape, generator=chance))
         alone = torch.rand(batch, generator=chance) < s.past_dropped
         past = torch.where(alone[:, None, None], net.no_past, past)
@@ -268,12 +267,13 @@ class MatchingObjective(Objective):
         out = (((v - (new - x0)) ** 2) * self._weight).mean()
         shown = {"matching": float(out.detach())}
         if s.head:
-            # The frames that are known alone: of the others nothing can be told.
+            # The frames that are heard and known alone: of the others little can be told.
             inner = slice(sizes.past * frames, (sizes.past + sizes.new) * frames)
             speeds = corpus.rows(corpus.speeds, starts, 0, self.length)
             known = full[:, None] | (torch.arange(self.length)[None] <= ahead[:, None])
             head = ((self.speeds(told[:, inner]) - speeds) ** 2).mean(-1)
-            head = (head * known).sum() / known.sum()
+            known &= ~deaf[:, None]
+            head = (head * known).sum() / known.sum().clamp(min=1)
             out = out + s.head * head
             shown["speeds"] = float(head.detach())
         return out, shown | {"loss": float(out.detach())}

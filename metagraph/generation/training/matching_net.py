@@ -57,28 +57,31 @@ class MatchingNet(nn.Module):
         self.embed_new = nn.Linear(sizes.dims, sizes.hidden)
         self.place = nn.Parameter(torch.zeros(sizes.tokens, sizes.hidden))
         self.no_past = nn.Parameter(torch.zeros(sizes.hidden))
-        self.no_control = nn.Parameter(torch.zeros(sizes.hidden))
+        self.no_sound = nn.Parameter(torch.zeros(sizes.hidden))
         self.time = nn.Sequential(
             nn.Linear(sizes.time, sizes.time), nn.SiLU(), nn.Linear(sizes.time, sizes.time)
         )
         self.blocks = nn.ModuleList(Block(sizes) for _ in range(sizes.layers))
         self.final = Final(sizes)
 
-    def frames(self, features: Tensor, lookahead: Tensor) -> Tensor:
+    def frames(self, features: Tensor, lookahead: Tensor, deaf: Tensor) -> Tensor:
         """Return what is heard of each frame `[N, T, width]`. features: `[N, tokens * frames, inputs]`;
-        lookahead: frames after the first new one that are known `[N]`.
+        lookahead: frames after the first new one that are known `[N]`; deaf: `[N]`, who sees who speaks alone.
         """
         sizes = self.sizes
+        audio = features[..., : sizes.audio] * ~deaf[:, None, None]
+        features = torch.cat([audio, features[..., sizes.audio :]], -1)
         known = masked(features, sizes.past * sizes.frames + lookahead)
         return self.control(told(known, lookahead / sizes.most))
 
-    def heard(self, frames: Tensor) -> Tensor:
-        """Return what is heard of each token `[N, tokens, hidden]`."""
-        return self.control.token(frames.reshape(len(frames), self.sizes.tokens, -1))
+    def heard(self, frames: Tensor, deaf: Tensor) -> Tensor:
+        """Return what is heard of each token `[N, tokens, hidden]`. deaf: `[N]`, who hears nothing."""
+        told = self.control.token(frames.reshape(len(frames), self.sizes.tokens, -1))
+        return told + deaf[:, None, None] * self.no_sound
 
     def velocity(self, noisy: Tensor, moment: Tensor, past: Tensor, heard: Tensor) -> Tensor:
         """Return the velocity `[N, new, D]` at x_t. moment: t `[N]`. past: `[N, past, hidden]`, embedded;
-        heard: `[N, tokens, hidden]`; both with `no_past` and `no_control` where there is none.
+        heard: `[N, tokens, hidden]`; with `no_past` where there is none.
         """
         sizes = self.sizes
         x = heard + self.place

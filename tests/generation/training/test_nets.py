@@ -86,12 +86,12 @@ def _chunks(net: MatchingNet, model: Model, told: Any, seed: int, lookahead: int
     out = []
     for t in range(0, len(told), kept_tokens * s.frames):
         window = heard[t : t + s.tokens * s.frames][None]
-        own = net.heard(net.frames(window, ahead))
+        own, free = (net.heard(net.frames(window, ahead, d), d) for d in map(torch.tensor, ([False], [True])))
         x = torch.from_numpy(noise(seed, 0, t, s.new * s.dims).reshape(1, s.new, s.dims))
         for n in range(chunks.STEPS):
             moment, before_it = torch.tensor([n / chunks.STEPS]), net.embed_past(past[None])
             with_control = net.velocity(x, moment, before_it, own)
-            without = net.velocity(x, moment, before_it, net.no_control.expand_as(own))
+            without = net.velocity(x, moment, before_it, free)
             v = (1 - chunks.GUIDANCE) * without + chunks.GUIDANCE * with_control
             x = x + v / chunks.STEPS
         tokens = x[0, :kept_tokens].clamp(-FURTHEST, FURTHEST)
