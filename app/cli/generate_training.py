@@ -145,7 +145,7 @@ def _begin(options: Namespace) -> None:
     """Read the takes and write the training's folder. Raises ValueError where that would lose something."""
     from app.cli.generate_takes import read_all
     from metagraph.generation.takes import split
-    from metagraph.generation.train_plan import PLAN, Settings, folder_of, plan_of, write_training
+    from metagraph.generation.train_plan import PLAN, folder_of, plan_of, settings_for, write_training
 
     out: Path = options.out
     if not options.takes:
@@ -167,7 +167,7 @@ def _begin(options: Namespace) -> None:
         options.model,
         options.size,
         tracks,
-        settings=Settings(loss=options.loss),
+        settings=settings_for(options.loss),
         seed=options.seed,
         **_limits(options),
     )

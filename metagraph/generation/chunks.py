@@ -66,8 +66,8 @@ def draw_chunk(
     guidance: float = GUIDANCE,
     steps: int = STEPS,
 ) -> Array:
-    """Return new tokens `[new, D]` of noise `[new, D]`, by Euler's steps. heard, deaf: with and without sound,
-    as `encoder.encode_chunk` gives it.
+    """Return new tokens `[new, D]` of noise `[new, D]`, by Euler's steps. heard, deaf: with and without
+    sound, as `encoder.encode_chunk` gives it.
     """
     *_, last = drawing(w, sizes, noise, past, heard, deaf, guidance, steps)
     return last

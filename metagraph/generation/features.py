@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from metagraph.generation.loudness import gain_of
 from metagraph.generation.networks import ACTIVITY, FPS
+from metagraph.generation.poses import Scale
 from metagraph.graph.conversation import Conversation
 from metagraph.speech.activity import activity as spoken
 from metagraph.speech.pitch import pitch
@@ -25,12 +26,22 @@ RATE = 16000  # samples a second
 HOP, WINDOW = 640, 1024  # samples: 40 ms, a frame; 64 ms
 MELS = 27
 FLOOR = 1e-5  # of a mel's power
+STRANGEST = 4.0  # standardised: sounds further from those learned from are heard as this far
 CLOSED = 0.2  # seconds: shorter gaps in somebody's speech are none
 SELF, PARTNER, BOTH, NONE = range(ACTIVITY)
 
 
 class FeatureError(ValueError):
     """What cannot be heard; the message says why."""
+
+
+def as_heard(features: Array, audio: Scale) -> Array:
+    """Return features `[..., A + 4]` as networks hear them, float32: audio standardised and at most
+    STRANGEST, so that a voice or a room that was never learned from is a strange one and not nonsense;
+    activity as it is.
+    """
+    sound = np.clip(audio.apply(features[..., :-ACTIVITY]), -STRANGEST, STRANGEST)
+    return np.concatenate([sound, features[..., -ACTIVITY:]], -1).astype(np.float32)
 
 
 def frames_of(samples: int) -> int:

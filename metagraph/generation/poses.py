@@ -24,7 +24,6 @@ Array = NDArray[Any]
 NUMBERS = 6  # a joint
 LEAST = 0.02  # deviation of a number: less is a joint that hardly moves
 FURTHEST = 8.0  # standardised
-LOUDEST = 4.0  # standardised: sounds further from those learned from are heard as this far
 NEEDED = (
     "spine",
     "head",
@@ -158,14 +157,6 @@ class Scale:
     def apply(self, numbers: Array) -> Array:
         """Return numbers `[..., X]` standardised, float32."""
         return np.asarray((numbers - self.mean) / self.deviation, np.float32)
-
-    def heard(self, features: Array, others: int) -> Array:
-        """Return features `[..., A + others]` as networks hear them, float32: audio standardised and at most
-        LOUDEST, so that a voice or a room that was never learned from is a strange one and not nonsense; the
-        others as they are.
-        """
-        audio = np.clip(self.apply(features[..., :-others]), -LOUDEST, LOUDEST)
-        return np.concatenate([audio, features[..., -others:]], -1).astype(np.float32)
 
     def undo(self, numbers: Array) -> Array:
         """Return numbers of standardised ones `[..., X]`, none further than FURTHEST."""

@@ -22,9 +22,8 @@ from numpy.typing import NDArray
 
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
-from metagraph.generation.features import MELS
+from metagraph.generation.features import MELS, as_heard
 from metagraph.generation.networks import (
-    ACTIVITY,
     FPS,
     CvaeSizes,
     FlowSizes,
@@ -129,8 +128,8 @@ class Model:
         return _scale(self.card.audio_mean, self.card.audio_deviation)
 
     def heard(self, features: Array) -> Array:
-        """Return features `[T, audio + 4]` as networks hear them: audio standardised, activity as it is."""
-        return self.audio.heard(features, ACTIVITY)
+        """Return features `[T, audio + 4]` as networks hear them, see `features.as_heard`."""
+        return as_heard(features, self.audio)
 
 
 def _scale(mean: _Numbers, deviation: _Numbers) -> Scale:

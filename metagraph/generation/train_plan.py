@@ -42,9 +42,9 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     the gradient. past_dropped: share of past frames (of pasts, for tokens) not told; past_noise: deviation
     of noise on past tokens; sound_dropped: share of chunks that see who speaks and hear nothing. alpha:
     weight of the likelihood, in bits; third: of the paper's third term; noise: deviation on a whitened code.
-    head: weight of the head that predicts speeds. known: share of stretches that know all ahead. kept: of the running
-    mean of weights, a step. voices: deviation of the curve over the mels, standardised, by which each crop
-    sounds otherwise, so that a model does not learn one voice in one room.
+    head: weight of the head that predicts speeds. known: share of stretches that know all ahead. kept: of
+    the running mean of weights, a step. voices: deviation of the curve over the mels, standardised, by which
+    each crop sounds otherwise, so that a model does not learn one voice in one room.
     """
 
     loss: Loss | None = None
@@ -64,6 +64,14 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     known: _Share = 0.7
     kept: _Share = 0.999
     voices: _Weight = 0.3
+
+
+
+def settings_for(loss: Loss | None) -> Settings:
+    """Return the settings of a training by a loss: by the paper's nothing is done that the paper does not."""
+    if loss == "paper":
+        return Settings(loss=loss, head=0.0, known=1.0, voices=0.0, noise=0.0)
+    return Settings(loss=loss)
 
 
 class TrainingPlan(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -12,9 +12,11 @@ from metagraph.generation.features import (
     HOP,
     MELS,
     RATE,
+    STRANGEST,
     AudioStream,
     FeatureError,
     FeatureStream,
+    as_heard,
     conversation_activity,
     features,
     frames_of,
@@ -24,6 +26,7 @@ from metagraph.generation.features import (
     voice_activity,
     with_edges,
 )
+from metagraph.generation.poses import Scale
 from metagraph.graph.conversation import Conversation, Segment, Side
 from tests.generation.makers import babble
 
@@ -157,3 +160,11 @@ def test_without_words_loudness_tells_who_speaks():
     alone = voice_activity(own, None, RATE, 200)
     assert not alone[:, 1].any()
     assert not alone[:, 2].any()
+
+
+def test_sounds_that_were_never_learned_from_are_heard_as_strange_and_not_as_nonsense() -> None:
+    scale = Scale(np.zeros(3, np.float32), np.full(3, 0.5, np.float32))
+    rows = np.array([[0.5, 100.0, -100.0, 1.0, 0.0, 9.0, 0.0]], np.float32)
+    heard = as_heard(rows, scale)
+    assert heard.dtype == np.float32
+    assert heard.tolist() == [[1.0, STRANGEST, -STRANGEST, 1.0, 0.0, 9.0, 0.0]]

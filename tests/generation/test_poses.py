@@ -10,9 +10,7 @@ from hypothesis import strategies as st
 from metagraph.generation.poses import (
     JOINTS,
     LEAST,
-    LOUDEST,
     PoseError,
-    Scale,
     decode,
     encode,
     gram_schmidt,
@@ -181,11 +179,3 @@ def test_a_twins_twin_is_the_take():
     back = mirror(there, pairs)
     assert np.abs(poses_of(own, back, 25.0) - poses_of(own, clip, 25.0)).max() < 1e-4
     assert np.abs(poses_of(own, there, 25.0) - poses_of(own, clip, 25.0)).max() > 0.05
-
-
-def test_sounds_that_were_never_learned_from_are_heard_as_strange_and_not_as_nonsense() -> None:
-    scale = Scale(np.zeros(3, np.float32), np.full(3, 0.5, np.float32))
-    features = np.array([[0.5, 100.0, -100.0, 1.0, 0.0]], np.float32)
-    heard = scale.heard(features, 2)
-    assert heard.dtype == np.float32
-    assert heard.tolist() == [[1.0, LOUDEST, -LOUDEST, 1.0, 0.0]]

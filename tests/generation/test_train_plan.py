@@ -21,6 +21,7 @@ from metagraph.generation.train_plan import (
     plan_of,
     read_plan,
     read_takes,
+    settings_for,
     write_training,
 )
 from tests.generation.makers import babble, conversation, moving, rig
@@ -87,3 +88,10 @@ def test_what_is_missing_or_damaged_is_told(takes: Any, tmp_path: Path) -> None:
         (folder / PLAN).write_bytes(text)
         with pytest.raises(FileError, match="no training's plan"):
             read_plan(folder)
+
+
+def test_by_the_papers_loss_nothing_is_done_that_the_paper_does_not() -> None:
+    own = settings_for("paper")
+    assert (own.loss, own.voices, own.head, own.noise, own.known) == ("paper", 0, 0, 0, 1)
+    assert own.past_dropped == 0.4, "the paper's own"
+    assert settings_for(None).voices > 0

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from metagraph.generation import vae
-from metagraph.generation.features import MELS, with_edges
+from metagraph.generation.features import MELS, STRANGEST, as_heard, with_edges
 from metagraph.generation.networks import ACTIVITY, Control, MatchingSizes, Sizes
-from metagraph.generation.poses import LOUDEST, NUMBERS, Scale
+from metagraph.generation.poses import NUMBERS, Scale
 from metagraph.generation.takes import Take
 
 Array = NDArray[Any]
@@ -35,7 +35,7 @@ class Corpus:
             count = len(take.poses)
             standard = poses.apply(take.poses)
             rows.append(np.pad(standard, ((before, after), (0, 0))))
-            heard.append(audio.heard(with_edges(take.features, before, after), ACTIVITY))
+            heard.append(as_heard(with_edges(take.features, before, after), audio))
             speeds.append(np.pad(_speeds(standard), ((before, after), (0, 0))))
             first.append(at + before)
             counts.append(count)
@@ -72,7 +72,7 @@ class Corpus:
         shapes = torch.stack([torch.ones(MELS), mels, 1.5 * mels**2 - 0.5])
         curve = (voices * torch.randn(len(starts), 3, generator=chance)) @ shapes
         curve = curve.repeat(1, (rows.shape[-1] - ACTIVITY) // MELS)
-        audio = (rows[..., :-ACTIVITY] + curve[:, None]).clamp(-LOUDEST, LOUDEST)
+        audio = (rows[..., :-ACTIVITY] + curve[:, None]).clamp(-STRANGEST, STRANGEST)
         return torch.cat([audio, rows[..., -ACTIVITY:]], -1)
 
     def longest_crop(self, wanted: int) -> int:

@@ -111,9 +111,23 @@ def test_what_comes_after_the_look_ahead_changes_nothing(kind: Any) -> None:
             more = net.heard(other, torch.tensor([5]))[:, 0]
         else:
             other[:, sizes.past * sizes.frames + 4 + 1 :] += 1.0
-            a, b = (net.frames(x, torch.tensor([4])) for x in (frames, other))
-            more = net.frames(other, torch.tensor([5]))
+            a, b = (net.frames(x, torch.tensor([4]), torch.tensor([False])) for x in (frames, other))
+            more = net.frames(other, torch.tensor([5]), torch.tensor([False]))
     assert torch.equal(a, b) and not torch.allclose(b, more)
+
+
+def test_who_hears_nothing_sees_who_speaks() -> None:
+    sizes = tiny("matching")
+    net = net_of(sizes, shaken(sizes))
+    frames = torch.randn(1, sizes.tokens * sizes.frames, 31)
+    louder, other = frames.clone(), frames.clone()
+    louder[..., :27] += 1.0
+    other[..., 27:] += 1.0
+    deaf, all_known = torch.tensor([True]), torch.tensor([sizes.most])
+    with torch.no_grad():
+        a, b, c = (net.heard(net.frames(x, all_known, deaf), deaf) for x in (frames, louder, other))
+        hearing = net.heard(net.frames(frames, all_known, ~deaf), ~deaf)
+    assert torch.equal(a, b) and not torch.allclose(a, c) and not torch.allclose(a, hearing)
 
 
 def test_a_clip_that_hardly_moves_has_speeds_that_are_numbers() -> None:
