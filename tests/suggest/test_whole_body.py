@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.graph.model import LAYERS, Project
+from metagraph.motion import rotation
+from metagraph.motion.clip import Clip
 from metagraph.suggest.accept import accept
+from metagraph.suggest.clip_measures import with_tremble
 from metagraph.suggest.propose import propose
 from metagraph.suggest.traits import Traits, traits_of
 from metagraph.suggest.whole_body import CARRIER, SCALE, carried, recorded_whole, whole_of
@@ -139,3 +143,22 @@ def test_a_project_carries_the_whole_body_once_such_takes_are_accepted() -> None
     )
     again = propose(open_)
     assert again.whole and {p.layer.value for p in again.proposals.values()} <= {CARRIER}
+
+
+@pytest.mark.parametrize("name", ["few joints", "a hundred times too large"])
+def test_clips_of_single_layers_that_tremble_all_over_are_not(name: str) -> None:
+    project = named(name).project
+    chance = np.random.default_rng(3)
+    shaken = {}
+    for key, entry in project.clips.items():
+        clip = entry.motion
+        assert clip is not None
+        angles = chance.normal(0, np.radians(0.25), clip.rotations.shape[:2])
+        axes = chance.normal(0, 1, (*angles.shape, 3))
+        axes /= np.linalg.norm(axes, axis=-1, keepdims=True)
+        turned = rotation.multiply(clip.rotations.astype(float), rotation.from_axis_angle(axes, angles))
+        motion = Clip(clip.name, clip.skeleton, clip.fps, turned, clip.translations, clip.translated)
+        shaken[key] = replace(entry, motion=motion)
+    found = traits_of(replace(project, clips=shaken))
+    assert not recorded_whole(found)
+    assert not recorded_whole(with_tremble(found))
