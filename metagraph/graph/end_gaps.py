@@ -60,6 +60,11 @@ def hidden(height: float, blend: float) -> float:
     return max(FAR, UNHURRIED * blend if blend >= LONG else 0.0) * height / TALL
 
 
+def blend_for(height: float, metres: float) -> float:
+    """Return the shortest blend that covers a distance at an unhurried pace, seconds."""
+    return max(LONG, metres * TALL / height / UNHURRIED)
+
+
 def slow(metres: Array, height: float, blend: float) -> Array:
     """Return where a long blend of some seconds covers distances, in metres, at an unhurried pace."""
     return np.asarray((blend >= LONG) & (metres <= hidden(height, blend)))

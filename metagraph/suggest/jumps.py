@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -25,6 +25,7 @@ Edge = Literal["begins", "ends", "loops"]
 FEWEST_CLIPS = 5  # on a layer: of fewer, what is usual cannot be told
 FEWEST_COSTS = 300  # between frames: ten seconds of motion
 NEAR = 0.5  # seconds: a better moment farther away would change the action; a longer blend is preferred to it
+SLACK = 0.005  # seconds a blend is longer than it must be, so that it hides as much once it is rounded
 ROOM = 0.8  # of the threshold: what a better moment may cost, so that it stays better
 
 
@@ -308,7 +309,49 @@ def curves(project: Project, measured: Measured, action: Action) -> Curves | Non
     proposed = c.times(stats, motion, into, left, stroke, roles)
     times = _times(motion, into)
     gaps = end_gaps.distances(project, action, times)
+    proposed = _hidden(project, action, proposed, times, gaps)
     return Curves(times, c.entering(into), left, proposed, gaps, motion.skeleton.height)
+
+
+def _hidden(
+    project: Project, action: Action, proposed: c.Times, times: Array, gaps: tuple[Array, Array]
+) -> c.Times:
+    """Return proposed times at whose ends no joint is farther from the stances than a blend hides.
+
+    An end that is goes to the nearest moment that is near the stance, else its blend becomes as long as it
+    takes. Where neither will do, and those the action has do, these stay.
+    """
+    motion = end_gaps.motion_of(project, action)
+    if motion is None:
+        return proposed
+    height, t = motion.skeleton.height, action.timing
+
+    def shows(edge: int, at: float, blend: float) -> bool:
+        metres = float(np.interp(at, times, gaps[edge]))
+        return np.isfinite(metres) and metres > end_gaps.hidden(height, blend) + 1e-4
+
+    room = max(0.0, proposed.end - proposed.start) / 2
+    ends = []
+    for edge, at, blend in (0, proposed.start, proposed.blend_in), (1, proposed.end, proposed.blend_out):
+        if shows(edge, at, blend):
+            near = times[(gaps[edge] <= end_gaps.hidden(height, blend)) & (np.abs(times - at) <= room / 2)]
+            if len(near):
+                at = float(near[np.argmin(np.abs(near - at))])
+            else:
+                metres = float(np.interp(at, times, gaps[edge]))
+                blend = min(room, end_gaps.blend_for(height, metres) + SLACK)
+        ends.append((at, blend))
+    (start, into), (end, out) = ends
+    longest = max(0.0, end - start) / 2
+    into, out = min(into, longest), min(out, longest)
+    now = project.span(action)
+    if (shows(0, start, into) or shows(1, end, out)) and not (
+        shows(0, now[0], t.blend_in) or shows(1, now[1], t.blend_out)
+    ):
+        start, end, into, out = *now, t.blend_in, t.blend_out
+    leave = proposed.earliest_exit
+    leave = None if leave is None or leave >= end - out else leave
+    return replace(proposed, start=start, end=end, blend_in=into, blend_out=out, earliest_exit=leave)
 
 
 def _times(motion: Clip, cost: Array) -> Array:

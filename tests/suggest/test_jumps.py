@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from metagraph.graph import edits
+from metagraph.graph.end_gaps import gaps
 from metagraph.graph.model import LAYERS, Project
 from metagraph.suggest import compatibility as c
 from metagraph.suggest.accept import accept
@@ -199,3 +200,26 @@ def test_a_long_slow_blend_over_a_wide_gap_is_no_jump_and_a_short_one_is() -> No
     strip = curves(project, Measured(project, "arms"), project.action(name))  # type: ignore[arg-type]
     assert strip is not None and strip.gaps is not None
     assert strip.gaps[0][0] > 0.3 > 0.05 > strip.gaps[1][0]
+
+
+@pytest.mark.parametrize("name", ["opaque takes", "sitting, leaning, standing"])
+def test_proposed_times_leave_no_joint_far_from_a_stance_where_the_present_ones_do_not(name: str) -> None:
+    made = named(name).project
+    project, _ = bridged(accept(made, propose(made)).project)
+    measured = {layer: Measured(project, layer) for layer in LAYERS}
+    changes = {}
+    for action in project.actions():
+        strip = curves(project, measured[action.layer], action)
+        if strip is not None and action.kind != "stance":
+            p = strip.proposed
+            times = {"start": p.start, "end": p.end, "blend_in": p.blend_in, "blend_out": p.blend_out}
+            changes[action.id] = {"timing": {**times, "earliest_exit": p.earliest_exit}}
+    after = edits.update_each(project, changes)
+    assert len(changes) > 10
+    before, now = far(project), far(after)
+    assert now <= before, now - before
+
+
+def far(project: Project) -> set[str]:
+    graphs = project.graphs.values()
+    return {a.id for g in graphs for a in g.actions.values() if any(x.far for x in gaps(project, g, a))}
