@@ -43,8 +43,8 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     of noise on past tokens; sound_dropped: share of chunks that see who speaks and hear nothing. alpha:
     weight of the likelihood, in bits; third: of the paper's third term; noise: deviation on a whitened code.
     head: weight of the head that predicts speeds. known: share of stretches that know all ahead. kept: of
-    the running mean of weights, a step. voices: deviation of the curve over the mels, standardised, by which
-    each crop sounds otherwise, so that a model does not learn one voice in one room.
+    the running mean of weights, a step. voices: share of crops that sound otherwise (`training.voices`), so
+    that a model does not learn one voice in one room.
     """
 
     loss: Loss | None = None
@@ -63,8 +63,7 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     head: _Weight = 0.5
     known: _Share = 0.7
     kept: _Share = 0.999
-    voices: _Weight = 0.3
-
+    voices: _Share = 0.7
 
 
 def settings_for(loss: Loss | None) -> Settings:

@@ -15,6 +15,7 @@ from metagraph.generation.features import MELS, STRANGEST, as_heard, with_edges
 from metagraph.generation.networks import ACTIVITY, Control, MatchingSizes, Sizes
 from metagraph.generation.poses import NUMBERS, Scale
 from metagraph.generation.takes import Take
+from metagraph.generation.training.voices import sound_otherwise
 
 Array = NDArray[Any]
 
@@ -42,6 +43,7 @@ class Corpus:
             at += before + count + after
         self.poses = torch.from_numpy(np.concatenate(rows))
         self.heard = torch.from_numpy(np.concatenate(heard))
+        self.audio = torch.from_numpy(audio.mean), torch.from_numpy(audio.deviation)
         inside = np.concatenate([np.arange(f, f + c) for f, c in zip(first, counts, strict=True)])
         told_speeds = np.concatenate(speeds)
         known = told_speeds[inside]
@@ -62,18 +64,18 @@ class Corpus:
         return what[starts[:, None] + torch.arange(first, last)]
 
     def hear(self, starts: Tensor, first: int, last: int, voices: float, chance: torch.Generator) -> Tensor:
-        """Return what is heard, as `rows`, each crop as though others spoke elsewhere: a smooth curve over
-        the mels is added, its three parts of deviation `voices`; 0 leaves the sound as it is.
-        """
+        """Return what is heard, as `rows`, a share `voices` of the crops as though others spoke elsewhere."""
         rows = self.rows(self.heard, starts, first, last)
-        if voices <= 0:
+        chosen = torch.rand(len(starts), generator=chance) < voices
+        if not chosen.any():
             return rows
-        mels = torch.linspace(-1, 1, MELS)
-        shapes = torch.stack([torch.ones(MELS), mels, 1.5 * mels**2 - 0.5])
-        curve = (voices * torch.randn(len(starts), 3, generator=chance)) @ shapes
-        curve = curve.repeat(1, (rows.shape[-1] - ACTIVITY) // MELS)
-        audio = (rows[..., :-ACTIVITY] + curve[:, None]).clamp(-STRANGEST, STRANGEST)
-        return torch.cat([audio, rows[..., -ACTIVITY:]], -1)
+        audio = rows[chosen, :, :-ACTIVITY] * self.audio[1] + self.audio[0]
+        count, frames, numbers = audio.shape
+        tracks = audio.reshape(count, frames, -1, MELS).transpose(1, 2).reshape(-1, frames, MELS)
+        tracks = sound_otherwise(tracks, chance).reshape(count, -1, frames, MELS).transpose(1, 2)
+        other = (tracks.reshape(count, frames, numbers) - self.audio[0]) / self.audio[1]
+        rows[chosen, :, :-ACTIVITY] = other.clamp(-STRANGEST, STRANGEST)
+        return rows
 
     def longest_crop(self, wanted: int) -> int:
         """Return how many frames a crop has, so that every take has one."""

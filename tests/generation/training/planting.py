@@ -18,10 +18,11 @@ from tests.generation.makers import babble, conversation, moving, rig, tiny
 torch.set_num_threads(1)  # tests run beside each other
 
 
-def take(seconds: float, seed: int, clip: Clip | None = None) -> Take:
+def take(seconds: float, seed: int, clip: Clip | None = None, tracks: int = 1) -> Take:
     sound = np.stack([babble(seconds, seed), babble(seconds, seed + 50)])
     source = Source(f"take {seed}", (f"motion {seed}", f"sound {seed}"), "made for a test")
-    return take_of(rig(), clip or moving(seconds, seed), sound, RATE, source, conversation(seconds, seed))
+    said = conversation(seconds, seed)
+    return take_of(rig(), clip or moving(seconds, seed), sound, RATE, source, said, tracks=tracks)
 
 
 def plan(

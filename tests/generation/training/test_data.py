@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import pytest
 
 torch = pytest.importorskip("torch", reason="training needs torch, which is not installed")
@@ -22,16 +21,28 @@ def corpus() -> Any:
     return Corpus(takes, *scales_of(takes), before=5, after=25)
 
 
-def test_each_crop_sounds_otherwise_but_all_of_it_alike_and_who_speaks_stays(corpus: Any) -> None:
-    starts = corpus.starts(torch.Generator().manual_seed(1), 6, 40)
+def test_a_share_of_crops_sounds_otherwise_and_who_speaks_stays(corpus: Any) -> None:
+    starts = corpus.starts(torch.Generator().manual_seed(1), 200, 40)
     plain = corpus.rows(corpus.heard, starts, -5, 40)
     heard = corpus.hear(starts, -5, 40, 0.3, torch.Generator().manual_seed(2))
     assert torch.equal(heard[..., -ACTIVITY:], plain[..., -ACTIVITY:])
-    added = (heard - plain)[..., :-ACTIVITY].numpy()
-    free = np.abs(heard[..., :-ACTIVITY].numpy()) < STRANGEST
-    for crop, inside in zip(added, free, strict=True):
-        whole = inside.all(0)
-        assert np.abs(crop[:, whole] - crop[:1, whole]).max() < 1e-5, "the same curve for all frames"
-    assert added[:, 0].std(0).mean() > 0.1, "another for each crop"
+    other = (heard != plain).any(2).any(1).float().mean()
+    assert 0.2 < float(other) < 0.4
     assert float(heard[..., :-ACTIVITY].abs().max()) <= STRANGEST
     assert torch.equal(corpus.hear(starts, -5, 40, 0.0, torch.Generator()), plain)
+
+
+def test_what_is_learned_from_stays_as_it_was(corpus: Any) -> None:
+    before = corpus.heard.clone()
+    corpus.hear(torch.tensor([5, 9]), -5, 40, 1.0, torch.Generator().manual_seed(2))
+    assert torch.equal(corpus.heard, before)
+
+
+def test_both_tracks_sound_otherwise_each_in_its_own_way() -> None:
+    takes = [take(8.0, 1, tracks=2)]
+    two = Corpus(takes, *scales_of(takes), before=5, after=25)
+    starts = torch.arange(5, 15)
+    heard = two.hear(starts, 0, 40, 1.0, torch.Generator().manual_seed(2))
+    plain = two.rows(two.heard, starts, 0, 40)
+    changed = (heard - plain).abs().mean((0, 1))
+    assert changed.shape == (58,) and float(changed[:54].min()) > 0 and not changed[54:].any()
