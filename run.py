@@ -270,9 +270,9 @@ def run_tests(arguments, ready=lambda: None):
     if arguments:
         ready()
         return told(tests)
-    # What the tests call compiled is compiled meanwhile: on another core, and once for all of their
-    # processes.
-    compiling = subprocess.Popen([str(PYTHON), "-m", "tests.kernels"], cwd=ROOT)
+    # What the tests call compiled is compiled meanwhile, and they themselves are: on another core, and once
+    # for all of their processes.
+    compiling = subprocess.Popen([str(PYTHON), "-m", "tests.prepare"], cwd=ROOT)
     try:
         failed = [told(step) for step in lint]
     finally:
