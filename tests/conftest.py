@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import gc
 import hashlib
 import math
 import os
@@ -64,6 +65,7 @@ ALL_NOTES = pytest.StashKey[dict[str, dict[str, str]]]()
 def pytest_configure(config: pytest.Config) -> None:
     """Before the first process starts, compile what tests would wait for longer than a window is given."""
     config.stash[NOTES], config.stash[ALL_NOTES] = {}, {}
+    gc.disable()
     if config.getoption("numprocesses", None):
         kernels.make()
 
@@ -72,6 +74,15 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Put the files that take longest first; the others keep their order."""
     place = {str(ROOT / "tests" / name): n for n, name in enumerate(LONG)}
     items.sort(key=lambda item: place.get(str(item.path), len(LONG)))
+
+
+def pytest_collection_finish() -> None:
+    """What was collected stays: there is no need to look through a million objects for rubbish again and
+    again.
+    """
+    gc.enable()
+    gc.collect()
+    gc.freeze()
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
@@ -263,3 +274,11 @@ def sample() -> Project:
     from metagraph.formats.store import open_project
 
     return open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project
+
+
+@pytest.fixture(scope="session")
+def few(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The file of the sample project with a tenth of its clips; read only."""
+    from tests.projects import few_of_the_sample
+
+    return few_of_the_sample(tmp_path_factory.mktemp("few"))

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from hypothesis import strategies as st
 
+from metagraph.formats.store import open_project, save_project
 from metagraph.graph import edits, manual_edits
 from metagraph.graph.manual import ANY, WHENS
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, PARTS, Markov, Project
@@ -351,3 +354,34 @@ def histories(draw: Any, most: int = 12) -> list[Project]:
 
 def projects(most: int = 12) -> st.SearchStrategy[Project]:
     return histories(most).map(lambda states: states[-1])
+
+
+FEW = (
+    "hands_at_sides__stance", "hands_at_sides__beat_small_rt_01", "hands_at_sides__wave_hello_rt_01",
+    "hands_at_sides__touch_neck_rt_01", "hands_at_sides__to__on_hips", "on_hips__stance",
+    "on_hips__beat_small_rt_01", "on_hips__to__hands_at_sides", "body_weight_both__stance",
+    "body_weight_both__sway_01", "head_straight__stance", "head_straight__nod_single_01",
+    "head_straight__shake_01", "head_straight__glance_01",
+)  # fmt: skip
+
+
+def few_of_the_sample(folder: Path) -> Path:
+    """Write the sample project with a tenth of its clips, and return its file: for what opens it in a process
+    of its own, which takes a second with all of them.
+    """
+    source = Path(__file__).resolve().parents[1] / "sample_clips"
+    for name in ("lines", "clips"):
+        (folder / name).mkdir(parents=True)
+    for path in (source / "mannequin.glb", *(source / "lines").iterdir()):
+        shutil.copy(path, folder / path.relative_to(source))
+    for name in FEW:
+        shutil.copy(source / "clips" / f"{name}.glb", folder / "clips")
+    project = open_project(source / "sample.metagraph.yaml").project
+    base = next(entry.id for entry in project.clips.values() if entry.name == "hands_at_sides__stance")
+    project = edits.remove_clips(project, [e.id for e in project.clips.values() if e.name not in FEW])
+    used = {action.stance for action in project.actions()}
+    for stance in [s for g in project.graphs.values() for s in g.stances if s not in used]:
+        project = edits.remove_stance(project, stance)
+    path = folder / "sample.metagraph.yaml"
+    save_project(edits.set_base(project, base), path)
+    return path

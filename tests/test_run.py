@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import re
 import subprocess
 import sys
@@ -16,6 +17,7 @@ from typing import Any
 
 import pytest
 
+from tests import prepare
 from tests.conftest import LONG
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -61,7 +63,7 @@ class Compiling:
     waited = False
 
     def __call__(self, command: list[str], **more: Any) -> Compiling:
-        assert command[1:] == ["-m", "tests.kernels"]
+        assert command[1:] == ["-m", "tests.prepare"]
         return self
 
     def wait(self) -> int:
@@ -443,6 +445,18 @@ def test_tests_are_spread_over_all_cores_unless_asked_otherwise(
 
 def test_files_that_are_begun_first_are_there() -> None:
     assert [name for name in LONG if not (ROOT / "tests" / name).is_file()] == []
+
+
+def test_to_prepare_the_tests_leaves_the_bytecode_that_they_are_run_from(tmp_path: Path) -> None:
+    environ = {**os.environ, "PYTHONPYCACHEPREFIX": str(tmp_path / "kept")}
+    environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    test = tmp_path / "test_it.py"
+    test.write_text("def test_it():\n    assert print('it was run') is None\n")
+    command = [*prepare.collected(), "-c", os.devnull, "--rootdir", str(tmp_path), str(test)]
+    made = subprocess.run(command, env=environ, cwd=ROOT, capture_output=True, text=True, timeout=300)
+    assert made.returncode == 0 and "it was run" not in made.stdout
+    (left,) = (tmp_path / "kept").rglob("test_it.*-pytest-*.pyc")
+    assert b"it was run" in left.read_bytes()
 
 
 # --- engines exports are tested in

@@ -120,8 +120,13 @@ class GLView(CameraMouse, QOpenGLWidget):
 
 
 class ImageView(CameraMouse, QWidget):
-    """The same picture through an offscreen context, for platforms without OpenGL widgets."""
+    """The same picture through an offscreen context, for platforms without OpenGL widgets.
 
+    coarse: how many times wider and higher than the picture's pixels those of the widget are; more than 1
+    where nobody looks.
+    """
+
+    coarse = 1
     painted = Signal(float)
     frame_wanted = Signal()
     failed = Signal(str)
@@ -138,7 +143,7 @@ class ImageView(CameraMouse, QWidget):
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        ratio = self.devicePixelRatioF()
+        ratio = self.devicePixelRatioF() / self.coarse
         size = (max(1, round(self.width() * ratio)), max(1, round(self.height() * ratio)))
         if self._offscreen is None:
             from preview.offscreen import Offscreen, OpenGLError

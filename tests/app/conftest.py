@@ -82,9 +82,11 @@ def qapp() -> object:
     """The application as the program makes it: OpenGL format and shared contexts set before."""
     from app.features.character import character_panel
     from app.features.labelling import review_stage
+    from app.stage import gl_view
 
     # Characters are drawn in software here: at a screen's rate that leaves little time for anything else.
     character_panel.FRAME = review_stage.FRAME = 80
+    gl_view.ImageView.coarse = 3
     app = prepare()
     yield app
 

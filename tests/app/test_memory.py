@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import time
 from weakref import ref
 
 import pytest
@@ -132,7 +133,7 @@ def test_jobs_that_wait_for_their_turn_are_freed_at_closing(qapp, qtbot):
     def slow(job: object) -> None:
         started.append(job)
         while not let_go and not job.cancelled:  # type: ignore[attr-defined]
-            pass
+            time.sleep(0.002)
 
     for _ in range(2):
         jobs.start("slow", slow)

@@ -26,10 +26,9 @@ def test_the_targets_are_listed(capsys):
     assert "playcanvas" in out and "(experimental)" in out
 
 
-def test_a_target_is_written_and_its_losses_are_told(tmp_path, capsys):
+def test_a_target_is_written_and_its_losses_are_told(few, tmp_path, capsys):
     assert (
-        main(["export", str(SAMPLE), "--target", "xstate", "--out", str(tmp_path), "--no-mesh", "--json"])
-        == 0
+        main(["export", str(few), "--target", "xstate", "--out", str(tmp_path), "--no-mesh", "--json"]) == 0
     )
     shown = capsys.readouterr()
     data = json.loads(shown.out)
@@ -37,10 +36,10 @@ def test_a_target_is_written_and_its_losses_are_told(tmp_path, capsys):
     assert data["losses"] and f"loses: {data['losses'][0]}" in shown.err
 
 
-def test_vectors_are_written_beside_the_graph_they_are_of(tmp_path, capsys):
-    assert main(["export", str(SAMPLE), "-o", str(tmp_path), "--vectors", "--no-mesh"]) == 0
+def test_vectors_are_written_beside_the_graph_they_are_of(few, tmp_path, capsys):
+    assert main(["export", str(few), "-o", str(tmp_path), "--vectors", "--no-mesh"]) == 0
     assert check_vectors(tmp_path).failures == []
-    assert main(["export", str(SAMPLE), "-o", str(tmp_path / "x"), "--vectors", "-t", "bml"]) == 0
+    assert main(["export", str(few), "-o", str(tmp_path / "x"), "--vectors", "-t", "bml"]) == 0
     assert "there are no vectors for it" in capsys.readouterr().err
 
 
@@ -59,11 +58,11 @@ def test_what_is_missing_or_misspelt_is_told(arguments, code, words, capsys):
 
 
 @pytest.mark.skipif(os.name == "nt", reason="is stopped by a signal")
-def test_watching_writes_again_after_each_saving_and_survives_a_broken_project(tmp_path):
+def test_watching_writes_again_after_each_saving_and_survives_a_broken_project(few, tmp_path):
     project = tmp_path / "sample.metagraph.yaml"
     for name in ("clips", "lines", "mannequin.glb"):
-        (tmp_path / name).symlink_to(ROOT / "sample_clips" / name)
-    text = SAMPLE.read_text()
+        (tmp_path / name).symlink_to(few.with_name(name))
+    text = few.read_text()
     project.write_text(text)
     command = [
         sys.executable,
@@ -92,7 +91,7 @@ def test_watching_writes_again_after_each_saving_and_survives_a_broken_project(t
 
 
 @pytest.mark.skipif(os.name == "nt", reason="is stopped by a signal")
-def test_the_web_page_is_served_until_it_is_stopped(tmp_path):
+def test_the_web_page_is_served_until_it_is_stopped(few, tmp_path):
     import urllib.request
 
     command = [
@@ -100,7 +99,7 @@ def test_the_web_page_is_served_until_it_is_stopped(tmp_path):
         "-m",
         "app.cli",
         "export",
-        str(SAMPLE),
+        str(few),
         "-t",
         "web",
         "-o",
@@ -129,14 +128,14 @@ def test_the_web_page_is_served_until_it_is_stopped(tmp_path):
         ("watch", signal.SIGINT),
     ],
 )
-def test_what_goes_on_is_stopped_where_interrupts_are_ignored(how, number, tmp_path):
+def test_what_goes_on_is_stopped_where_interrupts_are_ignored(how, number, few, tmp_path):
     """As a background job of a script is: Python installs no handler of its own there, and a wait would be
     for ever.
     """
     words = {
-        "watch": ("export", SAMPLE, "-t", "bml", "-o", tmp_path / "out", "--watch", "--no-mesh"),
-        "serve": ("export", SAMPLE, "-t", "web", "-o", tmp_path / "out", "--serve", "--no-mesh"),
-        "live": ("live", SAMPLE, "--json", "--port", "0", "--osc-port", "0", "--no-stdin"),
+        "watch": ("export", few, "-t", "bml", "-o", tmp_path / "out", "--watch", "--no-mesh"),
+        "serve": ("export", few, "-t", "web", "-o", tmp_path / "out", "--serve", "--no-mesh"),
+        "live": ("live", few, "--json", "--port", "0", "--osc-port", "0", "--no-stdin"),
     }[how]
     environ = {**os.environ, "PATH": "", "XDG_CACHE_HOME": str(tmp_path)}  # without npm nothing is fetched
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "env": environ}

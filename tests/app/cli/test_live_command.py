@@ -18,21 +18,22 @@ from metagraph.formats.store import open_project
 from tests.processes import started
 
 ROOT = Path(__file__).resolve().parents[3]
-SAMPLE = ROOT / "sample_clips" / "sample.metagraph.yaml"
 FREE = ("--json", "--port", "0", "--osc-port", "0")
 
 
-def command(*words: str) -> list[str]:
-    return [sys.executable, "-m", "app.cli", "live", str(SAMPLE), *words]
+def command(project: Path, *words: str) -> list[str]:
+    return [sys.executable, "-m", "app.cli", "live", str(project), *words]
 
 
 def lines(text: str) -> list[Any]:
     return [json.loads(line) for line in text.splitlines()]
 
 
-def test_lines_in_are_answered_by_lines_out_until_the_end_of_input() -> None:
+def test_lines_in_are_answered_by_lines_out_until_the_end_of_input(few: Path) -> None:
     asked = '{"do":"nod","id":"n"}\nnonsense\n{"do":"gesture","tags":["beat"],"in":2}\n'
-    done = subprocess.run(command(*FREE), input=asked, capture_output=True, text=True, cwd=ROOT, timeout=120)
+    done = subprocess.run(
+        command(few, *FREE), input=asked, capture_output=True, text=True, cwd=ROOT, timeout=120
+    )
     assert done.returncode == 0, done.stderr
     ready, nod, error, beat = lines(done.stdout)
     assert (
@@ -49,9 +50,14 @@ def test_lines_in_are_answered_by_lines_out_until_the_end_of_input() -> None:
     assert done.stderr == ""
 
 
-def test_people_are_told_in_words_on_standard_error() -> None:
+def test_people_are_told_in_words_on_standard_error(few: Path) -> None:
     done = subprocess.run(
-        command("--port", "0", "--no-osc"), input="", capture_output=True, text=True, cwd=ROOT, timeout=120
+        command(few, "--port", "0", "--no-osc"),
+        input="",
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+        timeout=120,
     )
     assert done.returncode == 0 and done.stdout == ""
     assert (
@@ -62,9 +68,9 @@ def test_people_are_told_in_words_on_standard_error() -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGTERM to catch")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupt_ends_it_cleanly(number: signal.Signals) -> None:
+def test_an_interrupt_ends_it_cleanly(number: signal.Signals, few: Path) -> None:
     with started(
-        *command(*FREE, "--no-stdin"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, longest=120
+        *command(few, *FREE, "--no-stdin"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, longest=120
     ) as process:
         assert process.stdout is not None and process.stderr is not None
         assert json.loads(process.stdout.readline())["event"] == "ready"
@@ -74,12 +80,9 @@ def test_an_interrupt_ends_it_cleanly(number: signal.Signals) -> None:
 
 
 def test_what_was_asked_can_be_kept_and_performed_again(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    few: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for name in ("sample.metagraph.yaml", "mannequin.glb"):
-        shutil.copy(SAMPLE.with_name(name), tmp_path / name)
-    shutil.copytree(SAMPLE.with_name("clips"), tmp_path / "clips")
-    project = tmp_path / SAMPLE.name
+    project = shutil.copytree(few.parent, tmp_path / "own") / few.name
     words = [sys.executable, "-m", "app.cli", "live", str(project), *FREE, "--keep", "talk"]
     done = subprocess.run(
         words, input='{"do":"nod","id":"n","at":1}\n', capture_output=True, text=True, cwd=ROOT, timeout=120
@@ -105,15 +108,15 @@ def test_what_was_asked_can_be_kept_and_performed_again(
     ],
 )
 def test_what_is_not_safe_is_refused_in_words(
-    words: tuple[str, ...], error: str, capsys: pytest.CaptureFixture[str]
+    words: tuple[str, ...], error: str, few: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["live", str(SAMPLE), *words]) == 1
+    assert main(["live", str(few), *words]) == 1
     assert error in capsys.readouterr().err
 
 
-def test_the_token_may_come_from_the_environment() -> None:
+def test_the_token_may_come_from_the_environment(few: Path) -> None:
     environ = {**os.environ, "METAGRAPH_TOKEN": "secret"}
     done = subprocess.run(
-        command(*FREE), input="", capture_output=True, text=True, cwd=ROOT, timeout=120, env=environ
+        command(few, *FREE), input="", capture_output=True, text=True, cwd=ROOT, timeout=120, env=environ
     )
     assert lines(done.stdout)[0]["token"] is True
