@@ -54,14 +54,17 @@ class Cells:
         self._matrices: list[Array] = []
         self._biases: list[Array] = []
         for n in range(layers):
-            above = w[f"{name}.weight_ih_l{n}"].T
-            into = above[:own] if n == 0 else above
-            matrix = np.concatenate([into, w[f"{name}.weight_hh_l{n}"].T]).astype(dtype)[:, order]
-            self._matrices.append(np.ascontiguousarray(matrix * half))
+            above, back = w[f"{name}.weight_ih_l{n}"], w[f"{name}.weight_hh_l{n}"]
+            size = own if n == 0 else units
+            matrix = np.empty((size + units, 4 * units), dtype)
+            np.multiply(above[order, :size].T, half, out=matrix[:size])
+            np.multiply(back[order].T, half, out=matrix[size:])
+            self._matrices.append(matrix)
             bias = (w[f"{name}.bias_ih_l{n}"] + w[f"{name}.bias_hh_l{n}"]).astype(dtype)
             self._biases.append(bias[order] * half)
             if n == 0:
-                self._others = Dense(above[own:].astype(dtype)[:, order] * half, self._biases[0])
+                others = np.multiply(above[order, own:].T, half, order="C", dtype=dtype)
+                self._others = Dense(others, self._biases[0])
         # [own inputs, hidden of layer 0, of layer 1 ...]: what enters a layer lies in a row.
         self._line = np.zeros(own + layers * units, dtype)
         self.own = self._line[:own]

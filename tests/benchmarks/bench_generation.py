@@ -2,8 +2,8 @@
 
 How many times faster than they play poses are made by models of each kind and size: of a whole recording
 (`whole`, with loudness, features and the clip; then the numbers of poses alone), as the sound comes in, 40 ms
-at a time, and live with 5 frames of look-ahead, piece of work by piece. The best of three of the first two. The weights have learned nothing, which takes as long. One
-thread.
+at a time, and live with 5 frames of look-ahead, piece of work by piece. The best of three of the first two.
+The weights have learned nothing, which takes as long. One thread.
 """
 
 from __future__ import annotations
@@ -78,9 +78,9 @@ def main(seconds: float) -> None:
                     break
                 pieces.append(1000 * (time.process_time() - began))
         print(
-            f"{kind:9} {name:6} {parameters(sizes) / 1e6:7.2f} M  whole {speeds[0]:6.1f} x real time, poses "
-            f"{speeds[1]:6.1f} x; pushed {made / FPS / total:6.1f} x, {1000 * total / max(made, 1):6.2f} ms a "
-            f"frame, at most {1000 * worst:6.1f} ms a push, {sampler.delay} frames late; live piece "
+            f"{kind:9} {name:6} {parameters(sizes) / 1e6:7.2f} M  whole {speeds[0]:6.1f} x real time, "
+            f"poses {speeds[1]:6.1f} x; pushed {made / FPS / total:6.1f} x, {1000 * total / max(made, 1):6.2f} "
+            f"ms a frame, at most {1000 * worst:6.1f} ms a push, {sampler.delay} frames late; live piece "
             f"{np.median(pieces):5.2f} ms, 95 % {np.quantile(pieces, 0.95):5.2f} ms"
         )
 
