@@ -39,7 +39,8 @@ class Drawing:
     def __init__(self, w: Layers, sizes: CvaeSizes) -> None:
         self._cells = Cells(w, "decoder", sizes.layers, sizes.dims, w["decoder_out.bias"].dtype)
         self._out = Dense.named(w, "decoder_out")
-        self.told = self._cells.told  # what `draw` wants of what is heard: `[n, 4N]` of `[n, C]`
+        # What `draw` wants of what is heard, `[n, 4N]` of `[n, C]`; and of the numbers that came later.
+        self.told, self.more = self._cells.told, self._cells.more
 
     def draw(self, code: Array, told: Array) -> Array:
         """Return the next frame's pose `[X]`, standardised, of its code `[D]`; it lasts until the next call.

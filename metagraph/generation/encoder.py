@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import gcd
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,21 +66,30 @@ class Convolutions:
         return np.asarray(x[..., 0, :])
 
 
+class Reader(Protocol):
+    """Who reads what is heard, by a product whose terms may be reckoned one after the other."""
+
+    def told(self, heard: Array, /) -> Array:
+        """Return what is made of rows `[n, C]` heard at once: `[n, ...]`."""
+
+    def more(self, heard: Array, first: int, /) -> Array:
+        """Return what numbers `[m]` of one row, from number `first` on, add where they were 0."""
+
+
 class Hearing:
     """What is heard of frame after frame, in products of the same shape at the same frames whenever they are
-    known, so that the pieces that sound comes in change no bit. lookahead: frames ahead that are known. then:
-    what is made of rows `[n, C]` heard at once.
+    known, so that the pieces that sound comes in change no bit. lookahead: frames ahead that are known.
     """
 
-    def __init__(
-        self, w: Layers, control: Control, lookahead: int, then: Callable[[Array], Array] = np.array
-    ) -> None:
-        self.control, self.lookahead, self._then = control, lookahead, then
+    def __init__(self, w: Layers, control: Control, lookahead: int, reader: Reader | None = None) -> None:
+        self.control, self.lookahead, self._reader = control, lookahead, reader
         self._layers: Convolutions | None = None
         if control.kind == "encoder":
             self._layers = Convolutions(w, control.dilations, _share(lookahead, control.ahead))
-        # Windows share nothing unless they know all ahead; then a few cost hardly more than one.
-        self._block = BLOCK if self._layers is not None and lookahead == control.ahead else 1
+        # Convolutions share nothing unless they know all ahead; then a few frames cost hardly more than one.
+        # The paper's windows are long: what all of a few frames know already is told at once.
+        shared = lookahead == control.ahead if self._layers else control.before + lookahead >= BLOCK
+        self._block = BLOCK if shared else 1
         self._features = np.zeros((control.frames + self._block - 1, control.inputs), np.float32)
         self._from, self._until = 0, -1  # the frames that are known of what was made last
         self._made = np.zeros(0, np.float32)
@@ -100,18 +108,26 @@ class Hearing:
         return self._layers.whole(features)
 
     def of(self, frame: int, heard: Array) -> Array:
-        """Return what `then` made of a frame. heard: features from `before` frames before it on, as many as
-        are known, `before + 1 + lookahead` at least.
+        """Return what the reader made of a frame. heard: features from `before` frames before it on, as many
+        as are known, `before + 1 + lookahead` at least.
         """
-        at = frame % self._block
+        assert self._reader is not None
+        control, at = self.control, frame % self._block
+        first = control.before + self.lookahead + 1  # frames of a window that may be known
         if not self._from <= frame < self._until:
             most = heard[: len(self._features) - at]
             self._features[at : at + len(most)] = most  # what is before or after is of no use, and not used
-            told = self.whole(self._features) if self._block > 1 else self.rows(self._features[None])
-            self._made = self._then(told)
-            self._from = frame
-            ready = len(heard) - self.control.before - self.lookahead
-            self._until = frame - at + min(self._block, at + ready)
+            if self._block > 1 and self._layers is None:
+                told = self.rows(windows(masked(self._features, first - 1), control.frames))
+                ready = self._block
+            else:
+                told = self.whole(self._features) if self._block > 1 else self.rows(self._features[None])
+                ready = at + len(heard) - first + 1
+            self._made = self._reader.told(told)
+            self._from, self._until = frame, frame - at + min(self._block, ready)
+        if self._layers is None and at and self._block > 1:
+            late = heard[first - at : first].reshape(-1)  # came after the block's first frame
+            return np.asarray(self._made[at] + self._reader.more(late, (first - at) * control.inputs))
         return np.asarray(self._made[at])
 
 

@@ -139,6 +139,12 @@ class Drawing:
         """Return what `draw` wants of what is heard: `[n, K, 4N]` of `[n, C]`."""
         return np.stack([cells.told(heard) for cells, _, _ in self._steps], 1)
 
+    def more(self, heard: Array, first: int) -> Array:
+        """Return what some of the numbers heard add where they were 0: `[K, 4N]` of `[m]`, from number
+        `first` on.
+        """
+        return np.stack([cells.more(heard, first) for cells, _, _ in self._steps])
+
     def draw(self, noise: Array, past: Array, told: Array) -> Array:
         """Return the next moment's code `[D]`, which lasts until the next call. noise: `[D]`; past: what is
         known of the poses before, flat; told: `[K, 4N]`, as `told` gives it.

@@ -65,7 +65,7 @@ class FlowGenerator(Generator):
         self._hears(control, lookahead)
         self.made, self.temperature = sizes.span, np.float32(temperature)
         self.flow, self.decoder, self.noise = Drawing(w, sizes), vae.Decoder(w, sizes), Noise(sizes.dims)
-        self.hearing = Hearing(w, control, self.needed, self.flow.told)
+        self.hearing = Hearing(w, control, self.needed, self.flow)
         self.past = np.repeat(first[None].astype(np.float32), control.past, 0)
         self.summary: list[Dense] = []  # what is known of the past poses
         if control.kind == "encoder" and control.past:
@@ -96,7 +96,7 @@ class CvaeGenerator(Generator):
     def __init__(self, w: Weights, sizes: CvaeSizes, temperature: float, lookahead: int | None) -> None:
         self._hears(sizes.control, lookahead)
         self.decoder, self.noise = cvae.Drawing(w, sizes), Noise(sizes.dims)
-        self.hearing = Hearing(w, sizes.control, self.needed, self.decoder.told)
+        self.hearing = Hearing(w, sizes.control, self.needed, self.decoder)
         self.temperature = np.float32(temperature)
 
     def step(self, heard: Array, seed: int, take: int, frame: int) -> Array:

@@ -98,6 +98,12 @@ class Cells:
         """Return what the first layer's other inputs do `[n, 4N]`. others: `[n, in - own]`."""
         return self._others.rows(others)
 
+    def more(self, others: Array, first: int) -> Array:
+        """Return what some of the other inputs add to what `told` gave where they were 0. first: the number
+        of the first of them.
+        """
+        return np.asarray(others @ self._others.weight[first : first + others.shape[-1]])
+
     def step(self, told: Array) -> Array:
         """Return what the last layer gives `[N]`, which lasts until the next call, with `own` filled before.
         told: `[4N]`, as `told` gives it.
