@@ -42,9 +42,9 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     the gradient. past_dropped: share of past frames (of pasts, for tokens) not told; past_noise: deviation
     of noise on past tokens; sound_dropped: share of chunks that see who speaks and hear nothing. alpha:
     weight of the likelihood, in bits; third: of the paper's third term; noise: deviation on a whitened code.
-    head: weight of the head that predicts speeds. known: share of stretches that know all ahead. kept: of the running
-    mean of weights, a step. voices: deviation of the curve over the mels, standardised, by which each crop
-    sounds otherwise, so that a model does not learn one voice in one room.
+    head: weight of the head that predicts speeds. known: share of stretches that know all ahead. kept: of the
+    running mean of weights, a step. voices: deviation of the curve over the mels, standardised, by which each
+    crop sounds otherwise, so that a model does not learn one voice in one room.
     """
 
     loss: Loss | None = None

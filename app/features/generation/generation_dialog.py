@@ -50,11 +50,18 @@ class GenerationDialog(QDialog):
         self.finished.connect(self._ended)
         document.changed.connect(self._follow)
         document.loaded.connect(self._leave)
+        self._say_begun()
         if self.use.model.count() == 0:
             self.tabs.setCurrentWidget(self.learn)
 
     def _trained(self, model: Path) -> None:
         self.use.show_model(model)
+
+    def _say_begun(self) -> None:
+        """Tell of a training that was cut short: it may have been forgotten."""
+        cut = self.learn.begun.cut_short()
+        if cut:
+            self.said.setText(f"The training of '{cut}' is not over: go on with it under Learn from takes.")
 
     def _follow(self, before: Project, after: Project) -> None:
         if (
@@ -69,7 +76,9 @@ class GenerationDialog(QDialog):
         self.use.close_down()
         self.use.pieces = []
         self.use.fill()
+        self.learn.fill()
         self.said.setText("")
+        self._say_begun()
 
     def _ended(self) -> None:
         """It closes: nothing goes on unseen."""

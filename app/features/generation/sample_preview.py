@@ -12,8 +12,9 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, QTimer
 from PySide6.QtGui import QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
-from app.features.generation.generation_jobs import Listing
 from metagraph.generation.landmarks import LANDMARKS, landmarks_of
+from metagraph.generation.poses import PoseRig
+from metagraph.generation.takes import Take
 
 RATE = 5.0  # frames a second of what a training shows
 SECONDS = 12.0  # of a take that are shown
@@ -40,16 +41,15 @@ class SamplePreview(QWidget):
     def sizeHint(self) -> QSize:
         return QSize(420, 190)
 
-    def begin(self, listing: Listing) -> None:
+    def begin(self, rig: PoseRig, takes: Sequence[Take]) -> None:
         """Show a take: where in one most is said oneself."""
-        batch = listing.batch
-        if batch is None or batch.rig is None or not batch.takes:
+        if not takes:
             return
-        take = max(batch.takes, key=lambda t: float(t.activity[:, 0].sum()))
+        take = max(takes, key=lambda t: float(t.activity[:, 0].sum()))
         own = np.cumsum(take.activity[:, 0])
         size = min(len(own) - 1, round(SECONDS * 25))
         first = int(np.argmax(own[size:] - own[: len(own) - size])) if size > 0 else 0
-        self.moves = [landmarks_of(batch.rig, take.poses[first : first + size + 1 : 5]), None]
+        self.moves = [landmarks_of(rig, take.poses[first : first + size + 1 : 5]), None]
         self._timer.start()
         self.update()
 
@@ -68,6 +68,13 @@ class SamplePreview(QWidget):
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         half = self.width() / 2
+        if self.moves[0] is None:
+            painter.setPen(self.palette().placeholderText().color())
+            painter.drawText(
+                QRectF(self.rect()),
+                Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap,
+                "Here a take moves while a model learns, and beside it somebody as the model would by now.",
+            )
         for n, words in enumerate(("as recorded", "as the model moves by now")):
             box = QRectF(n * half, 0, half, self.height())
             points = self.moves[n]

@@ -25,7 +25,9 @@ from metagraph.formats.gltf_writer import write_glb
 from metagraph.formats.store import absolute, open_project, save_project
 from metagraph.generation import offered
 from metagraph.generation.features import RATE
-from metagraph.generation.stored import write_model
+from metagraph.generation.standing import hold
+from metagraph.generation.stored import read_card, write_model
+from metagraph.generation.train_plan import folder_of
 from metagraph.graph.generated import origin
 from tests.generation.makers import babble, conversation, moving, untrained
 
@@ -198,11 +200,12 @@ class Made:
     def __init__(self, out: Path, hear) -> None:
         self.out, self.hear = out, hear
         self.error, self.path = "", out.with_name("none")
-        self.running, self.stopped, self.killed = True, 0, False
+        self.running, self.stopped, self.left = True, 0, False
 
     def say(self, **what) -> None:
-        fields = {"event": "step", "step": 0, "minutes": 0.0, "share": 0.0, "numbers": {}, "statistics": {}}
-        self.hear(SimpleNamespace(**{**fields, "landmarks": [], "text": "", **what}))
+        fields = {"event": "step", "step": 0, "share": 0.0, "numbers": {}, "statistics": {}}
+        clock = {"minutes": 0.0, "seconds": 60 * what.get("minutes", 0.0)}
+        self.hear(SimpleNamespace(**{**fields, **clock, "landmarks": [], "text": "", **what}))
 
     def stop(self) -> None:
         self.stopped += 1
@@ -217,8 +220,8 @@ class Made:
             raise RuntimeError(self.error)
         return self.path
 
-    def kill(self) -> None:
-        self.killed, self.running = True, False
+    def leave(self) -> None:
+        self.left, self.running = True, False
 
 
 @pytest.fixture
@@ -284,7 +287,72 @@ def test_a_training_that_fails_says_why(training):
 def test_closing_ends_the_training(training):
     _, dialog, process = training
     dialog.close()
-    assert process.killed
+    assert process.left
+
+
+def cut_short(project: Path, name: str, steps: int = 0) -> Path:
+    """A training of `name`, beside a project, that was killed; after some steps it has a checkpoint."""
+    pytest.importorskip("torch", reason="training needs torch, which is not installed")
+    from metagraph.generation.train_plan import Settings, folder_of, write_training
+    from metagraph.generation.training.run import Run
+    from tests.generation.training.planting import plan, take
+
+    out = project / "models" / f"{name}.mgmodel"
+    both, small = (take(8.0, 1), take(8.0, 2)), Settings(batch=4, frames=40, warm=20)
+    folder_of(out).mkdir(parents=True)
+    own = plan(both[:1], both[1:], out="elsewhere/x.mgmodel", settings=small, steps=40)
+    write_training(folder_of(out), own, both[:1], both[1:])
+    run = Run(folder_of(out), lambda event: None, deserted=lambda: run.learner.step >= steps)
+    if steps:
+        assert run.go() is None
+    return out
+
+
+def test_a_training_that_was_cut_short_is_offered_and_gone_on_with(shown, tmp_path):
+    drive, dialog = shown
+    out = cut_short(tmp_path, "mine", 10)
+    assert not dialog.learn.begun.isVisibleTo(dialog.learn)
+    dialog.close()
+    drive.wait(lambda: drive.window.findChild(GenerationDialog) is None)
+    drive.do("generate_motion")
+    dialog = drive.window.findChild(GenerationDialog)
+    assert "'mine' is not over" in dialog.said.text()
+    dialog.tabs.setCurrentWidget(dialog.learn)
+    learn = dialog.learn
+    assert learn.begun.which.currentText() == "mine · matching, 10 steps, 25 % done"
+    shot(dialog, "begun")
+    learn.name.setText("mine")
+    learn.look_through([takes(tmp_path / "takes")])
+    drive.wait(lambda: learn._job is None and learn.table.rowCount() > 0, 60)
+    learn.start()
+    assert "begun before" in dialog.said.text() and learn.run is None
+    press(learn.begun.go)
+    drive.wait(out.is_file, 60)
+    drive.wait(lambda: learn.run is None, 60)
+    assert read_card(out).steps == 40 and dialog.use.model.currentText() == "mine"
+    assert learn.preview.moves[0] is not None
+    # Its time is over: there are more minutes to be had, and nothing left to keep.
+    assert "its time is over" in learn.begun.which.currentText() and not learn.begun.keep.isVisible()
+    dialog.close()
+
+
+def test_what_a_killed_training_had_learned_can_be_kept_as_it_is(shown, tmp_path):
+    drive, dialog = shown
+    out = cut_short(tmp_path, "mine", 10)
+    cut_short(tmp_path, "nothing")
+    dialog.learn.fill()
+    dialog.tabs.setCurrentWidget(dialog.learn)
+    learn = dialog.learn
+    learn.begun.which.setCurrentIndex(1)
+    assert "nothing kept yet" in learn.begun.which.currentText() and not learn.begun.keep.isEnabled()
+    learn.begun.which.setCurrentIndex(0)
+    held = hold(folder_of(out))
+    press(learn.begun.go)
+    assert "another process" in dialog.said.text() and learn.run is None
+    held.close()
+    press(learn.begun.keep)
+    drive.wait(lambda: out.is_file() and learn.run is None, 60)
+    assert read_card(out).steps == 10 and read_card(out).notes
 
 
 def test_a_model_that_is_there_is_not_written_over(shown, tmp_path):
