@@ -91,9 +91,7 @@ def test_a_folder_is_held_by_one_process_until_that_ends_however_it_ends(tmp_pat
         "import sys; from pathlib import Path; from metagraph.generation.standing import hold\n"
         "held = hold(Path(sys.argv[1])); print(held is not None, flush=True); sys.stdin.read()"
     )
-    with started(
-        sys.executable, "-c", code, folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE
-    ) as other:
+    with started(sys.executable, "-c", code, folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as other:
         assert other.stdout is not None and other.stdout.readline().strip() == "True"
         assert busy(folder) and hold(folder) is None
         other.kill()

@@ -74,7 +74,7 @@ class GenerationDialog(QDialog):
     def _leave(self) -> None:
         """Another project comes: what is being made for the one before is not for it."""
         self.use.close_down()
-        self.use.pieces = []
+        self.use.table.show_pieces([])
         self.use.fill()
         self.learn.fill()
         self.said.setText("")

@@ -24,7 +24,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.generation.begun_row import BegunRow
-from app.features.generation.generation_jobs import Listing, list_takes, sentence
+from app.features.generation.generation_jobs import KINDS, Listing, list_takes, sentence
 from app.features.generation.page import Page
 from app.features.generation.sample_preview import SamplePreview
 from app.features.generation.training_plots import RATIOS, TrainingPlots
@@ -49,11 +49,11 @@ from metagraph.generation.standing import Standing, busy
 from metagraph.generation.stored import SUFFIX
 from metagraph.generation.train_plan import PLAN, folder_of, read_takes
 
-KINDS = (
-    ("matching", "Matching", "Follows the speech best for the time it takes: 15 minutes are a beginning"),
-    ("flow-vae", "Flow-VAE", "As in the paper: a code of poses and a flow over it; needs longer"),
-    ("moglow", "MoGlow", "The paper's comparison: a flow over the poses themselves"),
-    ("cvae", "CVAE", "The paper's other comparison: moves little"),
+TIPS = (
+    ("matching", "Follows the speech best for the time it takes: 15 minutes are a beginning"),
+    ("flow-vae", "As in the paper: a code of poses and a flow over it; needs longer"),
+    ("moglow", "The paper's comparison: a flow over the poses themselves"),
+    ("cvae", "The paper's other comparison: moves little"),
 )
 SIZES = (("small", "small, for this machine"), ("paper", "as in the paper, for a graphics card"))
 HEADS = ("Take", "Length", "Speech", "What to know")
@@ -133,8 +133,8 @@ class LearnPage(Page):
         self.kind, self.how_large = ComboBox(self), ComboBox(self)
         self.kind.setAccessibleName("Kind of model")
         self.how_large.setAccessibleName("Size")
-        for n, (kind, words, tip) in enumerate(KINDS):
-            self.kind.addItem(words, kind)
+        for n, (kind, tip) in enumerate(TIPS):
+            self.kind.addItem(KINDS[kind], kind)
             self.kind.setItemData(n, tip, Qt.ItemDataRole.ToolTipRole)
         for size, words in SIZES:
             self.how_large.addItem(words, size)
