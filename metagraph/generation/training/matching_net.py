@@ -66,7 +66,8 @@ class MatchingNet(nn.Module):
 
     def frames(self, features: Tensor, lookahead: Tensor, deaf: Tensor) -> Tensor:
         """Return what is heard of each frame `[N, T, width]`. features: `[N, tokens * frames, inputs]`;
-        lookahead: frames after the first new one that are known `[N]`; deaf: `[N]`, who sees who speaks alone.
+        lookahead: frames after the first new one that are known `[N]`; deaf: `[N]`, who sees who speaks
+        alone.
         """
         sizes = self.sizes
         audio = features[..., : sizes.audio] * ~deaf[:, None, None]

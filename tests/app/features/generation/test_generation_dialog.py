@@ -291,27 +291,16 @@ def test_closing_ends_the_training(training):
     assert process.left
 
 
-def cut_short(project: Path, name: str, steps: int = 0) -> Path:
-    """A training of `name`, beside a project, that was killed; after some steps it has a checkpoint."""
+def planting():
     pytest.importorskip("torch", reason="training needs torch, which is not installed")
-    from metagraph.generation.train_plan import Settings, folder_of, write_training
-    from metagraph.generation.training.run import Run
-    from tests.generation.training.planting import plan, take
+    from tests.generation.training import planting
 
-    out = project / "models" / f"{name}.mgmodel"
-    both, small = (take(8.0, 1), take(8.0, 2)), Settings(batch=4, frames=40, warm=20)
-    folder_of(out).mkdir(parents=True)
-    own = plan(both[:1], both[1:], out="elsewhere/x.mgmodel", settings=small, steps=40)
-    write_training(folder_of(out), own, both[:1], both[1:])
-    run = Run(folder_of(out), lambda event: None, deserted=lambda: run.learner.step >= steps)
-    if steps:
-        assert run.go() is None
-    return out
+    return planting
 
 
 def test_a_training_that_was_cut_short_is_offered_and_gone_on_with(shown, tmp_path):
     drive, dialog = shown
-    out = cut_short(tmp_path, "mine", 10)
+    out = planting().cut_short(tmp_path / "models", "mine", 10)
     assert not dialog.learn.begun.isVisibleTo(dialog.learn)
     dialog.close()
     drive.wait(lambda: drive.window.findChild(GenerationDialog) is None)
@@ -328,8 +317,8 @@ def test_a_training_that_was_cut_short_is_offered_and_gone_on_with(shown, tmp_pa
     learn.start()
     assert "begun before" in dialog.said.text() and learn.run is None
     press(learn.begun.go)
-    drive.wait(out.is_file, 60)
-    drive.wait(lambda: learn.run is None, 60)
+    drive.wait(out.is_file, 300)
+    drive.wait(lambda: learn.run is None, 300)
     assert read_card(out).steps == 40 and dialog.use.model.currentText() == "mine"
     assert learn.preview.moves[0] is not None
     # Its time is over: there are more minutes to be had, and nothing left to keep.
@@ -339,8 +328,8 @@ def test_a_training_that_was_cut_short_is_offered_and_gone_on_with(shown, tmp_pa
 
 def test_what_a_killed_training_had_learned_can_be_kept_as_it_is(shown, tmp_path):
     drive, dialog = shown
-    out = cut_short(tmp_path, "mine", 10)
-    cut_short(tmp_path, "nothing")
+    out = planting().cut_short(tmp_path / "models", "mine", 10)
+    planting().cut_short(tmp_path / "models", "nothing")
     dialog.learn.fill()
     dialog.tabs.setCurrentWidget(dialog.learn)
     learn = dialog.learn
@@ -352,7 +341,7 @@ def test_what_a_killed_training_had_learned_can_be_kept_as_it_is(shown, tmp_path
     assert "another process" in dialog.said.text() and learn.run is None
     held.close()
     press(learn.begun.keep)
-    drive.wait(lambda: out.is_file() and learn.run is None, 60)
+    drive.wait(lambda: out.is_file() and learn.run is None, 300)
     assert read_card(out).steps == 10 and read_card(out).notes
 
 
