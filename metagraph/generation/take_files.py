@@ -149,8 +149,8 @@ def read_takes(
         read.append((each, clip))
         if len(there) > 1:
             several[each.clip] = (
-                f"holds {len(there)} animations; the longest, '{clip.name}', {clip.duration:.1f} s, is taken: "
-                "save each with its sound in a file of its own to learn from all"
+                f"holds {len(there)} animations; the longest, '{clip.name}', {clip.duration:.1f} s, is "
+                "taken: save each with its sound in a file of its own to learn from all"
             )
     if rig is None and read:
         counts = {c.skeleton: sum(o.skeleton == c.skeleton for _, o in read) for _, c in read}

@@ -32,7 +32,7 @@ class BegunRow(QWidget):
         self.go.clicked.connect(lambda: self.resumed.emit(self.which.currentData()))
         self.keep = QPushButton("Keep as it is", self, autoDefault=False)
         self.keep.clicked.connect(lambda: self.kept.emit(self.which.currentData()))
-        row.addWidget(QLabel("Begun", self))
+        row.addWidget(QLabel("Begun before", self))
         row.addWidget(self.which, 1)
         row.addWidget(self.go)
         row.addWidget(self.keep)

@@ -4,7 +4,7 @@ checked are kept.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from PySide6.QtCore import Qt
@@ -13,10 +13,11 @@ from PySide6.QtWidgets import QHBoxLayout, QHeaderView, QTableWidget, QTableWidg
 
 from app.features.generation.generation_jobs import Piece
 from app.features.generation.sample_preview import FigurePreview
+from app.project.document import Document
 from app.widgets.quiet_fields import ComboBox
 from metagraph.generation.landmarks import landmarks_of
 from metagraph.generation.networks import FPS
-from metagraph.generation.poses import PoseRig, poses_of
+from metagraph.generation.poses import poses_of
 from metagraph.graph.model import Kind, Limb
 
 HEADS = ("Piece", "Length", "Taken for", "Sure", "Arm")
@@ -44,6 +45,14 @@ class PiecesTable(QTableWidget):
         header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        sample = ComboBox(self)  # rows and columns have room for choices, whatever the font
+        sample.addItems([*KINDS, *LIMBS])
+        wanted = sample.sizeHint()
+        sample.deleteLater()
+        self.verticalHeader().setDefaultSectionSize(wanted.height() + 6)
+        for column in (KIND, LIMB):
+            header.setSectionResizeMode(column, QHeaderView.ResizeMode.Fixed)
+            self.setColumnWidth(column, wanted.width() + 24)
 
     def paintEvent(self, event: QPaintEvent) -> None:
         super().paintEvent(event)
@@ -118,11 +127,11 @@ class PiecesTable(QTableWidget):
 
 
 class PiecesView(QWidget):
-    """The list, and how the selected piece moves. rig: of the figure that pieces move."""
+    """The list, and how the selected piece moves."""
 
-    def __init__(self, rig: Callable[[], PoseRig], parent: QWidget | None = None) -> None:
+    def __init__(self, document: Document, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._rig = rig
+        self.document = document
         self.table = PiecesTable(self)
         self.preview = FigurePreview(("",), "A piece that is selected moves here.", FPS, self)
         self.preview.setAccessibleName("How the selected piece moves")
@@ -137,6 +146,8 @@ class PiecesView(QWidget):
         if piece is None:
             self.preview.show_moves(0, None)
             return
-        rig = self._rig()
+        from metagraph.generation.performing import project_rig
+
+        rig = project_rig(self.document.project)
         self.preview.words = (piece.clip.name,)
         self.preview.show_moves(0, landmarks_of(rig, poses_of(rig, piece.clip, FPS)))

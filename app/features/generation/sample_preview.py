@@ -97,7 +97,7 @@ class SamplePreview(FigurePreview):
     """The take on the left, the model on the right; words alone before there is anything."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
-        empty = "Here a take moves while a model learns, and beside it somebody as the model would by now."
+        empty = "While a model learns, a take moves here, and beside it somebody as the model would."
         super().__init__(("as recorded", "as the model moves by now"), empty, RATE, parent)
         self.setAccessibleName("A take, and how the model moves by now")
 

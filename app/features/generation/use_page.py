@@ -39,7 +39,6 @@ from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from metagraph.errors import FileError
 from metagraph.generation.offered import offered, words_of
-from metagraph.generation.poses import PoseRig
 from metagraph.generation.stored import SUFFIX, read_card
 from metagraph.graph.conversation import side_name
 
@@ -63,13 +62,14 @@ class UsePage(Page):
         self.about = QLabel(self, wordWrap=True)
         self.about.setProperty("dim", True)
         box.addWidget(self.about)
-        box.addSpacing(8)
-        box.addWidget(self.heading("A side of a conversation"))
-        box.addLayout(self._side_row())
-        box.addSpacing(8)
-        box.addWidget(self.heading("Clips for the meta-graph"))
-        box.addLayout(self._takes_row())
-        self.view = PiecesView(self._rig, self)
+        for words, row in (
+            ("A side of a conversation", self._side_row()),
+            ("Clips for the meta-graph", self._takes_row()),
+        ):
+            box.addSpacing(8)
+            box.addWidget(self.heading(words))
+            box.addLayout(row)
+        self.view = PiecesView(document, self)
         self.table = self.view.table
         self.table.itemChanged.connect(lambda _: self._enable())
         box.addWidget(self.view, 1)
@@ -276,11 +276,6 @@ class UsePage(Page):
         if self.document.folder is None:
             self._failed(ValueError("save the project first: new clips are kept as files beside it"))
         return self.document.folder
-
-    def _rig(self) -> PoseRig:
-        from metagraph.generation.performing import project_rig
-
-        return project_rig(self.document.project)
 
     def _chance(self) -> Any:
         from metagraph.generation.performing import Chance
