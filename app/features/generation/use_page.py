@@ -38,11 +38,18 @@ from app.stage.session import Session
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from metagraph.errors import FileError
+from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.offered import offered, words_of
 from metagraph.generation.stored import SUFFIX, read_card
 from metagraph.graph.conversation import side_name
 
 FILE, CHOOSE = "file", "choose"  # a sound that was chosen, and choosing one
+
+
+def choose_again(box: QComboBox, data: object) -> None:
+    """Choose the row of some data, else the first; Qt knows a path or a pair again only as the same object."""
+    rows = [box.itemData(n) for n in range(box.count())]
+    box.setCurrentIndex(rows.index(data) if data in rows else 0 if rows else -1)
 
 
 class UsePage(Page):
@@ -102,10 +109,10 @@ class UsePage(Page):
         self.seed = SpinBox(self, minimum=1, maximum=9999, value=1)
         self.seed.setAccessibleName("Seed")
         self.seed.setToolTip("Another number moves otherwise to the same speech")
-        self.temperature = DoubleSpinBox(self, minimum=0, maximum=1.2, singleStep=0.1, decimals=1, value=0.9)
+        self.temperature = DoubleSpinBox(self, minimum=0, maximum=1.2, singleStep=0.1, decimals=1, value=1.0)
         self.temperature.setAccessibleName("Chance")
         self.temperature.setToolTip("How much happens by chance: 0 moves least, 1 as was learned")
-        self.guidance = DoubleSpinBox(self, minimum=0, maximum=5, singleStep=0.5, decimals=1, value=2.0)
+        self.guidance = DoubleSpinBox(self, minimum=0, maximum=5, singleStep=0.25, decimals=2, value=GUIDANCE)
         self.guidance.setAccessibleName("Follows the speech")
         self.guidance.setToolTip("How closely it follows the speech; 1 as was learned. Matching models alone")
         return self._row(
@@ -174,14 +181,14 @@ class UsePage(Page):
                 if self._sound is not None:
                     box.addItem(self._sound.name, FILE)
                 box.addItem("Choose a sound…", CHOOSE)
-            box.setCurrentIndex(max(0, box.findData(chosen)))
+            choose_again(box, chosen)
         stance = self.stance.currentData()
         self.stance.clear()
         for s in project.graphs["arms"].stances.values():
             self.stance.addItem(f"arms · {s.name}", s.id)
         self.stance.addItem("the library alone", "")
         wanted = stance if stance is not None else first_stance(project)
-        self.stance.setCurrentIndex(max(0, self.stance.findData(wanted)))
+        choose_again(self.stance, wanted)
         self._enable()
 
     def _fill_models(self, wanted: Path | None = None) -> None:
@@ -191,7 +198,7 @@ class UsePage(Page):
         self.model.clear()
         for name, path in found.items():
             self.model.addItem(words_of(name), path)
-        self.model.setCurrentIndex(max(0, self.model.findData(now)) if found else -1)
+        choose_again(self.model, now)
         self.model.blockSignals(False)
         self._about()
 
