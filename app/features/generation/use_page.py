@@ -46,8 +46,8 @@ from metagraph.graph.conversation import side_name
 FILE, CHOOSE = "file", "choose"  # a sound that was chosen, and choosing one
 
 
-def choose_again(box: QComboBox, data: object) -> None:
-    """Choose the row of some data, else the first; Qt knows a path or a pair again only as the same object."""
+def choose_again(box: ComboBox, data: object) -> None:
+    """Choose the row of some data, else the first. Qt knows a path or a pair only as the same object."""
     rows = [box.itemData(n) for n in range(box.count())]
     box.setCurrentIndex(rows.index(data) if data in rows else 0 if rows else -1)
 
