@@ -49,9 +49,6 @@ def run(options: Namespace) -> int:
     import asyncio
     import gc
 
-    # A small model's sums are too short for several threads, which only wait for each other.
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-
     from app.project.opening import open_whole
     from metagraph.generation.offered import offered
     from metagraph.live.live_session import LiveSession

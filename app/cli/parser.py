@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 from collections.abc import Sequence
 from difflib import get_close_matches
@@ -120,6 +121,9 @@ def _module(name: str) -> Any:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line; return the exit code. Wrong usage and --help raise SystemExit, as argparse does."""
+    # Before NumPy is there. Its threads only wait for each other in a small model's sums; what is large
+    # shares its blocks among threads itself.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     given = list(sys.argv[1:] if arguments is None else arguments)
     parser = _parser(given[0] if given else "window")
     if not given or given[0] not in (*COMMANDS, "-h", "--help", "--version"):

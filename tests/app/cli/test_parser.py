@@ -442,3 +442,24 @@ def test_the_window_starts_without_anything_heavy() -> None:
     found = loaded("import app.shell.window")
     assert "PySide6" in found
     assert not found & set(HEAVY)
+
+
+def test_sums_are_not_shared_among_threads_since_numpy_is_loaded_after_that_is_said():
+    words = "import sys; from app.cli.parser import main; assert 'numpy' not in sys.modules; main(['check', '-h'])"
+    code = (
+        f"import atexit, os; atexit.register(lambda: print(os.environ.get('OPENBLAS_NUM_THREADS')))\n{words}"
+    )
+    clean = {k: v for k, v in os.environ.items() if k != "OPENBLAS_NUM_THREADS"}
+    told = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, env=clean, capture_output=True, text=True, timeout=300
+    )
+    assert told.stdout.split()[-1] == "1", told.stderr
+    kept = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=ROOT,
+        env={**clean, "OPENBLAS_NUM_THREADS": "3"},
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert kept.stdout.split()[-1] == "3"
