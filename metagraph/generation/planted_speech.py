@@ -219,7 +219,8 @@ def converse(seconds: float, seed: int, moves: int, name: str) -> Spoken:
     samples = np.stack([s.samples for s in pair])
     if chance.random() < 0.3:
         samples = samples + float(np.exp(chance.uniform(*np.log(LEAK)))) * samples[::-1]
-    noise = np.exp(chance.uniform(*np.log(NOISE), (2, 1)))
+    quiet, loud = np.log(NOISE)
+    noise = np.exp(chance.uniform(quiet, loud, (2, 1)))
     samples += noise * chance.standard_normal((2, count))
     sides = tuple(
         Side(name=f"Speaker {n + 1}", channel=n, words=tuple(s.words), segments=tuple(s.segments))

@@ -5,19 +5,24 @@ from __future__ import annotations
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
 from app.stage.compatibility_state import Compatibility
+from app.widgets.one_dialog import show_one
 
 
 def contribute(shell: Shell) -> Contribution:
     def show() -> None:
         from app.features.compatibility.matrix_dialog import MatrixDialog
 
-        widget, stage = shell.widget, shell.stage
-        dialog = widget.findChild(MatrixDialog) or MatrixDialog(
-            shell.document, stage.session, shell.services[Compatibility], shell.jobs, widget
+        show_one(
+            shell.widget,
+            MatrixDialog,
+            lambda: MatrixDialog(
+                shell.document,
+                shell.stage.session,
+                shell.services[Compatibility],
+                shell.jobs,
+                shell.widget,
+            ),
         )
-        dialog.show()
-        dialog.raise_()
-        dialog.activateWindow()
 
     return Contribution(
         commands=(

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
+from app.widgets.one_dialog import show_one
 
 
 def contribute(shell: Shell) -> Contribution:
     def show() -> None:
         from app.features.generation.generation_dialog import GenerationDialog
 
-        widget = shell.widget
-        dialog = widget.findChild(GenerationDialog) or GenerationDialog(
-            shell.document, shell.stage.session, shell.jobs, widget
+        show_one(
+            shell.widget,
+            GenerationDialog,
+            lambda: GenerationDialog(shell.document, shell.stage.session, shell.jobs, shell.widget),
         )
-        dialog.show()
-        dialog.raise_()
-        dialog.activateWindow()
 
     return Contribution(
         commands=(

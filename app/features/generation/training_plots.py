@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import isfinite
-from typing import Any
 
 import pyqtgraph as pg
 from PySide6.QtCore import Qt
@@ -12,6 +11,7 @@ from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from app.look.theme import theme
 from app.stage.session import Session
+from app.widgets.still_plot import empty_plot, still_plot
 
 # Statistics of which 1 is right, as people read them; others are told in words.
 RATIOS = {
@@ -42,7 +42,7 @@ class TrainingPlots(QWidget):
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(10)
-        self.left, self.right = (self._plot() for _ in range(2))
+        self.left, self.right = (still_plot(self) for _ in range(2))
         for plot, name in (
             (self.left, "How near the training is to its goal"),
             (self.right, "Statistics of the samples"),
@@ -52,16 +52,6 @@ class TrainingPlots(QWidget):
         self.setMinimumHeight(170)
         session.look.changed.connect(self._draw)
         self._draw()
-
-    def _plot(self) -> Any:
-        plot = pg.PlotWidget(self)
-        plot.setMenuEnabled(False)
-        plot.setMouseEnabled(False, False)
-        plot.hideButtons()
-        plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        for axis in ("left", "bottom"):
-            plot.getAxis(axis).enableAutoSIPrefix(False)
-        return plot
 
     def clear(self) -> None:
         self.goals, self.ratios = {}, {}
@@ -85,11 +75,7 @@ class TrainingPlots(QWidget):
             (self.left, next(iter(self.goals), "what training is after"), self.goals),
             (self.right, "samples beside takes: 1 is right", self.ratios),
         ):
-            plot.clear()
-            plot.setBackground(look.panel)
-            for axis in ("left", "bottom"):
-                plot.getAxis(axis).setPen(look.line)
-                plot.getAxis(axis).setTextPen(look.dim)
+            empty_plot(plot, look)
             plot.setLabel("bottom", "minutes", color=look.dim)
             plot.setTitle(words, color=look.dim, size="9pt")
             if lines is self.ratios:

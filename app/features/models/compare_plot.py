@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QPointF, Qt
+from PySide6.QtCore import QPointF
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from app.features.models.heatmap import SIDES
 from app.look.theme import KIND_MARKS, theme
 from app.stage.session import Session
+from app.widgets.still_plot import empty_plot, still_plot
 from metagraph.playback.compare import SURE, Comparison, quantiles
 from metagraph.playback.learn import State, state_words
 
@@ -76,11 +77,7 @@ class ComparePlot(QWidget):
         session.look.changed.connect(self._draw)
 
     def _plot(self) -> Any:
-        plot = pg.PlotWidget(self)
-        plot.setMenuEnabled(False)
-        plot.setMouseEnabled(False, False)
-        plot.hideButtons()
-        plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        plot = still_plot(self)
         plot.getAxis("left").setWidth(34)
         plot.setMinimumHeight(96)
         plot.scene().sigMouseMoved.connect(lambda at, p=plot: self._hover(p, at))
@@ -93,11 +90,7 @@ class ComparePlot(QWidget):
     def _draw(self) -> None:
         t = theme(self.session.look.name)
         for plot in (self.often, self.long):
-            plot.clear()
-            plot.setBackground(t.panel)
-            for name in ("left", "bottom"):
-                plot.getAxis(name).setPen(t.line)
-                plot.getAxis(name).setTextPen(t.dim)
+            empty_plot(plot, t)
         if self.found is None:
             return
         found, layer = self.found, self.found.model.layer

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
+from app.widgets.one_dialog import show_one
 
 
 def contribute(shell: Shell) -> Contribution:
     def show() -> None:
         from app.features.motion_graph.motion_graph_dialog import MotionGraphDialog
 
-        widget = shell.widget
-        dialog = widget.findChild(MotionGraphDialog) or MotionGraphDialog(
-            shell.document, shell.stage.session, shell.jobs, widget
+        show_one(
+            shell.widget,
+            MotionGraphDialog,
+            lambda: MotionGraphDialog(shell.document, shell.stage.session, shell.jobs, shell.widget),
         )
-        dialog.show()
-        dialog.raise_()
-        dialog.activateWindow()
 
     return Contribution(
         commands=(

@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.look.theme import theme
 from app.stage.session import Session
+from app.widgets.still_plot import empty_plot, still_plot
 
 BINS = 80
 BEYOND = 0.995  # share of all costs that the plot shows
@@ -25,14 +26,9 @@ class CostPlot(QWidget):
         super().__init__(parent)
         self.session = session
         self.shown: Any = None
-        self.plot = pg.PlotWidget(self)
-        self.plot.setMenuEnabled(False)
-        self.plot.setMouseEnabled(False, False)
-        self.plot.hideButtons()
-        self.plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.plot = still_plot(self)
         self.plot.getAxis("left").setStyle(showValues=False)
         self.plot.getAxis("left").setWidth(12)
-        self.plot.getAxis("bottom").enableAutoSIPrefix(False)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.plot)
@@ -46,11 +42,7 @@ class CostPlot(QWidget):
 
     def _draw(self) -> None:
         look = theme(self.session.look.name)
-        self.plot.clear()
-        self.plot.setBackground(look.panel)
-        for name in ("left", "bottom"):
-            self.plot.getAxis(name).setPen(look.line)
-            self.plot.getAxis(name).setTextPen(look.dim)
+        empty_plot(self.plot, look)
         self.plot.setLabel("bottom", "cost, m", color=look.dim)
         found = self.shown
         if found is None:

@@ -13,7 +13,7 @@ from torch import Tensor, nn
 from torch.nn import functional
 
 from metagraph.generation import vae
-from metagraph.generation.networks import CvaeSizes, MatchingSizes, Sizes
+from metagraph.generation.networks import Control, CvaeSizes, MatchingSizes, Sizes
 from metagraph.generation.poses import NUMBERS
 from metagraph.generation.train_plan import Loss, Settings
 from metagraph.generation.training.data import Corpus, stretches
@@ -61,6 +61,22 @@ class Objective(nn.Module, ABC):
     def head(self, heard: Tensor, speeds: Tensor) -> Tensor:
         """Return how badly speeds are predicted."""
         return functional.mse_loss(self.speeds(heard), speeds)
+
+    def crops(
+        self, corpus: Corpus, control: Control, chance: torch.Generator
+    ) -> tuple[Tensor, Tensor, Tensor, Tensor | None]:
+        """Return starts `[B]` of crops, their poses `[B, T, X]`, what a control hears of them `[B, before + T
+        + ahead, inputs]`, and how far ahead each knows `[B]`; None: all do as far as they can.
+        """
+        batch = self.settings.batch
+        starts = corpus.starts(chance, batch, self.length)
+        poses = corpus.rows(corpus.poses, starts, 0, self.length)
+        last = self.length + control.ahead
+        features = corpus.hear(starts, -control.before, last, self.settings.voices, chance)
+        ahead: Tensor | None = None
+        if control.ahead and float(torch.rand(1, generator=chance)) >= self.settings.known:
+            ahead = torch.randint(control.ahead + 1, (batch,), generator=chance)
+        return starts, poses, features, ahead
 
     @property
     def frames(self) -> int:
@@ -139,13 +155,7 @@ class FlowObjective(Objective):
     def _batch(self, corpus: Corpus, chance: torch.Generator) -> tuple[Tensor, Tensor, Tensor, Tensor]:
         """Return spans of poses `[B, n, span X]`, the context `[B, n, C]`, what is heard, and the starts."""
         control, span, batch = self.sizes.control, self.sizes.span, self.settings.batch
-        starts = corpus.starts(chance, batch, self.length)
-        poses = corpus.rows(corpus.poses, starts, 0, self.length)
-        last = self.length + control.ahead
-        features = corpus.hear(starts, -control.before, last, self.settings.voices, chance)
-        ahead: Tensor | None = None
-        if control.ahead and float(torch.rand(1, generator=chance)) >= self.settings.known:
-            ahead = torch.randint(control.ahead + 1, (batch,), generator=chance)
+        starts, poses, features, ahead = self.crops(corpus, control, chance)
         heard = self.net.heard(features, ahead, span)
         past = torch.zeros(batch, self.length // span, 0, 0)
         if control.past:
@@ -194,14 +204,7 @@ class CvaeObjective(Objective):
         self.length = corpus.longest_crop(self.settings.frames)
 
     def loss(self, corpus: Corpus, chance: torch.Generator) -> tuple[Tensor, dict[str, float]]:
-        control, batch = self.sizes.control, self.settings.batch
-        starts = corpus.starts(chance, batch, self.length)
-        poses = corpus.rows(corpus.poses, starts, 0, self.length)
-        last = self.length + control.ahead
-        features = corpus.hear(starts, -control.before, last, self.settings.voices, chance)
-        ahead: Tensor | None = None
-        if control.ahead and float(torch.rand(1, generator=chance)) >= self.settings.known:
-            ahead = torch.randint(control.ahead + 1, (batch,), generator=chance)
+        _, poses, features, ahead = self.crops(corpus, self.sizes.control, chance)
         heard = self.net.heard(features, ahead)
         mean, spread = self.net.encoded(poses, heard)
         spread = spread.clamp(-12, 12)
