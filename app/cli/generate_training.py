@@ -73,7 +73,7 @@ def ablate_arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--out", type=Path, required=True, help="a folder for models and table; what is there is kept"
     )
-    model_arguments(parser, "flow-vae")
+    model_arguments(parser, "matching")
     parser.add_argument(
         "--seconds", type=float, default=300.0, help="of the processor for each training (default: 300)"
     )

@@ -84,6 +84,7 @@ CHANGES = (
     Change("no ahead", "no sound after the frame; as many frames before it instead"),
     Change("past told", "past poses are never dropped in training", {"past_dropped": 0.0}),
     Change("no head", "no head that predicts how fast joints move", {"head": 0.0}),
+    Change("own sounds", "no sounds but the takes' own: no other voices, rooms or noise", {"voices": 0.0}),
     Change("no guidance", "follows the speech as it has learned to, no more", guidance=1.0),
     Change("mirrored", "mirror twins are learned from as well", mirrored=True),
 )

@@ -468,7 +468,20 @@ def test_an_ablation_is_a_table_and_is_taken_up_again(
 
     monkeypatch.setattr(train_process, "missing", lambda: None)
     monkeypatch.setattr(generate_training, "_train_one", trained)
-    words = ("ablate", takes, "-o", tmp_path / "a", "--seconds", 1, "--seeds", 1, "--draws", 1)
+    words = (
+        "ablate",
+        takes,
+        "-o",
+        tmp_path / "a",
+        "--seconds",
+        1,
+        "--seeds",
+        1,
+        "--draws",
+        1,
+        "--model",
+        "flow-vae",
+    )
     some = ("--change", "no activity", "--change", "no vae")
     text = run(capsys, *words, *some)
     assert "2 trained now" not in text and "3 trained now, 0 kept" in text
