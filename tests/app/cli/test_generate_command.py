@@ -494,4 +494,4 @@ def test_an_ablation_is_a_table_and_is_taken_up_again(
     assert data["trained_now"] == [] and len(data["kept"]) == 3 and len(done) == 3
     assert json.loads((tmp_path / "a" / "table.json").read_text())["rows"] == data["rows"]
     assert "no change 'no hope'" in run(capsys, *words, "--change", "no hope", code=1)
-    assert "other seconds" in run(capsys, *words[:4], *some, "--seconds", 2, code=1)
+    assert "other seconds" in run(capsys, *words[:4], *some, "--model", "flow-vae", "--seconds", 2, code=1)
