@@ -26,6 +26,8 @@ PERFECT = {
     "speed_w1": "floor",
     "acceleration": "1",
     "wrist_range": "1",
+    "still": "1",
+    "trembling": "1",
     "role": "true",
     "role_w1": "floor",
     "stroke": "true",
@@ -38,8 +40,10 @@ PERFECT = {
 MEANINGS = {
     "distance": "how the landmarks' distances from the mean pose are distributed: W1 over the mean distance",
     "speed": "mean speed over the true one; speed_w1: W1 likewise",
-    "acceleration": "mean acceleration over the true one; more is trembling",
+    "acceleration": "mean acceleration over the true one",
     "wrist_range": "range between quartiles of the wrists' distances over the true one",
+    "still": "how often a hand rests (under 4 cm/s, the mean over half a second) over the true one",
+    "trembling": "mean acceleration of hands that rest over the true one",
     "role": "mean change of the distances while speaking over that while listening; role_w1: W1 of "
     "figures 7, 8",
     "stroke": "speed of the hands within 0.25 s of own stresses over their mean speed",

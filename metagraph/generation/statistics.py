@@ -28,11 +28,13 @@ BLOCK = 15.0  # seconds that are drawn together
 DRAWS = 200
 LEVEL = 0.95
 NEAR, ABOUT, NOD = 0.25, 1.0, 1.0  # seconds: of a stroke; of a profile; after what is answered
+STILL, RESTING = 4.0, 0.5  # cm/s, and seconds over which a hand that rests is slower on average
 WINDOW = 25  # frames of the Frechet distance's windows
 SCORES = 12  # principal components
 QUANTILES = 512
 MEASURES = (
-    *("distance", "speed", "speed_w1", "acceleration", "wrist_range", "role", "role_w1"),
+    *("distance", "speed", "speed_w1", "acceleration", "wrist_range", "still", "trembling"),
+    *("role", "role_w1"),
     *("stroke", "nods_responses", "nods_hesitations", "profile", "frechet"),
 )
 
@@ -135,6 +137,8 @@ class _Parts:
     far: Array  # landmarks from their mean `[T, 9]`
     speeds: Array  # of landmarks `[T - 1, 9]`
     jerks: Array  # their mean acceleration `[T - 2]`
+    still: Array  # whether each hand rests `[T - 1, 2]`
+    trembling: Array  # acceleration of hands that rest `[n]`
     speaking: Array  # how fast the distances grow `[n, 9]`
     listening: Array
     hands: Array  # speed of the faster one `[T - 1]`
@@ -151,7 +155,10 @@ def _parts(m: Performance, truth: _Truth) -> _Parts:
     far = np.linalg.norm(m.landmarks - truth.mean, axis=-1) * 100
     growing = np.diff(far, axis=0) * FPS
     speeds = np.linalg.norm(steps, axis=-1)
-    hands = speeds[:, list(WRISTS)].max(1)
+    wrists = list(WRISTS)
+    hands = speeds[:, wrists].max(1)
+    still = np.stack([_averaged(speeds[:, w], round(RESTING * FPS)) < STILL for w in wrists], 1)
+    sharp = np.linalg.norm(np.diff(steps[:, wrists], axis=0), axis=-1) * FPS
     reach, count = round(ABOUT * FPS), len(steps)
     peaks = [at for at in (round(p * FPS) for p in m.marks.peaks) if reach <= at < count - reach]
     scores = (truth.scale.apply(m.poses) - truth.centre) @ truth.basis.T
@@ -162,6 +169,8 @@ def _parts(m: Performance, truth: _Truth) -> _Parts:
         far,
         speeds,
         np.linalg.norm(np.diff(steps, axis=0), axis=-1).mean(1) * FPS,
+        still,
+        sharp[still[1:] & still[:-1]],
         growing[m.activity[1:, SELF] > 0.5],
         growing[m.activity[1:, PARTNER] > 0.5],
         hands,
@@ -181,8 +190,9 @@ def _together(parts: Sequence[_Parts]) -> _Parts:
 def measures(generated: Sequence[Performance], true: Sequence[Performance]) -> dict[str, float]:
     """Return all MEASURES of generated motion beside what was recorded; nan where what it is made of does not
     occur. distance, frechet: the smaller the better, down to the floor. speed, acceleration, wrist_range,
-    profile: 1 is perfect; speed_w1, role_w1: 0. role, stroke, nods: as the recorded motion's own. Raises
-    ValueError where there is nothing to compare.
+    still (how often hands rest), trembling (their acceleration while they do), profile: 1 is perfect;
+    speed_w1, role_w1: 0. role, stroke, nods: as the recorded motion's own. Raises ValueError where there is
+    nothing to compare.
     """
     if not generated or not true or min(len(m) for m in (*generated, *true)) < 3:
         raise ValueError("there is no motion to compare: give takes of some seconds")
@@ -203,6 +213,8 @@ def _compared(made: _Parts, true: _Parts) -> dict[str, float]:
         "speed_w1": _apart(made.speeds, true.speeds) / _least(true.speeds.mean()),
         "acceleration": float(made.jerks.mean() / _least(true.jerks.mean())),
         "wrist_range": _range(made.far[:, hands]) / _least(_range(true.far[:, hands])),
+        "still": float(made.still.mean() / _least(true.still.mean())),
+        "trembling": float("nan"),
         "role": role,
         "role_w1": role_w1,
         "stroke": _beside(made.hands, made.strokes),
@@ -211,7 +223,16 @@ def _compared(made: _Parts, true: _Parts) -> dict[str, float]:
         "profile": _profile(made.profile, true.profile),
         "frechet": _frechet(made.windows, true.windows),
     }
+    if len(made.trembling) and len(true.trembling):
+        out["trembling"] = float(made.trembling.mean() / _least(true.trembling.mean()))
     return {name: out[name] for name in MEASURES}
+
+
+def _averaged(values: Array, count: int) -> Array:
+    """Return the mean of so many values about each, fewer at the ends."""
+    count = min(count, len(values))
+    whole = np.convolve(np.ones(len(values)), np.ones(count), "same")
+    return np.asarray(np.convolve(values, np.ones(count), "same") / whole)
 
 
 def _least(value: Any) -> float:

@@ -30,7 +30,7 @@ from tests.generation.makers import moving, rig
 FPS = 25
 
 
-def _talker(seed: int, seconds: float = 60, hear: int | None = None) -> Performance:
+def _talker(seed: int, seconds: float = 60, hear: int | None = None, wander: float = 0.3) -> Performance:
     """Somebody whose hands are fast at own peaks and who nods with responses. hear: seed of what is said."""
     say = np.random.default_rng(1000 + (seed if hear is None else hear))
     chance = np.random.default_rng(seed)
@@ -41,7 +41,7 @@ def _talker(seed: int, seconds: float = 60, hear: int | None = None) -> Performa
     peaks, responses = at[own], at[~own]
     t = np.arange(count) / FPS
     points = np.tile(np.arange(27.0).reshape(1, 9, 3) / 20, (count, 1, 1))
-    points += 0.004 * np.cumsum(chance.standard_normal((count, 9, 3)), 0) * 0.3
+    points += 0.004 * np.cumsum(chance.standard_normal((count, 9, 3)), 0) * wander
     for peak in peaks:
         points[:, list(WRISTS), 1] += 0.3 * np.exp(-(((t - peak) / 0.12) ** 2))[:, None]
     for begin in responses:
@@ -55,6 +55,7 @@ def _talker(seed: int, seconds: float = 60, hear: int | None = None) -> Performa
 
 
 TRUE = [_talker(1), _talker(2)]
+RESTING = [_talker(1, wander=0.02), _talker(2, wander=0.02)]
 
 
 def test_motion_beside_itself_is_perfect():
@@ -66,6 +67,8 @@ def test_motion_beside_itself_is_perfect():
         "speed_w1": 0,
         "acceleration": 1,
         "wrist_range": 1,
+        "still": 1,
+        "trembling": 1,
     }.items():
         assert same[name] == pytest.approx(value, abs=1e-9)
     assert same["role_w1"] == pytest.approx(0, abs=1e-9)
@@ -105,6 +108,23 @@ def test_trembling_shows_in_the_acceleration_most():
     shaken = measures(trembling, TRUE)
     assert shaken["acceleration"] > shaken["speed"] > 1.2
     assert shaken["distance"] < 0.2
+
+
+def test_hands_that_rest_tremble_by_what_they_do_while_they_rest_and_not_by_gestures():
+    chance = np.random.default_rng(3)
+    little = [
+        replace(m, landmarks=m.landmarks + 3e-4 * chance.standard_normal(m.landmarks.shape)) for m in RESTING
+    ]
+    shaken, calm = measures(little, RESTING), measures(RESTING, RESTING)
+    assert calm["still"] == pytest.approx(1) and calm["trembling"] == pytest.approx(1)
+    assert shaken["still"] == pytest.approx(1, abs=0.05)
+    assert shaken["trembling"] > 3
+    assert shaken["trembling"] > shaken["acceleration"]  # of all, gestures too
+    restless = [
+        replace(m, landmarks=m.landmarks + 5e-3 * chance.standard_normal(m.landmarks.shape)) for m in RESTING
+    ]
+    never = measures(restless, RESTING)
+    assert never["still"] == 0 and np.isnan(never["trembling"])
 
 
 def test_half_the_size_is_half_the_speed():

@@ -16,7 +16,7 @@ from app.widgets.still_plot import empty_plot, still_plot
 # Statistics of which 1 is right, as people read them; others are told in words.
 RATIOS = {
     "speed": "speed",
-    "acceleration": "trembling",
+    "trembling": "trembling",
     "wrist_range": "reach",
     "profile": "goes with stresses",
 }

@@ -259,7 +259,7 @@ def test_a_training_is_followed_stopped_and_kept(training, model):
         numbers = {"likelihood": 10.0 + n, "reconstruction": 1 / n}
         process.say(step=n * 100, minutes=n / 10, share=n / 150, numbers=numbers)
         if n % 6 == 0:
-            found = {"speed": 2.0 - n / 30, "acceleration": 8 / n, "profile": n / 40}
+            found = {"speed": 2.0 - n / 30, "trembling": 8 / n, "profile": n / 40}
             process.say(event="statistics", minutes=n / 10, statistics=found)
             points = (
                 np.cumsum(np.random.default_rng(n).normal(0, 0.01, (60, 9, 3)), 0) + learn.preview.moves[0][0]
