@@ -23,11 +23,14 @@ SHORTEST = 10.0  # seconds of a conversation
 PITCH = (85.0, 250.0)  # Hz, between which voices lie
 TRACT = (0.9, 1.25)  # how much higher resonances are than a grown man's; higher voices have higher ones
 PACE = (0.85, 1.2)  # how long syllables last, of what is written below
-LOUDER = (1.6, 3.3)  # a stressed syllable's amplitude over the others'
+LOUDER = (1.3, 3.3)  # a stressed syllable's amplitude over the others'
 HIGHER = (1.06, 1.4)  # its pitch
-LONGER = (1.15, 1.9)  # its length
-ACCENT = 0.8  # other words of a clause are at most this loud, a stressed one is 1
-LOUD = (0.15, 0.35)  # of full scale: a stressed syllable
+LONGER = (1.0, 1.9)  # its length
+DRAWLED = (1.0, 1.6)  # the length of a clause's last word
+LONG = 0.15  # share of other syllables that are half as long again
+ACCENT = 0.85  # other words of a clause are at most this loud, a stressed one is 1
+LOUD = (0.12, 0.3)  # of full scale: about the peak of a stressed syllable
+CREST = 3.0  # about a peak over the root mean square
 NOISE = (5e-5, 2e-3)  # of full scale, each microphone's
 LEAK = (0.004, 0.08)  # of the other voice, in three of ten conversations
 SYLLABLE = (0.11, 0.2)  # seconds
@@ -69,6 +72,7 @@ class _Voice:
         self.soft = self.loud / float(chance.uniform(*LOUDER))
         self.higher = float(chance.uniform(*HIGHER))
         self.longer = float(chance.uniform(*LONGER))
+        self.drawls = float(chance.uniform(*DRAWLED))
         self.falling = float(chance.uniform(0.0, 0.22))  # of the pitch, over a clause
         self.breath = float(np.exp(chance.uniform(np.log(0.01), np.log(0.2))))
         self.tilt = float(chance.uniform(-1.0, 0.6))  # of the source's spectrum, an octave: powers of two
@@ -76,7 +80,7 @@ class _Voice:
         self.weights = float(chance.uniform(0.4, 0.8)) ** np.arange(3)
 
     def voiced(self, count: int, formants: tuple[float, ...], pitch: float) -> Array:
-        """Return so many samples of a vowel or of what sounds on, at most 1."""
+        """Return so many samples of a vowel or of what sounds on, as loud as any other."""
         t = np.arange(count) / max(1, count)
         hertz = self.pitch * pitch * (1.05 - 0.1 * t) * (1 + 0.01 * self.chance.standard_normal())
         source = 1 - 2 * (np.cumsum(hertz) / RATE % 1)
@@ -88,14 +92,15 @@ class _Voice:
         return _even(np.fft.irfft(np.fft.rfft(source) * shape, count))
 
     def hiss(self, count: int, middle: float) -> Array:
-        """Return so many samples of a hiss or a burst, at most 1."""
+        """Return so many samples of a hiss or a burst, as loud as any other."""
         frequencies = np.fft.rfftfreq(count, 1 / RATE)
         shape = 1 / (1 + ((frequencies - middle * self.tract) / 1200) ** 2)
         return _even(np.fft.irfft(np.fft.rfft(self.chance.standard_normal(count)) * shape, count))
 
 
 def _even(samples: Array) -> Array:
-    return samples / max(float(np.abs(samples).max(initial=0.0)), 1e-9)
+    """Return samples of one loudness, the peak about 1."""
+    return samples / max(CREST * float(np.sqrt(np.mean(samples**2))) if len(samples) else 0.0, 1e-9)
 
 
 class _Speaker:
@@ -168,6 +173,8 @@ class _Speaker:
                 pitch *= voice.higher
             else:
                 pitch *= float(chance.uniform(0.93, 1.06))
+                longer = voice.drawls if n + 1 == count else 1.0
+                lengths = [v * longer * (1.5 if chance.random() < LONG else 1.0) for v in lengths]
             at = self._say(at, parts, lengths, loud, pitch)
             if chance.random() < 0.08 and n + 1 < count:
                 at += float(chance.uniform(0.03, 0.12))
@@ -180,7 +187,8 @@ class _Speaker:
         hesitation = kind == "hesitation"
         text = str(chance.choice(_HESITATIONS if hesitation else _RESPONSES))
         length = float(chance.uniform(0.35, 0.65) if hesitation else chance.uniform(0.22, 0.4))
-        loud = self.voice.soft * float(chance.uniform(0.5, 0.8) if hesitation else chance.uniform(0.5, 1.1))
+        softest, loudest = 0.5 * self.voice.soft, 0.9 * self.voice.loud
+        loud = float(np.exp(chance.uniform(np.log(softest), np.log(loudest))))
         start = at
         at = self._say(at, [text], [length], [loud], float(chance.uniform(0.8, 1.0)))
         self._keep(kind, start, at, None, text)
@@ -202,7 +210,7 @@ def converse(seconds: float, seed: int, moves: int, name: str) -> Spoken:
     count = round(seconds * RATE)
     pair = tuple(_Speaker(count, chance) for _ in (0, 1))
     at, side = 0.6, int(chance.integers(0, 2))
-    longest = 5.5  # a clause, an "um" before it and a pause
+    longest = 7.0  # a clause, an "um" before it and a pause
     while at + longest < seconds:
         own, other = pair[side], pair[1 - side]
         for _ in range(int(chance.integers(1, 5))):
@@ -213,7 +221,7 @@ def converse(seconds: float, seed: int, moves: int, name: str) -> Spoken:
             at = own.clause(at)
             if chance.random() < 0.35 and at + 0.6 < seconds:
                 other.short(max(at - float(chance.uniform(0.0, 0.3)), other.end + 0.05), "response")
-            at += float(chance.uniform(0.15, 0.6))
+            at += float(chance.uniform(0.15, 0.6) if chance.random() < 0.6 else chance.uniform(0.0, 0.05))
         at = max(at, other.end + 0.1) + float(chance.choice([0.2, 0.5, 1.0, 3.0], p=[0.4, 0.3, 0.2, 0.1]))
         side = 1 - side
     samples = np.stack([s.samples for s in pair])

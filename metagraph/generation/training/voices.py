@@ -14,7 +14,11 @@ from torch import Tensor
 from metagraph.generation.features import FLOOR, MELS
 
 HIGHER = 2.0  # mels: how far a voice is moved at most, about a fifth of its frequencies
-UNEVEN = 0.4  # nats: deviation of each of the three parts of a microphone's curve, tilt and all
+UNEVEN = 1.0  # nats: deviation of each of the SHAPES of a voice's and a microphone's curve, tilt and all
+SHAPES = 5
+ALIKE = 0.5  # share of crops whose sounds differ less, up to not at all but in loudness
+GATED = 0.2  # share of crops in which what is soft is silence
+GATE = (4.0, 9.0)  # nats below what is loudest
 NOISE = (1.0, 8.0)  # nats that noise is below what is loudest: 4 to 35 dB
 NOISY, BANDED, ROOMY = 0.35, 0.15, 0.25  # shares of crops
 TAIL = 8  # frames of a room's
@@ -34,24 +38,40 @@ def sound_otherwise(mels: Tensor, chance: torch.Generator) -> Tensor:
 
     silence = log(FLOOR)
     mels = _moved(mels, drawn(-HIGHER, HIGHER))
+    alike = some(ALIKE)[:, 0, 0]
+    mels[alike] = torch.lerp(mels[alike], _loudness_alone(mels[alike]), drawn(0, 1)[alike])
+    mels = mels + _curves(count, UNEVEN, chance)
     roomy, wet, decay = some(ROOMY)[:, 0, 0], drawn(0, WET), drawn(*DECAY)
     power = mels[roomy].exp()
     mels[roomy] = (power + wet[roomy] * _tails(power, decay[roomy])).log()
     loudest = mels.amax((1, 2), keepdim=True)
-    floor = loudest - drawn(*NOISE) + _curves(count, 1.0, chance)
+    gate = some(GATED) & (mels.amax(2, keepdim=True) < loudest - drawn(*GATE))
+    mels = torch.where(gate, silence, mels)
+    floor = loudest - drawn(*NOISE) + _curves(count, UNEVEN, chance)
     noisy = some(NOISY)[:, 0, 0]
     mels[noisy] = torch.logaddexp(mels[noisy], floor[noisy])
     at = torch.arange(MELS)
     through = (at >= drawn(0, 5)) & (at <= drawn(16, MELS))
     mels = torch.where(some(BANDED) & ~through, silence, mels)
-    return (mels + _curves(count, UNEVEN, chance)).clamp(min=silence)
+    return mels.clamp(min=silence)
 
 
 def _curves(count: int, deviation: float, chance: torch.Generator) -> Tensor:
-    """Return smooth curves over the mels `[B, 1, 27]`."""
-    x = torch.linspace(-1, 1, MELS)
-    shapes = torch.stack([torch.ones(MELS), x, 1.5 * x**2 - 0.5])
-    return ((deviation * torch.randn(count, 3, generator=chance)) @ shapes)[:, None]
+    """Return smooth curves over the mels `[B, 1, 27]`: SHAPES cosines, the later the less."""
+    at = (torch.arange(MELS) + 0.5) / MELS
+    order = torch.arange(SHAPES)[:, None]
+    shapes = torch.cos(torch.pi * order * at) / (1 + order / 2)
+    return ((deviation * torch.randn(count, SHAPES, generator=chance)) @ shapes)[:, None]
+
+
+def _loudness_alone(mels: Tensor) -> Tensor:
+    """Return sounds that differ in loudness alone: the spectrum of each frame is the mean one of its crop's
+    louder half.
+    """
+    loud = mels.logsumexp(2, keepdim=True)
+    heard = (loud >= loud.median(1, keepdim=True).values).to(mels.dtype)
+    mean = (mels * heard).sum(1, keepdim=True) / heard.sum(1, keepdim=True)
+    return mean - mean.logsumexp(2, keepdim=True) + loud
 
 
 def _moved(mels: Tensor, far: Tensor) -> Tensor:

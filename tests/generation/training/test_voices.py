@@ -37,16 +37,27 @@ def test_a_syllable_stays_where_it_was() -> None:
     assert (loud[:, [0, 1, 10, 11]].amin(1) >= loud[:, [6, 7, 8, 9]].amax(1) * 0.8).float().mean() > 0.95
 
 
-@pytest.mark.parametrize("name", ["NOISY", "BANDED", "ROOMY"])
-def test_noise_lines_and_rooms_come_in_their_share_of_crops(name: str, monkeypatch) -> None:
-    for other in {"NOISY", "BANDED", "ROOMY"} - {name}:
+SHARES = ("NOISY", "BANDED", "ROOMY", "ALIKE", "GATED")
+
+
+@pytest.mark.parametrize("name", SHARES)
+def test_each_that_can_happen_to_a_sound_does_in_its_share_of_crops(name: str, monkeypatch) -> None:
+    for other in set(SHARES) - {name}:
         monkeypatch.setattr(voices, other, 0.0)
     monkeypatch.setattr(voices, "HIGHER", 0.0)
     monkeypatch.setattr(voices, "UNEVEN", 0.0)
     before, share = mels(), getattr(voices, name)
+    before[:, 5:9] += 3.0  # something soft that is not silence, of another spectrum
     changed = (sound_otherwise(before, chance()) - before).abs().amax((1, 2)) > 1e-4
     assert abs(float(changed.float().mean()) - share) < 0.12
 
 
 def test_of_a_single_frame_no_room_is_left() -> None:
     assert sound_otherwise(mels(9, 1), chance()).shape == (9, 1, MELS)
+
+
+def test_sounds_that_differ_in_loudness_alone_are_as_loud_as_before() -> None:
+    before = mels(2) + torch.randn(2, 30, MELS, generator=chance())
+    alone = voices._loudness_alone(before)
+    assert torch.allclose(alone.exp().sum(2), before.exp().sum(2), rtol=1e-4)
+    assert float((alone - alone.mean(2, keepdim=True)).std(1).max()) < 1e-4
