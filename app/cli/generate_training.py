@@ -56,9 +56,10 @@ def model_arguments(parser: ArgumentParser, kind: str) -> None:
     parser.add_argument("--model", choices=KINDS, default=kind, help=f"what is trained (default: {kind})")
     parser.add_argument(
         "--size",
-        choices=("small", "paper"),
+        choices=("small", "tokens", "paper"),
         default="small",
-        help="'paper' learns for hundreds of hours on a processor (default: small)",
+        help="'tokens' is a small flow-vae on pieces of 160 ms, as matching; 'paper' learns for hundreds of "
+        "hours on a processor (default: small)",
     )
     parser.add_argument("--two-tracks", action="store_true", help="hear both voices apart")
     parser.add_argument("--threads", type=int, default=0, help="of the processor (default: all)")

@@ -219,11 +219,21 @@ class MatchingSizes(
 
 Sizes = FlowSizes | CvaeSizes | MatchingSizes
 Kind = Literal["flow-vae", "moglow", "cvae", "matching"]
-Size = Literal["small", "paper"]
+Size = Literal["small", "tokens", "paper"]
 
 
 def sizes_of(kind: Kind, size: Size = "small", pose: int = 78, audio: int = 27) -> Sizes:
-    """Return the sizes of a model. pose: numbers a frame (6 a joint). audio: numbers of audio a frame."""
+    """Return the sizes of a model. pose: numbers a frame (6 a joint). audio: numbers of audio a frame.
+    `tokens` is a Flow-VAE whose code are the pieces of motion that matching has. Raises ValueError for
+    another of that size.
+    """
+    if size == "tokens":
+        if kind != "flow-vae":
+            raise ValueError(f"the size 'tokens' is of a flow-vae; a {kind} is small, or as in the paper")
+        dims = min(48, 4 * pose)
+        return FlowSizes(
+            pose=pose, control=Control(audio=audio), code="pca", dims=dims, steps=6, units=128, span=4
+        )
     if kind == "matching":
         return MatchingSizes(pose=pose, audio=audio, dims=min(48, 4 * pose))
     if kind == "cvae":

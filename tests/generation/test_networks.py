@@ -62,3 +62,10 @@ def test_using_models_brings_in_no_torch():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_a_flow_on_pieces_of_motion_has_the_pieces_that_matching_has():
+    flow, matching = sizes_of("flow-vae", "tokens"), sizes_of("matching")
+    assert flow.code == "pca" and flow.span == matching.frames and flow.dims == matching.dims
+    with pytest.raises(ValueError, match="of a flow-vae"):
+        sizes_of("moglow", "tokens")
