@@ -16,6 +16,7 @@ from metagraph.generation.vae import spans
 Array = NDArray[Any]
 
 STEPS = 8  # of Euler a chunk
+GUIDED = 5  # first steps that are guided: what follows settles what was begun, with or without
 GUIDANCE = 1.75  # 0 sees who speaks alone, 1 hears as in training, above follows what is said more closely
 SMOOTH = 1.5  # frames: deviation of the Gaussian over the rotations' numbers
 
@@ -38,8 +39,8 @@ def still_tokens(w: Layers, sizes: MatchingSizes, pose: Array) -> Array:
 
 
 class Drawing:
-    """New tokens from noise, by Euler's steps. guidance: as GUIDANCE; 1 asks for no more than what is heard,
-    which is half the work. pieces: of how many `pieces` consists.
+    """New tokens from noise, by Euler's steps. guidance: as GUIDANCE, of the first GUIDED; 1 asks for no
+    more than what is heard, which is less work. pieces: of how many `pieces` consists.
     """
 
     def __init__(
@@ -57,9 +58,10 @@ class Drawing:
 
     def drawing(self, noise: Array, past: Array, heard: Array) -> Iterator[Array]:
         """Do what `draw` does in pieces, for who has no time for all at once: the last one yielded is it."""
-        x, count = noise, 1 if self.guidance == 1 else 2  # with and without sound at once: one batch
-        before = np.broadcast_to(past, (count, *past.shape))
+        x, guided = noise, 0 if self.guidance == 1 else GUIDED
         for n in range(self.steps):
+            count = 2 if n < guided else 1  # with and without sound at once: one batch
+            before = np.broadcast_to(past, (count, *past.shape))
             many = np.broadcast_to(x, (count, *x.shape))
             for v in self._velocity.pieces(n, many, before, heard[:count]):
                 done = v
