@@ -16,7 +16,7 @@ from metagraph.generation.vae import spans
 Array = NDArray[Any]
 
 STEPS = 8  # of Euler a chunk
-GUIDED = 5  # first steps that are guided: what follows settles what was begun, with or without
+GUIDED = 4  # first steps that are guided: what follows settles what was begun, with or without
 GUIDANCE = 1.75  # 0 sees who speaks alone, 1 hears as in training, above follows what is said more closely
 SMOOTH = 1.5  # frames: deviation of the Gaussian over the rotations' numbers
 
