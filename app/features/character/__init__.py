@@ -70,7 +70,23 @@ def contribute(shell: Shell) -> Contribution:
     some = lambda: bool(session.selection.clips or session.selection.actions)  # noqa: E731
     sound, play, view = stage.sound, "&Play", "&View"
     return Contribution(
-        panels=(Panel("character", "Character", "right", make, late=False),),
+        panels=(
+            Panel(
+                "character",
+                "Character",
+                "right",
+                make,
+                late=False,
+                where={
+                    "graph": "side",
+                    "label": "side",
+                    "time": "large",
+                    "perform": "large",
+                    "talk": "large",
+                },
+                least=(300, 230),
+            ),
+        ),
         commands=(
             Command(
                 "character",

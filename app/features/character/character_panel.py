@@ -169,7 +169,8 @@ class PreviewPanel(QWidget):
             marks = self._marks() if one is shown else {}
             actors.append(Actor(figure, rotations, positions, morphs, marks, self.bones))
         scene = Scene(tuple(actors))
-        framed = (*(actor.figure for actor in actors), *(one.stand for one in shown.both))
+        shape = round(self.view.width() / max(1, self.view.height()), 1)  # it is framed anew for another room
+        framed = (*(actor.figure for actor in actors), *(one.stand for one in shown.both), shape)
         if actors and self._framed != framed and not self.view.moved_by_hand:
             self._framed = framed
             aside = ASIDE if shown.partner is not None else 0.0

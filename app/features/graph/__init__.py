@@ -131,7 +131,19 @@ def contribute(shell: Shell) -> Contribution:
         study=True,
     )
     return Contribution(
-        panels=(Panel("graph", "Graph", "centre", make, late=False, when="meta"),),
+        panels=(
+            Panel(
+                "graph",
+                "Graph",
+                "centre",
+                make,
+                late=False,
+                when="meta",
+                where={"graph": "large", "time": "list"},
+                opens={"label": "below"},
+                least=(250, 200),
+            ),
+        ),
         commands=(new, *labels, *layers, *places),
         header=(HeaderItem("middle", lambda parent: LayerTabs(shell, parent)),),
         close=lambda: canvas().stop(),

@@ -10,13 +10,15 @@ from typing import Literal
 
 from PySide6.QtCore import QPointF, QRectF, QSizeF
 
+from app.features.graph.graph_frames import GRID, HEADER, PAD, ROW, frames
 from metagraph.graph.model import Action, Kind, Layer, MetaGraph, Project
 
-GRID = 8
+LEAST_WIDTH, LEAST_HEIGHT = 240.0, 300.0  # pixels; a smaller canvas is laid out as if it was so large
 CHIP_HEIGHT, CHIP_TOP = 34, 12
-HEADER, ROW, PAD = 38, 24, 8
+BESIDE: tuple[Kind, ...] = ("gesture", "fidget", "transition")
 BAR = 44  # width of a likelihood bar
 ARROW = 26  # of a transition's arrow, which can be dragged
+TITLE = 124  # of a node's mark and title
 FOOT = 40  # the sentence at the bottom
 CHIP_MIN, CHIP_MAX = 108, 230
 
@@ -134,7 +136,7 @@ def arrange(
     chips.
     """
     scroll, widths = scroll or {}, widths or {}
-    width, height = max(size.width(), 420.0), max(size.height(), 360.0)
+    width, height = max(size.width(), LEAST_WIDTH), max(size.height(), LEAST_HEIGHT)
     graph = project.graphs[layer]
 
     # Many stances in a low window: narrower chips without words leave room for the nodes.
@@ -143,41 +145,14 @@ def arrange(
         top = chips[-1].rect.bottom() + 2 * GRID
         if top < height - FOOT - 320:
             break
-    bottom = height - FOOT
-    usable = max(bottom - top, 200.0)
-    gap = min(max(width * 0.045, 16.0), 56.0)
-    side = min(300.0, (width - 4 * GRID - max(width * 0.2, 112.0) - 2 * gap) / 2)
-    card_w = min(width - 4 * GRID - 2 * side - 2 * gap, 240.0)
-    transitions = graph.of(stance, "transition") if stance else ()
-    wide = min(max(width * 0.56, 300.0), 520.0)
-    columns = 2 if wide > 400 else 1
-    lines = -(-len(transitions) // columns)
-    low_h = min(HEADER + max(lines, 1) * ROW + PAD + 2, usable * 0.36)
-    low_h = max(low_h, HEADER + 2 * ROW)
-    card_h = min(max(usable - low_h - 5 * GRID, 80.0), card_w * 1.15)
-    slack = max(0.0, usable - low_h - card_h)
-    card = QRectF((width - card_w) / 2, top + slack * 0.42, card_w, card_h)
-    low_top = min(card.bottom() + max(3.0 * GRID, slack * 0.3), bottom - low_h - GRID)
-
-    nodes: dict[Kind, Node] = {}
-    lefts: dict[Kind, float] = {"gesture": 2.0 * GRID, "fidget": width - side - 2.0 * GRID}
-    beside = (
-        max(low_top - 2 * GRID - top, 120.0)
-        if wide > width - 2 * side - 6 * GRID
-        else max(bottom - top - GRID, 120.0)
-    )
-    for kind, left in lefts.items():
-        actions = graph.of(stance, kind) if stance else ()
-        wanted = HEADER + max(len(actions), 2) * ROW + PAD + (ROW if len(actions) else 0)
-        h = min(wanted, beside)
-        nodes[kind] = _node(kind, QRectF(left, top, side, h), actions, scroll.get(kind, 0), 1)
-    nodes["transition"] = _node(
-        "transition",
-        QRectF((width - wide) / 2, low_top, wide, low_h),
-        transitions,
-        scroll.get("transition", 0),
-        columns,
-    )
+    bottom = max(height - FOOT, top + 200.0)
+    actions = {kind: graph.of(stance, kind) if stance else () for kind in BESIDE}
+    shared = frames(width, top, bottom, {kind: len(found) for kind, found in actions.items()})
+    card = shared.card
+    nodes = {
+        kind: _node(kind, shared.nodes[kind], actions[kind], scroll.get(kind, 0), shared.columns[kind])
+        for kind in BESIDE
+    }
     loops = QRectF(card.left(), card.top() + card.height() * 0.58, card.width(), card.height() * 0.42)
     return Layout(
         QSizeF(width, height),
@@ -227,11 +202,10 @@ def _node(kind: Kind, rect: QRectF, actions: tuple[Action, ...], scroll: int, co
         bar = QRectF(area.right() - BAR - 6, area.center().y() - 1.5, BAR, 3)
         head = QRectF(area.left(), area.top(), ARROW, ROW) if kind == "transition" else QRectF()
         rows.append(GraphRow(actions[place], area, bar, head))
-    other = (
-        QRectF(rect.right() - 168, rect.top() + 7, 160 - 34, HEADER - 14)
-        if kind == "transition"
-        else QRectF()
-    )
+    other = QRectF()
+    if kind == "transition":  # right of the title, as far as the count
+        x = max(rect.right() - 168, rect.left() + TITLE)
+        other = QRectF(x, rect.top() + 7, max(0.0, rect.right() - 42 - x), HEADER - 14)
     return Node(kind, rect, header, body, tuple(rows), len(actions), first, most, other)
 
 

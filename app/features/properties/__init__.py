@@ -37,7 +37,16 @@ def contribute(shell: Shell) -> Contribution:
         "rename", lambda: session.onstage.mode == "meta" and len(session.selection.actions) == 1, rename
     )
     return Contribution(
-        panels=(Panel("properties", "Properties", "right below", make),),
+        panels=(
+            Panel(
+                "properties",
+                "Properties",
+                "right below",
+                make,
+                where={"time": "below", "graph": "below", "label": "below"},
+                rank=1,
+            ),
+        ),
         commands=(
             Command(
                 "use_times",

@@ -29,7 +29,11 @@ def contribute(shell: Shell) -> Contribution:
         rank=1,
     )
     return Contribution(
-        panels=(Panel("timeline", "Performance", "bottom", make),),
+        panels=(
+            Panel(
+                "timeline", "Performance", "bottom", make, where={"perform": "below"}, opens={"talk": "below"}
+            ),
+        ),
         commands=(
             Command(
                 "live",
