@@ -38,9 +38,13 @@ def arrange(
             front.raise_()
 
 
-def share(window: QMainWindow, workspace: Workspace, filled: Filled) -> None:
-    """Give each area its usual share of the window."""
-    _share(window, workspace.tree, filled)
+def shares(workspace: Workspace, filled: Filled) -> dict[str, tuple[float, float]]:
+    """Return by name which part of the window's width and height each dock has that is not hidden; what an
+    empty area would have goes to those beside it.
+    """
+    out: dict[str, tuple[float, float]] = {}
+    _share(workspace.tree, filled, 1.0, 1.0, out)
+    return out
 
 
 def _corner(part: str | Split, filled: Filled) -> QDockWidget | None:
@@ -62,24 +66,21 @@ def _divide(window: QMainWindow, part: str | Split, filled: Filled) -> None:
         _divide(window, inner, filled)
 
 
-def _share(window: QMainWindow, part: str | Split, filled: Filled) -> None:
+def _share(
+    part: str | Split, filled: Filled, width: float, height: float, out: dict[str, tuple[float, float]]
+) -> None:
     if isinstance(part, str):
+        out.update((d.objectName(), (width, height)) for d in filled.get(part, ()) if not d.isHidden())
         return
-    along = Qt.Orientation.Vertical if part.down else Qt.Orientation.Horizontal
-    whole = window.height() if part.down else window.width()
-    seen = [(d, size) for inner, size in part.parts if (d := _handle(inner, filled, part.down)) is not None]
-    total = sum(size for _, size in seen)
-    if len(seen) > 1:
-        window.resizeDocks([d for d, _ in seen], [whole * size // total for _, size in seen], along)
-    for inner, _ in part.parts:
-        _share(window, inner, filled)
+    there = [(inner, size) for inner, size in part.parts if _seen(inner, filled)]
+    total = sum(size for _, size in there)
+    for inner, size in there:
+        across, down = (1.0, size / total) if part.down else (size / total, 1.0)
+        _share(inner, filled, width * across, height * down, out)
 
 
-def _handle(part: str | Split, filled: Filled, down: bool) -> QDockWidget | None:
-    """Return a dock that is as wide (or as high) as a whole part: one that is not split again that way."""
+def _seen(part: str | Split, filled: Filled) -> bool:
+    """Return whether anything of a part is to be seen."""
     if isinstance(part, str):
-        return next((d for d in filled.get(part, ()) if not d.isHidden()), None)
-    if part.down == down:
-        alone = [x for x, _ in part.parts if _handle(x, filled, down) is not None]
-        return _handle(alone[0], filled, down) if len(alone) == 1 else None
-    return next((d for inner, _ in part.parts if (d := _handle(inner, filled, down)) is not None), None)
+        return any(not d.isHidden() for d in filled.get(part, ()))
+    return any(_seen(inner, filled) for inner, _ in part.parts)

@@ -54,11 +54,13 @@ class Header(QToolBar):
                     self.addWidget(item.make(self))
             if side != "right":
                 self.addWidget(_stretch(self))
+            if side == "left":
+                self.addSeparator()
 
     def refresh(self) -> None:
         """Show name and dirty mark as they are now."""
         d = self.document
-        saved = "not saved yet" if d.path is None else "edited" if d.dirty else "saved"
+        saved = "not saved" if d.path is None else "edited" if d.dirty else "saved"
         saved = f"read-only, {saved}" if d.read_only else saved
         dim = theme(self.session.look.name).dim
         room = NARROW if self.width() < WIDE else 3 * NARROW

@@ -8,10 +8,18 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
 from PySide6.QtCore import QByteArray, QSize, Qt
-from PySide6.QtWidgets import QDockWidget, QMainWindow, QScrollArea, QSplitter, QStackedWidget, QWidget
+from PySide6.QtWidgets import (
+    QDockWidget,
+    QMainWindow,
+    QScrollArea,
+    QSplitter,
+    QStackedWidget,
+    QWidget,
+)
 
-from app.shell.arranging import arrange, share
+from app.shell.arranging import arrange, shares
 from app.shell.context import Panel
+from app.shell.proportions import Proportions
 from app.shell.workspaces import ALL, Workspace
 from app.stage.session import Session
 
@@ -56,6 +64,7 @@ class Places:
         self._made: dict[str, QWidget] = {}
         self._beside: set[str] = set()  # what is wanted beside the centre
         self._before: QByteArray | None = None  # how it was before one panel had the whole window
+        self._shares = ""
         options = QMainWindow.DockOption
         window.setDockOptions(options.AnimatedDocks | options.AllowNestedDocks | options.AllowTabbedDocks)
         self.centre = QSplitter(Qt.Orientation.Horizontal, window)
@@ -70,6 +79,7 @@ class Places:
             room.setWidget(self.centre if panel.place == "centre" else QWidget(room))
             dock.setWidget(room)
             window.addDockWidget(Qt.DockWidgetArea.LeftDockWidgetArea, dock)
+        self.proportions = Proportions(window, self.docks)
         session.onstage.mode_changed.connect(self.follow_mode)
 
     def dock(self, ident: str) -> QDockWidget:
@@ -215,12 +225,14 @@ class Places:
     def only(self, ident: str) -> None:
         """Give one panel the whole window, or put everything back."""
         if self._before is None:
-            self._before = self.window.saveState(ARRANGED)
+            self._before, self._shares = self.window.saveState(ARRANGED), self.proportions.text()
             for name, dock in self.docks.items():
                 dock.setVisible(name == ident)
         else:
             before, self._before = self._before, None
             self.window.restoreState(before, ARRANGED)
+            self.proportions.read(self._shares)
+            self.proportions.hold()
 
     # --- arranging
 
@@ -241,12 +253,15 @@ class Places:
         there = self._filled(self.workspace).get(self.workspace.large, ())
         return there[0].objectName() if there else ""
 
-    def arrange(self, workspace: Workspace, state: QByteArray | None = None) -> None:
-        """Put every dock where a workspace has it, or where it was when `state` was taken."""
+    def arrange(self, workspace: Workspace, kept: tuple[QByteArray, str] | None = None) -> None:
+        """Put every dock where a workspace has it, or where it was when `kept` was taken by `state`."""
         self._before = None
         with self._quietly():
-            if state is None or not self.window.restoreState(state, ARRANGED):
+            if kept is None or not self.window.restoreState(kept[0], ARRANGED):
                 self._settle(workspace)
+            else:
+                self.proportions.read(kept[1])
+            self.proportions.hold()
             self.workspace = workspace
 
     def _settle(self, workspace: Workspace) -> None:
@@ -257,11 +272,7 @@ class Places:
         }
         filled = self._filled(workspace)
         arrange(self.window, list(self.docks.values()), workspace, filled, shown)
-        share(self.window, workspace, filled)
-
-    def size(self) -> None:
-        """Give each area its usual share of the window."""
-        share(self.window, self.workspace, self._filled(self.workspace))
+        self.proportions.shares = shares(workspace, filled)
 
     def _filled(self, workspace: Workspace) -> dict[str, list[QDockWidget]]:
         """Return the docks of each area; those that are shown at first come first."""
@@ -291,6 +302,7 @@ class Places:
                 window.resize(size)
             window.setUpdatesEnabled(True)
 
-    def state(self) -> QByteArray:
-        """Return how the docks stand now."""
-        return self._before if self._before is not None else self.window.saveState(ARRANGED)
+    def state(self) -> tuple[QByteArray, str]:
+        """Return how the docks stand now, and which share of the window each has."""
+        state = self._before if self._before is not None else self.window.saveState(ARRANGED)
+        return state, self._shares if self._before is not None else self.proportions.text()

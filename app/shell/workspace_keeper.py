@@ -78,16 +78,19 @@ class Workspaces(QObject):
 
     def _write(self, ident: str, key: str) -> None:
         settings = QSettings()
-        settings.setValue(f"{GROUP}/{ident}/{key}", self.places.state())
+        state, shares = self.places.state()
+        settings.setValue(f"{GROUP}/{ident}/{key}", state)
+        settings.setValue(f"{GROUP}/{ident}/{key} shares", shares)
         settings.setValue(f"{GROUP}/{ident}/panels", self._panels)
 
-    def _read(self, ident: str, key: str) -> QByteArray | None:
+    def _read(self, ident: str, key: str) -> tuple[QByteArray, str] | None:
         """Return an arrangement that was kept; None where it is of other panels than there are."""
         settings = QSettings()
         if settings.value(f"{GROUP}/{ident}/panels") != self._panels:
             return None
         state = settings.value(f"{GROUP}/{ident}/{key}")
-        return state if isinstance(state, QByteArray) else None
+        shares = str(settings.value(f"{GROUP}/{ident}/{key} shares"))
+        return (state, shares) if isinstance(state, QByteArray) else None
 
     # --- choosing
 
@@ -107,14 +110,17 @@ class Workspaces(QObject):
         self._follow_focus(focus)
         self.changed.emit()
 
-    def _first(self) -> QByteArray | None:
+    def _first(self) -> tuple[QByteArray, str] | None:
         """Return how an own workspace was when it was saved."""
         return self._read(self.current, "first") if self.tab.own else None
 
     def _follow_focus(self, focus: QWidget | None) -> None:
-        """Give the keyboard to what is large, where what had it is not to be seen any more."""
+        """Give the keyboard back to what had it, or to what is large where that is not seen any more."""
         window = self.places.window
-        if focus is None or focus is window or not window.isAncestorOf(focus) or focus.isVisible():
+        if focus is None or focus is window or not window.isAncestorOf(focus):
+            return
+        if focus.isVisible():
+            focus.setFocus()
             return
         large = self.places.made(self.places.large())
         while large is not None and not large.focusPolicy().value:

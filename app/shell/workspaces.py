@@ -65,19 +65,19 @@ GRAPH = Workspace(
     "graph",
     "Graph",
     "The graph and the character, both large",
-    across(("list", 17), (down(("large", 73), ("below", 27)), 49), ("side", 34)),
+    across(("list", 16), (down(("large", 75), ("below", 25)), 51), ("side", 33)),
 )
 TIME = Workspace(
     "time",
     "Time",
     "The character large, over the timing of an action",
-    down((across(("list", 25), ("large", 75)), 55), ("below", 45)),
+    across(("list", 23), (down(("large", 57), ("below", 43)), 77)),
 )
 PERFORM = Workspace(
     "perform",
     "Perform",
     "The character large, over what is asked of it and what plays",
-    down((across(("large", 68), ("side", 32)), 60), ("below", 40)),
+    down((across(("large", 68), ("side", 32)), 64), ("below", 36)),
 )
 TALK = Workspace(
     "talk",

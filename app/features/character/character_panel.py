@@ -6,7 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 from PySide6.QtCore import QElapsedTimer, Qt, QTimer
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
 from app.features.character.no_mesh import NoMesh
 from app.look import icons
@@ -28,6 +29,7 @@ from preview.scene import THEMES, Actor, Scene
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
 BASE_TIP = "The pose all layers are added to. Right-click a clip in the library to take it from there."
 FRAME = 16  # milliseconds between frames
+WIDE = 560  # pixels from which the playhead stands in the line of the buttons
 
 
 class PreviewPanel(QWidget):
@@ -65,12 +67,14 @@ class PreviewPanel(QWidget):
         self.scrub.setSingleStep(50)
         self.scrub.setPageStep(500)
         self.scrub.actionTriggered.connect(lambda _: self._scrubbed(self.scrub.sliderPosition()))
-        held = QHBoxLayout()
-        held.setContentsMargins(12, 6, 12, 0)
-        held.addWidget(self.scrub)
-        layout.addLayout(held)
-        layout.addLayout(self._transport())
-        layout.addLayout(self._captions())
+        self._above = QHBoxLayout()
+        self._above.setContentsMargins(12, 6, 12, 0)
+        self._above.addWidget(self.scrub)
+        layout.addLayout(self._above)
+        self._row = self._transport()
+        layout.addLayout(self._row)
+        self._lines = self._captions()
+        layout.addLayout(self._lines)
         self._clock = QElapsedTimer()
         self._clock.start()
         self._timer = QTimer(self, interval=FRAME)
@@ -116,6 +120,7 @@ class PreviewPanel(QWidget):
         self.speed_box.setCurrentIndex(SPEEDS.index(1.0))
         self.speed_box.activated.connect(lambda i: setattr(self.session.transport, "speed", SPEEDS[i]))
         row.addWidget(self.speed_box)
+        self._scrub_place = row.count()
         row.addStretch(1)
         self.time = QLabel("0:00.0", self)
         self.time.setMinimumWidth(52)
@@ -127,9 +132,9 @@ class PreviewPanel(QWidget):
         self.bones_button = button("Show the skeleton (B)", self._set_bones, checkable=True)
         return row
 
-    def _captions(self) -> QVBoxLayout:
+    def _captions(self) -> QBoxLayout:
         """What plays, and the base pose below it; long names are cut, not the window widened."""
-        lines = QVBoxLayout()
+        lines = QBoxLayout(QBoxLayout.Direction.TopToBottom)
         lines.setContentsMargins(12, 0, 12, 8)
         lines.setSpacing(2)
         self.caption, self.base = QLabel("", self), make_widget(QLabel, "", self, toolTip=BASE_TIP)
@@ -138,6 +143,22 @@ class PreviewPanel(QWidget):
             label.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
             lines.addWidget(label)
         return lines
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Where it is wide, what stands below the view takes half as many lines: the view is the larger."""
+        super().resizeEvent(event)
+        wide = event.size().width() >= WIDE
+        if wide == (self._row.indexOf(self.scrub) >= 0):
+            return
+        if wide:
+            self._above.removeWidget(self.scrub)
+            self._row.insertWidget(self._scrub_place, self.scrub, 12)
+        else:
+            self._row.removeWidget(self.scrub)
+            self._above.addWidget(self.scrub)
+        self._above.setContentsMargins(12, 0 if wide else 6, 12, 0)
+        directions = QBoxLayout.Direction
+        self._lines.setDirection(directions.LeftToRight if wide else directions.TopToBottom)
 
     def _restyle(self) -> None:
         look = theme(self.session.look.name)

@@ -145,7 +145,7 @@ def contribute(shell: Shell) -> Contribution:
             ),
         ),
         commands=(new, *labels, *layers, *places),
-        header=(HeaderItem("middle", lambda parent: LayerTabs(shell, parent)),),
+        header=(HeaderItem("left", lambda parent: LayerTabs(shell, parent)),),
         close=lambda: canvas().stop(),
     )
 
@@ -155,7 +155,7 @@ class LayerTabs(ChoiceRow):
 
     def __init__(self, shell: Shell, parent: QWidget) -> None:
         tips = ((x.capitalize(), f"The {x} layer ({LAYER_KEYS[x]})") for x in LAYERS)
-        super().__init__(parent, tips, least_width=72)
+        super().__init__(parent, tips, least_width=56)
         self.document, self.session = shell.document, shell.stage.session
         self.chosen.connect(lambda n: self.session.place.set_layer(LAYERS[n]))
         self.session.place.layer_changed.connect(self.refresh)

@@ -28,7 +28,14 @@ from PySide6.QtWidgets import QInputDialog, QMenu, QToolTip, QWidget
 
 from app.features.graph.graph_drops import Drop, drop_at, perform
 from app.features.graph.graph_gestures import HeadDrag, LikelihoodDrag, RowDrag
-from app.features.graph.graph_layout import LEAST_HEIGHT, LEAST_WIDTH, GraphHit, Layout, arrange
+from app.features.graph.graph_layout import (
+    LEAST_HEIGHT,
+    LEAST_WIDTH,
+    GraphHit,
+    Layout,
+    arrange,
+    least_height,
+)
 from app.features.graph.graph_painter import GraphLook, paint
 from app.look.plural import many
 from app.look.theme import theme
@@ -89,7 +96,7 @@ class Canvas(QWidget):
         self.setMouseTracking(True)
         self.setAcceptDrops(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setMinimumSize(int(LEAST_WIDTH), int(LEAST_HEIGHT))
+        self.setMinimumSize(int(LEAST_WIDTH), int(LEAST_HEIGHT))  # its height follows its width
         self.setAccessibleName("Meta-graph")
         self._hover_timer = QTimer(self, singleShot=True, interval=HOVER)
         self._hover_timer.timeout.connect(self._hovered_long)
@@ -128,6 +135,7 @@ class Canvas(QWidget):
         self.update()
 
     def resizeEvent(self, event: object) -> None:
+        self.setMinimumHeight(int(least_height(self.width())))
         self._stale()
 
     def paintEvent(self, event: QPaintEvent) -> None:

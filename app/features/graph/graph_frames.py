@@ -13,7 +13,10 @@ from metagraph.graph.model import Kind
 
 GRID = 8
 HEADER, ROW, PAD = 38, 24, 8
-NARROW, LOW = 440.0, 330.0  # pixels below which there is no room all round the card
+NARROW, LOW = 440.0, 320.0  # pixels below which there is no room all round the card
+TALL = 700.0  # pixels below which a room that is higher than wide is one column
+LINE = 560.0  # the least width of a line of the card and its nodes
+PICTURE = 96.0  # the least height of a card with a picture
 COLUMN = 170.0  # the least width of a column of rows, where a node has several
 
 
@@ -28,7 +31,7 @@ class Frames:
 
 def frames(width: float, top: float, bottom: float, counts: Mapping[Kind, int]) -> Frames:
     """Share a room of a width between two heights. counts: of the actions of each node."""
-    if width < NARROW:
+    if width < (LINE if bottom - top < LOW else NARROW) or width < min(TALL, 0.9 * (bottom - top)):
         return _column(width, top, bottom, counts)
     if bottom - top < LOW:
         return _line(width, top, bottom, counts)
@@ -69,8 +72,10 @@ def _column(width: float, top: float, bottom: float, counts: Mapping[Kind, int])
     inner = width - 2 * GRID
     least = HEADER + ROW + PAD
     room = bottom - top - 4 * GRID
-    card_h = min(max(room * 0.26, 72.0), 200.0)
-    wanted = {kind: HEADER + max(n, 1) * ROW + PAD for kind, n in counts.items()}
+    card_h = max(36.0, min(room * 0.26, 200.0, room - sum(map(_wanted, counts.values()))))
+    if card_h < PICTURE:
+        card_h = 36.0  # its name alone
+    wanted = {kind: _wanted(n) for kind, n in counts.items()}
     left = max(room - card_h, 3.0 * least)
     heights: dict[Kind, float] = {}
     for place, kind in enumerate(sorted(wanted, key=lambda k: wanted[k])):  # who needs little leaves more
@@ -81,6 +86,11 @@ def _column(width: float, top: float, bottom: float, counts: Mapping[Kind, int])
         nodes[kind] = QRectF(GRID, y, inner, heights[kind])
         y += heights[kind] + GRID
     return Frames(QRectF(GRID, top, inner, card_h), nodes, dict.fromkeys(counts, 1))
+
+
+def _wanted(count: int) -> float:
+    """Return how high a node of one column is that has all its actions in sight."""
+    return HEADER + max(count, 1) * ROW + PAD
 
 
 def _line(width: float, top: float, bottom: float, counts: Mapping[Kind, int]) -> Frames:

@@ -10,7 +10,7 @@ from typing import Literal
 
 from PySide6.QtCore import QPointF, QRectF, QSizeF
 
-from app.features.graph.graph_frames import GRID, HEADER, PAD, ROW, frames
+from app.features.graph.graph_frames import GRID, HEADER, LINE, NARROW, PAD, ROW, frames
 from metagraph.graph.model import Action, Kind, Layer, MetaGraph, Project
 
 LEAST_WIDTH, LEAST_HEIGHT = 240.0, 300.0  # pixels; a smaller canvas is laid out as if it was so large
@@ -19,8 +19,9 @@ BESIDE: tuple[Kind, ...] = ("gesture", "fidget", "transition")
 BAR = 44  # width of a likelihood bar
 ARROW = 26  # of a transition's arrow, which can be dragged
 TITLE = 124  # of a node's mark and title
-FOOT = 40  # the sentence at the bottom
+FOOT, FOOT_NARROW = 40, 62  # the sentence at the bottom, in two lines or three
 CHIP_MIN, CHIP_MAX = 108, 230
+BARE = 0  # in the place of a width: chips as wide as their names, which is all they show
 
 Area = Literal["chip", "add", "card", "loop", "node", "row", "bar", "head", "other", "start", "nothing"]
 
@@ -59,13 +60,14 @@ class Node:
 
 @dataclass(frozen=True)
 class Chip:
-    """stance None is the "+" at the end. words: its hole, if any."""
+    """stance None is the "+" at the end. words: its hole, if any. bare: it has room for its name alone."""
 
     stance: str | None
     rect: QRectF
     name: str
     count: int = 0
     words: str = ""
+    bare: bool = False
 
 
 @dataclass(frozen=True)
@@ -124,6 +126,13 @@ def hole(project: Project, layer: Layer, stance: str) -> str:
     return ""
 
 
+def least_height(width: float) -> float:
+    """Return the least height at which a canvas of a width shows each node with a row: a narrow one needs
+    more.
+    """
+    return LEAST_HEIGHT if width >= LINE else 440.0
+
+
 def arrange(
     project: Project,
     layer: Layer,
@@ -136,16 +145,18 @@ def arrange(
     chips.
     """
     scroll, widths = scroll or {}, widths or {}
-    width, height = max(size.width(), LEAST_WIDTH), max(size.height(), LEAST_HEIGHT)
+    width = max(size.width(), LEAST_WIDTH)
+    height = max(size.height(), least_height(width))
     graph = project.graphs[layer]
 
     # Many stances in a low window: narrower chips without words leave room for the nodes.
-    for widest in (CHIP_MAX, 150, CHIP_MIN):
+    for widest in (CHIP_MAX, 150, BARE):
         chips = _chips(project, graph, width, widths, widest)
         top = chips[-1].rect.bottom() + 2 * GRID
         if top < height - FOOT - 320:
             break
-    bottom = max(height - FOOT, top + 200.0)
+    foot = FOOT if width >= NARROW else FOOT_NARROW
+    bottom = max(height - foot, top + 200.0)
     actions = {kind: graph.of(stance, kind) if stance else () for kind in BESIDE}
     shared = frames(width, top, bottom, {kind: len(found) for kind, found in actions.items()})
     card = shared.card
@@ -160,7 +171,7 @@ def arrange(
         card,
         loops,
         nodes,
-        QRectF(2 * GRID, bottom, width - 4 * GRID, FOOT),
+        QRectF(2 * GRID, bottom, width - 4 * GRID, foot),
         stance,
     )
 
@@ -179,11 +190,16 @@ def _chips(
             + widths.get(str(count), 16.0)
             + (widths.get(words, 7 * len(words)) + 8 if words else 0)
         )
-        w = min(max(text + 80, CHIP_MIN), widest + (80 if words else 0))
-        if x + w > width - 56 and x > 2 * GRID:
+        if widest == BARE:
+            w = min(widths.get(s.name, 7.2 * len(s.name)) + 26, width - 5 * GRID)
+        else:
+            w = min(max(text + 80, CHIP_MIN), widest + (80 if words else 0))
+        if x + w > width - 2 * GRID and x > 2 * GRID:
             x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID
-        chips.append(Chip(ident, QRectF(x, y, w, CHIP_HEIGHT), s.name, count, words))
+        chips.append(Chip(ident, QRectF(x, y, w, CHIP_HEIGHT), s.name, count, words, widest == BARE))
         x += w + GRID
+    if x + CHIP_HEIGHT > width - GRID:
+        x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID
     return [*chips, Chip(None, QRectF(x, y, CHIP_HEIGHT, CHIP_HEIGHT), "+")]
 
 
@@ -199,7 +215,8 @@ def _node(kind: Kind, rect: QRectF, actions: tuple[Action, ...], scroll: int, co
     for place in range(first * columns, min(len(actions), (first + lines) * columns)):
         line, at = divmod(place - first * columns, columns)
         area = QRectF(rect.left() + GRID + at * (column + GRID), body.top() + line * ROW, column, ROW)
-        bar = QRectF(area.right() - BAR - 6, area.center().y() - 1.5, BAR, 3)
+        long = BAR if column > 150 else BAR / 2
+        bar = QRectF(area.right() - long - 6, area.center().y() - 1.5, long, 3)
         head = QRectF(area.left(), area.top(), ARROW, ROW) if kind == "transition" else QRectF()
         rows.append(GraphRow(actions[place], area, bar, head))
     other = QRectF()

@@ -160,6 +160,12 @@ def _chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, font: 
         painter.drawLine(c - QPointF(0, 5), c + QPointF(0, 5))
         return
     inner = chip.rect.adjusted(10, 0, -10, 0)
+    if chip.bare:
+        painter.setFont(font)
+        painter.setPen(QColor(t.text if current else t.dim))
+        name = _elided(font, chip.name, inner.width())
+        painter.drawText(inner, Qt.AlignmentFlag.AlignCenter, name)
+        return
     picture = look.chip_pictures.get(chip.stance)
     if picture is not None:
         size = chip.rect.height() - 6
@@ -231,11 +237,14 @@ def _card(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -> No
         area = QRectF(
             card.left() + 4, head.bottom() + 2, card.width() - 8, card.height() - 24 - head.height() - 14
         )
-        if look.picture is not None:
+        if look.picture is not None and area.height() >= 20:
             size = min(area.width(), area.height())
             painter.drawImage(
                 QRectF(area.center().x() - size / 2, area.center().y() - size / 2, size, size), look.picture
             )
+        if area.height() < 20:
+            painter.setFont(font)
+            return _card_drop(painter, layout, look, font)
         start = look.project.graphs[stance.layer].start == stance.id
         words = f"{len(loops)} loop{'s' if len(loops) != 1 else ''}" if loops else "no loop yet"
         painter.setFont(font)
@@ -243,7 +252,13 @@ def _card(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -> No
         foot = QRectF(card.left() + 12, card.bottom() - 26, card.width() - 24, 20)
         words += "  ·  starts here" if start and card.width() > 150 else ""
         painter.drawText(foot, Qt.AlignmentFlag.AlignCenter, _elided(font, words, foot.width()))
-    if dragging and look.drop is not None and look.drop_hit.area in ("card", "loop"):
+    return _card_drop(painter, layout, look, font)
+
+
+def _card_drop(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -> None:
+    """Say what a drop on the card will do, while something is dragged there."""
+    card, stance = layout.card, look.project.stance(layout.stance)
+    if look.drop is not None and look.drop_hit.area in ("card", "loop"):
         zone = (
             layout.loops
             if look.drop_hit.area == "loop"

@@ -61,6 +61,7 @@ from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
+from app.widgets.flow import Flow
 from app.widgets.making import make_widget
 from app.widgets.mime import drag_picture, load_of, mime
 from metagraph.graph import edits
@@ -431,9 +432,8 @@ class LibraryPanel(QWidget):
         self.restyle()
         self._count()
 
-    def _filters(self) -> QHBoxLayout:
-        row = QHBoxLayout()
-        row.setSpacing(2)
+    def _filters(self) -> Flow:
+        row = Flow()
         self.chips: dict[str, QToolButton] = {}
 
         def chip(key: str, text: str, tip: str) -> None:
@@ -460,7 +460,6 @@ class LibraryPanel(QWidget):
             menu.addAction(f"{layer.capitalize()} layer", partial(self._narrow, layer, None))
         self.more.setMenu(menu)
         row.addWidget(self.more)
-        row.addStretch(1)
         self.chips["all"].setChecked(True)
         return row
 
@@ -473,6 +472,7 @@ class LibraryPanel(QWidget):
         )
         self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.empty.setProperty("dim", True)
+        self.empty.setWordWrap(True)
         box.addWidget(self.empty)
         button = QPushButton("Import a folder…", page)
         button.clicked.connect(self.import_wanted)

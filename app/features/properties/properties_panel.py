@@ -7,6 +7,7 @@ from html import escape
 from typing import Any
 
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QCheckBox,
     QFormLayout,
@@ -15,12 +16,13 @@ from PySide6.QtWidgets import (
     QLabel,
     QPushButton,
     QScrollArea,
+    QSizePolicy,
     QStackedWidget,
     QVBoxLayout,
     QWidget,
 )
 
-from app.features.properties.timing_plot import TimingPlot, retimed
+from app.features.properties.timing_plot import ANY, TimingPlot, retimed
 from app.features.properties.variation_rows import ActionRows, PlannerRows
 from app.look.theme import KIND_MARKS, KIND_TITLES, theme
 from app.project.document import Document
@@ -28,6 +30,7 @@ from app.stage.performance import Performance
 from app.stage.session import Session
 from app.widgets.choice_row import LimbRow
 from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, common
+from app.widgets.halves import Halves
 from app.widgets.making import make_widget
 from metagraph.graph import edits
 from metagraph.graph.model import LIMBS, PARTS, REACH, Action, Project
@@ -79,18 +82,23 @@ class PropertiesPanel(QScrollArea):
         return form
 
     def _action_page(self) -> QWidget:
-        page, box = self._page()
+        first, second = QWidget(self), QWidget(self)
+        page, box = second, QVBoxLayout(second)
+        box.setContentsMargins(0, 0, 0, 0)
+        upper = QVBoxLayout(first)
+        upper.setContentsMargins(0, 0, 0, 0)
+        upper.setSpacing(8)
         head = QHBoxLayout()
         self.name = Field(page, "Name of the action", "Name")
         self.name.editingFinished.connect(self._rename)
         self.kind = QLabel(page)
         head.addWidget(self.name, 1)
         head.addWidget(self.kind)
-        box.addLayout(head)
+        upper.addLayout(head)
         self.plot = TimingPlot(self.document, self.session, page)
         self.plot.changed.connect(lambda fields: self._set("Change timing", merge="timing", timing=fields))
         self.plot.finished.connect(self.document.finish_merging)
-        box.addWidget(self.plot)
+        upper.addWidget(self.plot)
         form = self._form(box)
 
         def pair(title: str, *fields: QWidget) -> QWidget:
@@ -144,7 +152,21 @@ class PropertiesPanel(QScrollArea):
         self.trouble = QLabel(page, wordWrap=True)
         box.addWidget(self.trouble)
         box.addStretch(1)
-        return page
+        self.halves = Halves(first, second, self)
+        self.halves.turned.connect(self.plot.set_large)
+        return self.halves
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        self.halves.fit(event.size())
+        self._bound()
+        super().resizeEvent(event)
+
+    def _bound(self) -> None:
+        """Side by side, the halves are as high as what is seen of them: the second scrolls alone."""
+        beside = self.halves.beside and self.pages.currentIndex() == 1
+        self.pages.setMaximumHeight(
+            max(self.halves.minimumSizeHint().height(), self.viewport().height()) if beside else ANY
+        )
 
     def _layer_page(self) -> QWidget:
         page, box = self._page()
@@ -225,13 +247,23 @@ class PropertiesPanel(QScrollArea):
     def show_selection(self) -> None:
         actions = self.session.selection.selected_actions()
         clips = self.session.selection.clips
-        self.pages.setCurrentIndex(1 if actions else 2 if clips else 0)
+        self._turn_to(1 if actions else 2 if clips else 0)
         if actions:
             self._show_actions(actions)
         elif clips:
             self._show_clips(clips)
         else:
             self._show_layer()
+
+    def _turn_to(self, place: int) -> None:
+        """Show a page; the panel is as large as that one needs to be, and not as the largest."""
+        policy = QSizePolicy.Policy
+        for n in range(self.pages.count()):
+            self.pages.widget(n).setSizePolicy(
+                policy.Preferred, policy.Preferred if n == place else policy.Ignored
+            )
+        self.pages.setCurrentIndex(place)
+        self._bound()
 
     def _show_actions(self, actions: Sequence[Action]) -> None:
         project, t = self.document.project, theme(self.session.look.name)

@@ -11,7 +11,14 @@ import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor
-from PySide6.QtWidgets import QApplication, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QApplication,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
 
 from app.features.properties.jump_strip import JumpStrip, Seen
 from app.look.theme import Theme, theme
@@ -185,6 +192,10 @@ def times_words(seen: Seen) -> str:
     return f"{p.start:.2f} to {p.end:.2f} s, blended over {p.blend_in:.2f} and {p.blend_out:.2f} s"
 
 
+ANY = 16_777_215  # Qt's largest height of a widget
+HEIGHT, LEAST = 132, 84  # pixels of the curves in a form; and where they have the room to themselves
+
+
 class TimingPlot(QWidget):
     """Emits changed(fields) while a handle is dragged and finished when it is let go."""
 
@@ -200,7 +211,7 @@ class TimingPlot(QWidget):
         self.plot.setMenuEnabled(False)
         self.plot.setMouseEnabled(False, False)
         self.plot.hideButtons()
-        self.plot.setFixedHeight(132)
+        self.set_large(False)
         self.plot.getAxis("left").setWidth(30)
         self.curve = self.plot.plot(antialias=True)
         self.blends = [pg.LinearRegionItem(movable=False) for _ in range(2)]
@@ -241,6 +252,11 @@ class TimingPlot(QWidget):
         session.transport.moved.connect(self._playhead)
         session.look.changed.connect(self._restyle)
         self._restyle()
+
+    def set_large(self, on: bool) -> None:
+        """Let the curves have all the height there is, or as much as a form has for them."""
+        self.plot.setMinimumHeight(LEAST if on else HEIGHT)
+        self.plot.setMaximumHeight(ANY if on else HEIGHT)
 
     def set_compatibility(self, compatibility: Compatibility) -> None:
         """Show what it knows of the action's jumps."""
