@@ -232,7 +232,6 @@ class Places:
             before, self._before = self._before, None
             self.window.restoreState(before, ARRANGED)
             self.proportions.read(self._shares)
-            self.proportions.hold()
 
     # --- arranging
 
@@ -261,7 +260,6 @@ class Places:
                 self._settle(workspace)
             else:
                 self.proportions.read(kept[1])
-            self.proportions.hold()
             self.workspace = workspace
 
     def _settle(self, workspace: Workspace) -> None:
@@ -272,7 +270,7 @@ class Places:
         }
         filled = self._filled(workspace)
         arrange(self.window, list(self.docks.values()), workspace, filled, shown)
-        self.proportions.shares = shares(workspace, filled)
+        self.proportions.want(shares(workspace, filled))
 
     def _filled(self, workspace: Workspace) -> dict[str, list[QDockWidget]]:
         """Return the docks of each area; those that are shown at first come first."""

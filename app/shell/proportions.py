@@ -20,6 +20,7 @@ class Proportions(QObject):
         super().__init__(window)
         self.window, self.docks = window, docks
         self.shares: Shares = {}
+        self._of: frozenset[str] = frozenset()  # what was open when they were taken
         self._soon = QTimer(self, singleShot=True, interval=0)
         self._soon.timeout.connect(self.note)
         for dock in docks.values():
@@ -27,22 +28,36 @@ class Proportions(QObject):
             dock.topLevelChanged.connect(lambda _: self._soon.start())
         window.installEventFilter(self)
 
-    def _changed(self) -> None:
-        """A dock came or went; the others have other shares now."""
-        if any(self._stands(d) != (n in self.shares) for n, d in self.docks.items()):
-            self._soon.start()
+    def want(self, shares: Shares) -> None:
+        """Hold to these shares from now on."""
+        self.shares, self._of = shares, self._open()
+        self._soon.stop()
+        self.hold()
 
     def note(self) -> None:
         """Take the shares as they are now for those that are wanted."""
         width, height = self._room()
-        seen = {n: d for n, d in self.docks.items() if self._stands(d)}
-        if seen:
-            self.shares = {n: (d.width() / width, d.height() / height) for n, d in seen.items()}
+        out: Shares = {}
+        for name in self._open():
+            dock = self.docks[name]
+            front = next((d for d in (dock, *self.window.tabifiedDockWidgets(dock)) if _in_front(d)), None)
+            if front is not None:
+                out[name] = (front.width() / width, front.height() / height)
+        self.shares, self._of = out, self._open()
+
+    def _open(self) -> frozenset[str]:
+        """Return what is in the window, in front or behind another."""
+        return frozenset(n for n, d in self.docks.items() if not d.isHidden() and not d.isFloating())
+
+    def _changed(self) -> None:
+        """A dock came or went; the others have other shares now."""
+        if self._open() != self._of:
+            self._soon.start()
 
     def hold(self) -> None:
         """Give each dock the share that is wanted."""
         width, height = self._room()
-        seen = [(d, self.shares[n]) for n, d in self.docks.items() if n in self.shares and self._stands(d)]
+        seen = [(d, self.shares[n]) for n, d in self.docks.items() if n in self.shares and _in_front(d)]
         docks = [d for d, _ in seen]
         animated = self.window.isAnimated()
         self.window.setAnimated(False)
@@ -52,10 +67,6 @@ class Proportions(QObject):
         ):
             self.window.resizeDocks(docks, sizes, along)
         self.window.setAnimated(animated)
-
-    def _stands(self, dock: QDockWidget) -> bool:
-        """Return whether a dock is in the window and not behind another."""
-        return not dock.isHidden() and not dock.isFloating() and dock.x() >= 0 and dock.width() > 0
 
     def _room(self) -> tuple[int, int]:
         """Return width and height of the part of the window that docks share."""
@@ -82,6 +93,11 @@ class Proportions(QObject):
         """Want the shares that `text` once returned; those of now where it cannot be read."""
         try:
             rows = json.loads(str(text))
-            self.shares = {str(n): (float(x), float(y)) for n, (x, y) in rows.items()}
+            self.want({str(n): (float(x), float(y)) for n, (x, y) in rows.items()})
         except (ValueError, TypeError, AttributeError):
             self.note()
+
+
+def _in_front(dock: QDockWidget) -> bool:
+    """Return whether a dock is in the window and not behind another."""
+    return not dock.isHidden() and not dock.isFloating() and dock.x() >= 0 and dock.width() > 0

@@ -102,7 +102,7 @@ class WorkspaceTabs(QWidget):
 
     def __init__(self, keeper: Workspaces, actions: Actions, parent: QWidget) -> None:
         super().__init__(parent)
-        self.keeper, self.actions = keeper, actions
+        self.keeper, self.commands = keeper, actions
         self.setAccessibleName("Workspaces")
         self._row = QHBoxLayout(self)
         self._row.setContentsMargins(0, 0, 0, 0)
@@ -149,7 +149,7 @@ class WorkspaceTabs(QWidget):
         self._choose(place)
         menu = QMenu(self)
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.actions.refresh()
+        self.commands.refresh()
         for ident in ("arrange", "save_workspace", "rename_workspace", "delete_workspace"):
-            menu.addAction(self.actions[ident])
+            menu.addAction(self.commands[ident])
         menu.popup(self.buttons[place].mapToGlobal(at))

@@ -6,7 +6,7 @@ from PySide6.QtCore import QEvent, QObject, QSize, Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QFrame, QScrollArea, QSizePolicy, QWidget
 
-WIDE = 540  # pixels from which two halves can stand side by side
+WIDE = 760  # pixels from which two halves can stand side by side
 RATIO = 1.5  # of width to height from which they do
 
 

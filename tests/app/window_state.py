@@ -78,8 +78,8 @@ def _parts(part: QObject, place: str) -> Iterator[tuple[str, QObject]]:
         if isinstance(child, QTabBar) and isinstance(part, QMainWindow):
             continue  # Qt hands them out anew; docks tell which is in front
         name = child.objectName() or type(child).__name__
-        if type(part).__name__ == "Room" and name.endswith("container"):
-            continue  # scroll bars of what is behind another panel are laid out when it comes to the front
+        if name.startswith("qt_scrollarea_") and name.endswith("container"):
+            continue  # scroll bars are set back, and those of what is behind another panel are laid out when it comes to the front
         n = count[name] = count.get(name, -1) + 1
         yield from _parts(child, f"{place}/{name}{n or ''}")
 

@@ -61,7 +61,14 @@ def contribute(shell: Shell) -> Contribution:
     return Contribution(
         panels=(
             Panel(
-                "conversation", "Conversation", "bottom", make, study=False, where={"talk": "below"}, rank=1
+                "conversation",
+                "Conversation",
+                "bottom",
+                make,
+                study=False,
+                least=(400, 222),
+                where={"talk": "below"},
+                rank=1,
             ),
         ),
         commands=(

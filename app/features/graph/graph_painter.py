@@ -9,7 +9,8 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter, QPainterPath, QPen, QRegion
 
 from app.features.graph.graph_drops import Drop
-from app.features.graph.graph_layout import GRID, Chip, GraphHit, Layout, Node, bar_part
+from app.features.graph.graph_frames import GRID
+from app.features.graph.graph_layout import Chip, GraphHit, Layout, Node, bar_part
 from app.look.plural import short
 from app.look.theme import KIND_MARKS, KIND_TITLES, Theme
 from metagraph.graph.model import Action, Kind, Project

@@ -259,9 +259,9 @@ class PropertiesPanel(QScrollArea):
         """Show a page; the panel is as large as that one needs to be, and not as the largest."""
         policy = QSizePolicy.Policy
         for n in range(self.pages.count()):
-            self.pages.widget(n).setSizePolicy(
-                policy.Preferred, policy.Preferred if n == place else policy.Ignored
-            )
+            page = self.pages.widget(n)
+            if page is not None:
+                page.setSizePolicy(policy.Preferred, policy.Preferred if n == place else policy.Ignored)
         self.pages.setCurrentIndex(place)
         self._bound()
 

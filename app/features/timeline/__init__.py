@@ -31,7 +31,13 @@ def contribute(shell: Shell) -> Contribution:
     return Contribution(
         panels=(
             Panel(
-                "timeline", "Performance", "bottom", make, where={"perform": "below"}, opens={"talk": "below"}
+                "timeline",
+                "Performance",
+                "bottom",
+                make,
+                least=(400, 222),
+                where={"perform": "below"},
+                opens={"talk": "below"},
             ),
         ),
         commands=(
