@@ -42,7 +42,7 @@ def contribute(shell: Shell) -> Contribution:
                 "bottom",
                 make,
                 study=False,
-                opens={"perform": "below", "graph": "below", "talk": "below"},
+                opens={"talk": "below"},
             ),
         ),
         commands=(
