@@ -158,8 +158,8 @@ class PropertiesPanel(QScrollArea):
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         self.halves.fit(event.size())
-        self._bound()
         super().resizeEvent(event)
+        self._bound()
 
     def _bound(self) -> None:
         """Side by side, the halves are as high as what is seen of them: the second scrolls alone."""
