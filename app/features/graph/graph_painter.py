@@ -121,11 +121,11 @@ def _curves(painter: QPainter, layout: Layout, look: GraphLook) -> None:
         painter.setPen(pen)
         painter.setBrush(Qt.BrushStyle.NoBrush)
         path = QPainterPath()
-        if kind == "transition":
+        if node.rect.top() >= card.bottom():
             path.moveTo(card.center().x(), card.bottom())
             path.lineTo(card.center().x(), node.rect.top())
         else:
-            sign = -1 if kind == "gesture" else 1
+            sign = -1 if node.rect.right() <= card.left() else 1
             start = QPointF(card.left() if sign < 0 else card.right(), card.top() + card.height() * 0.42)
             reach = node.rect.right() if sign < 0 else node.rect.left()
             end = QPointF(reach, min(node.rect.center().y(), card.bottom()))

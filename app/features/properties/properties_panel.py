@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from html import escape
 from typing import Any
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -160,6 +160,11 @@ class PropertiesPanel(QScrollArea):
         self.halves.fit(event.size())
         super().resizeEvent(event)
         self._bound()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if watched is self.pages and event.type() == QEvent.Type.LayoutRequest:
+            self._bound()
+        return super().eventFilter(watched, event)
 
     def _bound(self) -> None:
         """Side by side, the halves are as high as what is seen of them: the second scrolls alone."""
