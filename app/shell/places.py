@@ -231,7 +231,8 @@ class Places:
         else:
             before, self._before = self._before, None
             self.window.restoreState(before, ARRANGED)
-            self.proportions.read(self._shares)
+            shares, self._shares = self._shares, ""
+            self.proportions.read(shares)
 
     # --- arranging
 
