@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import Any
@@ -49,6 +50,8 @@ def arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Do the action that was asked for."""
+    # As for `live`, before NumPy is there: threads that share a small model's sums wait for each other.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     return int(options.run(options))
 
 

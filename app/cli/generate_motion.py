@@ -241,7 +241,7 @@ def cut(options: Namespace) -> int:
     from metagraph.formats.clips import digest
     from metagraph.formats.gltf_writer import write_glb
     from metagraph.generation.stored import read_model
-    from metagraph.synthesis.cut import candidates
+    from metagraph.synthesis.cut import candidates, uncut
 
     if not 0 < options.minutes <= MINUTES:
         raise ValueError(f"--minutes is above 0 and at most {MINUTES:g}, not {options.minutes:g}")
@@ -251,13 +251,15 @@ def cut(options: Namespace) -> int:
     out.mkdir(parents=True, exist_ok=True)
     known = digest(options.model)
     entries: list[dict[str, Any]] = []
-    left, seed = options.minutes * 60, options.seed
+    left, seed, why = options.minutes * 60, options.seed, ""
     while left > 0:
         clip = made(options, model, heard, seed)
         if clip.duration > left:
             clip = clip.trimmed(0, max(2, round(left * clip.fps)))
         left -= max(clip.duration, 0.1)
-        for start, end, score in candidates(clip, None, options.least, options.most):
+        found = candidates(clip, None, options.least, options.most)
+        why = why or ("" if found else uncut(clip, None, options.least, options.most))
+        for start, end, score in found:
             piece = clip.trimmed(round(start * clip.fps), round(end * clip.fps) + 1)
             name = f"{options.model.stem}_seed{seed}_{round(start * 10):05d}"
             path = out / f"{name}.glb"
@@ -271,11 +273,12 @@ def cut(options: Namespace) -> int:
         f"{options.minutes * 60:.0f} s, seeds {options.seed} to {seed - 1}"
     ]
     if not entries:
-        lines.append("it rests nowhere in one pose for long enough: ask for more minutes, or longer pieces")
+        lines.append(f"{why}. Ask for more minutes, a lower temperature or longer pieces, or train longer")
     added = _added(options.project, [out / e["file"] for e in entries]) if options.project and entries else 0
     if added:
         lines.append(f"{added} added to {options.project}")
     data = {"folder": str(out), "pieces": entries, "minutes": options.minutes, "added": added}
+    data |= {} if entries else {"why": why}
     say(options, "\n".join(lines), data)
     return 0 if entries else 3
 

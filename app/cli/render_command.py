@@ -12,10 +12,9 @@ import numpy as np
 
 from app.cli.command_output import opened, performance_arguments, say, staged
 from app.stage.playback_source import ASIDE, Shown, alone
-from metagraph.graph.model import Project
+from metagraph.graph.model import Layer, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.bake import bake
-from metagraph.playback.plan import Plan
 
 Seen = tuple[Any, Shown]  # a figure, and what it plays
 
@@ -217,7 +216,7 @@ def draw_to(
         small = (max(16, size[0] * 2 * len(seen) // 9), max(16, size[1] * 5 // 9))
         images = list(pictures(seen, times, small, look))
         labels = [
-            f"{t:.2f} s  {', '.join(filter(None, (_doing(shown.plan, t) for _, shown in seen)))}".rstrip()
+            f"{t:.2f} s  {', '.join(filter(None, (_doing(shown, t) for _, shown in seen)))}".rstrip()
             for t in times
         ]
         write_png(out, contact_sheet(images, 8 // len(seen), labels))
@@ -255,13 +254,11 @@ def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path) -
         write_glb(out, [motion], body)
 
 
-def _doing(made: Plan, seconds: float) -> str:
-    cue = next(
-        (
-            cue
-            for layer in ("arms", "head", "body")
-            if (cue := made.layers[layer].cue_at(seconds)) is not None
-        ),
-        None,
-    )
+def _doing(shown: Shown, seconds: float) -> str:
+    """Return what is played; of who moves with a clip instead of the plan what the plan has left to say."""
+    layers: tuple[Layer, ...] = ("arms", "head", "body")
+    if shown.motion is not None:
+        layers = ("body",) if shown.project.clips[shown.motion].made_by else ()
+    lanes = shown.plan.layers
+    cue = next((cue for n in layers if (cue := lanes[n].cue_at(seconds)) is not None), None)
     return cue.action.name if cue is not None else ""

@@ -45,9 +45,10 @@ class Joint(Struct, omit_defaults=True, forbid_unknown_fields=True):
     rotation: Quaternion
 
 
-class ExportedClip(Struct, forbid_unknown_fields=True):
+class ExportedClip(Struct, omit_defaults=True, forbid_unknown_fields=True):
     """A clip. animation: its place in the GLB's list of animations, where it bears the same name. sha256: of
-    the file it came from.
+    the file it came from. made_by, made_seed: the learned model that generated it, and its seed; left out of
+    others.
     """
 
     id: Id
@@ -57,6 +58,8 @@ class ExportedClip(Struct, forbid_unknown_fields=True):
     frames: Annotated[int, Meta(ge=1, le=1_000_000_000)]
     duration: Seconds
     sha256: str
+    made_by: str = ""
+    made_seed: Annotated[int, Meta(ge=0)] = 0
 
 
 class ExportedStance(Struct, forbid_unknown_fields=True):

@@ -215,7 +215,9 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
     pose = anatomy.base_pose(project)
     base = c.Base(project.base.clip, project.base.frame, pose.rotations.tolist(), pose.translations.tolist())
     clips = [
-        c.ExportedClip(e.id, name, n, e.fps, e.frames, e.duration, e.digest)
+        c.ExportedClip(
+            e.id, name, n, e.fps, e.frames, e.duration, e.digest, e.made_by, e.made_seed if e.made_by else 0
+        )
         for n, (e, name) in enumerate(zip(_used(project), names, strict=True))
     ]
     return c.Export(

@@ -90,7 +90,16 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         )
         take = order.index(clip.animation)
         clips[clip.id] = ClipEntry(
-            clip.id, clip.name, document.glb, take, clip.sha256, clip.frames, clip.fps, motion
+            clip.id,
+            clip.name,
+            document.glb,
+            take,
+            clip.sha256,
+            clip.frames,
+            clip.fps,
+            motion,
+            made_by=clip.made_by,
+            made_seed=clip.made_seed,
         )
     p = document.planner
     base = BasePose(document.base.clip, document.base.frame)

@@ -8,14 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.generation.layers import Layers, layer_norm, linear, silu, transformer_block
+from metagraph.generation.layers import Layers
 from metagraph.generation.networks import MatchingSizes
+from metagraph.generation.transformer import Velocity
 from metagraph.generation.vae import spans
 
 Array = NDArray[Any]
 
 STEPS = 8  # of Euler a chunk
-GUIDANCE = 2.0  # 0 sees who speaks alone, 1 hears as in training, above follows what is said more closely
+GUIDANCE = 1.75  # 0 sees who speaks alone, 1 hears as in training, above follows what is said more closely
 SMOOTH = 1.5  # frames: deviation of the Gaussian over the rotations' numbers
 
 
@@ -36,78 +37,36 @@ def still_tokens(w: Layers, sizes: MatchingSizes, pose: Array) -> Array:
     return tokens_of(w, sizes, np.repeat(pose[None], sizes.past * sizes.frames, 0))
 
 
-def velocity(
-    w: Layers, sizes: MatchingSizes, noisy: Array, moment: Array, past: Array | None, heard: Array
-) -> Array:
-    """Return the velocity `[..., new, D]` at x_t `[..., new, D]`. moment: t `[...]`, 0..1. past: tokens
-    `[..., past, D]`, None without. heard: of every place `[..., tokens, hidden]`, as `encoder.encode_chunk`
-    gives it.
+class Drawing:
+    """New tokens from noise, by Euler's steps. guidance: as GUIDANCE; 1 asks for no more than what is heard,
+    which is half the work. pieces: of how many `pieces` consists.
     """
-    batch, dtype = noisy.shape[:-2], noisy.dtype
-    x = np.zeros((*batch, sizes.tokens, sizes.hidden), dtype)
-    x += heard + w["place"]
-    x[..., : sizes.past, :] += w["no_past"] if past is None else linear(w, "embed_past", past)
-    x[..., sizes.past : sizes.past + sizes.new, :] += linear(w, "embed_new", noisy)
-    condition = silu(_moments(w, sizes, np.asarray(moment, dtype)))
-    for n in range(sizes.layers):
-        x = transformer_block(w, f"blocks.{n}", x, condition, sizes.heads)
-    scale, shift = np.split(linear(w, "final.modulation", condition)[..., None, :], 2, -1)
-    new = x[..., sizes.past : sizes.past + sizes.new, :]
-    return linear(w, "final.out", layer_norm(new) * (1 + scale) + shift)
 
+    def __init__(
+        self, w: Layers, sizes: MatchingSizes, guidance: float = GUIDANCE, steps: int = STEPS
+    ) -> None:
+        self.guidance, self.steps, self.pieces = guidance, steps, steps * sizes.layers
+        self._velocity = Velocity(w, sizes, np.arange(steps) / steps)
 
-def draw_chunk(
-    w: Layers,
-    sizes: MatchingSizes,
-    noise: Array,
-    past: Array,
-    heard: Array,
-    deaf: Array,
-    guidance: float = GUIDANCE,
-    steps: int = STEPS,
-) -> Array:
-    """Return new tokens `[new, D]` of noise `[new, D]`, by Euler's steps. heard, deaf: with and without
-    sound, as `encoder.encode_chunk` gives it.
-    """
-    *_, last = drawing(w, sizes, noise, past, heard, deaf, guidance, steps)
-    return last
+    def draw(self, noise: Array, past: Array, heard: Array) -> Array:
+        """Return new tokens `[new, D]` of noise `[new, D]`. past: tokens `[past, D]`; heard: with and without
+        sound, as `encoder.ChunkHearing` gives it; with alone will do for a guidance of 1.
+        """
+        *_, last = self.drawing(noise, past, heard)
+        return last
 
-
-def drawing(
-    w: Layers,
-    sizes: MatchingSizes,
-    noise: Array,
-    past: Array,
-    heard: Array,
-    deaf: Array,
-    guidance: float = GUIDANCE,
-    steps: int = STEPS,
-) -> Iterator[Array]:
-    """Yield what noise `[new, D]` has become after each of Euler's steps, tokens after the last: for who has
-    no time for all of them at once.
-    """
-    x, t = noise, np.zeros(1 if guidance == 1 else 2, noise.dtype)
-    # With and without sound at once: one batch of two.
-    if guidance != 1:
-        both = np.stack([heard, deaf])
-        before = np.broadcast_to(past, (2, *past.shape))
-    for n in range(steps):
-        if guidance == 1:
-            v = velocity(w, sizes, x[None], t + n / steps, past[None], heard[None])[0]
-        else:
-            own, free = velocity(w, sizes, np.stack([x, x]), (t + n / steps).astype(x.dtype), before, both)
-            v = (1 - guidance) * free + guidance * own
-        x = (x + v / steps).astype(noise.dtype)
+    def drawing(self, noise: Array, past: Array, heard: Array) -> Iterator[Array]:
+        """Do what `draw` does in pieces, for who has no time for all at once: the last one yielded is it."""
+        x, count = noise, 1 if self.guidance == 1 else 2  # with and without sound at once: one batch
+        before = np.broadcast_to(past, (count, *past.shape))
+        for n in range(self.steps):
+            many = np.broadcast_to(x, (count, *x.shape))
+            for v in self._velocity.pieces(n, many, before, heard[:count]):
+                done = v
+                yield x
+            v = done[0] if count == 1 else (1 - self.guidance) * done[1] + self.guidance * done[0]
+            x = (x + v / self.steps).astype(noise.dtype)
         yield x
-
-
-def _moments(w: Layers, sizes: MatchingSizes, moment: Array) -> Array:
-    """Return how t `[...]` is told, `[..., time]`."""
-    half = sizes.time // 2
-    speed = 1000.0 * 10000.0 ** (-np.arange(half) / half)
-    angle = moment[..., None] * speed.astype(moment.dtype)
-    told = np.concatenate([np.sin(angle), np.cos(angle)], -1)
-    return linear(w, "time.2", silu(linear(w, "time.0", told)))
 
 
 def gaussian(deviation: float) -> Array:

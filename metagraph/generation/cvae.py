@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.generation.layers import Layers, State, linear, lstm, lstm_state, lstm_step
+from metagraph.generation.layers import Layers, linear, lstm, lstm_state
 from metagraph.generation.networks import CvaeSizes
+from metagraph.generation.prepared import Cells, Dense
 
 Array = NDArray[Any]
 
@@ -32,12 +33,18 @@ def decode(w: Layers, sizes: CvaeSizes, codes: Array, context: Array) -> Array:
     return linear(w, "decoder_out", hidden)
 
 
-def start(w: Layers, sizes: CvaeSizes) -> State:
-    """Return the decoder's state at a recording's start."""
-    return lstm_state(w, "decoder", sizes.layers)
+class Drawing:
+    """The decoder, frame by frame."""
 
+    def __init__(self, w: Layers, sizes: CvaeSizes) -> None:
+        self._cells = Cells(w, "decoder", sizes.layers, sizes.dims, w["decoder_out.bias"].dtype)
+        self._out = Dense.named(w, "decoder_out")
+        # What `draw` wants of what is heard, `[n, 4N]` of `[n, C]`; and of the numbers that came later.
+        self.told, self.more = self._cells.told, self._cells.more
 
-def draw(w: Layers, code: Array, context: Array, state: State) -> tuple[Array, State]:
-    """Return one frame's pose `[X]`, standardised, of its code `[D]`, and the next state."""
-    hidden, after = lstm_step(w, "decoder", np.concatenate([code, context]), state)
-    return linear(w, "decoder_out", hidden), after
+    def draw(self, code: Array, told: Array) -> Array:
+        """Return the next frame's pose `[X]`, standardised, of its code `[D]`; it lasts until the next call.
+        told: `[4N]`, as `told` gives it.
+        """
+        self._cells.own[:] = code
+        return self._out.one(self._cells.step(told))

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.generation.layers import Layers, State, linear, lstm, lstm_state, lstm_step, sigmoid
+from metagraph.generation.layers import Layers, State, linear, lstm, lstm_state, sigmoid
 from metagraph.generation.networks import FlowSizes
+from metagraph.generation.prepared import Cells, Dense
 
 Array = NDArray[Any]
 FlowState = list[State]  # one for each step
@@ -25,7 +26,9 @@ class Flow:
         self.steps = [f"flow.steps.{k}" for k in range(sizes.steps)]
         self.dtype = dtype
         used: dict[str, Array] = {
-            name: value.astype(dtype) for name, value in weights.items() if name.startswith("flow.")
+            name: value.astype(dtype, copy=False)
+            for name, value in weights.items()
+            if name.startswith("flow.")
         }
         self.weights = used
         self._matrices: list[Array] = []
@@ -84,18 +87,6 @@ class Flow:
             after.insert(0, next_state)
         return z, after
 
-    def draw(self, noise: Array, context: Array, state: FlowState) -> tuple[Array, FlowState]:
-        """Return the code `[D]` of one moment's noise `[D]` and context `[C]`, and the next state."""
-        z: Array = np.asarray(noise, self.dtype)
-        after = list(state)
-        for k in reversed(range(len(self.steps))):
-            a = z[: self.half]
-            hidden, after[k] = lstm_step(
-                self.weights, f"{self.steps[k]}.lstm", np.concatenate([a, context]), state[k]
-            )
-            z = self._undone(k, z, hidden)
-        return z, after
-
     def log_likelihood(self, codes: Array, context: Array, state: FlowState | None = None) -> Array:
         """Return ln p of each moment's code `[..., T]`, natural logarithm, given those before it."""
         z, logs, _ = self.forward(codes, context, state)
@@ -113,6 +104,65 @@ class Flow:
         z = np.concatenate([z[..., : self.half], z[..., self.half :] / scale - shift], -1)
         z = z @ self._inverses[k].T
         return np.asarray(z * np.exp(-w[f"{step}.actnorm.logs"]) - w[f"{step}.actnorm.bias"])
+
+
+class Drawing:
+    """A flow from noise to codes, moment by moment. The context is in two parts: of the past poses, and of
+    what is heard, which can be reckoned beforehand.
+    """
+
+    def __init__(self, weights: Layers, sizes: FlowSizes, dtype: Any = np.float32) -> None:
+        self.half, self._count = sizes.dims // 2, sizes.dims - sizes.dims // 2
+        own = self.half + sizes.control.of_past(sizes.pose)
+        self._steps = []
+        for k in reversed(range(sizes.steps)):
+            step = f"flow.steps.{k}"
+            cells = Cells(weights, f"{step}.lstm", sizes.layers, own, dtype)
+            # As in `Cells`, a sigmoid is a tanh of half its argument; the scale's is one of 2 more.
+            half = np.ones(2 * self._count)
+            half[self._count :] = 0.5
+            bias = weights[f"{step}.out.bias"] * half
+            bias[self._count :] += 1
+            out = Dense(weights[f"{step}.out.weight"].T * half, bias, dtype)
+            inverse = np.linalg.inv(matrix_of(weights, f"{step}.linear"))
+            logs = weights[f"{step}.actnorm.logs"].astype(np.float64)
+            back = Dense(inverse.T * np.exp(-logs), -weights[f"{step}.actnorm.bias"], dtype)
+            self._steps.append((cells, out, back))
+        self.dtype = dtype
+
+    def reset(self) -> None:
+        """Begin a sequence."""
+        for cells, _, _ in self._steps:
+            cells.reset()
+
+    def told(self, heard: Array) -> Array:
+        """Return what `draw` wants of what is heard: `[n, K, 4N]` of `[n, C]`."""
+        return np.stack([cells.told(heard) for cells, _, _ in self._steps], 1)
+
+    def more(self, heard: Array, first: int) -> Array:
+        """Return what some of the numbers heard add where they were 0: `[K, 4N]` of `[m]`, from number
+        `first` on.
+        """
+        return np.stack([cells.more(heard, first) for cells, _, _ in self._steps])
+
+    def draw(self, noise: Array, past: Array, told: Array) -> Array:
+        """Return the next moment's code `[D]`, which lasts until the next call. noise: `[D]`; past: what is
+        known of the poses before, flat; told: `[K, 4N]`, as `told` gives it.
+        """
+        z, half, count = np.array(noise, self.dtype), self.half, self._count
+        for (cells, out, back), heard in zip(self._steps, told, strict=True):
+            a, b = z[:half], z[half:]
+            cells.own[:half] = a
+            cells.own[half:] = past
+            u = out.one(cells.step(heard))
+            scale = u[count:]
+            np.tanh(scale, scale)
+            scale *= 0.5
+            scale += 0.5 + LEAST
+            b /= scale
+            b -= u[:count]
+            z = back.one(z)
+        return z
 
 
 def matrix_of(weights: Layers, name: str) -> Array:

@@ -1,48 +1,56 @@
-"""Models frame by frame: what a sampler asks for the next poses. Each moment is reckoned by itself and in
-arrays of the same shape, so that it does not matter in which pieces the sound came.
+"""Models frame by frame: what a sampler asks for the next poses. Each moment is reckoned in arrays of
+the same shape and at the same place in them, so that it does not matter in which pieces the sound came.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
+from math import isfinite
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.generation import chunks, cvae, vae
-from metagraph.generation.encoder import encode_chunk, encode_past, encode_window
-from metagraph.generation.flow import Flow
-from metagraph.generation.layers import lstm_state
-from metagraph.generation.networks import CvaeSizes, FlowSizes, MatchingSizes, Sizes, Weights
-from metagraph.generation.noise import noise
+from metagraph.generation.encoder import BLOCK, ChunkHearing, Hearing
+from metagraph.generation.flow import Drawing
+from metagraph.generation.networks import Control, CvaeSizes, FlowSizes, MatchingSizes, Sizes, Weights
+from metagraph.generation.noise import Noise, noise
 from metagraph.generation.poses import FURTHEST
+from metagraph.generation.prepared import Dense
 
 Array = NDArray[Any]
 
 
 class Generator(ABC):
-    """A model that goes on and on. before, ahead: frames of features that are given beside the first one
-    made. made: frames that `step` makes. needed: frames after the first that must be known, the others may be
-    anything. pieces: of how many `steps` consists.
+    """A model that goes on and on. before, ahead: frames of features that it hears beside the first one made.
+    made: frames that `step` makes. needed: frames after the first that must be known. most: frames of
+    features that are of use at once. pieces: of how many `steps` consists.
     """
 
     before: int
     ahead: int
     made: int
     needed: int
+    most: int
     pieces: int = 1
 
     @abstractmethod
     def step(self, heard: Array, seed: int, take: int, frame: int) -> Array:
-        """Return the next poses `[made, X]`, standardised. heard: features `[before + 1 + ahead, audio + 4]`,
-        standardised. frame: the number of the first one made.
+        """Return the next poses `[made, X]`, standardised. heard: features `[n, audio + 4]`, standardised,
+        from `before` frames before the first one made on, as many as are known: `before + 1 + needed` at
+        least, more save time. frame: the number of the first one made, `made` further each time.
         """
 
     def steps(self, heard: Array, seed: int, take: int, frame: int) -> Iterator[Array | None]:
-        """Do what `step` does in pieces of about a millisecond: yields None after each, the poses at last."""
+        """Do what `step` does in pieces of less than a millisecond: yields None after each, then poses."""
         yield self.step(heard, seed, take, frame)
+
+    def _hears(self, control: Control, lookahead: int | None) -> None:
+        self.before, self.ahead = control.before, control.ahead
+        self.needed = control.ahead if lookahead is None else min(max(lookahead, 0), control.ahead)
+        self.most = control.before + BLOCK + control.ahead
 
 
 class FlowGenerator(Generator):
@@ -54,46 +62,46 @@ class FlowGenerator(Generator):
         self, w: Weights, sizes: FlowSizes, first: Array, temperature: float, lookahead: int | None
     ) -> None:
         control = sizes.control
-        self.w, self.sizes, self.temperature = w, sizes, np.float32(temperature)
-        self.lookahead = control.ahead if lookahead is None else min(max(lookahead, 0), control.ahead)
-        self.before, self.ahead, self.made = control.before, control.ahead, sizes.span
-        self.needed = self.lookahead
-        self.flow = Flow(w, sizes)
-        self.state = self.flow.start()
-        self.past = np.repeat(first[None], max(1, control.past), 0)
+        self._hears(control, lookahead)
+        self.made, self.temperature = sizes.span, np.float32(temperature)
+        self.flow, self.decoder, self.noise = Drawing(w, sizes), vae.Decoder(w, sizes), Noise(sizes.dims)
+        self.hearing = Hearing(w, control, self.needed, self.flow)
+        self.past = np.repeat(first[None].astype(np.float32), control.past, 0)
+        self.summary: list[Dense] = []  # what is known of the past poses
+        if control.kind == "encoder" and control.past:
+            self.summary = [Dense.named(w, "past.0"), Dense.named(w, "past.2")]
 
     def step(self, heard: Array, seed: int, take: int, frame: int) -> Array:
-        control = self.sizes.control
-        context = encode_window(self.w, control, heard, self.lookahead)
-        if control.past:
-            past = encode_past(self.w, control, self.past[-control.past :])
-            context = np.concatenate([past, context])
-        z = noise(seed, take, frame, self.sizes.dims) * self.temperature
+        told = self.hearing.of(frame, heard)
+        past = self.past.reshape(-1)
+        for n, layer in enumerate(self.summary):
+            past = layer.one(np.maximum(past, 0, out=past) if n else past)
+        z = self.noise.of(seed, take, frame) * self.temperature
         with np.errstate(over="ignore", invalid="ignore"):
-            code, self.state = self.flow.draw(z, context, self.state)
-        if not np.isfinite(code).all():  # a flow that ran away begins anew
-            code, self.state = np.zeros_like(code), self.flow.start()
-        flat = vae.decode(self.w, self.sizes, code)
-        poses = np.clip(flat.reshape(self.sizes.span, -1), -FURTHEST, FURTHEST)
-        self.past = np.concatenate([self.past, poses])[-max(1, control.past) :]
+            code = self.flow.draw(z, past, told)
+            if not isfinite(code @ code):  # a flow that ran away begins anew
+                code[:] = 0
+                self.flow.reset()
+        poses = _near(self.decoder.one(code)).reshape(self.made, -1)
+        if len(self.past):
+            self.past = np.concatenate([self.past, poses])[-len(self.past) :]
         return poses
 
 
 class CvaeGenerator(Generator):
     """The paper's CVAE."""
 
+    made = 1
+
     def __init__(self, w: Weights, sizes: CvaeSizes, temperature: float, lookahead: int | None) -> None:
-        control = sizes.control
-        self.w, self.sizes, self.temperature = w, sizes, np.float32(temperature)
-        self.lookahead = control.ahead if lookahead is None else min(max(lookahead, 0), control.ahead)
-        self.before, self.ahead, self.made, self.needed = control.before, control.ahead, 1, self.lookahead
-        self.state = lstm_state(w, "decoder", sizes.layers)
+        self._hears(sizes.control, lookahead)
+        self.decoder, self.noise = cvae.Drawing(w, sizes), Noise(sizes.dims)
+        self.hearing = Hearing(w, sizes.control, self.needed, self.decoder)
+        self.temperature = np.float32(temperature)
 
     def step(self, heard: Array, seed: int, take: int, frame: int) -> Array:
-        context = encode_window(self.w, self.sizes.control, heard, self.lookahead)
-        code = noise(seed, take, frame, self.sizes.dims) * self.temperature
-        pose, self.state = cvae.draw(self.w, code, context, self.state)
-        return np.clip(pose[None], -FURTHEST, FURTHEST)
+        told = self.hearing.of(frame, heard)
+        return _near(self.decoder.draw(self.noise.of(seed, take, frame) * self.temperature, told))[None]
 
 
 class MatchingGenerator(Generator):
@@ -112,14 +120,16 @@ class MatchingGenerator(Generator):
         keep: int | None = None,
     ) -> None:
         self.w, self.sizes, self.temperature = w, sizes, np.float32(temperature)
-        self.lookahead = sizes.most if lookahead is None else min(max(lookahead, 0), sizes.most)
+        self.needed = sizes.most if lookahead is None else min(max(lookahead, 0), sizes.most)
         # What is kept is not made long before it is heard.
-        kept = min(sizes.new, max(1, (self.lookahead + 1) // sizes.frames)) if keep is None else keep
+        kept = min(sizes.new, max(1, (self.needed + 1) // sizes.frames)) if keep is None else keep
         if not 1 <= kept <= sizes.new:
             raise ValueError(f"{kept} of {sizes.new} tokens cannot be kept")
-        self.guidance, self.kept = guidance, kept
+        self.kept, self.made = kept, kept * sizes.frames
         self.before, self.ahead = sizes.past * sizes.frames, sizes.most
-        self.made, self.needed, self.pieces = kept * sizes.frames, self.lookahead, chunks.STEPS + 1
+        self.most = self.before + 1 + self.ahead
+        self.hearing, self.drawing = ChunkHearing(w, sizes, self.needed), chunks.Drawing(w, sizes, guidance)
+        self.pieces = self.drawing.pieces + 2
         self.past = chunks.still_tokens(w, sizes, first)
 
     def step(self, heard: Array, seed: int, take: int, frame: int) -> Array:
@@ -129,19 +139,24 @@ class MatchingGenerator(Generator):
 
     def steps(self, heard: Array, seed: int, take: int, frame: int) -> Iterator[Array | None]:
         sizes = self.sizes
-        told = encode_chunk(self.w, sizes, heard, self.lookahead)
-        deaf = told if self.guidance == 1 else encode_chunk(self.w, sizes, heard, self.lookahead, False)
+        window = np.zeros((self.most, heard.shape[1]), heard.dtype)
+        window[: len(heard)] = heard[: self.most]
+        told = self.hearing.of(window)
         yield None
         z = noise(seed, take, frame, sizes.new * sizes.dims).reshape(sizes.new, sizes.dims)
         tokens = z * self.temperature
-        guided = chunks.drawing(self.w, sizes, tokens, self.past, told, deaf, self.guidance)
-        for n, drawn in enumerate(guided, 1):
+        for n, drawn in enumerate(self.drawing.drawing(tokens, self.past, told)):
             tokens = drawn
-            if n < chunks.STEPS:
+            if n < self.drawing.pieces:
                 yield None
-        tokens = np.clip(tokens[: self.kept], -FURTHEST, FURTHEST)
+        tokens = _near(tokens[: self.kept])
         self.past = np.concatenate([self.past, tokens])[-sizes.past :]
-        yield np.clip(chunks.poses_of(self.w, sizes, tokens), -FURTHEST, FURTHEST)
+        yield _near(chunks.poses_of(self.w, sizes, tokens))
+
+
+def _near(poses: Array) -> Array:
+    """Return poses of which no number is further than FURTHEST."""
+    return np.asarray(np.minimum(np.maximum(poses, -FURTHEST), FURTHEST))
 
 
 def generator(

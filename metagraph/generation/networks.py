@@ -30,7 +30,7 @@ says how frame t hears them:
 **Look-ahead** g, 0..ahead: of frames after t + g audio and activity are 0 (standardised), in both kinds; the
 encoder is told g / ahead (1 where ahead is 0) in its last input, the same for all frames of a window.
 Windows of neighbouring frames share their convolutions only where g = ahead: then a whole sequence can be
-encoded at once, else each window by itself (`encoder.encode_windows`, which costs some 6 times as much).
+encoded at once, else each window by itself (`encoder.Hearing`), which costs some 6 times as much.
 
 **flow-vae, moglow** (`FlowSizes`). x is a frame, or `span` frames in a row, flat. Its code h `[D]`:
 
@@ -127,11 +127,13 @@ class Control(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         """Numbers of audio and activity a frame."""
         return self.audio + ACTIVITY
 
+    def of_past(self, pose: int) -> int:
+        """Return how many numbers tell the poses before. pose: numbers of a frame's pose."""
+        return self.past * pose if self.kind == "window" else self.width * bool(self.past)
+
     def context(self, pose: int) -> int:
-        """Return how many numbers enter the network. pose: numbers of a frame's pose."""
-        if self.kind == "window":
-            return self.past * pose + self.frames * self.inputs
-        return self.width * (2 if self.past else 1)
+        """Return how many numbers enter the network: of the past, then of what is heard."""
+        return self.of_past(pose) + (self.frames * self.inputs if self.kind == "window" else self.width)
 
 
 class FlowSizes(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag="flow", tag_field="net"):

@@ -34,13 +34,14 @@ from metagraph.speech.drive import drive
 MINUTES = 3.0
 MOST = 10_000  # conversations
 AGAIN = 1_000_003  # added to moves for what stands beside planted takes
+VERSION = 2  # of what is said: 1 had the same two voices in all conversations
 CARD = "planted.json"  # what a folder of planted takes was made as
 
 
 class Planted(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What planted takes are made of. count: conversations, two takes each. seconds: of each. seed: of what
     is said. moves: of what is done with it: others on the same speech are other draws from the truth.
-    project: fingerprint of whose skeleton moves.
+    project: fingerprint of whose skeleton moves. version: of what they say and do with it.
     """
 
     count: int = 25
@@ -48,7 +49,7 @@ class Planted(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     seed: int = 1
     moves: int = 1
     project: str = ""
-    version: int = 1
+    version: int = VERSION
 
 
 def talk_of(planted: Planted, n: int) -> Spoken:
@@ -103,6 +104,8 @@ def again(project: Project, planted: Planted, take: Take, rig: PoseRig) -> Take:
     """Return a planted take performed anew, by chance of its own: what a perfect model might do. Raises
     ValueError for a take that was not planted.
     """
+    if planted.version != VERSION:
+        raise ValueError(f"these takes were planted by version {planted.version}, not {VERSION}: plant anew")
     number, _, side = take.source.name.removeprefix("planted-").partition("_")
     if not (number.isdigit() and side in ("1", "2") and 1 <= int(number) <= planted.count):
         raise ValueError(f"'{take.source.name}' is none of the takes that were planted")
@@ -156,7 +159,8 @@ def _own(folder: Path, planted: Planted) -> None:
         raise FileError(
             folder,
             f"holds takes that were planted otherwise: seed {there.seed}, moves {there.moves}, "
-            f"{there.seconds:g} s each" + (", another character" if there.project != planted.project else ""),
+            f"{there.seconds:g} s each, by version {there.version}"
+            + (", another character" if there.project != planted.project else ""),
             remedy="Choose another folder, or ask for the same.",
         )
     folder.mkdir(parents=True, exist_ok=True)

@@ -7,7 +7,7 @@ an arm) counts to the lower one: its turn is that of the whole line from the joi
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -115,18 +115,30 @@ def gram_schmidt(rows: Array) -> Array:
     """
     rows = np.asarray(rows, np.float64)
     first, second = rows[..., 0, :], rows[..., 1, :]
-    first = _unit(first, np.array([1.0, 0, 0]))
+    first = _unit(first, lambda: np.array([1.0, 0, 0]))
+
+    def aside() -> Array:
+        """Return any direction at a right angle."""
+        side = np.where(np.abs(first[..., 1:2]) < 0.9, np.array([0.0, 1, 0]), np.array([0.0, 0, 1]))
+        side = side - np.einsum("...i,...i->...", first, side)[..., None] * first
+        return _unit(side, lambda: np.array([0.0, 1, 0]))
+
     second = second - np.einsum("...i,...i->...", first, second)[..., None] * first
-    # Where nothing is left, any direction at a right angle.
-    side = np.where(np.abs(first[..., 1:2]) < 0.9, np.array([0.0, 1, 0]), np.array([0.0, 0, 1]))
-    side = side - np.einsum("...i,...i->...", first, side)[..., None] * first
-    second = _unit(second, _unit(side, np.array([0.0, 1, 0])))
-    return np.stack([first, second, np.cross(first, second)], -2)
+    second = _unit(second, aside)
+    out = np.empty((*first.shape[:-1], 3, 3))
+    out[..., 0, :], out[..., 1, :] = first, second
+    for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        out[..., 2, c] = first[..., a] * second[..., b] - first[..., b] * second[..., a]
+    return out
 
 
-def _unit(v: Array, otherwise: Array) -> Array:
-    length = np.linalg.norm(v, axis=-1, keepdims=True)
-    return np.asarray(np.where(length > 1e-6, v / np.maximum(length, 1e-6), otherwise))
+def _unit(v: Array, otherwise: Callable[[], Array]) -> Array:
+    """Return vectors `[..., 3]` of length 1. otherwise: asked for those of length 0, which are rare."""
+    length = np.sqrt(np.einsum("...i,...i->...", v, v))[..., None]
+    fine = length > 1e-6
+    if fine.all():
+        return np.asarray(v / length)
+    return np.asarray(np.where(fine, v / np.maximum(length, 1e-6), otherwise()))
 
 
 def resampled(clip: Clip, fps: float, joints: tuple[int, ...] | None = None) -> Array:

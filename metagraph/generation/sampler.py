@@ -114,7 +114,7 @@ class Sampler:
         if self._steps is None:
             if self._next + self._made.needed >= self._known:
                 return None
-            self._steps = self._made.steps(self._window(), self.seed, self.take, self.start + self._next)
+            self._steps = self._made.steps(self._window(False), self.seed, self.take, self.start + self._next)
         new = next(self._steps)
         if new is None:
             return np.zeros((0, len(self.model.rig.joints), 4))
@@ -130,12 +130,11 @@ class Sampler:
         if len(frames):
             self._heard = np.concatenate([self._heard, self.model.heard(frames)])
 
-    def _window(self) -> Array:
-        """Return what the next frame made hears."""
-        size = self._made.before + 1 + self._made.ahead
-        window = self._heard[:size]
-        if len(window) < size:
-            window = np.concatenate([window, np.repeat(self._quiet, size - len(window), 0)])
+    def _window(self, last: bool) -> Array:
+        """Return what the next frame made hears, and some of those after it. last: silence follows."""
+        window = self._heard[: self._made.most]
+        if last and len(window) < self._made.most:
+            window = np.concatenate([window, np.repeat(self._quiet, self._made.most - len(window), 0)])
         return window
 
     def _on(self, new: Array) -> None:
@@ -151,7 +150,7 @@ class Sampler:
         while self._next < self._known:
             if self._next + made.needed >= self._known and not last:
                 break
-            new = made.step(self._window(), self.seed, self.take, self.start + self._next)
+            new = made.step(self._window(last), self.seed, self.take, self.start + self._next)
             new = new[: self._known - self._next] if last else new
             poses.append(new)
             self._on(new)

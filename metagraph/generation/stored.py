@@ -71,6 +71,16 @@ class SkeletonCard(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     roles: dict[str, int]
     base: tuple[tuple[float, float, float, float], ...]
 
+    def rig(self) -> PoseRig:
+        """Return the joints that move. Raises PoseError."""
+        skeleton = Skeleton(
+            self.names,
+            np.array(self.parents, np.int32),
+            np.array(self.rotations, np.float64),
+            np.array(self.translations, np.float64),
+        )
+        return rig_of(skeleton, self.roles, np.array(self.base, np.float64))
+
 
 class ModelCard(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What is told of a model beside its weights. tracks: 1 hears both voices mixed, 2 apart. hours: of takes
@@ -108,14 +118,7 @@ class Model:
     @cached_property
     def rig(self) -> PoseRig:
         """The joints that it moves."""
-        told = self.card.skeleton
-        skeleton = Skeleton(
-            told.names,
-            np.array(told.parents, np.int32),
-            np.array(told.rotations, np.float64),
-            np.array(told.translations, np.float64),
-        )
-        return rig_of(skeleton, told.roles, np.array(told.base, np.float64))
+        return self.card.skeleton.rig()
 
     @cached_property
     def poses(self) -> Scale:

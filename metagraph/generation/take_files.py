@@ -136,13 +136,22 @@ def read_takes(
     """
     failures: list[str] = []
     read: list[tuple[TakeFiles, Clip]] = []
+    several: dict[Path, str] = {}
     for each in files:
         if cancelled is not None and cancelled():
             raise CancelledError
         try:
-            read.append((each, max(read_clips(each.clip), key=lambda c: c.frames)))
+            there = read_clips(each.clip)
         except FileError as error:
             failures.append(str(error))
+            continue
+        clip = max(there, key=lambda c: c.frames)
+        read.append((each, clip))
+        if len(there) > 1:
+            several[each.clip] = (
+                f"holds {len(there)} animations; the longest, '{clip.name}', {clip.duration:.1f} s, is "
+                "taken: save each with its sound in a file of its own to learn from all"
+            )
     if rig is None and read:
         counts = {c.skeleton: sum(o.skeleton == c.skeleton for _, o in read) for _, c in read}
         try:
@@ -164,7 +173,8 @@ def read_takes(
             continue
         takes.append(take)
         clips.append(clip)
-        notes += [*(f"{each.clip.name}: {note}" for note in clip.notes), *take.notes]
+        told = (*([several[each.clip]] if each.clip in several else ()), *clip.notes)
+        notes += [*(f"{each.clip.name}: {note}" for note in told), *take.notes]
     return Batch(rig, tuple(takes), tuple(clips), tuple(failures), tuple(dict.fromkeys(notes)))
 
 

@@ -1,5 +1,5 @@
 """A training in a process of its own, niced: it is begun, listened to, stopped, and gone on with. The window
-and the command line never import torch.
+and the command line never import torch. It does not outlive the process that began it.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from time import monotonic
 
@@ -31,8 +32,8 @@ class TrainingFailedError(RuntimeError):
 
 
 class Event(Struct, frozen=True, kw_only=True):
-    """What happened. event: `begin`, `step`, `checkpoint`, `statistics`, `poses`, `note`, `error` or `end`.
-    seconds: of the processor; minutes: of the clock; share: of the training, 0..1. numbers: `loss`,
+    """What happened. event: `begin`, `step`, `checkpoint`, `statistics`, `poses`, `finish`, `note`, `error`
+    or `end`. seconds: of the processor; minutes: of the clock; share: of the training, 0..1. numbers: `loss`,
     `likelihood` (natural logarithm), `reconstruction`, `matching`, `speeds`, `deviation`, `rate`: those that
     the model has. landmarks: `[n, 9, 3]`, metres, five times a second. path: of what was written.
     """
@@ -78,7 +79,7 @@ class TrainingProcess:
             raise TrainingFailedError(told)
         self.folder = folder_of(out)
         (self.folder / STOP).unlink(missing_ok=True)
-        words = [python, "-m", "metagraph.generation.training", str(self.folder)]
+        words = [python, "-m", "metagraph.generation.training", str(self.folder), "--watched"]
         words += [] if resume else ["--afresh"]
         words += ["--export"] if export else []
         self._heard, self._said, self.last = heard, list[str](), Event(event="none")
@@ -87,7 +88,7 @@ class TrainingProcess:
         paths = os.environ.get("PYTHONPATH", "")
         self._process = subprocess.Popen(
             words,
-            stdin=subprocess.DEVNULL,
+            stdin=subprocess.PIPE,  # closed when this process ends, however that comes about
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
@@ -96,6 +97,8 @@ class TrainingProcess:
             env={
                 **os.environ,
                 "PYTHONIOENCODING": "utf-8",
+                # Threads that wait turning on the spot starve each other where others work as well.
+                "OMP_WAIT_POLICY": os.environ.get("OMP_WAIT_POLICY", "PASSIVE"),
                 "PYTHONPATH": root + (os.pathsep + paths if paths else ""),
             },
         )
@@ -118,10 +121,17 @@ class TrainingProcess:
         self.folder.mkdir(exist_ok=True)
         (self.folder / STOP).touch()
 
+    def leave(self) -> None:
+        """Let it keep a checkpoint and end by itself, soon; no model is written. Nobody waits for it."""
+        if self._process.stdin is not None:
+            with suppress(OSError):
+                self._process.stdin.close()
+
     def kill(self) -> None:
         """End it at once; its last checkpoint can be gone on from."""
         self._process.kill()
         self._process.wait()
+        self.leave()
 
     def wait(self, seconds: float | None = None) -> Path:
         """Return the model's file once it is written. Raises TrainingFailedError, TimeoutError."""
@@ -130,6 +140,7 @@ class TrainingProcess:
             code = self._process.wait(seconds)
         except subprocess.TimeoutExpired:
             raise TimeoutError("the training has not ended yet") from None
+        self.leave()  # it has ended; what is open is closed
         for thread in self._threads:
             thread.join(None if end is None else max(1.0, end - monotonic()))
         if code or not self.path:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from metagraph.generation.layers import Layers, linear, relu
 from metagraph.generation.networks import FlowSizes, Weights
+from metagraph.generation.prepared import Dense
 
 Array = NDArray[Any]
 FLOOR = 1e-6  # deviation of a component at least
@@ -32,6 +33,25 @@ def decode(w: Layers, sizes: FlowSizes, codes: Array) -> Array:
     if sizes.code == "pca":
         return np.asarray(code @ w["code.basis"] + w["code.mean"])
     return linear(w, "decode.2", relu(linear(w, "decode.0", code + w["code.mean"])))
+
+
+class Decoder:
+    """From codes to poses, frame by frame."""
+
+    def __init__(self, w: Layers, sizes: FlowSizes) -> None:
+        self._layers: list[Dense] = []
+        if sizes.code == "pca":
+            self._layers = [Dense(w["code.deviation"][:, None] * w["code.basis"], w["code.mean"])]
+        elif sizes.code == "autoencoder":
+            first = w["decode.0.weight"].T
+            inner = Dense(w["code.deviation"][:, None] * first, w["decode.0.bias"] + w["code.mean"] @ first)
+            self._layers = [inner, Dense.named(w, "decode.2")]
+
+    def one(self, code: Array) -> Array:
+        """Return the poses `[span X]` of a code `[D]`, as `decode` does; they last until the next call."""
+        for n, layer in enumerate(self._layers):
+            code = layer.one(np.maximum(code, 0, out=code) if n else code)
+        return code
 
 
 def spans(poses: Array, span: int) -> Array:

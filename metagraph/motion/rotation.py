@@ -127,21 +127,16 @@ def from_matrix(m: Numbers) -> Array:
     """Return quaternions `[..., 4]` of proper rotation matrices `[..., 3, 3]`, with `w >= 0`."""
     m = np.asarray(m, float)
     xx, yy, zz = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
-    squares = np.stack([1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz, 1 + xx + yy + zz], -1)
-    yz, zx, xy = m[..., 2, 1] - m[..., 1, 2], m[..., 0, 2] - m[..., 2, 0], m[..., 1, 0] - m[..., 0, 1]
-    sxy, sxz, syz = m[..., 0, 1] + m[..., 1, 0], m[..., 0, 2] + m[..., 2, 0], m[..., 1, 2] + m[..., 2, 1]
-    rows = np.stack(
-        [
-            np.stack([squares[..., 0], sxy, sxz, yz], -1),
-            np.stack([sxy, squares[..., 1], syz, zx], -1),
-            np.stack([sxz, syz, squares[..., 2], xy], -1),
-            np.stack([yz, zx, xy, squares[..., 3]], -1),
-        ],
-        -2,
-    )
-    best = np.argmax(squares, -1)
-    q = np.take_along_axis(rows, best[..., None, None], -2)[..., 0, :]
-    q = normalize(q)
+    rows = np.empty((*m.shape[:-2], 4, 4))  # four times the products of the quaternion's numbers
+    rows[..., 0, 0], rows[..., 1, 1] = 1 + xx - yy - zz, 1 - xx + yy - zz
+    rows[..., 2, 2], rows[..., 3, 3] = 1 - xx - yy + zz, 1 + xx + yy + zz
+    for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        ab, ba = m[..., a, b], m[..., b, a]
+        rows[..., a, b] = rows[..., b, a] = ab + ba
+        rows[..., c, 3] = rows[..., 3, c] = ba - ab
+    flat = rows.reshape(-1, 4, 4)
+    best = np.argmax(flat.reshape(-1, 16)[:, ::5], -1)
+    q = normalize(flat[np.arange(len(flat)), best].reshape(*m.shape[:-2], 4))
     return np.where(q[..., 3:] < 0, -q, q)
 
 

@@ -2,11 +2,13 @@
 
 A clip between two moments is safe when somebody can go from its end to its beginning, and from the end of any
 other such clip to it, for no more than a transition of a motion graph may cost. So its ends lie near one
-pose, the stance, in which the take often rests.
+pose, the stance, in which the take often rests. What rest is, and what moves, is told by the take's own
+speeds: they are of two kinds where somebody rests between movements, also where resting trembles a little.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -25,6 +27,10 @@ Candidate = tuple[
 LEAST, MOST = 1.0, 8.0  # seconds
 APART = 8  # frames between moments that may be cut at
 STILL = 0.25  # of the median speed of a take's frames; what is slower rests
+SLOWEST = 1e-3  # metres a second; below that all is alike
+TWO_KINDS = (
+    0.75  # share of the variance that two kinds of speeds explain; 0.64 of one bell, 0.75 of an even spread
+)
 POSES = 2000  # moments that are compared with each other at most
 
 
@@ -50,14 +56,9 @@ def candidates(
         )
     states = states_of([clip]) if states is None else states
     limit = threshold(states).limit if limit is None else limit
-    places = moments(states)
-    if not len(places):
-        return ()
-    terms = terms_of(states, places)
-    middle = _stance(terms, limit)
-    away = np.linalg.norm(terms - terms[middle], axis=-1).sum(-1)
-    near = places[away <= limit / 2]  # any two of them differ by no more than the limit
-    apart = away[away <= limit / 2]
+    near, apart = _rests(states, limit)
+    speeds = smoothed(states)
+    least_speed = pace(speeds).moves
     times = times_of(clip)
     out: list[Candidate] = []
     n = 0
@@ -67,7 +68,8 @@ def candidates(
             break
         # It goes on from the next rest when that is too far, or nothing happened until then.
         moved = _moved(states, int(near[n]), int(near[after]))
-        if near[after] - near[n] > most * RATE + 1e-6 or moved <= limit:
+        happens = moved > limit and speeds[near[n] : near[after] + 1].max() >= least_speed
+        if near[after] - near[n] > most * RATE + 1e-6 or not happens:
             n += 1
             continue
         score = 1.0 - float(apart[n] + apart[after]) / max(limit, 1e-9)
@@ -76,15 +78,74 @@ def candidates(
     return tuple(out)
 
 
+@dataclass(frozen=True)
+class Pace:
+    """How fast a take moves, metres a second. rests: what is no faster rests; moves: what gets as fast moves,
+    0 where speeds are of one kind. middle: median.
+    """
+
+    rests: float
+    moves: float
+    middle: float
+
+
+def smoothed(states: States) -> Array:
+    """Return `[F]` how fast a take's fastest joint is, metres a second, over a sixth of a second."""
+    speed = np.linalg.norm(states.velocities, axis=-1).max(-1)
+    return np.convolve(np.pad(speed, 2, "edge"), np.ones(5) / 5, "valid")
+
+
+def pace(speeds: Array) -> Pace:
+    """Return what rest is and what moves by a take's own speeds `[F]`: where their logarithms are of two
+    kinds (Otsu), the middle of each; else a share of the median.
+    """
+    middle = float(np.median(speeds))
+    still = STILL * max(middle, float(speeds.max()) / 10)
+    ordered = np.sort(np.log(np.maximum(speeds, SLOWEST)))
+    variance, count = float(ordered.var()), len(ordered)
+    if variance < 1e-9:
+        return Pace(still, 0.0, middle)
+    sums, below = np.cumsum(ordered), np.arange(1, count)
+    slow, fast = sums[:-1] / below, (sums[-1] - sums[:-1]) / (count - below)
+    between = below * (count - below) * (slow - fast) ** 2
+    best = int(between.argmax())
+    if between[best] / (count**2 * variance) < TWO_KINDS:
+        return Pace(still, 0.0, middle)
+    return Pace(max(still, float(np.exp(slow[best]))), float(np.exp(fast[best])), middle)
+
+
+def uncut(clip: Clip, limit: float | None = None, least: float = LEAST, most: float = MOST) -> str:
+    """Return why `candidates` finds nothing in a take, in words. Arguments and errors as there."""
+    states = states_of([clip])
+    limit = threshold(states).limit if limit is None else limit
+    speeds = smoothed(states)
+    found, places = pace(speeds), moments(states)
+    if len(places) < 2:
+        slow = 100 * float(np.quantile(speeds, 0.05))
+        return (
+            f"it never rests: half of the time it moves at {100 * found.middle:.0f} cm/s or more, and hardly "
+            f"ever below {slow:.0f}"
+        )
+    near, _ = _rests(states, limit)
+    if len(near) < 2:
+        return (
+            f"it rests {len(places)} times, never twice in one pose: all joints together may be "
+            f"{50 * limit:.0f} cm from it"
+        )
+    return (
+        f"it rests {len(near)} times in one pose, but never moves and comes back to it within {least:g} to "
+        f"{most:g} s"
+    )
+
+
 def moments(states: States) -> Array:
     """Return `[n]` the states at which a take rests: where it is slowest, for a while around, and slow by
     itself; ascending.
     """
-    speed = np.linalg.norm(states.velocities, axis=-1).max(-1)
-    if len(speed) < 3:
+    if len(states.velocities) < 3:
         return np.zeros(0, int)
-    smooth = np.convolve(np.pad(speed, 2, "edge"), np.ones(5) / 5, "valid")
-    slow = smooth <= STILL * max(float(np.median(smooth)), float(smooth.max()) / 10)
+    smooth = smoothed(states)
+    slow = smooth <= pace(smooth).rests
     out: list[int] = []
     for at in np.argsort(smooth, kind="stable"):
         if not slow[at]:
@@ -94,6 +155,19 @@ def moments(states: States) -> Array:
         if len(out) >= POSES:
             break
     return np.array(sorted(out), int)
+
+
+def _rests(states: States, limit: float) -> tuple[Array, Array]:
+    """Return `[n]` the moments at which a take rests in its stance, any two of which differ by no more than
+    the limit, and `[n]` by how much each differs from the stance.
+    """
+    places = moments(states)
+    if not len(places):
+        return places, np.zeros(0)
+    terms = terms_of(states, places)
+    away = np.linalg.norm(terms - terms[_stance(terms, limit)], axis=-1).sum(-1)
+    near = away <= limit / 2
+    return places[near], away[near]
 
 
 def _stance(terms: Array, limit: float) -> int:

@@ -1,8 +1,9 @@
 """Learned motion: python tests/benchmarks/bench_generation.py [seconds]
 
-How many times faster than they play poses are made by models of each kind and size, as the sound comes in,
-40 ms at a time, and what hearing it costs alone. The weights have learned nothing, which takes as long. One
-thread.
+How many times faster than they play poses are made by models of each kind and size: of a whole recording
+(`whole`, with loudness, features and the clip; then the numbers of poses alone), as the sound comes in, 40 ms
+at a time, and live with 5 frames of look-ahead, piece of work by piece. The best of three of the first two.
+The weights have learned nothing, which takes as long. One thread.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -23,7 +25,7 @@ import numpy as np  # noqa: E402
 from metagraph.generation.features import conversation_activity, features, frames_of  # noqa: E402
 from metagraph.generation.loudness import gain_of  # noqa: E402
 from metagraph.generation.networks import FPS, parameters, sizes_of  # noqa: E402
-from metagraph.generation.sampler import Sampler  # noqa: E402
+from metagraph.generation.sampler import Sampler, poses_to, whole  # noqa: E402
 from tests.generation.makers import babble, conversation, untrained  # noqa: E402
 
 SYSTEMS = (
@@ -32,7 +34,7 @@ SYSTEMS = (
     ("cvae", "small", 1.0),
     ("matching", "small", 1.0),
     ("cvae", "paper", 1.0),
-    ("flow-vae", "paper", 0.1),
+    ("flow-vae", "paper", 0.3),
     ("moglow", "paper", 0.03),
 )
 
@@ -44,24 +46,51 @@ def main(seconds: float) -> None:
     gains = [gain_of(channel, 16000) for channel in sound]
     measured = time.process_time() - began
     began = time.process_time()
-    features(sound, told, gains=gains)
+    frames = features(sound, told, gains=gains)
     heard = time.process_time() - began
     print(f"{seconds:g} s: loudness {seconds / measured:.0f} x real time, features {seconds / heard:.0f} x")
-    for kind, size, share in SYSTEMS:
-        sizes = sizes_of(kind, size)
-        sampler = Sampler(untrained(kind, 0.0, sizes), gains=gains)
+    for kind, name, share in SYSTEMS:
+        sizes = sizes_of(kind, name)
+        model = untrained(kind, 0.0, sizes)
         count = int(share * seconds * FPS)
+        size = 640 * count
+        speeds = [
+            count / FPS / min(spent(run) for _ in range(3))
+            for run in (
+                lambda model=model, n=count, size=size: whole(model, sound[:, :size], told[:n]),
+                lambda model=model, n=count: poses_to(model, frames[:n]),
+            )
+        ]
+        sampler = Sampler(model, gains=gains)
         worst, total, made = 0.0, 0.0, 0
         for n in range(count):
             began = time.process_time()
             made += len(sampler.push(sound[:, n * 640 : (n + 1) * 640], told[n : n + 1]))
             took = time.process_time() - began
             worst, total = max(worst, took), total + took
+        live = Sampler(model, gains=gains, lookahead=5)
+        pieces = []
+        for n in range(count):
+            live.feed(sound[:, n * 640 : (n + 1) * 640], told[n : n + 1])
+            while True:
+                began = time.process_time()
+                if live.advance() is None:
+                    break
+                pieces.append(1000 * (time.process_time() - began))
         print(
-            f"{kind:9} {size:6} {parameters(sizes) / 1e6:7.2f} M  {made / FPS / total:6.1f} x real time, "
+            f"{kind:9} {name:6} {parameters(sizes) / 1e6:7.2f} M  whole {speeds[0]:6.1f} x real time, "
+            f"poses {speeds[1]:6.1f} x; pushed {made / FPS / total:6.1f} x, "
             f"{1000 * total / max(made, 1):6.2f} ms a frame, at most {1000 * worst:6.1f} ms a push, "
-            f"{sampler.delay} frames late"
+            f"{sampler.delay} frames late; live piece {np.median(pieces):5.2f} ms, "
+            f"95 % {np.quantile(pieces, 0.95):5.2f} ms"
         )
+
+
+def spent(run: Callable[[], object]) -> float:
+    """Seconds of processor time."""
+    began = time.process_time()
+    run()
+    return time.process_time() - began
 
 
 if __name__ == "__main__":

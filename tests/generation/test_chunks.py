@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from metagraph.generation import chunks, cvae, vae
-from metagraph.generation.layers import lstm_state
 from metagraph.generation.networks import Control, CvaeSizes, FlowSizes, MatchingSizes
 from tests.generation.makers import shaken, tiny
 
@@ -21,6 +20,7 @@ def test_components_tell_most_of_what_varies_together():
     assert np.allclose(codes.mean(0), 0, atol=1e-5)
     assert np.allclose(np.cov(codes, rowvar=False, bias=True), np.eye(3), atol=1e-4)
     assert np.abs(vae.decode(w, sizes, codes) - source).max() < 1e-4
+    assert np.abs(vae.Decoder(w, sizes).one(codes[7].astype(np.float32)) - source[7]).max() < 1e-4
     assert np.allclose(w["code.basis"] @ w["code.basis"].T, np.eye(3), atol=1e-5)
     assert (np.diff(w["code.deviation"]) <= 0).all()
     again = vae.principal(source, 3, "code")
@@ -46,6 +46,8 @@ def test_a_codes_mean_and_deviation_come_off_and_on(code):
         w["code.mean"], w["code.deviation"] = w["code.mean"] + 3, w["code.deviation"] * 2
         assert np.allclose(vae.encode(w, sizes, poses), (plain - 3) / 2, atol=1e-5)
         assert np.allclose(vae.decode(w, sizes, vae.encode(w, sizes, poses)), back, atol=1e-4)
+    one = vae.Decoder(w, sizes).one(vae.encode(w, sizes, poses)[2])
+    assert np.allclose(one, back[2], atol=1e-4)
 
 
 def test_frames_are_put_in_rows_and_the_rest_is_left_out():
@@ -71,48 +73,14 @@ def _places(sizes: MatchingSizes):
     return w, heard, past, noise
 
 
-def test_a_velocity_depends_on_all_it_is_given():
-    sizes = tiny("matching")
-    assert isinstance(sizes, MatchingSizes)
-    w, heard, past, noise = _places(sizes)
-    own = chunks.velocity(w, sizes, noise, np.array(0.3), past, heard)
-    assert own.shape == noise.shape
-    for other in (
-        chunks.velocity(w, sizes, noise + 1, np.array(0.3), past, heard),
-        chunks.velocity(w, sizes, noise, np.array(0.9), past, heard),
-        chunks.velocity(w, sizes, noise, np.array(0.3), past + 1, heard),
-        chunks.velocity(w, sizes, noise, np.array(0.3), None, heard),
-        chunks.velocity(w, sizes, noise, np.array(0.3), past, heard[::-1]),
-    ):
-        assert np.abs(other - own).max() > 1e-3
-    ahead = heard.copy()
-    ahead[-1] = -ahead[-1]  # the places of the future are heard, too
-    assert np.abs(chunks.velocity(w, sizes, noise, np.array(0.3), past, ahead) - own).max() > 1e-4
-
-
-def test_chunks_at_once_are_each_by_itself():
-    sizes = tiny("matching")
-    assert isinstance(sizes, MatchingSizes)
-    w, heard, past, noise = _places(sizes)
-    together = chunks.velocity(
-        w,
-        sizes,
-        np.stack([noise, -noise]),
-        np.array([0.1, 0.8]),
-        np.stack([past, -past]),
-        np.stack([heard] * 2),
-    )
-    apart = chunks.velocity(w, sizes, -noise, np.array(0.8), -past, heard)
-    assert np.abs(together[1] - apart).max() < 1e-12
-
-
 def test_guidance_is_between_and_beyond_both_velocities():
     sizes = tiny("matching")
     assert isinstance(sizes, MatchingSizes)
     w, heard, past, noise = _places(sizes)
     free = heard[::-1] + 0.3
-    drawn = [chunks.draw_chunk(w, sizes, noise, past, heard, free, g, 1) for g in (0.0, 1.0, 2.0)]
-    told = chunks.draw_chunk(w, sizes, noise, past, free, free, 1.0, 1)
+    both = np.stack([heard, free])
+    drawn = [chunks.Drawing(w, sizes, g, 1).draw(noise, past, both) for g in (0.0, 1.0, 2.0)]
+    told = chunks.Drawing(w, sizes, 1.0, 1).draw(noise, past, free[None])
     assert np.abs(drawn[0] - told).max() < 1e-12
     assert np.abs(drawn[2] - (2 * drawn[1] - drawn[0])).max() < 1e-12
 
@@ -124,7 +92,7 @@ def test_eulers_steps_follow_a_straight_line_exactly():
     w, heard, past, noise = _places(sizes)
     w["final.out.weight"] *= 0
     for steps in (1, 8):
-        out = chunks.draw_chunk(w, sizes, noise, past, heard, -heard, 2.0, steps)
+        out = chunks.Drawing(w, sizes, 2.0, steps).draw(noise, past, np.stack([heard, -heard]))
         assert np.abs(out - (noise + w["final.out.bias"])).max() < 1e-12
 
 
@@ -144,9 +112,9 @@ def test_a_cvae_frame_by_frame_is_the_whole():
     w = shaken(sizes, dtype=np.float64)
     codes, context = CHANCE.standard_normal((8, 3)), CHANCE.standard_normal((8, 4))
     whole = cvae.decode(w, sizes, codes, context)
-    state = lstm_state(w, "decoder", 3)
+    drawing = cvae.Drawing(w, sizes)
+    told = drawing.told(context)
     for t in range(8):
-        one, state = cvae.draw(w, codes[t], context[t], state)
-        assert np.abs(one - whole[t]).max() < 1e-12
+        assert np.abs(drawing.draw(codes[t], told[t]) - whole[t]).max() < 1e-12
     mean, log_variance = cvae.encode(w, sizes, whole, context)
     assert mean.shape == log_variance.shape == (8, 3)

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from metagraph.generation import encoder
-from metagraph.generation.layers import conv1d, relu
 from metagraph.generation.networks import Control
 from tests.generation.makers import shaken, tiny
 
@@ -70,18 +69,60 @@ def test_a_chunks_control_is_padded_and_masked():
     sizes = tiny("matching")
     w = shaken(sizes)
     features = CHANCE.standard_normal((sizes.tokens * sizes.frames, 31)).astype(np.float32)
-    heard = encoder.encode_chunk(w, sizes, features, 3)
+    heard, deaf = encoder.ChunkHearing(w, sizes, 3).of(features)
     other = features.copy()
     other[sizes.past * 4 + 4 :] = 5
     assert heard.shape == (7, 8)
-    assert (encoder.encode_chunk(w, sizes, other, 3) == heard).all()
-    assert (encoder.encode_chunk(w, sizes, other, sizes.most) != heard).any()
+    assert (encoder.ChunkHearing(w, sizes, 3).of(other)[0] == heard).all()
+    assert (encoder.ChunkHearing(w, sizes, sizes.most).of(other)[0] != heard).any()
+    silent = features.copy()
+    silent[:, : sizes.audio] = 0
+    assert np.abs(encoder.ChunkHearing(w, sizes, 3).of(silent)[0] + w["no_sound"] - deaf).max() < 1e-5
+    assert (deaf != heard).any()
 
 
-def test_a_residual_layer_adds_to_what_it_reads():
+@pytest.mark.parametrize("kind", ["window", "encoder"])
+@pytest.mark.parametrize("lookahead", [0, 6, 25])
+def test_a_frame_is_heard_to_the_bit_the_same_however_much_is_known_of_the_next(kind, lookahead):
+    control = Control(kind=kind, width=8)
     w = shaken(tiny("flow-vae"))
-    control = Control(width=8, before=0, ahead=2, dilations=(1,))
-    window = CHANCE.standard_normal((3, 31)).astype(np.float32)
-    read = relu(conv1d(w, "control.input", np.concatenate([window, np.ones((3, 1))], 1).astype(np.float32)))
-    expected = read[1] + relu(conv1d(w, "control.blocks.0", read))[0]
-    assert np.abs(encoder.encode_window(w, control, window, 2) - expected).max() < 1e-5
+    features = CHANCE.standard_normal((31 + 20, 31)).astype(np.float32)
+    alone = encoder.encode_window(w, control, encoder.windows(features, 31), lookahead)
+
+    class Flat:
+        told = staticmethod(np.array)
+
+        def more(self, heard, first):
+            return np.pad(heard, (first, 31 * 31 - first - len(heard)))
+
+    def heard(start, known):
+        hearing = encoder.Hearing(w, control, lookahead, Flat())
+        return np.stack([hearing.of(f, features[f : f + known]) for f in range(start, 21)])
+
+    whole = heard(0, 99)
+    assert np.abs(whole - alone).max() < 1e-5
+    assert heard(0, 6 + lookahead).tobytes() == whole.tobytes()
+    assert heard(0, 9 + lookahead).tobytes() == whole.tobytes()
+    assert heard(5, 99).tobytes() == whole[5:].tobytes()  # begun anywhere else
+
+
+@pytest.mark.parametrize("dilation", [1, 2, 5])
+def test_a_layer_adds_a_sum_over_dilated_neighbours_to_what_it_reads(dilation):
+    w = {"control.input.weight": np.zeros((4, 2, 1)), "control.input.bias": np.zeros(4)}
+    w |= {
+        "control.blocks.0.weight": CHANCE.standard_normal((4, 4, 3)),
+        "control.blocks.0.bias": np.arange(4.0),
+    }
+    x = CHANCE.standard_normal((2, 14, 4))
+    out = encoder.Convolutions(w, (dilation,), 1.0).layer(0, x, dilation)
+    assert out.shape == (2, 14 - 2 * dilation, 4)
+    for t in (0, out.shape[1] - 1):
+        told = sum(w["control.blocks.0.weight"][:, :, k] @ x[1, t + k * dilation] for k in range(3))
+        expected = x[1, t + dilation] + np.maximum(told + np.arange(4), 0)
+        assert np.abs(out[1, t] - expected).max() < 1e-12
+
+
+def test_too_few_frames_for_a_convolution_are_told():
+    w = shaken(tiny("flow-vae"))
+    with pytest.raises(ValueError, match="4 frames are too few for a convolution over 5"):
+        encoder.encode_all(w, Control(width=8), np.zeros((6, 31), np.float32))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from metagraph.generation.flow import Flow, matrix_of
+from metagraph.generation.flow import Drawing, Flow, matrix_of
 from metagraph.generation.initial import initial
 from metagraph.generation.networks import Control, FlowSizes, sizes_of
 from tests.generation.makers import shaken
@@ -43,14 +43,22 @@ def test_of_the_papers_size_codes_come_back():
     assert np.abs(back - codes).max() < 1e-5
 
 
-def test_moment_by_moment_is_the_whole_sequence():
-    flow = Flow(shaken(SIZES, dtype=np.float64), SIZES, np.float64)
-    codes, context = _given(12, SIZES)
-    whole, _ = flow.inverse(codes, context)
-    state = flow.start()
-    for t in range(12):
-        one, state = flow.draw(codes[t], context[t], state)
-        assert np.abs(one - whole[t]).max() < 1e-12
+@pytest.mark.parametrize(
+    "control", [Control(width=4), Control(width=4, past=0), Control(kind="window", past=2)]
+)
+@pytest.mark.parametrize("dims", [1, 7, 8])
+def test_moment_by_moment_is_the_whole_sequence(dims, control):
+    sizes = FlowSizes(pose=dims, control=control, code="none", dims=dims, steps=3, units=10, layers=2)
+    w = shaken(sizes, dtype=np.float64)
+    codes, context = _given(12, sizes)
+    whole, _ = Flow(w, sizes, np.float64).inverse(codes, context)
+    drawing, past = Drawing(w, sizes, np.float64), control.of_past(dims)
+    told = drawing.told(context[:, past:])
+    for _ in range(2):
+        for t in range(12):
+            one = drawing.draw(codes[t], context[t, :past], told[t])
+            assert np.abs(one - whole[t]).max() < 1e-9
+        drawing.reset()
 
 
 def test_a_sequence_goes_on_from_where_it_was_cut():

@@ -13,6 +13,7 @@ from metagraph.errors import FileError
 from metagraph.formats.bvh import write_bvh
 from metagraph.formats.clips import digest
 from metagraph.formats.conversation_writers import write_json
+from metagraph.formats.gltf_writer import write_glb
 from metagraph.generation.features import RATE
 from metagraph.generation.take_files import (
     UNLICENSED,
@@ -81,6 +82,15 @@ def test_speech_may_lie_elsewhere(tmp_path):
     assert find_takes([tmp_path / "motion"])[0] == []
     found, _ = find_takes([tmp_path / "motion"], [tmp_path / "speech"])
     assert found[0].sounds[0].parent.name == "speech"
+
+
+def test_of_several_animations_the_longest_is_taken_and_that_is_told(tmp_path):
+    write_glb(tmp_path / "talk.glb", [moving(5.0, 1).renamed("short"), moving(9.0, 2).renamed("long")])
+    soundfile.write(tmp_path / "talk.wav", babble(9.0), RATE)
+    batch = read_takes(find_takes([tmp_path])[0])
+    assert batch.takes[0].seconds == pytest.approx(9.0, abs=0.1)
+    (note,) = [n for n in batch.notes if "animations" in n]
+    assert note.startswith("talk.glb: holds 2 animations") and "'long', 9.0 s" in note
 
 
 def test_a_bad_take_spoils_no_other(tmp_path):

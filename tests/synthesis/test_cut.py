@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
+from metagraph.generation.poses import rig_of
 from metagraph.graph.conversation import Segment
-from metagraph.synthesis.cut import candidates, moments
+from metagraph.motion import rotation
+from metagraph.synthesis.cut import candidates, moments, pace, smoothed, uncut
 from metagraph.synthesis.graph import threshold
 from metagraph.synthesis.states import SynthesisError, states_of, terms_of
 from tests.synthesis.talking import talking
@@ -57,3 +60,42 @@ def test_moments_of_rest_are_slow_and_apart() -> None:
     found = moments(states)
     speed = np.linalg.norm(states.velocities, axis=-1).max(-1)
     assert (np.diff(found) >= 8).all() and speed[found].max() < 0.3 * speed.max()
+
+
+def trembling(by: float):
+    """The take, each joint of the upper body shaken by so many radians in each frame."""
+    chance, shaken = np.random.default_rng(1), np.array(TAKE.rotations, float)
+    for joint in rig_of(TAKE.skeleton).joints:
+        turns = chance.normal(0, by, (TAKE.frames, 3))
+        shaken[:, joint] = rotation.multiply(shaken[:, joint], rotation.exp(turns))
+    return replace(TAKE, rotations=shaken.astype(np.float32))
+
+
+def test_where_resting_trembles_a_little_each_stroke_becomes_a_clip_all_the_same() -> None:
+    found = candidates(trembling(0.003))
+    for s in SAID:
+        assert any(a <= s.start + 0.1 and b >= s.end for a, b, _ in found), s
+
+
+def test_what_happens_in_a_clip_is_more_than_resting() -> None:
+    take = trembling(0.003)
+    speeds = smoothed(states_of([take]))
+    moves = pace(speeds).moves
+    assert 0.2 < moves < speeds.max()
+    for a, b, _ in candidates(take):
+        assert speeds[round(a * 30) : round(b * 30) + 1].max() >= moves
+
+
+def test_speeds_of_one_kind_have_no_rest_of_their_own() -> None:
+    chance = np.random.default_rng(2)
+    one = np.exp(chance.normal(0, 0.4, 2000))
+    two = np.concatenate([0.05 * one, one])
+    assert pace(one).moves == 0 and pace(one).rests < 0.4
+    assert 0.03 < pace(two).rests < 0.1 and 0.7 < pace(two).moves < 1.4
+    assert pace(np.full(100, 0.3)).moves == 0
+
+
+def test_why_nothing_can_be_cut_is_told_in_words() -> None:
+    assert "never rests" in uncut(trembling(0.2))
+    assert "never moves" in uncut(talking("still", [], 10), 0.5)
+    assert "within 19.9 to 30 s" in uncut(TAKE, 0.2, 19.9, 30.0)

@@ -44,17 +44,34 @@ class GenerationDialog(QDialog):
         box.setSpacing(10)
         box.addWidget(self.tabs, 1)
         box.addLayout(foot)
+        self._words: dict[QWidget, str] = {}  # of each page, the last ones
         for page in (self.use, self.learn):
-            page.said.connect(self.said.setText)
+            page.said.connect(lambda words, page=page: self._say(page, words))
+        self.tabs.currentChanged.connect(
+            lambda _: self.said.setText(self._words.get(self.tabs.currentWidget(), ""))
+        )
         self.learn.trained.connect(self._trained)
         self.finished.connect(self._ended)
         document.changed.connect(self._follow)
         document.loaded.connect(self._leave)
+        self._say_begun()
         if self.use.model.count() == 0:
             self.tabs.setCurrentWidget(self.learn)
 
     def _trained(self, model: Path) -> None:
         self.use.show_model(model)
+
+    def _say(self, page: QWidget, words: str) -> None:
+        """Show what a page says, and again whenever that page is looked at."""
+        self._words[page] = words
+        self.said.setText(words)
+
+    def _say_begun(self) -> None:
+        """Tell of a training that was cut short: it may have been forgotten."""
+        cut = self.learn.begun.cut_short()
+        if cut:
+            for page in (self.use, self.learn):
+                self._say(page, f"The training of '{cut}' is not over: go on with it under Learn from takes.")
 
     def _follow(self, before: Project, after: Project) -> None:
         if (
@@ -67,9 +84,12 @@ class GenerationDialog(QDialog):
     def _leave(self) -> None:
         """Another project comes: what is being made for the one before is not for it."""
         self.use.close_down()
-        self.use.pieces = []
+        self.use.table.show_pieces([])
         self.use.fill()
+        self.learn.fill()
+        self._words.clear()
         self.said.setText("")
+        self._say_begun()
 
     def _ended(self) -> None:
         """It closes: nothing goes on unseen."""

@@ -26,8 +26,10 @@ if TYPE_CHECKING:
     from metagraph.generation.stored import Model, ModelCard
     from metagraph.generation.take_files import Batch
 
+KINDS = {"matching": "Matching", "flow-vae": "Flow-VAE", "moglow": "MoGlow", "cvae": "CVAE"}
 FOLDER = "generated"  # beside the project file, where new clips are kept
 LEAST, MOST = 1.0, 8.0  # seconds of clips cut from takes
+UNCUT = "Make more minutes, lower Chance, or train longer."
 Progress = Callable[[int, int], None]
 Cancelled = Callable[[], bool]
 
@@ -180,11 +182,11 @@ class Piece:
 
 def cut_pieces(
     clips: Sequence[Clip], project: Project, progress: Progress, cancelled: Cancelled
-) -> list[Piece]:
-    """Cut takes at moments at which they rest alike, and say what each piece is taken for. Raises
-    SynthesisError, and CancelledError.
+) -> tuple[list[Piece], str]:
+    """Cut takes of one name at moments at which they rest alike, and say what each piece is taken for; or why
+    there is none. Raises SynthesisError, and CancelledError.
     """
-    from metagraph.synthesis.cut import candidates
+    from metagraph.synthesis.cut import candidates, uncut
     from metagraph.synthesis.graph import threshold
     from metagraph.synthesis.states import states_of
 
@@ -195,7 +197,10 @@ def cut_pieces(
             raise CancelledError
         progress(n, len(clips))
         cuts += pieces(clip, [(start, end) for start, end, _ in candidates(clip, limit, LEAST, MOST)])
-    return proposed(cuts, project, cancelled)
+    if not cuts:
+        return [], uncut(max(clips, key=lambda c: c.duration), limit, LEAST, MOST)
+    whole = [clip.renamed(f"{clips[0].name}_{n:02d}") for n, clip in enumerate(cuts, 1)]
+    return proposed(whole, project, cancelled), ""
 
 
 def proposed(cuts: Sequence[Clip], project: Project, cancelled: Cancelled) -> list[Piece]:
@@ -261,5 +266,6 @@ def about(card: ModelCard, project: Project) -> str:
     own = project.skeleton is not None and card.skeleton.fingerprint == project.skeleton.fingerprint
     fits = "this project's figure" if own else "another figure: its motion is retargeted"
     licences = sorted({t.licence for t in card.takes if t.licence and not t.licence.startswith("no licence")})
-    told = f" Takes under {'; '.join(licences)[:160]}." if licences else ""
-    return f"{card.kind}, learned from {learned}, {card.steps:,} steps; made for {fits}.{told}"
+    told = f" Takes under {'; '.join(licences)[:160].rstrip('. ')}." if licences else ""
+    kind = KINDS.get(card.kind, card.kind)
+    return f"{kind}, learned from {learned}, {many(card.steps, 'step')}; made for {fits}.{told}"

@@ -5,6 +5,7 @@ goes, with somebody who moves as the model would by now.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -22,11 +23,21 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.generation.generation_jobs import Listing, list_takes, sentence
+from app.features.generation.begun_row import BegunRow
+from app.features.generation.generation_jobs import KINDS, Listing, list_takes, sentence
 from app.features.generation.page import Page
 from app.features.generation.sample_preview import SamplePreview
 from app.features.generation.training_plots import RATIOS, TrainingPlots
-from app.features.generation.training_run import Begin, Process, TrainingRun, goal
+from app.features.generation.training_run import (
+    Begin,
+    Hear,
+    Process,
+    TrainingRun,
+    go_on,
+    goal,
+    keep,
+    stands_of,
+)
 from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.document import Document
@@ -34,12 +45,15 @@ from app.project.jobs import Job, Jobs
 from app.stage.session import Session
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, SpinBox
+from metagraph.generation.standing import Standing, busy
+from metagraph.generation.stored import SUFFIX
+from metagraph.generation.train_plan import PLAN, folder_of, read_takes
 
-KINDS = (
-    ("matching", "Matching", "Follows the speech best for the time it takes: 15 minutes are a beginning"),
-    ("flow-vae", "Flow-VAE", "As in the paper: a code of poses and a flow over it; needs longer"),
-    ("moglow", "MoGlow", "The paper's comparison: a flow over the poses themselves"),
-    ("cvae", "CVAE", "The paper's other comparison: moves little"),
+TIPS = (
+    ("matching", "Follows the speech best for the time it takes: 15 minutes are a beginning"),
+    ("flow-vae", "As in the paper: a code of poses and a flow over it; needs longer"),
+    ("moglow", "The paper's comparison: a flow over the poses themselves"),
+    ("cvae", "The paper's other comparison: moves little"),
 )
 SIZES = (("small", "small, for this machine"), ("paper", "as in the paper, for a graphics card"))
 HEADS = ("Take", "Length", "Speech", "What to know")
@@ -53,9 +67,7 @@ def missing() -> str | None:
 
 
 class LearnPage(Page):
-    """trained: a model's file is there. begin: starts a training's
-    process; replaced in tests.
-    """
+    """trained: a model's file is there. begin: starts a training's process; replaced in tests."""
 
     trained = Signal(object)
 
@@ -74,7 +86,7 @@ class LearnPage(Page):
         columns.addLayout(self._left(), 5)
         columns.addLayout(self._right(), 6)
         self._show_note()
-        self._enable()
+        self.fill()
 
     # --- building
 
@@ -121,8 +133,8 @@ class LearnPage(Page):
         self.kind, self.how_large = ComboBox(self), ComboBox(self)
         self.kind.setAccessibleName("Kind of model")
         self.how_large.setAccessibleName("Size")
-        for n, (kind, words, tip) in enumerate(KINDS):
-            self.kind.addItem(words, kind)
+        for n, (kind, tip) in enumerate(TIPS):
+            self.kind.addItem(KINDS[kind], kind)
             self.kind.setItemData(n, tip, Qt.ItemDataRole.ToolTipRole)
         for size, words in SIZES:
             self.how_large.addItem(words, size)
@@ -147,6 +159,10 @@ class LearnPage(Page):
         row.addWidget(self.train)
         row.addWidget(self.stop)
         box.addLayout(row)
+        self.begun = BegunRow(self)
+        self.begun.resumed.connect(lambda one: self._go_on(one, False))
+        self.begun.kept.connect(lambda one: self._go_on(one, True))
+        box.addWidget(self.begun)
         self.needs = QLabel(missing() or "", self, wordWrap=True)
         self.needs.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.needs.setVisible(bool(self.needs.text()))
@@ -237,11 +253,21 @@ class LearnPage(Page):
 
     # --- training
 
+    def fill(self) -> None:
+        """List the trainings that were begun before, beside the project."""
+        from metagraph.generation.offered import FOLDER
+        from metagraph.generation.standing import begun
+
+        folder = self.document.folder
+        self.begun.show_begun(begun(folder / FOLDER) if folder is not None and self.run is None else ())
+        self._enable()
+
     def _enable(self) -> None:
         busy, training = self._job is not None, self.run is not None
         ready = self.listing.batch is not None and missing() is None
         for widget in (self.add, self.clear, self.kind, self.how_large, self.minutes, self.name):
             widget.setEnabled(not busy and not training)
+        self.begun.setEnabled(not busy and not training and missing() is None)
         self.train.setEnabled(ready and not busy and not training)
         self.train.setVisible(not training)
         self.stop.setVisible(training)
@@ -250,7 +276,6 @@ class LearnPage(Page):
     def start(self) -> None:
         """Begin to train, in a process of its own."""
         from metagraph.generation.offered import FOLDER
-        from metagraph.generation.stored import SUFFIX
 
         folder = self.document.folder
         if folder is None:
@@ -266,22 +291,48 @@ class LearnPage(Page):
         if out.exists():
             self.said.emit(f"There is a model '{name}' already: choose another name, so that it is not lost.")
             return
+        if (folder_of(out) / PLAN).exists():
+            self.said.emit(f"A training of '{name}' was begun before: go on with it, or choose another name.")
+            return
         wish = {
             "kind": self.kind.currentData(),
             "size": self.how_large.currentData(),
             "minutes": float(self.minutes.value()),
         }
         batch, begin = self.listing.batch, self.begin
+
+        def work(hear: Hear) -> tuple[Process, Any, Any]:
+            out.parent.mkdir(parents=True, exist_ok=True)
+            return begin(batch, wish, out, hear), batch.rig, batch.takes
+
+        self._prepare(work)
+
+    def _go_on(self, standing: Standing, as_it_is: bool) -> None:
+        """Go on with a training that was begun, or make a model of what it has."""
+        if self.run is not None or self._job is not None:
+            return
+        folder, minutes = folder_of(standing.out), float(self.minutes.value())
+        if busy(folder):
+            self.said.emit(f"'{standing.out.stem}' is being trained by another process, which comes first.")
+            return
+
+        def work(hear: Hear) -> tuple[Process, Any, Any]:
+            takes, _ = read_takes(folder, standing.plan)
+            process = keep(standing, hear) if as_it_is else go_on(standing, minutes, hear)
+            return process, standing.plan.skeleton.rig(), takes
+
+        self._prepare(work)
+
+    def _prepare(self, work: Callable[[Hear], tuple[Process, Any, Any]]) -> None:
+        """Do what a training needs on a job's thread, and follow the process that comes of it."""
         said: deque[Any] = deque()
         self.said.emit("Preparing…")
         self.plots.clear()
-
-        def work(_: Job) -> Process:
-            out.parent.mkdir(parents=True, exist_ok=True)
-            return begin(batch, wish, out, said.append)
-
         job = self.jobs.start(
-            "Preparing the training", work, lambda process: self._started(process, said), self._failed
+            "Preparing the training",
+            lambda _: work(said.append),
+            lambda made: self._started(said, *made),
+            self._failed,
         )
         self._job = job
         job.ended.connect(self._read)
@@ -290,15 +341,16 @@ class LearnPage(Page):
     def _failed(self, error: Exception) -> None:
         self.said.emit(sentence(error))
 
-    def _started(self, process: Process, said: deque[Any]) -> None:
+    def _started(self, said: deque[Any], process: Process, rig: Any, takes: Sequence[Any]) -> None:
         self.run = TrainingRun(process, said, self)
         self.run.moved.connect(self._moved)
         self.run.ended.connect(self._ended)
         self.progress.setValue(0)
+        self.stands.setText("")
         self.progress.show()
         self.said.emit("Training in a process of its own: go on working meanwhile.")
-        self._enable()
-        self.preview.begin(self.listing)
+        self.preview.begin(rig, takes)
+        self.fill()
 
     def _moved(self, event: Any) -> None:
         """Show what a training's event says."""
@@ -306,11 +358,13 @@ class LearnPage(Page):
         words, value = goal(event)
         if words or ratios:
             self.plots.add(event.minutes, {words: value} if words else {}, ratios)
-        self.progress.setValue(round(1000 * event.share))
-        if event.step:
-            self.stands.setText(f"{event.step:,} steps, {event.minutes:.1f} min")
+        if event.minutes > 0:
+            self.progress.setValue(round(1000 * event.share))
+            self.stands.setText(stands_of(event))
         if event.landmarks:
             self.preview.show_sample(event.landmarks)
+        if event.event == "finish":
+            self.said.emit("The model is being measured and written…")
         if event.event == "note" and event.text:
             self.said.emit(event.text)
 
@@ -327,14 +381,14 @@ class LearnPage(Page):
         if model is None:
             self.said.emit(error or "The training ended without a model.")
         else:
-            self.said.emit(f"The model '{model.stem}' is kept in {model.parent.name}.")
+            self.said.emit(f"The model '{model.stem}' is kept in {model.parent.name}. Use it under Generate.")
             self.trained.emit(model)
-        self._enable()
+        self.fill()
 
     def close_down(self) -> None:
         """The window closes: nothing goes on unseen."""
         if self._job is not None:
             self._job.cancel()
         if self.run is not None:
-            self.run.kill()
+            self.run.leave()
         self.preview.still()

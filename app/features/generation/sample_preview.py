@@ -1,5 +1,5 @@
-"""Somebody who moves as the model would by now, beside somebody who moved in a take: by the points that are
-measured of both, painted.
+"""Somebody who moves as the model would by now, beside somebody who moved in a take, or as a piece does: by
+the points that are measured, painted.
 """
 
 from __future__ import annotations
@@ -12,8 +12,9 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, QTimer
 from PySide6.QtGui import QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
-from app.features.generation.generation_jobs import Listing
 from metagraph.generation.landmarks import LANDMARKS, landmarks_of
+from metagraph.generation.poses import PoseRig
+from metagraph.generation.takes import Take
 
 RATE = 5.0  # frames a second of what a training shows
 SECONDS = 12.0  # of a take that are shown
@@ -26,40 +27,29 @@ _LINES = (
 LINES = tuple((LANDMARKS.index(a), LANDMARKS.index(b)) for a, b in _LINES)
 
 
-class SamplePreview(QWidget):
-    """The take on the left, the model on the right; words alone before there is anything."""
+class FigurePreview(QWidget):
+    """Figures beside each other that move again and again, each over its words. empty: words where nobody
+    moves. rate: of landmarks, a second.
+    """
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, words: Sequence[str], empty: str, rate: float = RATE, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
-        self.moves: list[np.ndarray | None] = [None, None]  # landmarks [n, 9, 3], metres
+        self.words, self.empty, self.rate = tuple(words), empty, rate
+        self.moves: list[np.ndarray | None] = [None] * len(self.words)  # landmarks [n, 9, 3], metres
         self._timer = QTimer(self, interval=40)
         self._timer.timeout.connect(self.update)
-        self.setMinimumSize(240, 130)
-        self.setAccessibleName("A take, and how the model moves by now")
+        self.setMinimumSize(120 * len(self.words), 130)
 
     def sizeHint(self) -> QSize:
-        return QSize(420, 190)
+        return QSize(210 * len(self.words), 190)
 
-    def begin(self, listing: Listing) -> None:
-        """Show a take: where in one most is said oneself."""
-        batch = listing.batch
-        if batch is None or batch.rig is None or not batch.takes:
-            return
-        take = max(batch.takes, key=lambda t: float(t.activity[:, 0].sum()))
-        own = np.cumsum(take.activity[:, 0])
-        size = min(len(own) - 1, round(SECONDS * 25))
-        first = int(np.argmax(own[size:] - own[: len(own) - size])) if size > 0 else 0
-        self.moves = [landmarks_of(batch.rig, take.poses[first : first + size + 1 : 5]), None]
-        self._timer.start()
+    def show_moves(self, n: int, landmarks: np.ndarray | None) -> None:
+        """Show figure n move; None: it is gone. landmarks: `[n, 9, 3]`, metres."""
+        self.moves[n] = landmarks
+        self._timer.start() if any(m is not None for m in self.moves) else self._timer.stop()
         self.update()
-
-    def show_sample(self, landmarks: Sequence[Sequence[Sequence[float]]]) -> None:
-        """Show what the model does by now. landmarks: `[n, 9, 3]`, metres, RATE a second."""
-        points = np.asarray(landmarks, float)
-        if points.ndim == 3 and points.shape[1:] == (len(LANDMARKS), 3) and np.isfinite(points).all():
-            self.moves[1] = points
-            self._timer.start()
-            self.update()
 
     def still(self) -> None:
         self._timer.stop()
@@ -67,18 +57,21 @@ class SamplePreview(QWidget):
     def paintEvent(self, event: QPaintEvent) -> None:
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        half = self.width() / 2
-        for n, words in enumerate(("as recorded", "as the model moves by now")):
-            box = QRectF(n * half, 0, half, self.height())
-            points = self.moves[n]
+        dim, part = self.palette().placeholderText().color(), self.width() / len(self.words)
+        if all(m is None for m in self.moves):
+            painter.setPen(dim)
+            middle = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
+            painter.drawText(QRectF(self.rect()), middle, self.empty)
+        for n, (words, points) in enumerate(zip(self.words, self.moves, strict=True)):
+            box = QRectF(n * part, 0, part, self.height())
             if points is not None and len(points):
-                painter.setPen(self.palette().placeholderText().color())
+                painter.setPen(dim)
                 painter.drawText(box, Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignBottom, words)
                 self._figure(painter, box.adjusted(6, 4, -6, -22), points)
         painter.end()
 
     def _figure(self, painter: QPainter, box: QRectF, points: np.ndarray) -> None:
-        place = (time.monotonic() * RATE) % max(1, len(points) - 1)
+        place = (time.monotonic() * self.rate) % max(1, len(points) - 1)
         low = min(int(place), len(points) - 1)
         high = min(low + 1, len(points) - 1)
         now = points[low] + (points[high] - points[low]) * (place - low)
@@ -98,3 +91,29 @@ class SamplePreview(QWidget):
             painter.drawLine(places[a], places[b])
         head, nose = places[LANDMARKS.index("head")], places[LANDMARKS.index("nose")]
         painter.drawEllipse(head + (nose - head) / 3, 0.09 * scale, 0.11 * scale)
+
+
+class SamplePreview(FigurePreview):
+    """The take on the left, the model on the right; words alone before there is anything."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        empty = "While a model learns, a take moves here, and beside it somebody as the model would."
+        super().__init__(("as recorded", "as the model moves by now"), empty, RATE, parent)
+        self.setAccessibleName("A take, and how the model moves by now")
+
+    def begin(self, rig: PoseRig, takes: Sequence[Take]) -> None:
+        """Show a take: where in one most is said oneself."""
+        if not takes:
+            return
+        take = max(takes, key=lambda t: float(t.activity[:, 0].sum()))
+        own = np.cumsum(take.activity[:, 0])
+        size = min(len(own) - 1, round(SECONDS * 25))
+        first = int(np.argmax(own[size:] - own[: len(own) - size])) if size > 0 else 0
+        self.moves[1] = None
+        self.show_moves(0, landmarks_of(rig, take.poses[first : first + size + 1 : 5]))
+
+    def show_sample(self, landmarks: Sequence[Sequence[Sequence[float]]]) -> None:
+        """Show what the model does by now. landmarks: `[n, 9, 3]`, metres, RATE a second."""
+        points = np.asarray(landmarks, float)
+        if points.ndim == 3 and points.shape[1:] == (len(LANDMARKS), 3) and np.isfinite(points).all():
+            self.show_moves(1, points)

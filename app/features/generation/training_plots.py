@@ -49,7 +49,7 @@ class TrainingPlots(QWidget):
         ):
             plot.setAccessibleName(name)
             layout.addWidget(plot)
-        self.setMinimumHeight(150)
+        self.setMinimumHeight(170)
         session.look.changed.connect(self._draw)
         self._draw()
 
@@ -93,14 +93,23 @@ class TrainingPlots(QWidget):
             plot.setLabel("bottom", "minutes", color=look.dim)
             plot.setTitle(words, color=look.dim, size="9pt")
             if lines is self.ratios:
-                legend = plot.addLegend(offset=(-6, 4), labelTextColor=look.dim, labelTextSize="8pt")
+                legend = plot.addLegend(
+                    offset=(-4, 2), colCount=2, labelTextColor=look.dim, labelTextSize="8pt"
+                )
                 legend.clear()
             for n, (name, points) in enumerate(lines.items()):
                 high = HIGHEST if lines is self.ratios else float("inf")
                 pen = pg.mkPen(colours[n % 5], width=2, style=STYLES[n % 5])
                 xs, ys = [p[0] for p in points], [min(p[1], high) for p in points]
-                dot = "o" if len(points) == 1 else None
-                plot.addItem(pg.PlotDataItem(xs, ys, pen=pen, name=name, symbol=dot, symbolSize=5))
+                item = pg.PlotDataItem(xs, ys, pen=pen, name=name)
+                if len(points) == 1:
+                    item.setSymbol("o")
+                    item.setSymbolSize(5)
+                    item.setSymbolPen(None)
+                    item.setSymbolBrush(colours[n % 5])
+                plot.addItem(item)
+            last = max((points[-1][0] for points in lines.values()), default=0.0)
+            plot.setXRange(0, max(1.0, last), padding=0.02)
             if lines is self.ratios:
                 plot.setYRange(0, HIGHEST / 2 if not lines else HIGHEST, padding=0)
                 plot.addItem(pg.InfiniteLine(1.0, 0, pg.mkPen(look.line, width=1)))

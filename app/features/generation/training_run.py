@@ -1,5 +1,5 @@
-"""A training at work in a process of its own: takes that were read are written for it, and what it says is
-heard on the window's thread.
+"""A training at work in a process of its own: takes that were read are written for it, one that was cut
+short is gone on with, and what it says is heard on the window's thread.
 """
 
 from __future__ import annotations
@@ -11,7 +11,10 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
+from app.look.plural import many
+
 if TYPE_CHECKING:
+    from metagraph.generation.standing import Standing
     from metagraph.generation.train_process import Event
 
 # What an event's numbers tell, the most telling first.
@@ -20,6 +23,7 @@ GOALS = {
     "matching": "error of the flow: less is better",
     "loss": "error: less is better",
 }
+LITTLE = 0.4  # of a core: other work takes the rest
 LOOKS = 200  # milliseconds between two looks at what was said
 
 
@@ -35,7 +39,7 @@ class Process(Protocol):
 
     def stop(self) -> None: ...
 
-    def kill(self) -> None: ...
+    def leave(self) -> None: ...
 
 
 Hear = Callable[["Event"], None]
@@ -56,6 +60,45 @@ def begin(batch: Any, wish: Mapping[str, Any], out: Path, hear: Hear) -> Process
     folder.mkdir(parents=True, exist_ok=True)
     write_training(folder, plan, learned, held)
     return TrainingProcess(out, hear)
+
+
+def go_on(standing: Standing, minutes: float, hear: Hear) -> Process:
+    """Go on with a training that was begun, for as long as it was to last, and `minutes` more where that is
+    over; on a job's thread. Raises FileError, TrainingFailedError.
+    """
+    from msgspec.structs import replace
+
+    from metagraph.generation.train_plan import folder_of, write_plan
+    from metagraph.generation.train_process import TrainingProcess
+
+    plan = replace(standing.plan, out=str(standing.out.resolve()))
+    if standing.share >= 1:
+        plan = replace(plan, minutes=standing.minutes + minutes, seconds=0.0, steps=0)
+    write_plan(folder_of(standing.out), plan)
+    return TrainingProcess(standing.out, hear)
+
+
+def keep(standing: Standing, hear: Hear) -> Process:
+    """Write the model of a training's last checkpoint, without learning more; on a job's thread. Raises as
+    `go_on` does.
+    """
+    from msgspec.structs import replace
+
+    from metagraph.generation.train_plan import folder_of, write_plan
+    from metagraph.generation.train_process import TrainingProcess
+
+    write_plan(folder_of(standing.out), replace(standing.plan, out=str(standing.out.resolve())))
+    return TrainingProcess(standing.out, hear, export=True)
+
+
+def left_of(standing: Standing) -> str:
+    """Return how far a training got, in words."""
+    kind, step = standing.plan.kind, standing.step
+    if not step:
+        return f"{kind}, nothing kept yet"
+    if standing.share >= 1:
+        return f"{kind}, {many(step, 'step')}, its time is over"
+    return f"{kind}, {many(step, 'step')}, {100 * standing.share:.0f} % done"
 
 
 class TrainingRun(QObject):
@@ -95,10 +138,17 @@ class TrainingRun(QObject):
             self.stopping = True
             self.process.stop()
 
-    def kill(self) -> None:
-        """End it now: the window closes. What it kept last can be gone on from."""
+    def leave(self) -> None:
+        """The window closes: it ends by itself, and what it has learned can be gone on from."""
         self._timer.stop()
-        self.process.kill()
+        self.process.leave()
+
+
+def stands_of(event: Event) -> str:
+    """Return how far a training is, in words; also how little of the machine it gets, where that is so."""
+    words = f"{many(event.step, 'step')}, {event.minutes:.1f} min"
+    got = event.seconds / (60 * event.minutes)
+    return f"{words}; busy machine: {100 * got:.0f} % of a core" if got < LITTLE else words
 
 
 def goal(event: Event) -> tuple[str, float]:

@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.generation.generation_jobs import (
-    Piece,
+    UNCUT,
     about,
     cut_pieces,
     first_stance,
@@ -29,7 +29,7 @@ from app.features.generation.generation_jobs import (
     with_side_moved,
 )
 from app.features.generation.page import Page
-from app.features.generation.pieces_table import PiecesTable
+from app.features.generation.pieces_table import PiecesView
 from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.document import Document
@@ -38,11 +38,18 @@ from app.stage.session import Session
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from metagraph.errors import FileError
+from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.offered import offered, words_of
 from metagraph.generation.stored import SUFFIX, read_card
 from metagraph.graph.conversation import side_name
 
 FILE, CHOOSE = "file", "choose"  # a sound that was chosen, and choosing one
+
+
+def choose_again(box: ComboBox, data: object) -> None:
+    """Choose the row of some data, else the first. Qt knows a path or a pair only as the same object."""
+    rows = [box.itemData(n) for n in range(box.count())]
+    box.setCurrentIndex(rows.index(data) if data in rows else 0 if rows else -1)
 
 
 class UsePage(Page):
@@ -51,7 +58,6 @@ class UsePage(Page):
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
-        self.pieces: list[Piece] = []
         self._of: tuple[str, int] = ("", 1)  # the model and the seed of the pieces
         self._extra: dict[str, Path] = {}  # models chosen as files
         self._sound: Path | None = None
@@ -63,15 +69,17 @@ class UsePage(Page):
         self.about = QLabel(self, wordWrap=True)
         self.about.setProperty("dim", True)
         box.addWidget(self.about)
-        box.addSpacing(8)
-        box.addWidget(self.heading("A side of a conversation"))
-        box.addLayout(self._side_row())
-        box.addSpacing(8)
-        box.addWidget(self.heading("Clips for the meta-graph"))
-        box.addLayout(self._takes_row())
-        self.table = PiecesTable(self)
+        for words, row in (
+            ("A side of a conversation", self._side_row()),
+            ("Clips for the meta-graph", self._takes_row()),
+        ):
+            box.addSpacing(8)
+            box.addWidget(self.heading(words))
+            box.addLayout(row)
+        self.view = PiecesView(document, self)
+        self.table = self.view.table
         self.table.itemChanged.connect(lambda _: self._enable())
-        box.addWidget(self.table, 1)
+        box.addWidget(self.view, 1)
         box.addLayout(self._drop_row())
         for field in (self.seed, self.temperature, self.guidance, self.minutes):
             field.lineEdit().setTextMargins(6, 0, 0, 0)
@@ -81,9 +89,12 @@ class UsePage(Page):
 
     def _row(self, *fields: tuple[str, QWidget]) -> QHBoxLayout:
         row = QHBoxLayout()
-        for words, field in fields:
+        for n, (words, field) in enumerate(fields):
             if words:
-                row.addWidget(QLabel(words, self))
+                label = QLabel(words, self)
+                if n == 0:  # what rows begin with stands below each other
+                    label.setFixedWidth(label.fontMetrics().horizontalAdvance("Model") + 4)
+                row.addWidget(label)
             row.addWidget(field)
             row.addSpacing(6)
         row.addStretch(1)
@@ -98,10 +109,10 @@ class UsePage(Page):
         self.seed = SpinBox(self, minimum=1, maximum=9999, value=1)
         self.seed.setAccessibleName("Seed")
         self.seed.setToolTip("Another number moves otherwise to the same speech")
-        self.temperature = DoubleSpinBox(self, minimum=0, maximum=1.2, singleStep=0.1, decimals=1, value=0.9)
+        self.temperature = DoubleSpinBox(self, minimum=0, maximum=1.2, singleStep=0.1, decimals=1, value=1.0)
         self.temperature.setAccessibleName("Chance")
         self.temperature.setToolTip("How much happens by chance: 0 moves least, 1 as was learned")
-        self.guidance = DoubleSpinBox(self, minimum=0, maximum=5, singleStep=0.5, decimals=1, value=2.0)
+        self.guidance = DoubleSpinBox(self, minimum=0, maximum=5, singleStep=0.25, decimals=2, value=GUIDANCE)
         self.guidance.setAccessibleName("Follows the speech")
         self.guidance.setToolTip("How closely it follows the speech; 1 as was learned. Matching models alone")
         return self._row(
@@ -117,7 +128,7 @@ class UsePage(Page):
         self.side.setAccessibleName("Who moves so")
         self.side.setMinimumWidth(260)
         self.move_button = self.button(
-            "Let it move so",
+            "Move by the model",
             "Arms, head and spine move to the whole conversation; legs, eyes and lips as before",
             self.move_side,
         )
@@ -147,12 +158,11 @@ class UsePage(Page):
         self.drop_button.setMinimumWidth(120)
         strengthen(self.drop_button)
         self.progress = make_widget(QProgressBar, self, maximumWidth=180, textVisible=False)
-        self.progress.hide()
         self.cancel_button = self.button("Cancel", "Nothing is changed then", self.cancel)
-        self.cancel_button.hide()
         row = self._row(("On", self.stance), ("", self.drop_button))
-        row.addWidget(self.progress)
-        row.addWidget(self.cancel_button)
+        for widget in (self.progress, self.cancel_button):
+            widget.hide()
+            row.addWidget(widget)
         return row
 
     # --- what there is
@@ -161,24 +171,24 @@ class UsePage(Page):
         """List models, sides and stances as they are now."""
         self._fill_models()
         project = self.document.project
-        for box, none in ((self.side, ""), (self.speech, "")):
+        for box in (self.side, self.speech):
             chosen = box.currentData()
             box.clear()
             for ident, talk in project.conversations.items():
                 for n in range(2):
-                    box.addItem(f"{talk.name}: {side_name(talk, n)}{none}", (ident, n))
+                    box.addItem(f"{talk.name}: {side_name(talk, n)}", (ident, n))
             if box is self.speech:
                 if self._sound is not None:
                     box.addItem(self._sound.name, FILE)
                 box.addItem("Choose a sound…", CHOOSE)
-            box.setCurrentIndex(max(0, box.findData(chosen)))
+            choose_again(box, chosen)
         stance = self.stance.currentData()
         self.stance.clear()
         for s in project.graphs["arms"].stances.values():
             self.stance.addItem(f"arms · {s.name}", s.id)
         self.stance.addItem("the library alone", "")
         wanted = stance if stance is not None else first_stance(project)
-        self.stance.setCurrentIndex(max(0, self.stance.findData(wanted)))
+        choose_again(self.stance, wanted)
         self._enable()
 
     def _fill_models(self, wanted: Path | None = None) -> None:
@@ -188,7 +198,7 @@ class UsePage(Page):
         self.model.clear()
         for name, path in found.items():
             self.model.addItem(words_of(name), path)
-        self.model.setCurrentIndex(max(0, self.model.findData(now)) if found else -1)
+        choose_again(self.model, now)
         self.model.blockSignals(False)
         self._about()
 
@@ -236,12 +246,12 @@ class UsePage(Page):
         free = self._job is None and self.model.currentData() is not None
         self.move_button.setEnabled(free and self.side.count() > 0)
         self.cut_button.setEnabled(free and self.speech.currentData() != CHOOSE)
-        count = len(self.chosen())
+        count = len(self.table.chosen())
         self.drop_button.setEnabled(self._job is None and count > 0)
         self.drop_button.setText(f"Drop {many(count, 'clip')}" if count else "Drop")
 
     def _start(self, title: str, work: Callable[[Job], Any], done: Callable[[Any], None]) -> None:
-        self.said.emit("Working…")
+        self.said.emit(f"{title}…")
         job = self.jobs.start(title, work, done, self._failed)
         self._job = job
         self.progress.setRange(0, 0)
@@ -320,7 +330,7 @@ class UsePage(Page):
             told = " ".join(notes)
             self.said.emit(f"{side_name(talk, side)} moves by '{named}', seed {chance.seed}. {told}".rstrip())
 
-        self._start("Generating motion", work, done)
+        self._start("Making motion", work, done)
 
     # --- clips
 
@@ -354,26 +364,20 @@ class UsePage(Page):
             return cut_pieces(made, project, job.tell, lambda: job.cancelled), (*notes, *told)
 
         def done(made: Any) -> None:
-            found, notes = made
-            self.pieces, self._of = found, (named, chance.seed)
-            self.table.show_pieces(self.pieces)
+            (found, why), notes = made
+            self._of = (named, chance.seed)
+            self.table.show_pieces(found)
             told = " ".join(notes)
             if not found:
-                self.said.emit(
-                    f"No still moments were found that it leaves and comes back to: make more minutes. {told}"
-                )
+                self.said.emit(f"Nothing can be cut: {why}. {UNCUT} {told}".rstrip())
                 return
             self.said.emit(f"{many(len(found), 'piece')}, not kept yet: drop those you like. {told}".rstrip())
 
-        self._start("Generating takes", work, done)
-
-    def chosen(self) -> list[Piece]:
-        """Return the pieces that are checked."""
-        return self.table.chosen()
+        self._start("Making motion to cut", work, done)
 
     def drop(self) -> None:
         """Keep the checked pieces as files, and drop them on the graph: one step of undo."""
-        chosen, folder, (named, seed) = self.chosen(), self._folder(), self._of
+        chosen, folder, (named, seed) = self.table.chosen(), self._folder(), self._of
         if not chosen or folder is None:
             return
         project, stance = self.document.project, self.stance.currentData() or None
@@ -386,13 +390,13 @@ class UsePage(Page):
             new = {path for path, *_ in loaded}
             ids = tuple(e.id for e in self.document.project.clips.values() if e.path in new)
             self.session.selection.select_clips(ids)
-            self.pieces = [p for p in self.pieces if p not in chosen]
-            self.table.show_pieces(self.pieces)
+            self.table.show_pieces([p for p in self.table.pieces if p not in chosen])
             place = "dropped on the arms' layer" if where else "in the library"
             self.said.emit(f"{many(len(ids), 'clip')} {place}; they say that '{named}' made them.")
 
         self._start("Keeping clips", lambda _: keep_pieces(chosen, project, folder), done)
 
     def close_down(self) -> None:
+        self.view.preview.still()
         if self._job is not None:
             self._job.cancel()

@@ -1,8 +1,10 @@
-"""A training in a process of its own: python -m metagraph.generation.training FOLDER [--export] [--afresh]
+"""A training in a process of its own:
+python -m metagraph.generation.training FOLDER [--export] [--afresh] [--watched]
 
 What happens is told line by line on standard output, as JSON. It ends by itself, after a file `stop` in the
 folder, or on SIGTERM or SIGINT; each time the model is written. --export writes the model of the last
-checkpoint, without learning more.
+checkpoint, without learning more. --watched: once standard input is closed, as it is when who began it ends
+in whatever way, or it has another parent, it keeps a checkpoint and ends.
 """
 
 from __future__ import annotations
@@ -11,12 +13,20 @@ import json
 import os
 import signal
 import sys
-from collections.abc import Mapping, Sequence
+import threading
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from metagraph.errors import FileError
+from metagraph.generation.standing import hold
+from metagraph.generation.train_plan import PLAN
+
+BUSY = (
+    "another process learns in this folder: a second one would spoil its checkpoints. Wait until it has "
+    "ended, or stop it"
+)
 
 
 def tell(event: Mapping[str, Any]) -> None:
@@ -25,15 +35,38 @@ def tell(event: Mapping[str, Any]) -> None:
         print(json.dumps(event, allow_nan=False), flush=True)
 
 
-def main(arguments: Sequence[str], asked: Sequence[int] = ()) -> int:
-    """Train; return 0, or 2 after telling what went wrong. asked: filled once it is to stop."""
+def watch() -> Callable[[], bool]:
+    """Return what tells whether who began this process has gone."""
+    parent, closed = os.getppid(), threading.Event()
+
+    def listen() -> None:
+        with suppress(OSError, ValueError):
+            while os.read(0, 1024):
+                pass
+        closed.set()
+
+    threading.Thread(target=listen, daemon=True).start()
+    return lambda: closed.is_set() or os.getppid() != parent
+
+
+def main(
+    arguments: Sequence[str], asked: Sequence[int] = (), deserted: Callable[[], bool] = lambda: False
+) -> int:
+    """Train; return 0, or 2 after telling what went wrong. asked: filled once it is to stop. deserted: as for
+    `Run`.
+    """
     folder = Path(arguments[0])
+    held = None
+    with suppress(OSError):  # where nothing can be written that is told soon enough
+        if (folder / PLAN).is_file() and (held := hold(folder)) is None:
+            tell({"event": "error", "text": BUSY})
+            return 2
     try:
         from metagraph.generation.training.learner import TrainingError
         from metagraph.generation.training.run import Run
 
         try:
-            run = Run(folder, tell, lambda: bool(asked), "--afresh" not in arguments)
+            run = Run(folder, tell, lambda: bool(asked), "--afresh" not in arguments, deserted)
             run.finish(True) if "--export" in arguments else run.go()
         except (TrainingError, ValueError) as error:
             tell({"event": "error", "text": str(error)})
@@ -52,6 +85,9 @@ def main(arguments: Sequence[str], asked: Sequence[int] = ()) -> int:
     except ImportError as error:
         tell({"event": "error", "text": f"torch cannot be used ({error})"})
         return 2
+    finally:
+        if held is not None:
+            held.close()
     return 0
 
 
@@ -63,7 +99,8 @@ def alone() -> int:
     asked: list[int] = []
     for kind in (signal.SIGTERM, signal.SIGINT):
         signal.signal(kind, lambda number, _: asked.append(number))
-    return main(sys.argv[1:], asked)
+    gone = watch() if "--watched" in sys.argv else lambda: False
+    return main(sys.argv[1:], asked, gone)
 
 
 if __name__ == "__main__":

@@ -3,33 +3,17 @@
 from __future__ import annotations
 
 import io
-import zipfile
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import msgspec
 import numpy as np
-from msgspec import Struct
 
 from metagraph.formats.atomic import write_atomically
+from metagraph.generation.standing import CHECKPOINTS, TOLD, UNREADABLE, Told, told_of
 
 Arrays = dict[str, np.ndarray[Any, Any]]
-FORMAT = 1
-_TOLD = "told"
-
-
-class Told(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What is kept beside arrays. plan: fingerprint of the plan that it belongs to. seconds: of the
-    processor, minutes: of the clock that were used so far. numbers: last ones shown.
-    """
-
-    format: int = FORMAT
-    plan: str
-    step: int
-    seconds: float
-    minutes: float
-    numbers: dict[str, float] = {}
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +29,7 @@ def write_checkpoint(folder: Path, point: Checkpoint) -> Path:
     path = folder / f"checkpoint.{_next(folder)}.npz"
     content = io.BytesIO()
     told = np.frombuffer(msgspec.json.encode(point.told), np.uint8)
-    np.savez(content, **{_TOLD: told, **point.arrays})  # type: ignore[arg-type]
+    np.savez(content, **{TOLD: told, **point.arrays})  # type: ignore[arg-type]
     write_atomically(path, content.getvalue())
     return path
 
@@ -55,10 +39,10 @@ def read_checkpoint(folder: Path, plan: str) -> tuple[Checkpoint | None, list[st
     was wrong with others, in words.
     """
     found, notes = [], []
-    for path in sorted(folder.glob("checkpoint.*.npz")):
+    for path in sorted(folder.glob(CHECKPOINTS)):
         try:
             point = _read(path)
-        except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, msgspec.DecodeError) as error:
+        except UNREADABLE as error:
             notes.append(f"{path.name} is damaged ({error}); the one before it is used, if there is one.")
             continue
         if point.told.plan != plan:
@@ -72,9 +56,7 @@ def _read(path: Path) -> Checkpoint:
     # The file is opened here: NumPy leaves open what it cannot read.
     with path.open("rb") as content, np.load(content, allow_pickle=False) as file:
         arrays = {name: file[name] for name in file.files}
-    told = msgspec.json.decode(arrays.pop(_TOLD).tobytes(), type=Told)
-    if told.format != FORMAT:
-        raise ValueError(f"it has format {told.format}, this version reads {FORMAT}")
+    told = told_of(arrays.pop(TOLD))
     if any(a.dtype.kind == "f" and not np.isfinite(a).all() for a in arrays.values()):
         raise ValueError("it holds a value that is not a number")
     return Checkpoint(told, arrays)
@@ -86,6 +68,6 @@ def _next(folder: Path) -> int:
     for n in range(2):
         try:
             steps.append(_read(folder / f"checkpoint.{n}.npz").told.step)
-        except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, msgspec.DecodeError):
+        except UNREADABLE:
             return n
     return int(np.argmin(steps))

@@ -11,8 +11,9 @@ import torch
 
 from metagraph.errors import FileError
 from metagraph.generation.networks import parameters
+from metagraph.generation.standing import Told, share_of
 from metagraph.generation.train_plan import STOP, TrainingPlan, read_plan, read_takes
-from metagraph.generation.training.checkpoint import Checkpoint, Told, read_checkpoint, write_checkpoint
+from metagraph.generation.training.checkpoint import Checkpoint, read_checkpoint, write_checkpoint
 from metagraph.generation.training.export import export, model_so_far
 from metagraph.generation.training.judge import LONGEST, SHORT, judged
 from metagraph.generation.training.learner import Learner
@@ -24,14 +25,19 @@ _SMOOTH = 0.95  # of numbers told
 
 class Run:
     """A training in a folder. Raises FileError for one that cannot be read, ValueError for settings that do
-    not fit its takes. tell: is given what happens, as `train_process.Event` has it. stopped: asked after each
-    step.
+    not fit its takes. tell: is given what happens, as `train_process.Event` has it. stopped, deserted: asked
+    after each step; deserted: whether nobody is there any more who wants the model.
     """
 
     def __init__(
-        self, folder: Path, tell: Tell, stopped: Callable[[], bool] = lambda: False, resume: bool = True
+        self,
+        folder: Path,
+        tell: Tell,
+        stopped: Callable[[], bool] = lambda: False,
+        resume: bool = True,
+        deserted: Callable[[], bool] = lambda: False,
     ) -> None:
-        self.folder, self.tell, self._stopped = folder, tell, stopped
+        self.folder, self.tell, self._stopped, self._deserted = folder, tell, stopped, deserted
         self.plan: TrainingPlan = read_plan(folder)
         if self.plan.threads:
             torch.set_num_threads(self.plan.threads)
@@ -51,13 +57,12 @@ class Run:
     @property
     def share(self) -> float:
         """How much of the training is over, 0..1."""
-        p = self.plan
-        used = ((self.seconds, p.seconds), (self.minutes, p.minutes), (float(self.learner.step), p.steps))
-        return min(1.0, max((value / most for value, most in used if most), default=0.0))
+        return share_of(self.plan, self.learner.step, self.seconds, self.minutes)
 
-    def go(self) -> Path:
-        """Learn until it is over or stopped; return the model's file. Raises FileError where it cannot be
-        written, TrainingError where nothing is learned; the last checkpoint stays.
+    def go(self) -> Path | None:
+        """Learn until it is over or stopped; return the model's file, None where it was deserted: there is
+        a checkpoint then, and no model. Raises FileError where it cannot be written, TrainingError where
+        nothing is learned; the last checkpoint stays.
         """
         plan, learner = self.plan, self.learner
         self.tell(
@@ -80,6 +85,9 @@ class Run:
                 self.numbers[name] = value if name == "rate" else _SMOOTH * before + (1 - _SMOOTH) * value
             self.seconds += time.process_time() - used
             self.minutes += (time.monotonic() - clock) / 60
+            if self._deserted():
+                self.keep()
+                return None
             now = time.monotonic()
             stopped = self._stopped() or (self.folder / STOP).exists()
             if now - told >= EVERY or self.share >= 1 or stopped:
@@ -131,10 +139,11 @@ class Run:
         """Tell the statistics of a short sample, and some of its poses."""
         found, poses = judged(model_so_far(self.learner), self.held, SHORT)
         self.tell(self._told("statistics", statistics=found))
-        self.tell({"event": "poses", "step": self.learner.step, "landmarks": poses})
+        self.tell(self._told("poses", landmarks=poses))
 
     def finish(self, stopped: bool = False) -> Path:
         """Write the model's file of what was learned so far."""
+        self.tell(self._told("finish", stopped=stopped))
         notes = ("stopped before its time was over",) if stopped else ()
         model = model_so_far(self.learner, notes=notes)
         found: dict[str, float] = {}

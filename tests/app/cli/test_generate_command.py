@@ -278,7 +278,7 @@ def test_motion_that_never_rests_gives_no_pieces_and_says_so(
     text = run(
         capsys, "cut", model, "--minutes", 0.2, "-o", tmp_path / "clips", "--least", 9, "--most", 9.5, code=3
     )
-    assert "0 pieces" in text and "ask for more minutes" in text
+    assert "0 pieces" in text and "it never rests" in text and "Ask for more minutes" in text
     assert "--minutes" in run(capsys, "cut", model, "--minutes", 0, "-o", tmp_path / "c", code=1)
 
 

@@ -11,7 +11,8 @@ import torch
 from metagraph.generation.features import RATE
 from metagraph.generation.networks import Control, FlowSizes, Kind, MatchingSizes, Sizes
 from metagraph.generation.takes import Marks, Source, Take, take_of
-from metagraph.generation.train_plan import TrainingPlan, plan_of
+from metagraph.generation.train_plan import Settings, TrainingPlan, folder_of, plan_of, write_training
+from metagraph.generation.training.run import Run
 from metagraph.motion.clip import Clip
 from tests.generation.makers import babble, conversation, moving, rig, tiny
 
@@ -36,6 +37,23 @@ def plan(
     sizes = options.pop("sizes", None) or tiny(kind)
     own = {"steps": 12, "minutes": 0.0, "threads": 1, **options}
     return plan_of(rig(), takes, held, Path(out), kind, sizes=sizes, **own)
+
+
+def cut_short(models: Path, name: str, steps: int = 0) -> Path:
+    """A training of 40 steps that was killed, with a checkpoint after some; return its model's path."""
+    out, both = models / f"{name}.mgmodel", (take(8.0, 1), take(8.0, 2))
+    own = plan(
+        both[:1],
+        both[1:],
+        out="elsewhere/x.mgmodel",
+        steps=40,
+        settings=Settings(batch=4, frames=40, warm=20),
+    )
+    folder_of(out).mkdir(parents=True)
+    write_training(folder_of(out), own, both[:1], both[1:])
+    run = Run(folder_of(out), lambda event: None, deserted=lambda: run.learner.step >= steps)
+    assert not steps or run.go() is None
+    return out
 
 
 # --- the toy: an impulse in what is heard starts one of two movements

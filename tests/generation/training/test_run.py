@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -16,6 +18,7 @@ pytest.importorskip("torch", reason="training needs torch, which is not installe
 
 from metagraph.errors import FileError
 from metagraph.generation.sampler import poses_to
+from metagraph.generation.standing import busy, hold, standing_of
 from metagraph.generation.stored import read_model
 from metagraph.generation.train_plan import (
     Settings,
@@ -29,6 +32,7 @@ from metagraph.generation.training.__main__ import main
 from metagraph.generation.training.checkpoint import read_checkpoint
 from metagraph.generation.training.run import Run
 from tests.generation.training.planting import plan, take
+from tests.processes import started
 
 SMALL = Settings(batch=4, frames=40, warm=20)
 
@@ -146,6 +150,44 @@ def test_killed_at_any_moment_its_last_checkpoint_can_be_used(takes: Any, tmp_pa
         process.stop()
     assert read_model(process.wait(600)).card.steps > model.card.steps
     assert events[0].step >= model.card.steps and events[-1].stopped
+
+
+def test_it_does_not_outlive_who_began_it_and_keeps_what_it_has(takes: Any, tmp_path: Path) -> None:
+    begun(takes, tmp_path, steps=10**6, checkpoint=1e6)
+    out, folder = tmp_path / "m.mgmodel", folder_of(tmp_path / "m.mgmodel")
+    code = (
+        "import sys, time; from pathlib import Path\n"
+        "from metagraph.generation.train_process import TrainingProcess\n"
+        "TrainingProcess(Path(sys.argv[1]), lambda e: e.step > 5 and print(e.step, flush=True))\n"
+        "time.sleep(600)"
+    )
+    with started(sys.executable, "-c", code, out, stdout=subprocess.PIPE) as parent:
+        assert parent.stdout is not None and parent.stdout.readline()
+        assert busy(folder)
+        parent.kill()
+        parent.wait(10)
+        parent.stdout.close()
+    late = time.monotonic() + 60
+    while busy(folder) and time.monotonic() < late:
+        time.sleep(0.05)
+    assert not busy(folder)
+    standing = standing_of(folder)
+    assert standing is not None and standing.step > 5 and not standing.kept
+
+
+def test_a_second_process_does_not_learn_in_the_same_folder(
+    takes: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    begun(takes, tmp_path)
+    folder = folder_of(tmp_path / "m.mgmodel")
+    held = hold(folder)
+    assert held is not None
+    with held:
+        assert main([str(folder)]) == 2
+    event = msgspec.json.decode(capsys.readouterr().out.splitlines()[-1], type=Event)
+    assert "another process" in event.text and standing_of(folder).step == 0
+    assert main([str(folder)]) == 0
+    assert standing_of(folder).step == 12
 
 
 def test_what_goes_wrong_is_told_in_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -25,7 +25,9 @@ from metagraph.formats.gltf_writer import write_glb
 from metagraph.formats.store import absolute, open_project, save_project
 from metagraph.generation import offered
 from metagraph.generation.features import RATE
-from metagraph.generation.stored import write_model
+from metagraph.generation.standing import hold
+from metagraph.generation.stored import read_card, write_model
+from metagraph.generation.train_plan import folder_of
 from metagraph.graph.generated import origin
 from tests.generation.makers import babble, conversation, moving, untrained
 
@@ -57,6 +59,7 @@ def shown(drive, tmp_path, model, monkeypatch):
     save_project(project, tmp_path / "copy.metagraph.yaml")
     (tmp_path / "models").mkdir()
     shutil.copy(model, tmp_path / "models" / "tiny.mgmodel")
+    monkeypatch.setattr(offered, "SHIPPED", tmp_path / "none.mgmodel")
     drive.files.open(tmp_path / "copy.metagraph.yaml")
     drive.wait(lambda: drive.document.folder == tmp_path and drive.document.project.skeleton is not None)
     drive.do("generate_motion")
@@ -116,21 +119,22 @@ def test_takes_are_made_cut_and_dropped_on_the_graph_in_one_step(shown, tmp_path
     use.temperature.setValue(1.2)
     press(use.cut_button)
     drive.wait(lambda: use._job is None, 120)
-    if not use.pieces:  # a model that learned nothing need not come back to anything
+    if not use.table.pieces:  # a model that learned nothing need not come back to anything
         from app.features.generation.generation_jobs import Piece
         from metagraph.generation.performing import on_project
 
         clip, _ = on_project(drive.document.project, moving(2.0))
-        use.pieces = [Piece(clip.renamed(f"tiny 1_{n:02d}"), "gesture", "both", 0.7) for n in (1, 2, 3)]
+        assert "Nothing can be cut" in dialog.said.text()
+        made = [Piece(clip.renamed(f"tiny 1_{n:02d}"), "gesture", "both", 0.7) for n in (1, 2, 3)]
         use._of = ("tiny", 1)
-        use.table.show_pieces(use.pieces)
+        use.table.show_pieces(made)
     count = use.table.rowCount()
     shot(dialog, "pieces")
     cell = use.table.visualItemRect(use.table.item(0, 0))
     QTest.mouseClick(
         use.table.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(cell.left() + 14, cell.center().y())
     )
-    assert len(use.chosen()) == count - 1
+    assert len(use.table.chosen()) == count - 1
     stance = use.stance.currentData()
     assert stance in drive.document.project.graphs["arms"].stances
     before = drive.document.project
@@ -167,10 +171,13 @@ def test_a_damaged_model_is_told_where_it_is_chosen(shown, tmp_path):
 def test_the_programs_own_model_is_offered_where_it_is_installed(shown, model, tmp_path, monkeypatch):
     _, dialog = shown
     names = lambda: [dialog.use.model.itemText(n) for n in range(dialog.use.model.count())]  # noqa: E731
-    assert names() == ["tiny"] or offered.SHIPPED.is_file()
+    assert names() == ["tiny"]
     monkeypatch.setattr(offered, "SHIPPED", model)
     dialog.use.fill()
-    assert names() == ["Metagraph's own", "tiny"]
+    assert names() == ["Metagraph's own", "tiny"] and dialog.use.model.currentText() == "tiny"
+    dialog.use.show_model(model)
+    dialog.use.show_model(tmp_path / "models" / "tiny.mgmodel")
+    assert dialog.use.model.currentText() == "tiny", "what was just trained is chosen"
 
 
 def test_takes_are_listed_with_what_is_wrong_with_them_in_words(shown, tmp_path):
@@ -198,11 +205,12 @@ class Made:
     def __init__(self, out: Path, hear) -> None:
         self.out, self.hear = out, hear
         self.error, self.path = "", out.with_name("none")
-        self.running, self.stopped, self.killed = True, 0, False
+        self.running, self.stopped, self.left = True, 0, False
 
     def say(self, **what) -> None:
-        fields = {"event": "step", "step": 0, "minutes": 0.0, "share": 0.0, "numbers": {}, "statistics": {}}
-        self.hear(SimpleNamespace(**{**fields, "landmarks": [], "text": "", **what}))
+        fields = {"event": "step", "step": 0, "share": 0.0, "numbers": {}, "statistics": {}}
+        clock = {"minutes": 0.0, "seconds": 60 * what.get("minutes", 0.0)}
+        self.hear(SimpleNamespace(**{**fields, **clock, "landmarks": [], "text": "", **what}))
 
     def stop(self) -> None:
         self.stopped += 1
@@ -217,8 +225,8 @@ class Made:
             raise RuntimeError(self.error)
         return self.path
 
-    def kill(self) -> None:
-        self.killed, self.running = True, False
+    def leave(self) -> None:
+        self.left, self.running = True, False
 
 
 @pytest.fixture
@@ -284,7 +292,54 @@ def test_a_training_that_fails_says_why(training):
 def test_closing_ends_the_training(training):
     _, dialog, process = training
     dialog.close()
-    assert process.killed
+    assert process.left
+
+
+def planting():
+    pytest.importorskip("torch", reason="training needs torch, which is not installed")
+    from tests.generation.training import planting
+
+    return planting
+
+
+def test_a_training_that_was_cut_short_is_offered_and_not_written_over(shown, tmp_path):
+    drive, dialog = shown
+    planting().cut_short(tmp_path / "models", "mine", 10)
+    assert not dialog.learn.begun.isVisibleTo(dialog.learn)
+    dialog.close()
+    drive.wait(lambda: drive.window.findChild(GenerationDialog) is None)
+    drive.do("generate_motion")
+    dialog = drive.window.findChild(GenerationDialog)
+    assert "'mine' is not over" in dialog.said.text()
+    dialog.tabs.setCurrentWidget(dialog.learn)
+    learn = dialog.learn
+    assert learn.begun.which.currentText() == "mine · matching, 10 steps, 25 % done"
+    shot(dialog, "begun")
+    learn.name.setText("mine")
+    learn.look_through([takes(tmp_path / "takes")])
+    drive.wait(lambda: learn._job is None and learn.table.rowCount() > 0, 60)
+    learn.start()
+    assert "begun before" in dialog.said.text() and learn.run is None
+    dialog.close()
+
+
+def test_what_a_killed_training_had_learned_can_be_kept_as_it_is(shown, tmp_path):
+    drive, dialog = shown
+    out = planting().cut_short(tmp_path / "models", "mine", 10)
+    planting().cut_short(tmp_path / "models", "nothing")
+    dialog.learn.fill()
+    dialog.tabs.setCurrentWidget(dialog.learn)
+    learn = dialog.learn
+    learn.begun.which.setCurrentIndex(1)
+    assert "nothing kept yet" in learn.begun.which.currentText() and not learn.begun.keep.isEnabled()
+    learn.begun.which.setCurrentIndex(0)
+    held = hold(folder_of(out))
+    press(learn.begun.go)
+    assert "another process" in dialog.said.text() and learn.run is None
+    held.close()
+    press(learn.begun.keep)
+    drive.wait(lambda: out.is_file() and learn.run is None, 300)
+    assert read_card(out).steps == 10 and read_card(out).notes
 
 
 def test_a_model_that_is_there_is_not_written_over(shown, tmp_path):
