@@ -22,7 +22,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.properties.timing_plot import ANY, TimingPlot, retimed
+from app.features.properties.timing_plot import ANY, TimingPlot
 from app.features.properties.variation_rows import ActionRows, PlannerRows
 from app.look.theme import KIND_MARKS, KIND_TITLES, theme
 from app.project.document import Document
@@ -35,6 +35,7 @@ from app.widgets.making import make_widget
 from metagraph.graph import edits
 from metagraph.graph.model import LIMBS, PARTS, REACH, Action, Project
 from metagraph.graph.words import Part
+from metagraph.playback.timing import retimed
 
 
 class PropertiesPanel(QScrollArea):
