@@ -5,6 +5,7 @@ plots show and what numbers are typed go by the same.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any
 
 from metagraph.graph import edits
@@ -15,6 +16,19 @@ HANDLES = ("start", "end", "in", "out", "exit", "stroke", "ready", "hold", "rela
 PHASES = ("ready", "hold", "relax")  # handles of a gesture's phases
 MOMENTS = ("earliest_exit", "ready", "stroke", "stroke_end", "relax")  # of Timing, seconds of the clip
 BANDS = ("prepare", "stroke", "hold", "retract")
+BLOCKS = ("preparation", "stroke", "hold", "retraction")
+EDGES = ("start", "ready", "hold", "relax", "end")  # handles between which a gesture's phases are
+WORDS = {
+    "start": "start",
+    "end": "end",
+    "in": "blend in",
+    "out": "blend out",
+    "exit": "exit",
+    "stroke": "stroke",
+    "ready": "ready",
+    "hold": "hold",
+    "relax": "relax",
+}  # by which people know the handles
 FIELDS = {
     "start": "start",
     "end": "end",
@@ -97,3 +111,120 @@ def retimed(project: Project, actions: Iterable[str], name: str, value: float) -
         at = {"blend_in": start + value, "blend_out": end - value}.get(name, value)
         changes[ident] = {"timing": moved(project, action, FIELDS[name], at)}
     return edits.update_each(project, changes)
+
+
+@dataclass(frozen=True, slots=True)
+class Handle:
+    """name: of `HANDLES`. at: seconds of the clip. own: the timing says so; else the motion was asked.
+    number: what is written at it, seconds: of a blend how long it is, else where it stands.
+    """
+
+    name: str
+    at: float
+    own: bool
+    number: float
+
+    @property
+    def words(self) -> str:
+        """Its name and number: "blend in 0.20"."""
+        return f"{WORDS[self.name]} {self.number:.2f}"
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """A phase of a gesture. name: of `BLOCKS`. first, last: seconds of the clip. own: an edge of it is the
+    timing's.
+    """
+
+    name: str
+    first: float
+    last: float
+    own: bool
+
+
+def handles_of(project: Project, action: Action) -> tuple[Handle, ...]:
+    """Return an action's handles that can be seen and taken; a gesture's stroke also where it was found."""
+    t, at = action.timing, times_of(project, action)
+    own = {"ready": t.ready, "hold": t.stroke_end, "relax": t.relax, "stroke": t.stroke}
+    if action.kind == "gesture" and at["stroke"] is None:
+        at["stroke"] = phases(project, action).stroke
+    loop = action.kind == "stance"
+    numbers = {"in": t.blend_in, "out": t.blend_out}
+    return tuple(
+        Handle(name, seconds, own.get(name, 0.0) is not None, numbers.get(name, seconds))
+        for name, seconds in at.items()
+        if seconds is not None and not (loop and name in ("out", "exit", "stroke"))
+    )
+
+
+def blocks_of(project: Project, action: Action) -> tuple[Block, ...]:
+    """Return a gesture's phases in time; none of other kinds."""
+    if action.kind != "gesture":
+        return ()
+    t, at = action.timing, times_of(project, action)
+    own = (False, t.ready is not None, t.stroke_end is not None, t.relax is not None, False)
+    edges = [float(at[name] or 0.0) for name in EDGES]
+    return tuple(Block(name, edges[n], edges[n + 1], own[n] or own[n + 1]) for n, name in enumerate(BLOCKS))
+
+
+def block_moved(project: Project, action: Action, block: str, by: float) -> dict[str, Any]:
+    """Return the Timing fields that dragging one of `BLOCKS` by seconds changes: it keeps its length as far
+    as its neighbours let it, and what is beside it gives way. Nothing of what is no gesture.
+    """
+    found = blocks_of(project, action)
+    if not found:
+        return {}
+    place = BLOCKS.index(block)
+    edges = [found[0].first, *(b.last for b in found)]
+    least = 0.0 if place == 0 else edges[place - 1]
+    most = project.clips[action.clip].duration if place == len(BLOCKS) - 1 else edges[place + 2]
+    by = min(max(by, least - edges[place]), most - edges[place + 1])
+    moving = (EDGES[place], EDGES[place + 1])
+    return _moved_by(project, action, moving if by <= 0 else moving[::-1], by, edges)
+
+
+def _moved_by(
+    project: Project, action: Action, names: Iterable[str], by: float, edges: list[float]
+) -> dict[str, Any]:
+    """Return the fields of edges moved one after the other, the one ahead first: none is in the way."""
+    out: dict[str, Any] = {}
+    for name in names:
+        fields = moved(project, action, name, edges[EDGES.index(name)] + by)
+        project = edits.update_actions(project, [action.id], timing=fields)
+        action = project.action(action.id) or action
+        out |= fields
+    return out
+
+
+def slipped(project: Project, action: Action, by: float) -> dict[str, Any]:
+    """Return the Timing fields that playing another part of the clip changes, as long and as late as the
+    present one: start, end and all moments set go by the same seconds, as far as the clip reaches.
+    """
+    start, end = project.span(action)
+    entry = project.clips[action.clip]
+    by = min(max(by, -start), entry.duration - end)
+    last = round(end + by, 3)
+    out: dict[str, Any] = {
+        "start": round(start + by, 3),
+        "end": None if last >= entry.duration - 0.5 / entry.fps else last,
+    }
+    for name in MOMENTS:
+        at = getattr(action.timing, name)
+        if at is not None:
+            out[name] = round(at + by, 3)
+    return {name: value for name, value in out.items() if value != getattr(action.timing, name)}
+
+
+def moved_by(project: Project, actions: Iterable[str], handle: str, by: float) -> dict[str, dict[str, Any]]:
+    """Return what `edits.update_each` is given for a handle dragged by seconds in each of some actions,
+    within its own clip; those that have no such handle stay as they are.
+    """
+    out: dict[str, dict[str, Any]] = {}
+    for ident in actions:
+        action = project.action(ident)
+        if action is None or action.clip not in project.clips:
+            continue
+        at = next((h.at for h in handles_of(project, action) if h.name == handle), None)
+        if at is not None:
+            out[ident] = {"timing": moved(project, action, handle, at + by)}
+    return out
