@@ -20,7 +20,7 @@ from app.features.conversation.segment_lanes import (
     words_in,
 )
 from app.features.conversation.sound_reading import SideSound
-from app.features.conversation.waveforms import Envelope, joined, painted
+from app.widgets.waveforms import Envelope, joined, painted
 from app.look.theme import SOUND_MARKS, Theme
 from app.widgets.act_strip import STEPS, clock
 from app.widgets.lane_geometry import LEFT, RULER, Scale, advance, elided
