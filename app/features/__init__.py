@@ -13,6 +13,7 @@ FEATURES = (
     "twins",
     "repairs",
     "properties",
+    "timing_editor",
     "manual",
     "labelling",
     "motion_graph",

@@ -71,7 +71,7 @@ TIME = Workspace(
     "time",
     "Time",
     "The character large, over the timing of an action",
-    across(("list", 23), (down(("large", 57), ("below", 43)), 77)),
+    across(("list", 17), (down((across(("large", 64), ("side", 36)), 54), ("below", 46)), 83)),
 )
 PERFORM = Workspace(
     "perform",

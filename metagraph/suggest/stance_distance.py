@@ -1,5 +1,5 @@
-"""How far an action's clip is, moment by moment, from the stance it leaves and the one it enters, and where that
-shows: what is drawn in a strip, by the measures that the problems go by.
+"""How far an action's clip is, moment by moment, from the stance it leaves and the one it enters, and where
+that shows: what is drawn in a strip, by the measures that the problems go by.
 """
 
 from __future__ import annotations
@@ -43,7 +43,9 @@ class StanceDistance:
         name = self.names[0 if at < self.pivot else 1]
         if not np.isfinite(self.metres[at]):
             return ""
-        return f"{self.metres[at] * 100:.0f} cm from '{name}', {'shows' if self.shows[at] else 'does not show'}"
+        return (
+            f"{self.metres[at] * 100:.0f} cm from '{name}', {'shows' if self.shows[at] else 'does not show'}"
+        )
 
 
 def distance_of(

@@ -28,6 +28,7 @@ from preview.scene import THEMES, Actor, Scene
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
 BASE_TIP = "The pose all layers are added to. Right-click a clip in the library to take it from there."
+NOW = 0.03  # seconds from the present moment within which a ghost would only blur the figure
 FRAME = 16  # milliseconds between frames
 WIDE = 560  # pixels from which the playhead stands in the line of the buttons
 
@@ -86,6 +87,7 @@ class PreviewPanel(QWidget):
         session.transport.show_changed.connect(self._show_state)
         session.selection.changed.connect(self.view.update)
         session.look.changed.connect(self._restyle)
+        session.onion.changed.connect(self.view.update)
         performance.changed.connect(self._changed)
         performance.document.changed.connect(self._edited)
         figures.changed.connect(self.view.update)
@@ -189,16 +191,35 @@ class PreviewPanel(QWidget):
             morphs = figure.morph_weights(one.morphs(seconds)) if figure.morphs else None
             marks = self._marks() if one is shown else {}
             actors.append(Actor(figure, rotations, positions, morphs, marks, self.bones))
+            if one is shown:
+                actors += self._ghosts(figure, seconds)
         scene = Scene(tuple(actors))
         shape = round(self.view.width() / max(1, self.view.height()), 1)  # it is framed anew for another room
-        framed = (*(actor.figure for actor in actors), *(one.stand for one in shown.both), shape)
+        solid = Scene(tuple(actor for actor in actors if actor.opacity >= 1))  # ghosts do not move the camera
+        framed = (*(actor.figure for actor in solid.actors), *(one.stand for one in shown.both), shape)
         if actors and self._framed != framed and not self.view.moved_by_hand:
             self._framed = framed
             aside = ASIDE if shown.partner is not None else 0.0
             self.view.camera = whole_figure(
-                scene.bounds(), self.view.width() / max(1, self.view.height()), aside
+                solid.bounds(), self.view.width() / max(1, self.view.height()), aside
             )
         return scene
+
+    def _ghosts(self, figure: Figure, seconds: float) -> list[Actor]:
+        """Return the moments of an action that are to be seen through, but for those that are now."""
+        skin, shown = self.session.onion.skin, self.performance.shown
+        if skin is None or shown.skeleton is None or shown.partner is not None:
+            return []
+        out = []
+        for moment, opacity in skin.moments:
+            at = shown.seconds_of(skin.action, moment)
+            if at is None or abs(at - seconds) < NOW:
+                continue
+            pose = shown.pose(at)
+            if pose is not None:
+                rotations, positions = shown.skeleton.globals(pose)
+                out.append(Actor(figure, rotations, positions, opacity=opacity))
+        return out
 
     def _marks(self) -> dict[int, tuple[float, float, float]]:
         """Point out the joints of the selected action's mask."""

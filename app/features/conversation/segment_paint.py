@@ -20,10 +20,10 @@ from app.features.conversation.segment_lanes import (
     words_in,
 )
 from app.features.conversation.sound_reading import SideSound
-from app.widgets.waveforms import Envelope, joined, painted
 from app.look.theme import SOUND_MARKS, Theme
 from app.widgets.act_strip import STEPS, clock
 from app.widgets.lane_geometry import LEFT, RULER, Scale, advance, elided
+from app.widgets.waveforms import Envelope, joined, painted
 from metagraph.graph.conversation import Conversation, Segment, side_name
 
 INK = "#17181b"  # on the fills

@@ -43,7 +43,7 @@ def contribute(shell: Shell) -> Contribution:
                 "Properties",
                 "right below",
                 make,
-                where={"time": "below", "graph": "below", "label": "below"},
+                where={"time": "side", "graph": "below", "label": "below"},
                 rank=1,
             ),
         ),
