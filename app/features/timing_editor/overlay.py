@@ -42,7 +42,7 @@ def playhead(
         return
     color = QColor(look.t.text)
     painter.setPen(QPen(color, 1.2))
-    painter.drawLine(QPointF(x, 6), QPointF(x, tracks[-1].bottom))
+    upright(painter, tracks, x, 6)
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(color)
     painter.drawPolygon([QPointF(x - 5, 3), QPointF(x + 5, 3), QPointF(x, 10)])
@@ -52,6 +52,15 @@ def playhead(
         if len(shown.speeds) and seconds <= shown.entry.duration:
             words = f"{shown.speed_at(seconds):.1f} m/s at {seconds:.2f} s"
             chip(painter, look, axis, words, x + 6, rows.rows["speed"].top() + 2)
+
+
+def upright(painter: QPainter, tracks: Sequence[TrackRows], x: float, top: float) -> None:
+    """Paint a line through all rows but those in which numbers stand."""
+    for rows in tracks:
+        numbers = rows.rows["numbers"]
+        painter.drawLine(QPointF(x, top), QPointF(x, numbers.top() - 2))
+        painter.drawLine(QPointF(x, numbers.bottom()), QPointF(x, rows.bottom))
+        top = rows.bottom
 
 
 def chip(painter: QPainter, look: Look, axis: Axis, words: str, left: float, top: float) -> QRectF:
@@ -111,7 +120,7 @@ def held(
     if snapped is not None:
         x = axis.x(snapped.at)
         painter.setPen(QPen(QColor(look.t.warning), 1.6))
-        painter.drawLine(QPointF(x, RULER - 4), QPointF(x, tracks[-1].bottom))
+        upright(painter, tracks, x, RULER - 4)
         words = f"{words} — {snapped.why}"
     wide = min(look.wide(words) + 18, width - axis.left)
     middle = axis.x(snapped.at) if snapped is not None else axis.left + axis.width / 2

@@ -24,7 +24,8 @@ STILL = "#8b929c"  # of the hold
 MIDDLE = Qt.AlignmentFlag.AlignVCenter
 LINES = (Qt.PenStyle.SolidLine, Qt.PenStyle.DashLine)
 MARGIN = 0.12  # of the greatest speed or distance left free above it
-CHIP = 16.0  # pixels of a handle's number
+WRONG = 0.015  # of a clip about an end that shows, in which its bars are in the colour of mistakes
+CHIP = 17.0  # pixels of a handle's number
 ORDER = ("start", "end", "stroke", "in", "out", "exit")  # whose numbers find their place first
 
 
@@ -168,8 +169,8 @@ def block_color(t: Theme, kind: str, name: str) -> QColor:
 
 
 def stance(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Facts) -> None:
-    """Paint how far the clip is from its stances, what shows in the colour of warnings, and where beginning
-    and ending is proposed.
+    """Paint how far the clip is from its stances, brighter where it may begin and end, in the colour of
+    mistakes where it does and that shows; and where beginning and ending is proposed.
     """
     rect, far, t = rows.rows["stance"], facts.distance, look.t
     known = np.isfinite(far.metres)
@@ -183,11 +184,16 @@ def stance(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Fa
     seconds = axis.first + (xs + step / 2 - axis.left) / axis.each
     at = np.clip(np.searchsorted(far.times, seconds), 0, len(far.times) - 1)
     painter.setPen(Qt.PenStyle.NoPen)
-    colors = (QColor(t.dim), QColor(t.warning))
+    faint, bright, wrong = QColor(t.dim), t.kind(facts.action.kind), QColor(t.error)
+    faint.setAlpha(110)
+    first = np.searchsorted(far.times, facts.span[0] - 1e-6), np.searchsorted(far.times, facts.span[1] - 1e-6)
+    bad = [int(i) for i in first if i < len(far.times) and far.shows[i] and facts.action.kind != "stance"]
     for x, i in zip(xs.tolist(), at.tolist(), strict=True):
         if known[i]:
             high = max(1.0, float(far.metres[i]) / top * rect.height())
-            painter.fillRect(QRectF(x, rect.bottom() - high, step - 1, high), colors[int(far.shows[i])])
+            near = any(abs(int(i) - n) <= WRONG * len(far.times) + 1 for n in bad)
+            color = bright if not far.shows[i] else wrong if near else faint
+            painter.fillRect(QRectF(x, rect.bottom() - high, step - 1, high), color)
     painter.setPen(QPen(QColor(t.text), 1, Qt.PenStyle.DashLine))
     start, end = facts.span
     for limit, first, last in (

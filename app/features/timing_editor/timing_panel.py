@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
 
 from app.features.timing_editor.subject import Subject
 from app.features.timing_editor.view import TimingView
+from app.look import icons
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import Session
@@ -40,6 +41,7 @@ class TimingPanel(QWidget):
         self.use = make_widget(QPushButton, "Use proposed", self, toolTip="Begin and end where no jump shows")
         self.use.clicked.connect(self._use)
         self.joint = Chooser(self, toolTip="Whose speed is drawn")
+        self.joint.setMinimumContentsLength(12)
         self.joint.activated.connect(lambda n: subject.show(joint=self.joint.itemData(n)))
         self.onion = self._button("Onion", "See start, stroke and end beside the character", True)
         self.onion.clicked.connect(lambda on: subject.show(onion=on))
@@ -47,11 +49,12 @@ class TimingPanel(QWidget):
         self.compare.clicked.connect(subject.compare)
         self.loop = self._button("Loop", "Play only what the action plays, again and again", True)
         self.loop.clicked.connect(subject.loop_action)
-        self.more = self._button("…", "What is shown")
+        self.more = self._button("", "What is shown")
         self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.menu = QMenu(self)
         self.menu.aboutToShow.connect(self._fill)
         self.more.setMenu(self.menu)
+        self.more.setStyleSheet("QToolButton::menu-indicator { image: none; }")
         self.view = TimingView(document, session, subject, self)
         self.view.typed.connect(self._type)
         self.area = QScrollArea(self)
@@ -63,7 +66,7 @@ class TimingPanel(QWidget):
         self.number = Seconds(self.view, "New number of the handle")
         self.number.hide()
         self.number.valueChanged.connect(self._typed)
-        self.number.editingFinished.connect(self.number.hide)
+        self.number.editingFinished.connect(self._done)
         self._typing: tuple[str, str] = ("", "")
         self._row = QHBoxLayout()
         self._row.setContentsMargins(10, 4, 8, 2)
@@ -98,13 +101,22 @@ class TimingPanel(QWidget):
     def refresh(self) -> None:
         """Show what the subject is now."""
         shown, t = self.subject.facts(), theme(self.session.look.name)
+        self.more.setIcon(icons.icon("more", t.text))
         first = next(iter(shown.values()), None)
         for widget in (self.use, self.joint, self.onion, self.compare, self.loop):
             widget.setEnabled(first is not None)
+        joints = joints_offered(self.document.project)
+        offered = [("what it moves", ""), *((words, name) for name, words in joints)]
+        self.joint.show_entries(offered, self.subject.shows.joint)
         if first is None:
             self.name.setText("")
             self.verdict.say("")
+            self.name.setToolTip("")
+            self.name.setStyleSheet("")
+            self.verdict.setStyleSheet("")
             self.use.setVisible(False)
+            for button in (self.onion, self.compare, self.loop):
+                button.setChecked(False)
             return
         name = first.action.name if len(shown) == 1 else f"{len(shown)} actions"
         cut = name if len(name) <= LONGEST else f"{name[: LONGEST // 2]}…{name[-LONGEST // 2 + 1 :]}"
@@ -116,11 +128,6 @@ class TimingPanel(QWidget):
         self.verdict.say(words, strong=not worse.fine)
         self.verdict.setStyleSheet("" if worse.fine else f"color: {t.warning}")
         self.use.setVisible(first.seen is not None)
-        offered = [
-            ("Speed of what it moves", ""),
-            *((words, n) for n, words in joints_offered(self.document.project)),
-        ]
-        self.joint.show_entries(offered, self.subject.shows.joint)
         self.onion.setChecked(self.subject.shows.onion)
         self.compare.setChecked(self.subject.before is not None)
         part = self.session.transport.part
@@ -173,6 +180,10 @@ class TimingPanel(QWidget):
         self.number.show()
         self.number.setFocus()
         self.number.selectAll()
+
+    def _done(self) -> None:
+        self._typing = ("", "")
+        self.number.hide()
 
     def _typed(self, value: float) -> None:
         ident, handle = self._typing

@@ -14,7 +14,6 @@ from PySide6.QtGui import (
     QPainter,
     QPaintEvent,
     QPixmap,
-    QResizeEvent,
     QWheelEvent,
 )
 from PySide6.QtWidgets import QToolTip, QWidget
@@ -55,7 +54,8 @@ class TimingView(QWidget):
     def __init__(self, document: Document, session: Session, subject: Subject, parent: QWidget) -> None:
         super().__init__(parent)
         self.document, self.session, self.subject = document, session, subject
-        self.axis = Axis.whole(GUTTER, 400, 1.0)
+        self.length = 1.0  # seconds of the longest clip
+        self._near: Axis | None = None  # the part that is seen; None for everything
         self.hand = Hand()
         self.snapped: Snap | None = None
         self.snaps: tuple[Snap, ...] = ()
@@ -74,6 +74,17 @@ class TimingView(QWidget):
         session.transport.part_changed.connect(self.update)
 
     @property
+    def axis(self) -> Axis:
+        room = self.width() - GUTTER - RIGHT
+        if self._near is None:
+            return Axis.whole(GUTTER, room, self.length)
+        return self._near.fitted(GUTTER, room, self.length)
+
+    @axis.setter
+    def axis(self, axis: Axis) -> None:
+        self._near = None if axis.is_whole else axis
+
+    @property
     def transport(self) -> Transport:
         return self.session.transport
 
@@ -85,13 +96,10 @@ class TimingView(QWidget):
     def refresh(self) -> None:
         """Take over what the subject is now."""
         shown = self.subject.facts()
-        length = max([f.entry.duration for f in shown.values()], default=1.0)
+        self.length = max([f.entry.duration for f in shown.values()], default=1.0)
         clip = next((f.action.clip for f in shown.values()), "")
-        room = self.width() - GUTTER - RIGHT
         if clip != self._clip:
-            self._clip, self.axis = clip, Axis.whole(GUTTER, room, length)
-        else:
-            self.axis = self.axis.fitted(GUTTER, room, length)
+            self._clip, self._near = clip, None
         self.setMinimumHeight(round(least_height(self.wants())) + 2)
         self.update()
 
@@ -107,10 +115,6 @@ class TimingView(QWidget):
 
     def minimumSizeHint(self) -> QSize:
         return QSize(320, self.minimumHeight())
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self.axis = self.axis.fitted(GUTTER, self.width() - GUTTER - RIGHT, self.axis.length)
 
     def hit(self, at: QPointF) -> Hit | None:
         """Return what is under a point."""
@@ -134,7 +138,7 @@ class TimingView(QWidget):
 
     def _look(self) -> paint.Look:
         small = QFont(self.font())
-        small.setPointSizeF(max(6.5, small.pointSizeF() * 0.86))
+        small.setPointSizeF(max(7.0, small.pointSizeF() * 0.9))
         small.setFeature(QFont.Tag("tnum"), 1)
         return paint.Look(theme(self.session.look.name), small)
 
@@ -297,7 +301,7 @@ class TimingView(QWidget):
 
     def show_all(self) -> None:
         """Show the whole clip again."""
-        self.axis = Axis.whole(self.axis.left, self.axis.width, self.axis.length)
+        self._near = None
         self.update()
 
     def _step(self, facts: Facts, frames: int) -> None:
