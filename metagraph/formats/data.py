@@ -55,6 +55,7 @@ from metagraph.graph.model import (
 )
 from metagraph.graph.requests import words_of
 from metagraph.motion.joint_map import JointMap
+from metagraph.motion.retime import LONGEST, MOST, SPEEDS, Hold, Retime
 from metagraph.motion.skeleton import Skeleton
 
 FORMAT = 1  # of the project file; older ones are upgraded when read
@@ -66,7 +67,11 @@ def action_data(action: Action) -> Data:
 
 
 def clip_data(entry: ClipEntry) -> Data:
-    out = sparse(entry, ("motion", "digest"))
+    out = sparse(entry, ("motion", "source", "digest", "retime"))
+    if entry.retime.speed != 1.0:
+        out["speed"] = plain(entry.retime.speed)
+    if entry.retime.holds:
+        out["holds"] = [{"at": plain(h.at), "seconds": plain(h.seconds)} for h in entry.retime.holds]
     if entry.digest:
         out["sha256"] = entry.digest
     return out
@@ -209,7 +214,12 @@ def struct_from(data: Any, kind: Any, where: str) -> Any:
 # --- reading
 
 _ACTION_FIELDS = ({f.name for f in fields(Action)} | {f.name for f in fields(Timing)}) - {"layer", "timing"}
-_CLIP_FIELDS = ({f.name for f in fields(ClipEntry)} | {"sha256"}) - {"motion", "digest"}
+_CLIP_FIELDS = ({f.name for f in fields(ClipEntry)} | {"sha256", "speed", "holds"}) - {
+    "motion",
+    "source",
+    "digest",
+    "retime",
+}
 _PROJECT_FIELDS = ({f.name for f in fields(Project)} | {"metagraph", "layers"}) - {"graphs", "voices"}
 
 
@@ -226,13 +236,33 @@ def action_from(data: Data, layer: Layer, where: str) -> Action:
 
 def _clip_from(data: Data, where: str) -> ClipEntry:
     known(data, _CLIP_FIELDS, where)
-    values = fill(ClipEntry, data, where, ("motion", "digest"))
+    values = fill(ClipEntry, data, where, ("motion", "source", "digest", "retime"))
     for key in ("name", "path"):
         if key not in values:
             raise DataError(f"{where}.{key}", "is missing")
     for name in values.get("as_is", ()):
         one_of(name, REPAIRS, f"{where}.as_is")
-    return ClipEntry(digest=get(data, "sha256", str, where, ""), **values)
+    return ClipEntry(digest=get(data, "sha256", str, where, ""), retime=_retime_from(data, where), **values)
+
+
+def _retime_from(data: Data, where: str) -> Retime:
+    speed = get(data, "speed", float, where, 1.0)
+    low, high = SPEEDS
+    if not low <= speed <= high:
+        raise DataError(f"{where}.speed", f"should be between {low:g} and {high:g}, found {speed:g}")
+    holds = []
+    for n, item in enumerate(get(data, "holds", list, where, ())):
+        place = f"{where}.holds[{n}]"
+        at, seconds = get(item, "at", float, place), get(item, "seconds", float, place)
+        known(item, ("at", "seconds"), place)
+        if not 0 <= at <= 1e5:
+            raise DataError(f"{place}.at", f"should be 0 or more, found {at:g}")
+        if not 0 < seconds <= LONGEST:
+            raise DataError(f"{place}.seconds", f"should be above 0 and up to {LONGEST:g}, found {seconds:g}")
+        holds.append(Hold(at, seconds))
+    if len(holds) > MOST or len({h.at for h in holds}) < len(holds):
+        raise DataError(f"{where}.holds", f"should be at most {MOST}, at different moments")
+    return Retime(speed, tuple(sorted(holds, key=lambda h: h.at)))
 
 
 def skeleton_from(joints: list[Any], where: str = "skeleton") -> Skeleton | None:

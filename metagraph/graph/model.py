@@ -18,6 +18,7 @@ from metagraph.graph.requests import Line, Performance, Point
 from metagraph.graph.words import KINDS, LAYERS, LIMBS, MODES, PARTS, Kind, Layer, Limb, Mode, Part
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import JointMap
+from metagraph.motion.retime import Retime
 from metagraph.motion.skeleton import Skeleton
 
 __all__ = [
@@ -257,11 +258,12 @@ class ClipEntry:
     """A clip the project knows. path: relative to the project file, `/` between folders. take: which
     animation in the file.
 
-    digest: SHA-256 of the file, hex. frames, fps: as last read. as_is: names of repairs that are not made
+    digest: SHA-256 of the file, hex. frames, fps: as it plays. as_is: names of repairs that are not made
     when it is read (`formats.takes.REPAIRS`). brought_from: fingerprint of the skeleton it is retargeted
     from, "" where the file has the project's own. made_by, made_seed: the learned model that made it, and
-    with what chance; "" for clips that were not generated. motion: the loaded clip, None while the file is
-    missing.
+    with what chance; "" for clips that were not generated. retime: how it is played faster, slower and held.
+    motion: the loaded clip as it plays, None while the file is missing. source: as it was read, where that is
+    another (see `graph.retiming`).
     """
 
     id: str
@@ -272,10 +274,12 @@ class ClipEntry:
     frames: int = 0
     fps: float = 30.0
     motion: Clip | None = field(default=None, compare=False, repr=False)
+    source: Clip | None = field(default=None, compare=False, repr=False)
     as_is: tuple[str, ...] = ()
     brought_from: str = ""
     made_by: str = ""
     made_seed: int = 0
+    retime: Retime = field(default_factory=Retime)
 
     @property
     def duration(self) -> float:

@@ -90,11 +90,12 @@ def _blend(project: Project, action: Action, handle: str) -> Iterator[Snap]:
         if needed <= end - start:
             at = start + needed if handle == "in" else end - needed
             yield Snap(at, f"long enough for {gap.metres * 100:.0f} cm to the stance")
-    at = times_of(project, action)
-    if handle == "in" and at["ready"] is not None:
-        yield Snap(at["ready"], "its preparation ends")
-    if handle == "out" and at["relax"] is not None:
-        yield Snap(at["relax"], "its retraction begins")
+    now = times_of(project, action)
+    ready, relax = now["ready"], now["relax"]
+    if handle == "in" and ready is not None:
+        yield Snap(ready, "its preparation ends")
+    if handle == "out" and relax is not None:
+        yield Snap(relax, "its retraction begins")
 
 
 def _moment(project: Project, action: Action, handle: str, speeds: Array, fps: float) -> Iterator[Snap]:
@@ -103,8 +104,8 @@ def _moment(project: Project, action: Action, handle: str, speeds: Array, fps: f
     if action.kind == "gesture" and (handle in EDGES or handle == "stroke"):
         bare = replace(action.timing, ready=None, stroke_end=None, relax=None, stroke=None)
         found = phases(project, replace(action, timing=bare))
-        at = {"ready": found.ready, "hold": found.stroke_end, "relax": found.relax, "stroke": found.stroke}
-        yield Snap(round(at[handle], 3), "as found from the motion")
+        by = {"ready": found.ready, "hold": found.stroke_end, "relax": found.relax, "stroke": found.stroke}
+        yield Snap(round(by[handle], 3), "as found from the motion")
     if handle == "exit":
         relax = times_of(project, action)["relax"]
         if relax is not None:

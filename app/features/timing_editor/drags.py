@@ -9,12 +9,14 @@ from typing import Any, Protocol
 from PySide6.QtCore import QPointF
 
 from app.features.timing_editor.axis import Axis
-from app.features.timing_editor.track import Facts
+from app.features.timing_editor.track import Facts, Stay
 from app.project.document import Document
 from app.stage.transport import Transport
 from app.widgets.gesture import PressDrag, Reason
 from metagraph.graph import edits
 from metagraph.graph.model import Project
+from metagraph.graph.retiming import set_hold
+from metagraph.motion.retime import LONGEST, SHORTEST
 from metagraph.playback.timing import block_moved, moved_by, slipped
 from metagraph.suggest.snapping import Snap, nearest
 
@@ -110,6 +112,36 @@ class LoopDrag(PressDrag):
 
     def cancel(self, reason: Reason) -> None:
         self.host.transport.set_part(self.before)
+
+
+class StayDrag(PressDrag):
+    """A hold of a clip becomes longer or shorter, once it is let go: the clip is made anew then."""
+
+    catch = 2.0
+
+    def __init__(self, host: Host, facts: Facts, stay: Stay) -> None:
+        super().__init__()
+        self.host, self.facts, self.stay = host, facts, stay
+        self.seconds = stay.hold.seconds
+
+    def update(self, at: QPointF, free: bool = False) -> None:
+        if not self.caught(at):
+            return
+        longer = (at.x() - self.origin.x()) / self.host.axis.each
+        self.seconds = round(min(max(0.0, self.stay.hold.seconds + longer), LONGEST), 2)
+        self.host.held = f"held {self.seconds:.2f} s" if self.seconds >= SHORTEST else "no hold"
+        self.host.update()
+
+    def finish(self, at: QPointF) -> None:
+        self.host.held = ""
+        if self.begun and self.seconds != self.stay.hold.seconds:
+            clip, moment, seconds = self.facts.action.clip, self.stay.hold.at, self.seconds
+            self.host.document.edit("Change hold", lambda p: set_hold(p, clip, moment, seconds))
+        self.host.update()
+
+    def cancel(self, reason: Reason) -> None:
+        self.host.held = ""
+        self.host.update()
 
 
 class TimingDrag(PressDrag):

@@ -22,12 +22,12 @@ FIRST = (
     "stroke",
     "exit",
 )  # of lines on one another
-What = Literal["handle", "block", "ruler", "row"]
+What = Literal["handle", "block", "stay", "ruler", "row"]
 
 
 @dataclass(frozen=True)
 class Hit:
-    """ident: of the action. name: of the handle, the block or the row."""
+    """ident: of the action. name: of the handle, the block or the row, of a hold its moment in the file."""
 
     what: What
     ident: str
@@ -70,6 +70,9 @@ def _in(rows: TrackRows, facts: Facts, axis: Axis, at: QPointF) -> Hit | None:
         ]
         if near:
             return Hit("handle", rows.ident, min(near)[2])
+        for stay in facts.stays:
+            if axis.x(stay.first) <= at.x() <= axis.x(stay.last) + REACH and rows.rows["speed"].contains(at):
+                return Hit("stay", rows.ident, f"{stay.hold.at}")
     name = next((n for n, r in rows.rows.items() if r.contains(at)), "")
     return Hit("row", rows.ident, name)
 

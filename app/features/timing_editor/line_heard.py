@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -95,7 +95,7 @@ def _peaks(project: Project, said: Said) -> Envelope:
     voice = voice_of(project.voices, said.speech)
     out = Envelope(max(voice.duration, 0.1))
     times = np.arange(int(voice.duration * out.rate) + 1) / out.rate
-    loud: Sequence[float] = voice.strengths if len(voice.strengths) else np.ones(len(voice.peaks))
+    loud: Array = voice.strengths if len(voice.strengths) else np.ones(len(voice.peaks))
     heights = np.zeros(len(times))
     for peak, strength in zip(voice.peaks, loud, strict=True):
         heights = np.maximum(heights, strength * np.exp(-(((times - peak) / SYLLABLE) ** 2)))

@@ -145,6 +145,8 @@ def tip(facts: Facts, hit: Hit, seconds: float) -> str:
         )
     if hit.what == "block":
         return f"{hit.name}: drag it; with Shift all of it plays another part of the clip."
+    if hit.what == "stay":
+        return "The clip is held here. Drag to hold it longer or shorter; to nothing takes the hold away."
     if hit.what == "ruler":
         return (
             "Drag to scrub, with Shift to mark a part that is played again and again; a double click takes "

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen, QPolygonF
+from PySide6.QtGui import QBrush, QColor, QFont, QFontMetricsF, QPainter, QPen, QPolygonF
 
 from app.features.timing_editor.axis import Axis
 from app.features.timing_editor.numbers import placed
@@ -142,6 +142,28 @@ def _line(axis: Axis, rect: QRectF, part: Array, fps: float) -> QPolygonF:
     return QPolygonF([QPointF(x, y) for x, y in zip(xs.tolist(), ys.tolist(), strict=True)])
 
 
+def stays(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Facts) -> None:
+    """Paint where the clip is held: hatched, with for how long."""
+    rect = rows.rows["speed"]
+    painter.setFont(look.small)
+    for stay in facts.stays:
+        box = QRectF(axis.x(stay.first), rect.top(), axis.each * (stay.last - stay.first), rect.height())
+        hatched = QColor(look.t.dim)
+        hatched.setAlpha(120)
+        painter.fillRect(box, QBrush(hatched, Qt.BrushStyle.BDiagPattern))
+        painter.setPen(QPen(QColor(look.t.text), 1.2))
+        painter.drawLine(box.topRight(), box.bottomRight())
+        words = f"held {stay.hold.seconds:.2f} s"
+        if look.wide(words) + 8 <= box.width():
+            label = QRectF(box.center().x() - look.wide(words) / 2 - 4, box.center().y() - 8, 0, 16)
+            label.setWidth(look.wide(words) + 8)
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(QColor(look.t.card))
+            painter.drawRoundedRect(label, 3, 3)
+            painter.setPen(QColor(look.t.text))
+            painter.drawText(label, Qt.AlignmentFlag.AlignCenter, words)
+
+
 def blocks(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Facts) -> None:
     """Paint the phases, or for what has none the part that plays."""
     rect = rows.rows["phases"].adjusted(0, 1, 0, -1)
@@ -186,8 +208,8 @@ def stance(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Fa
     painter.setPen(Qt.PenStyle.NoPen)
     faint, bright, wrong = QColor(t.dim), t.kind(facts.action.kind), QColor(t.error)
     faint.setAlpha(110)
-    first = np.searchsorted(far.times, facts.span[0] - 1e-6), np.searchsorted(far.times, facts.span[1] - 1e-6)
-    bad = [int(i) for i in first if i < len(far.times) and far.shows[i] and facts.action.kind != "stance"]
+    ends = np.searchsorted(far.times, np.array(facts.span) - 1e-6).tolist()
+    bad = [i for i in ends if i < len(far.times) and far.shows[i] and facts.action.kind != "stance"]
     for x, i in zip(xs.tolist(), at.tolist(), strict=True):
         if known[i]:
             high = max(1.0, float(far.metres[i]) / top * rect.height())

@@ -23,12 +23,15 @@ from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
 from app.widgets.memo import Once
 from metagraph.graph import anatomy, edits
+from metagraph.graph.clip_source import course_of
 from metagraph.graph.model import Project
+from metagraph.graph.retiming import set_hold, set_speed
 from metagraph.motion.dope import DopeSheet, dope_sheet
 from metagraph.playback.timing import moved
 
 Array = NDArray[Any]
 
+HELD = 0.4  # seconds of a new hold
 MOST = 12  # actions below each other
 EMPTY = DopeSheet((), np.zeros((0, 0)), np.zeros((0, 0)))
 GHOSTS = {"start": 0.22, "stroke": 0.34, "end": 0.22}  # how much of each is seen
@@ -238,6 +241,28 @@ class Subject(QObject):
         }
         self.document.edit("Change timing", lambda p: edits.update_each(p, changes))
 
+    def set_speed(self, speed: float) -> None:
+        """Play the clips of all the actions at a speed, in one step. Raises EditError."""
+        clips = tuple(dict.fromkeys(f.action.clip for f in self.facts().values()))
+
+        def all_of(project: Project) -> Project:
+            for clip in clips:
+                project = set_speed(project, clip, speed)
+            return project
+
+        self.document.edit("Change speed", all_of)
+
+    def hold_here(self, seconds: float = HELD) -> None:
+        """Hold the first action's clip at the playhead for a while longer. Raises EditError."""
+        facts, now = next(iter(self.facts().values()), None), self.playhead()
+        course = course_of(facts.entry) if facts is not None else None
+        if facts is None or course is None:
+            return
+        clip = facts.action.clip
+        at = round(float(course.moments(np.array(facts.span[0] if now is None else now))), 3)
+        had = next((h.seconds for h in facts.entry.retime.holds if h.at == at), 0.0)
+        self.document.edit("Hold clip", lambda p: set_hold(p, clip, at, had + seconds))
+
     def compare(self, on: bool) -> None:
         """Show the actions as they were when they were selected, or marked, or as they are."""
         self._compare(self.marked if on else None)
@@ -264,7 +289,8 @@ class Subject(QObject):
             transport.set_part(None)
             return
         transport.scrub(facts.action.clip, facts.span[0])
-        transport.set_part((facts.action.clip, *(round(x, 3) for x in facts.span)))
+        first, last = facts.span
+        transport.set_part((facts.action.clip, round(first, 3), round(last, 3)))
         transport.set_playing(True)
 
     def _skin(self) -> None:

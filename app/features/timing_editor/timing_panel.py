@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
@@ -22,9 +24,11 @@ from app.look import icons
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import Session
-from app.widgets.form_fields import Chooser, Seconds
+from app.widgets.form_fields import Chooser, Seconds, common
 from app.widgets.making import make_widget
 from app.widgets.sentence import Sentence
+from metagraph.graph.edits import EditError
+from metagraph.motion.retime import SPEEDS
 from metagraph.playback.speed_curves import joints_offered
 
 LONGEST = 30  # letters of an action's name before it is cut in its middle
@@ -43,6 +47,11 @@ class TimingPanel(QWidget):
         self.joint = Chooser(self, toolTip="Whose speed is drawn")
         self.joint.setMinimumContentsLength(12)
         self.joint.activated.connect(lambda n: subject.show(joint=self.joint.itemData(n)))
+        tip = "Speed of the clip, 1 as it was read; what uses it follows. The file stays as it is"
+        self.speed = Seconds(self, tip, SPEEDS[1], " ×", 0.05)
+        self.speed.valueChanged.connect(self._pace)
+        self.hold = self._button("Hold", "Hold the clip at the playhead for a while longer")
+        self.hold.clicked.connect(lambda: self._try(subject.hold_here))
         self.onion = self._button("Onion", "See start, stroke and end beside the character", True)
         self.onion.clicked.connect(lambda on: subject.show(onion=on))
         self.compare = self._button("A/B", "Show it as it was when it was selected, or marked", True)
@@ -73,7 +82,9 @@ class TimingPanel(QWidget):
         self._row.setSpacing(4)
         self._row.addWidget(self.name)
         self._row.addWidget(self.verdict, 1)
-        for widget in (self.use, self.joint, self.onion, self.compare, self.loop, self.more):
+        for widget in (
+            self.use, self.joint, self.speed, self.hold, self.onion, self.compare, self.loop, self.more,
+        ):  # fmt: skip
             self._row.addWidget(widget)
         box = QVBoxLayout(self)
         box.setContentsMargins(0, 0, 0, 0)
@@ -103,12 +114,14 @@ class TimingPanel(QWidget):
         shown, t = self.subject.facts(), theme(self.session.look.name)
         self.more.setIcon(icons.icon("more", t.text))
         first = next(iter(shown.values()), None)
-        for widget in (self.use, self.joint, self.onion, self.compare, self.loop):
+        for widget in (self.use, self.joint, self.speed, self.hold, self.onion, self.compare, self.loop):
             widget.setEnabled(first is not None)
         joints = joints_offered(self.document.project)
         offered = [("what it moves", ""), *((words, name) for name, words in joints)]
         self.joint.show_entries(offered, self.subject.shows.joint)
+        self.speed.show_value(common([f.entry.retime.speed for f in shown.values()]) if shown else 1.0)
         if first is None:
+            self._done()
             self.name.setText("")
             self.verdict.say("")
             self.name.setToolTip("")
@@ -165,6 +178,17 @@ class TimingPanel(QWidget):
 
     def _use(self) -> None:
         self.subject.compatibility.use_proposed(self.subject.idents)
+
+    def _pace(self, speed: float) -> None:
+        if speed >= SPEEDS[0]:
+            self._try(lambda: self.subject.set_speed(speed))
+        self.refresh()
+
+    def _try(self, edit: Callable[[], object]) -> None:
+        try:
+            edit()
+        except EditError as error:
+            self.document.failed.emit(str(error))
 
     def _type(self, ident: str, handle: str, box: QRectF) -> None:
         """Let a number be typed where it stands."""

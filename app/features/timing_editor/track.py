@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 
 from app.widgets.memo import Once
 from metagraph.graph import end_gaps
+from metagraph.graph.clip_source import course_of
 from metagraph.graph.model import Action, ClipEntry, Project, Timing
+from metagraph.motion.retime import Hold
 from metagraph.playback.speed_curves import SpeedCurve, curves_of, speed_of
 from metagraph.playback.timing import Block, Handle, blocks_of, handles_of
 from metagraph.suggest.jumps import Curves
@@ -22,10 +24,20 @@ from metagraph.suggest.stance_distance import StanceDistance, distance_of, measu
 Array = NDArray[Any]
 
 
+@dataclass(frozen=True)
+class Stay:
+    """A hold of the clip. hold: as it is kept. first, last: seconds of the clip as it plays."""
+
+    hold: Hold
+    first: float
+    last: float
+
+
 @dataclass(frozen=True, eq=False)
 class Facts:
     """An action as it is now. speeds `[F]`: of what it moves, which snapping goes by. curves: those that are
-    drawn. seen: what is known of its jumps. verdict: in words; fine: whether nothing shows.
+    drawn. seen: what is known of its jumps. verdict: in words; fine: whether nothing shows. stays: where the
+    clip is held.
     """
 
     action: Action
@@ -39,6 +51,7 @@ class Facts:
     distance: StanceDistance
     verdict: str
     fine: bool
+    stays: tuple[Stay, ...] = ()
 
     def handle(self, name: str) -> Handle | None:
         return next((h for h in self.handles if h.name == name), None)
@@ -112,7 +125,16 @@ class Track:
             distance_of(project, action, seen, both),
             words,
             fine,
+            stays_of(entry),
         )
+
+
+def stays_of(entry: ClipEntry) -> tuple[Stay, ...]:
+    """Return where a clip is held."""
+    course = course_of(entry) if entry.retime.holds else None
+    if course is None:
+        return ()
+    return tuple(Stay(hold, *ends) for hold, ends in zip(entry.retime.holds, course.stays, strict=True))
 
 
 def _verdict(project: Project, action: Action, seen: Seen | None) -> tuple[str, bool]:

@@ -98,6 +98,8 @@ class TimingView(QWidget):
         shown = self.subject.facts()
         self.length = max([f.entry.duration for f in shown.values()], default=1.0)
         clip = next((f.action.clip for f in shown.values()), "")
+        if not shown:
+            self.numbers = {}
         if clip != self._clip:
             self._clip, self._near = clip, None
         self.setMinimumHeight(round(least_height(self.wants())) + 2)
@@ -187,6 +189,7 @@ class TimingView(QWidget):
             paint.blends(painter, look, axis, rows, shown)
             if rows.ident in before:
                 paint.before(painter, look, axis, rows, before[rows.ident], shown.top)
+            paint.stays(painter, look, axis, rows, shown)
             paint.curves(painter, look, axis, rows, shown)
             if "phases" in rows.rows:
                 paint.blocks(painter, look, axis, rows, shown)
@@ -225,6 +228,9 @@ class TimingView(QWidget):
         shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
         if hit.what == "handle":
             self.hand.take(self._handle_drag(facts, hit.name), at)
+        elif hit.what == "stay":
+            stay = next(s for s in facts.stays if f"{s.hold.at}" == hit.name)
+            self.hand.take(drags.StayDrag(self, facts, stay), at)
         elif hit.what == "block":
             self.hand.take(self._block_drag(facts, "" if shift or not facts.blocks else hit.name), at)
         elif hit.what == "ruler" and shift:
@@ -261,7 +267,8 @@ class TimingView(QWidget):
         free = bool(event.modifiers() & Qt.KeyboardModifier.AltModifier)
         if not self.hand.move(event.position(), free):
             hit = self.hit(event.position())
-            shapes = {"handle": Qt.CursorShape.SizeHorCursor, "block": Qt.CursorShape.OpenHandCursor}
+            wide = Qt.CursorShape.SizeHorCursor
+            shapes = {"handle": wide, "stay": wide, "block": Qt.CursorShape.OpenHandCursor}
             self.setCursor(shapes.get(hit.what if hit else "", Qt.CursorShape.ArrowCursor))
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:

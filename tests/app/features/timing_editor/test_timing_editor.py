@@ -273,3 +273,37 @@ def test_nothing_selected_is_said_and_a_new_project_forgets(editor):
     editor.view.grab()
     assert editor.view.tracks() == () and not editor.panel.joint.isEnabled()
     assert editor.view.hit(QPointF(300, 60)) is None
+
+
+def test_a_clip_is_slowed_and_held_in_place_and_undone(editor):
+    clip = editor.document.project.action(editor.ident).clip
+    before = editor.document.project
+    editor.panel.speed.setValue(0.5)
+    assert editor.document.project.clips[clip].duration == pytest.approx(4.8, abs=0.04)
+    assert timing(editor).end == pytest.approx(3.0, abs=0.02)
+    assert editor.view.length == pytest.approx(4.8, abs=0.04), "the rows are as long as the clip is now"
+    editor.document.undo_stack.undo()
+    assert editor.document.project.clips == before.clips and timing(editor).end == 1.5
+    editor.session.transport.scrub(clip, 1.0)
+    editor.wait(lambda: editor.panel.subject.playhead() == pytest.approx(1.0))
+    editor.panel.hold.click()
+    (hold,) = editor.document.project.clips[clip].retime.holds
+    assert (hold.at, hold.seconds) == (1.0, 0.4)
+    assert timing(editor).end == pytest.approx(1.9, abs=0.03)
+
+
+def test_a_hold_is_dragged_longer_and_to_nothing(editor):
+    clip = editor.document.project.action(editor.ident).clip
+    editor.session.transport.scrub(clip, 1.0)
+    editor.wait(lambda: editor.panel.subject.playhead() == pytest.approx(1.0))
+    editor.panel.hold.click()
+    count = editor.document.undo_stack.count()
+    (stay,) = facts(editor).stays
+    middle = at(editor, (stay.first + stay.last) / 2)
+    pull(editor, middle, middle + QPoint(100, 0))
+    (hold,) = editor.document.project.clips[clip].retime.holds
+    assert hold.seconds > 0.45 and editor.document.undo_stack.count() == count + 1
+    (stay,) = facts(editor).stays
+    middle = at(editor, (stay.first + stay.last) / 2)
+    pull(editor, middle, middle - QPoint(900, 0))
+    assert editor.document.project.clips[clip].retime.plain
