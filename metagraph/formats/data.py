@@ -7,7 +7,7 @@ Fields at their default are left out, floats are rounded to microseconds, so tha
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from functools import lru_cache
 from typing import Any
@@ -54,6 +54,7 @@ from metagraph.graph.model import (
     Timing,
 )
 from metagraph.graph.requests import words_of
+from metagraph.motion.contact_hold import Contact
 from metagraph.motion.joint_map import JointMap
 from metagraph.motion.retime import LONGEST, MOST, SPEEDS, Hold, Retime
 from metagraph.motion.skeleton import Skeleton
@@ -66,10 +67,15 @@ def action_data(action: Action) -> Data:
     return {**sparse(action, ("timing", "layer")), **sparse(action.timing)}
 
 
+_CONTACT = ("upper", "lower", "hand", "to", "first", "last")
+
+
 def clip_data(entry: ClipEntry) -> Data:
     out = sparse(entry, ("motion", "source", "digest", "retime"))
     if entry.retime.speed != 1.0:
         out["speed"] = plain(entry.retime.speed)
+    if entry.retime.contacts:
+        out["contacts"] = [{n: plain(getattr(c, n)) for n in _CONTACT} for c in entry.retime.contacts]
     if entry.retime.holds:
         out["holds"] = [{"at": plain(h.at), "seconds": plain(h.seconds)} for h in entry.retime.holds]
     if entry.digest:
@@ -214,7 +220,7 @@ def struct_from(data: Any, kind: Any, where: str) -> Any:
 # --- reading
 
 _ACTION_FIELDS = ({f.name for f in fields(Action)} | {f.name for f in fields(Timing)}) - {"layer", "timing"}
-_CLIP_FIELDS = ({f.name for f in fields(ClipEntry)} | {"sha256", "speed", "holds"}) - {
+_CLIP_FIELDS = ({f.name for f in fields(ClipEntry)} | {"sha256", "speed", "holds", "contacts"}) - {
     "motion",
     "source",
     "digest",
@@ -262,7 +268,18 @@ def _retime_from(data: Data, where: str) -> Retime:
         holds.append(Hold(at, seconds))
     if len(holds) > MOST or len({h.at for h in holds}) < len(holds):
         raise DataError(f"{where}.holds", f"should be at most {MOST}, at different moments")
-    return Retime(speed, tuple(sorted(holds, key=lambda h: h.at)))
+    return Retime(speed, tuple(sorted(holds, key=lambda h: h.at)), tuple(_contacts_from(data, where)))
+
+
+def _contacts_from(data: Data, where: str) -> Iterator[Contact]:
+    for n, item in enumerate(get(data, "contacts", list, where, ())):
+        place = f"{where}.contacts[{n}]"
+        upper, lower, hand, to = (get(item, name, str, place) for name in _CONTACT[:4])
+        first, last = (get(item, name, float, place) for name in _CONTACT[4:])
+        known(item, _CONTACT, place)
+        if not 0 <= first < last <= 1e5:
+            raise DataError(f"{place}.first", f"should be 0 or more and before last, found {first:g}")
+        yield Contact(upper, lower, hand, to, first, last)
 
 
 def skeleton_from(joints: list[Any], where: str = "skeleton") -> Skeleton | None:

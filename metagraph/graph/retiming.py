@@ -8,13 +8,25 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+from metagraph.graph import anatomy
 from metagraph.graph.clip_source import course_of, source_of, with_source
 from metagraph.graph.edits import EditError
 from metagraph.graph.manual import Manual
 from metagraph.graph.model import Action, BasePose, Project, Timing
+from metagraph.motion.contact_hold import Contact, nearest_joint
 from metagraph.motion.retime import Hold, Retime
 
 MOMENTS = ("start", "end", "earliest_exit", "stroke", "ready", "stroke_end", "relax")
+BODY = (
+    "hips",
+    "spine",
+    "chest",
+    "upper_chest",
+    "neck",
+    "head",
+    "left_upper_leg",
+    "right_upper_leg",
+)  # roles a hand may stay with
 LATE = ("end", "earliest_exit", "relax")  # go to the end of a hold that is put where they are
 
 
@@ -67,6 +79,34 @@ def set_hold(project: Project, clip: str, at: float, seconds: float) -> Project:
     at = round(at, 3)
     others = tuple(h for h in retime.holds if h.at != at)
     return set_retime(project, clip, replace(retime, holds=(*others, Hold(at, seconds))))
+
+
+def keep_hand(project: Project, clip: str, side: str, first: float, last: float) -> Project:
+    """Return the project with a hand of a clip kept where it is on the body at the first of two moments,
+    until the second; seconds of the clip as it was read. side: "left" or "right". Raises EditError.
+    """
+    entry = project.clips.get(clip)
+    source = source_of(entry) if entry is not None else None
+    roles = anatomy.roles(project)
+    limb = [roles.get(f"{side}_{part}") for part in ("upper_arm", "lower_arm", "hand")]
+    if entry is None or source is None or source.skeleton != project.skeleton:
+        raise EditError("that clip has no motion of this skeleton: find its file")
+    if None in limb:
+        raise EditError(f"the {side} arm is not known: say which joints it has in the skeleton's roles")
+    upper, lower, hand = (int(j) for j in limb if j is not None)
+    other = "right" if side == "left" else "left"
+    among = [roles[r] for r in (*BODY, f"{other}_hand", f"{other}_lower_arm") if r in roles]
+    to = nearest_joint(source, hand, among, first)
+    if to is None or last <= first:
+        raise EditError("there is nothing the hand could stay with")
+    names = source.skeleton.names
+    contact = Contact(names[upper], names[lower], names[hand], names[to], first, last)
+    kept = tuple(c for c in entry.retime.contacts if c.hand != contact.hand or not _meet(c, contact))
+    return set_retime(project, clip, replace(entry.retime, contacts=(*kept, contact)))
+
+
+def _meet(one: Contact, other: Contact) -> bool:
+    return one.first <= other.last and other.first <= one.last
 
 
 def _timing(timing: Timing, moved: Callable[..., float | None]) -> Timing:

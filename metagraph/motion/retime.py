@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion.clip import Clip
+from metagraph.motion.contact_hold import MOST as HANDS
+from metagraph.motion.contact_hold import Contact, held
 
 Array = NDArray[Any]
 
@@ -34,15 +36,16 @@ class Hold:
 
 @dataclass(frozen=True, slots=True)
 class Retime:
-    """speed: of all of it, 1 as it was read. holds: by time."""
+    """speed: of all of it, 1 as it was read. holds: by time. contacts: hands that stay where they are."""
 
     speed: float = 1.0
     holds: tuple[Hold, ...] = ()
+    contacts: tuple[Contact, ...] = ()
 
     @property
     def plain(self) -> bool:
         """Whether the clip is as it was read."""
-        return self.speed == 1.0 and not self.holds
+        return self == Retime()
 
     def kept(self, duration: float) -> Retime:
         """Return it with everything in range, for a clip of some seconds: a speed of `SPEEDS`, at most `MOST`
@@ -54,7 +57,12 @@ class Retime:
             if seconds >= SHORTEST:
                 holds[round(min(max(0.0, hold.at), duration), 3)] = seconds
         speed = round(min(max(self.speed, SPEEDS[0]), SPEEDS[1]), 3)
-        return Retime(speed, tuple(Hold(at, s) for at, s in list(holds.items())[:MOST]))
+        contacts = tuple(
+            replace(c, first=round(max(0.0, c.first), 3), last=round(min(c.last, duration), 3))
+            for c in self.contacts
+            if c.first < min(c.last, duration)
+        )
+        return Retime(speed, tuple(Hold(at, s) for at, s in list(holds.items())[:MOST]), contacts[:HANDS])
 
 
 class Course:
@@ -154,6 +162,9 @@ def _ramps(retime: Retime, duration: float) -> list[float]:
 def retimed(clip: Clip, retime: Retime) -> Clip:
     """Return a clip as a retiming plays it; the same clip where that is as it is."""
     if retime.plain or clip.frames < 2:
+        return clip
+    clip = held(clip, retime.contacts)
+    if retime.speed == 1.0 and not retime.holds:
         return clip
     course = Course(retime, clip.duration, clip.fps)
     moments = course.moments(np.arange(course.frames) / clip.fps)

@@ -82,3 +82,18 @@ def test_what_makes_no_sense_is_refused_with_its_place(saved, field, value, word
 def test_a_plain_clip_says_nothing_of_it(saved):
     data = to_data(saved[0])
     assert "speed" not in data["clips"][0] and data["clips"][1]["speed"] == 0.8
+
+
+def test_hands_that_are_kept_are_kept_in_the_file(saved, tmp_path):
+    from metagraph.graph.retiming import keep_hand
+
+    project, _, clip = saved
+    project = keep_hand(project, clip, "right", 0.4, 0.9)
+    save_project(project, tmp_path / "kept.metagraph.yaml")
+    again = open_project(tmp_path / "kept.metagraph.yaml").project
+    assert again.clips[clip].retime == project.clips[clip].retime and again.clips[clip].retime.contacts
+    assert np.allclose(again.clips[clip].motion.rotations, project.clips[clip].motion.rotations, atol=1e-6)
+    data = to_data(project)
+    data["clips"][1]["contacts"][0]["last"] = 0.1
+    with pytest.raises(DataError, match="before last"):
+        from_data(data)

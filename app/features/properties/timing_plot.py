@@ -25,6 +25,7 @@ from app.project.document import Document
 from app.stage.compatibility_state import Compatibility, proposed_fields
 from app.stage.session import Session
 from metagraph.graph.model import Action, Project
+from metagraph.motion.clip import Clip
 from metagraph.playback.speed_curves import speed_of
 from metagraph.playback.timing import BANDS, HANDLES, PHASES, moved, times_of
 
@@ -115,6 +116,7 @@ class TimingPlot(QWidget):
         self._show_seen()
 
     compatibility: Compatibility | None = None
+    _motion: Clip | None = None  # whose speed is drawn
 
     def _show_seen(self) -> None:
         """Show where the action can begin and end without a jump, as far as that is known by now."""
@@ -179,6 +181,8 @@ class TimingPlot(QWidget):
         )
         self.action = action
         entry = project.clips.get(action.clip)
+        fresh = fresh or (entry is not None and entry.motion is not self._motion)
+        self._motion = entry.motion if entry is not None else None
         if entry is None:
             return
         color = t.kind(action.kind)

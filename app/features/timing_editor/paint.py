@@ -164,6 +164,20 @@ def stays(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Fac
             painter.drawText(label, Qt.AlignmentFlag.AlignCenter, words)
 
 
+def kept(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Facts) -> None:
+    """Paint where hands are kept on the body: a bar for each, with its words where they fit."""
+    rect = rows.rows["speed"]
+    painter.setFont(look.small)
+    for n, (first, last, words) in enumerate(facts.kept):
+        box = QRectF(axis.x(first), rect.bottom() - (n + 1) * 15, axis.each * (last - first), 13)
+        painter.setPen(QPen(QColor(look.t.text), 1))
+        painter.setBrush(QColor(look.t.hover))
+        painter.drawRoundedRect(box, 3, 3)
+        painter.drawText(
+            box.adjusted(4, 0, -2, 0), MIDDLE, look.elided(words, max(0.0, box.width() - 6), True)
+        )
+
+
 def blocks(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Facts) -> None:
     """Paint the phases, or for what has none the part that plays."""
     rect = rows.rows["phases"].adjusted(0, 1, 0, -1)
@@ -263,11 +277,15 @@ def _numbers(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: 
         axis.left + axis.width,
     )
     out = {}
+    painter.setPen(QPen(QColor(t.dim), 1))
+    for (handle, _), width, place in zip(
+        shown, widths, places, strict=True
+    ):  # all lines first: beneath words
+        top = rect.top() + 1 + place.line * (CHIP + 1)
+        x = min(max(axis.x(handle.at), place.left + 3), place.left + width - 3)
+        painter.drawLine(QPointF(axis.x(handle.at), rows.rows["speed"].bottom()), QPointF(x, top + 2))
     for (handle, words), width, place in zip(shown, widths, places, strict=True):
         box = QRectF(place.left, rect.top() + 1 + place.line * (CHIP + 1), width, CHIP)
-        x = min(max(axis.x(handle.at), box.left() + 3), box.right() - 3)
-        painter.setPen(QPen(QColor(t.dim), 1))
-        painter.drawLine(QPointF(axis.x(handle.at), rows.rows["speed"].bottom()), QPointF(x, box.top() + 2))
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(t.hover))
         painter.drawRoundedRect(box, 4, 4)

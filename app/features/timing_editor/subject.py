@@ -25,13 +25,14 @@ from app.widgets.memo import Once
 from metagraph.graph import anatomy, edits
 from metagraph.graph.clip_source import course_of
 from metagraph.graph.model import Project
-from metagraph.graph.retiming import set_hold, set_speed
+from metagraph.graph.retiming import keep_hand, set_hold, set_retime, set_speed
 from metagraph.motion.dope import DopeSheet, dope_sheet
 from metagraph.playback.timing import moved
 
 Array = NDArray[Any]
 
 HELD = 0.4  # seconds of a new hold
+KEPT = 0.5  # seconds for which a hand is kept at least
 MOST = 12  # actions below each other
 EMPTY = DopeSheet((), np.zeros((0, 0)), np.zeros((0, 0)))
 GHOSTS = {"start": 0.22, "stroke": 0.34, "end": 0.22}  # how much of each is seen
@@ -262,6 +263,30 @@ class Subject(QObject):
         at = round(float(course.moments(np.array(facts.span[0] if now is None else now))), 3)
         had = next((h.seconds for h in facts.entry.retime.holds if h.at == at), 0.0)
         self.document.edit("Hold clip", lambda p: set_hold(p, clip, at, had + seconds))
+
+    def keep_hand(self, side: str) -> None:
+        """Keep a hand where it is on the body: during the part that is looped, where one is, else from the
+        playhead to the end of its hold, at least for `KEPT` seconds. Raises EditError.
+        """
+        facts, now = next(iter(self.facts().values()), None), self.playhead()
+        course = course_of(facts.entry) if facts is not None else None
+        if facts is None or course is None:
+            return
+        clip, part = facts.action.clip, self.session.transport.part
+        first = facts.span[0] if now is None else now
+        relax = next((b.last for b in facts.blocks if b.name == "hold"), 0.0)
+        last = max(first + KEPT, relax)
+        if part is not None and part[0] == clip:
+            first, last = part[1:]
+        a, b = course.moments(np.array([first, last])).tolist()
+        self.document.edit("Keep hand", lambda p: keep_hand(p, clip, side, round(a, 3), round(b, 3)))
+
+    def let_go(self) -> None:
+        """Let all hands of the first action's clip go where they went in the file."""
+        facts = next(iter(self.facts().values()), None)
+        if facts is not None:
+            clip, plain = facts.action.clip, replace(facts.entry.retime, contacts=())
+            self.document.edit("Let go of hands", lambda p: set_retime(p, clip, plain))
 
     def compare(self, on: bool) -> None:
         """Show the actions as they were when they were selected, or marked, or as they are."""

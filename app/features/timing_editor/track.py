@@ -37,7 +37,7 @@ class Stay:
 class Facts:
     """An action as it is now. speeds `[F]`: of what it moves, which snapping goes by. curves: those that are
     drawn. seen: what is known of its jumps. verdict: in words; fine: whether nothing shows. stays: where the
-    clip is held.
+    clip is held. kept: where a hand is kept on the body: first and last second, in words.
     """
 
     action: Action
@@ -52,6 +52,7 @@ class Facts:
     verdict: str
     fine: bool
     stays: tuple[Stay, ...] = ()
+    kept: tuple[tuple[float, float, str], ...] = ()
 
     def handle(self, name: str) -> Handle | None:
         return next((h for h in self.handles if h.name == name), None)
@@ -126,7 +127,19 @@ class Track:
             words,
             fine,
             stays_of(entry),
+            kept_of(entry),
         )
+
+
+def kept_of(entry: ClipEntry) -> tuple[tuple[float, float, str], ...]:
+    """Return where hands are kept on the body, first and last second of the clip as it plays, in words."""
+    course = course_of(entry) if entry.retime.contacts else None
+    if course is None:
+        return ()
+    return tuple(
+        (course.time(c.first), course.time(c.last, late=True), f"{c.hand} stays at {c.to}")
+        for c in entry.retime.contacts
+    )
 
 
 def stays_of(entry: ClipEntry) -> tuple[Stay, ...]:

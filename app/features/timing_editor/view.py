@@ -189,13 +189,14 @@ class TimingView(QWidget):
             paint.blends(painter, look, axis, rows, shown)
             if rows.ident in before:
                 paint.before(painter, look, axis, rows, before[rows.ident], shown.top)
-            paint.stays(painter, look, axis, rows, shown)
             paint.curves(painter, look, axis, rows, shown)
             if "phases" in rows.rows:
                 paint.blocks(painter, look, axis, rows, shown)
             if "stance" in rows.rows:
                 paint.stance(painter, look, axis, rows, shown)
             out[rows.ident] = paint.handles(painter, look, axis, rows, shown)
+            paint.stays(painter, look, axis, rows, shown)
+            paint.kept(painter, look, axis, rows, shown)
             painter.setClipping(False)
             sheet = self.subject.sheet(rows.ident)
             if sheet.names:

@@ -307,3 +307,25 @@ def test_a_hold_is_dragged_longer_and_to_nothing(editor):
     middle = at(editor, (stay.first + stay.last) / 2)
     pull(editor, middle, middle - QPoint(900, 0))
     assert editor.document.project.clips[clip].retime.plain
+
+
+def test_a_hand_is_kept_during_the_looped_part_and_let_go_again(editor):
+    clip = editor.document.project.action(editor.ident).clip
+    editor.session.transport.set_part((clip, 0.5, 0.9))
+    editor.panel.menu.aboutToShow.emit()
+    editor.pick(editor.panel.menu, "Keep the right hand where it is")
+    (contact,) = editor.document.project.clips[clip].retime.contacts
+    assert (contact.first, contact.last) == pytest.approx((0.5, 0.9), abs=0.01)
+    ((first, last, words),) = facts(editor).kept
+    assert (first, last) == pytest.approx((0.5, 0.9), abs=0.02) and "stays at" in words
+    editor.view.grab()
+    editor.panel.menu.aboutToShow.emit()
+    editor.pick(editor.panel.menu, "Let go of the hands")
+    assert editor.document.project.clips[clip].retime.plain
+    editor.session.transport.set_part(None)
+
+
+def test_the_plot_in_the_properties_follows_a_clip_that_is_slowed(editor):
+    editor.panel.speed.setValue(0.5)
+    xs, _ = editor.properties.plot.curve.getData()
+    assert xs[-1] == pytest.approx(4.8, abs=0.05)
