@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
-from app.look.plural import short
+from app.look.names import node_names, plain
 from app.look.theme import KIND_MARKS, Theme
 from app.stage.playback_source import Shown
 from app.widgets.lane_geometry import LEFT, RULER, TITLES, Mark, Scale, elided, lanes, rows
@@ -160,13 +160,9 @@ def _layer(painter: QPainter, t: Theme, scene: LaneScene, layer: Layer) -> None:
 
 
 def cue_words(project: Project, action: Action) -> str:
-    """Return what tells an action from the others of its stance, which stands on the band behind it: without
-    the number of the take.
-    """
-    stance = project.stance(action.stance)
-    words = short(action.name, stance.name) if stance is not None else action.name
-    words = words.replace("_", " ").strip()
-    return words.rstrip("0123456789()").rstrip(" .-#") or words
+    """Return what tells an action from the others of its node; its stance stands on the band behind it."""
+    names = node_names(project, action.layer, action.stance, action.kind)
+    return names.get(action.id) or plain(action.name)
 
 
 def _bar(

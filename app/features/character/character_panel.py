@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QSizePolicy, QToo
 
 from app.features.character.no_mesh import NoMesh
 from app.look import icons
+from app.look.names import plain
 from app.look.theme import theme
 from app.stage.figures import Figures
 from app.stage.gl_view import make_view
@@ -240,12 +241,12 @@ class PreviewPanel(QWidget):
         """Say what plays: the clip alone, or each layer's action and when the next begins."""
         shown = self.performance.shown
         if shown.clip is not None:
-            return f"{shown.project.clips[shown.clip].name}, alone"
+            return f"{plain(shown.project.clips[shown.clip].name)}, alone"
         seconds, out = self.session.transport.seconds, []
         for layer in LAYERS:
             cue = shown.plan.layers[layer].cue_at(seconds)
             if cue is not None:
-                out.append(f"{layer}: {cue.action.name}")
+                out.append(f"{layer}: {plain(cue.action.name)}")
         if self.session.transport.show == "context":
             out.append("in context")
         return "   ".join(out)
@@ -309,7 +310,7 @@ class PreviewPanel(QWidget):
         elif entry is None:
             self.base.setText("Base pose: rest pose")
         else:
-            self.base.setText(f"Base pose: {entry.name}, frame {base.frame}")
+            self.base.setText(f"Base pose: {plain(entry.name)}, frame {base.frame}")
         self.base.setToolTip(f"{self.base.text()}\n{BASE_TIP}")
         if after.skeleton is None:
             self._tell_mesh()

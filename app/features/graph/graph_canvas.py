@@ -150,6 +150,9 @@ class Canvas(QWidget):
             picture = self.thumbnails.picture(loop.clip, bare=True) if loop is not None else None
             if picture is not None:
                 chips[ident] = picture
+        rows = (row for node in self.layout_now().nodes.values() for row in node.rows)
+        clips = {row.action.clip for row in rows if not row.picture.isEmpty()}
+        found = {clip: self.thumbnails.picture(clip, bare=True) for clip in clips}
         painter = QPainter(self)
         paint(
             painter,
@@ -164,6 +167,7 @@ class Canvas(QWidget):
                 misfits=self.misfits,
                 picture=self.thumbnails.moving(hero.clip, self._beat) if hero is not None else None,
                 chip_pictures=chips,
+                row_pictures={clip: picture for clip, picture in found.items() if picture is not None},
                 other=self.session.place.other(),
                 drop=self._drop,
                 drop_hit=self._drop_hit,
@@ -385,8 +389,9 @@ class Canvas(QWidget):
                 if words
                 else f"{action.name}\nClick plays it in context, drag moves it"
             )
+        stance = self.document.project.stance(hit.ident) if hit.ident else None
         return {
-            "chip": "Click to make this the current stance",
+            "chip": f"{stance.name if stance is not None else ''}\nClick to make this the current stance",
             "add": "New stance: drop a clip here, or click",
             "other": "The stance that dropped transitions end in",
         }.get(hit.area, "")
@@ -540,7 +545,7 @@ class Canvas(QWidget):
         node = self.layout_now().nodes.get(found.kind) if found is not None else None
         if node is not None and found is not None and self.layout_now().row(action) is None:
             ids = [a.id for a in self.document.project.graphs[found.layer].of(found.stance, found.kind)]
-            self.first_rows[found.kind] = ids.index(action) // (2 if found.kind == "transition" else 1)
+            self.first_rows[found.kind] = ids.index(action) // node.columns
             self._stale()
 
     # --- menus and dialogs

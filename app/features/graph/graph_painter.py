@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter, QPainterPath, QPen, QRegion
 
 from app.features.graph.graph_drops import Drop
 from app.features.graph.graph_frames import GRID
-from app.features.graph.graph_layout import Chip, GraphHit, Layout, Node, bar_part
-from app.look.plural import short
+from app.features.graph.graph_layout import Chip, GraphHit, GraphRow, Layout, Node, bar_part
+from app.look.names import fitting
 from app.look.theme import KIND_MARKS, KIND_TITLES, Theme
 from metagraph.graph.model import Action, Kind, Project
 
@@ -37,6 +38,7 @@ class GraphLook:
     misfits: dict[str, str] = field(default_factory=dict)  # action -> what is wrong with its ends
     picture: QImage | None = None
     chip_pictures: dict[str, QImage] = field(default_factory=dict)
+    row_pictures: Mapping[str, QImage] = field(default_factory=dict)  # by clip
     other: str | None = None
     drop: Drop | None = None
     drop_hit: GraphHit = NOWHERE
@@ -104,9 +106,23 @@ def _box(
     painter.drawRoundedRect(rect.adjusted(width / 2, width / 2, -width / 2, -width / 2), RADIUS, RADIUS)
 
 
-def _elided(font: QFont, text: str, width: float, middle: bool = False) -> str:
-    mode = Qt.TextElideMode.ElideMiddle if middle else Qt.TextElideMode.ElideRight
-    return QFontMetricsF(font).elidedText(text, mode, width)
+def _between(font: QFont, text: str, width: float, others: tuple[str, ...] = ()) -> str:
+    """Return as much of a text as there is room for, with what tells it from those beside it."""
+    return _cut(text, round(width, 1), others, font.toString())
+
+
+@lru_cache(maxsize=2048)
+def _cut(text: str, width: float, others: tuple[str, ...], font: str) -> str:
+    made = QFont()
+    made.fromString(font)
+    return fitting(text, width, QFontMetricsF(made).horizontalAdvance, others)
+
+
+def _upper(picture: QImage) -> QRectF:
+    """Return the part of a picture in which arms and head are."""
+    return QRectF(
+        picture.width() * 0.24, picture.height() * 0.03, picture.width() * 0.52, picture.height() * 0.52
+    )
 
 
 def _curves(painter: QPainter, layout: Layout, look: GraphLook) -> None:
@@ -136,7 +152,7 @@ def _curves(painter: QPainter, layout: Layout, look: GraphLook) -> None:
 
 
 def _chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, font: QFont) -> None:
-    t = look.theme
+    t, beside = look.theme, tuple(c.name for c in layout.chips)
     target = look.drop is not None and (
         (look.drop_hit.area == "add" and chip.stance is None)
         or (look.drop_hit.area == "chip" and look.drop_hit.ident == chip.stance and chip.stance is not None)
@@ -164,16 +180,15 @@ def _chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, font: 
     if chip.bare:
         painter.setFont(font)
         painter.setPen(QColor(t.text if current else t.dim))
-        name = _elided(font, chip.name, inner.width())
+        name = _between(font, chip.name, inner.width() + 1, beside)
         painter.drawText(inner, Qt.AlignmentFlag.AlignCenter, name)
         return
     picture = look.chip_pictures.get(chip.stance)
     if picture is not None:
         size = chip.rect.height() - 6
-        half = QRectF(
-            picture.width() * 0.24, picture.height() * 0.03, picture.width() * 0.52, picture.height() * 0.52
+        painter.drawImage(
+            QRectF(chip.rect.left() + 5, chip.rect.top() + 3, size, size), picture, _upper(picture)
         )
-        painter.drawImage(QRectF(chip.rect.left() + 5, chip.rect.top() + 3, size, size), picture, half)
     else:
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(t.fill("stance"))
@@ -185,7 +200,7 @@ def _chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, font: 
     used = metrics.horizontalAdvance(count) + (metrics.horizontalAdvance(right) + 8 if right else 0) + 8
     painter.setFont(_bold(font) if current else font)
     painter.setPen(QColor(t.text))
-    name = _elided(painter.font(), chip.name, inner.width() - used)
+    name = _between(painter.font(), chip.name, inner.width() - used + 1, beside)
     painter.drawText(inner, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, name)
     painter.setFont(font)
     painter.setPen(QColor(t.dim))
@@ -222,19 +237,8 @@ def _card(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -> No
             "Drop a resting clip here\nto make the first stance\nof this layer:\nhands at the sides, say.",
         )  # fmt: skip
     else:
-        head = QRectF(card.left() + 12, card.top() + 8, card.width() - 24, 24)
         bold = _bold(font)
-        painter.setFont(bold)
-        name = _elided(bold, stance.name, head.width() - 20)
-        wide = QFontMetricsF(bold).horizontalAdvance(name)
-        left = head.center().x() - (wide + 16) / 2
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(t.fill("stance"))
-        painter.drawEllipse(QPointF(left + 4, head.center().y()), 4.5, 4.5)
-        painter.setPen(QColor(t.text))
-        painter.drawText(
-            QRectF(left + 16, head.top(), wide + 4, head.height()), Qt.AlignmentFlag.AlignVCenter, name
-        )
+        head = _card_name(painter, card, stance.name, bold, look)
         area = QRectF(
             card.left() + 4, head.bottom() + 2, card.width() - 8, card.height() - 24 - head.height() - 14
         )
@@ -252,8 +256,32 @@ def _card(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -> No
         painter.setPen(QColor(t.dim if loops else t.warning))
         foot = QRectF(card.left() + 12, card.bottom() - 26, card.width() - 24, 20)
         words += "  ·  starts here" if start and card.width() > 150 else ""
-        painter.drawText(foot, Qt.AlignmentFlag.AlignCenter, _elided(font, words, foot.width()))
+        painter.drawText(foot, Qt.AlignmentFlag.AlignCenter, _between(font, words, foot.width()))
     return _card_drop(painter, layout, look, font)
+
+
+def _card_name(painter: QPainter, card: QRectF, name: str, bold: QFont, look: GraphLook) -> QRectF:
+    """Paint the stance's name on its card, in two lines where one is too short; return the room it takes."""
+    t, measure = look.theme, QFontMetricsF(bold)
+    room = card.width() - 24 - 16
+    lines = [name]
+    words = name.split()
+    if measure.horizontalAdvance(name) > room and card.height() > 96 and len(words) > 1:
+        cuts = ((" ".join(words[:n]), " ".join(words[n:])) for n in range(1, len(words)))
+        lines = list(min(cuts, key=lambda two: max(map(measure.horizontalAdvance, two))))
+    lines = [_between(bold, line, room) for line in lines]
+    head = QRectF(card.left() + 12, card.top() + 8, card.width() - 24, 24.0 + 17 * (len(lines) - 1))
+    wide = max(map(measure.horizontalAdvance, lines))
+    left = head.center().x() - (wide + 16) / 2
+    painter.setFont(bold)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(t.fill("stance"))
+    painter.drawEllipse(QPointF(left + 4, head.center().y()), 4.5, 4.5)
+    painter.setPen(QColor(t.text))
+    for n, line in enumerate(lines):
+        box = QRectF(left + 16, head.top() + 17 * n, wide + 4, 24)
+        painter.drawText(box, Qt.AlignmentFlag.AlignVCenter, line)
+    return head
 
 
 def _card_drop(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -> None:
@@ -312,8 +340,9 @@ def _node(painter: QPainter, node: Node, layout: Layout, look: GraphLook, font: 
     painter.drawText(head, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight, str(node.count))
     if node.kind == "transition" and layout.stance is not None:
         _other(painter, node, look, font)
+    beside = tuple(row.words for row in node.rows)
     for row in node.rows:
-        _row(painter, row.action, row.rect, row.bar, node.kind, look, font)
+        _row(painter, row, node.kind, look, font, beside)
     if node.most > 0:
         track = QRectF(node.rect.right() - 6, node.body.top(), 3, node.body.height())
         share = len(node.rows) / max(1, node.count)
@@ -348,7 +377,7 @@ def _other(painter: QPainter, node: Node, look: GraphLook, font: QFont) -> None:
     painter.setPen(QColor(t.text if found is not None else t.warning))
     text = f"to {found.name}" if found is not None else "needs another stance"
     painter.drawText(
-        rect.adjusted(8, 0, -18, 0), Qt.AlignmentFlag.AlignVCenter, _elided(font, text, rect.width() - 28)
+        rect.adjusted(8, 0, -18, 0), Qt.AlignmentFlag.AlignVCenter, _between(font, text, rect.width() - 26)
     )
     painter.setPen(QPen(QColor(t.dim), 1.4))
     c = QPointF(rect.right() - 12, rect.center().y())
@@ -356,9 +385,9 @@ def _other(painter: QPainter, node: Node, look: GraphLook, font: QFont) -> None:
 
 
 def _row(
-    painter: QPainter, action: Action, rect: QRectF, bar: QRectF, kind: Kind, look: GraphLook, font: QFont
+    painter: QPainter, row: GraphRow, kind: Kind, look: GraphLook, font: QFont, beside: tuple[str, ...]
 ) -> None:
-    t = look.theme
+    t, action, rect, bar = look.theme, row.action, row.rect, row.bar
     selected, hover = (
         action.id in look.selected,
         look.hover.ident == action.id and look.hover.area in ("row", "bar", "head"),
@@ -369,11 +398,6 @@ def _row(
         painter.setPen(QPen(QColor(t.dim), 1) if action.id == look.focus and selected else Qt.PenStyle.NoPen)
         painter.setBrush(fill)
         painter.drawRoundedRect(rect.adjusted(0, 1, 0, -1), 5, 5)
-    stance = look.project.stance(action.stance)
-    text = short(action.name, stance.name) if stance is not None else action.name
-    if kind == "transition":
-        end = look.project.stance(action.end_stance)
-        text = end.name if end is not None else f"?  {action.name}"
     left = rect.left() + 8
     if kind == "transition":
         if hover and look.hover.area == "head":
@@ -387,6 +411,11 @@ def _row(
         painter.setPen(t.kind(kind))
         painter.drawText(QRectF(left, rect.top(), 18, rect.height()), Qt.AlignmentFlag.AlignVCenter, "→")
         left += 17
+    picture = look.row_pictures.get(action.clip)
+    if not row.picture.isEmpty():
+        left = row.picture.right() + 8
+        if picture is not None:
+            painter.drawImage(row.picture, picture, _upper(picture))
     if action.id in look.playing:
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(t.kind(kind))
@@ -404,7 +433,7 @@ def _row(
     painter.drawText(
         QRectF(left, rect.top(), room, rect.height()),
         Qt.AlignmentFlag.AlignVCenter,
-        _elided(font, text, room, middle=True),  # actions of a stance differ at their ends
+        _between(font, row.words, room, beside),
     )
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(QColor(t.line))

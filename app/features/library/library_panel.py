@@ -57,6 +57,8 @@ from PySide6.QtWidgets import (
 )
 
 from app.look import icons
+from app.look.names import fitting, plain
+from app.look.plural import short
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import Session
@@ -72,6 +74,7 @@ Index = QModelIndex | QPersistentModelIndex
 ENTRY = Qt.ItemDataRole.UserRole
 CARD_WIDTH, CARD_HEIGHT = 124, 176
 PICTURE = 108
+NEAR = 12  # cards before and behind one, from which its name is told apart
 
 
 @dataclass(frozen=True)
@@ -233,7 +236,19 @@ class CardDelegate(QStyledItemDelegate):
         painter.setFont(font)
         painter.setPen(QColor(t.text))
         line = QRect(rect.left() + 11, rect.bottom() - 53, rect.width() - 16, 16)
-        for part in two_lines(entry.name, painter.fontMetrics(), line.width()):
+        front, rest = self.panel.card_name(entry)
+        measure = painter.fontMetrics()
+        beside = self.panel.beside(index.row())
+        shown = (
+            two_lines(rest, measure, line.width(), beside)
+            if not front
+            else (
+                measure.elidedText(front, Qt.TextElideMode.ElideMiddle, line.width()),
+                fitting(rest, line.width(), measure.horizontalAdvance, beside),
+            )
+        )
+        for n, part in enumerate(shown):
+            painter.setPen(QColor(t.dim if front and n == 0 else t.text))
             painter.drawText(line, Qt.AlignmentFlag.AlignVCenter, part)
             line.translate(0, 16)
         painter.setPen(QColor(t.dim))
@@ -256,16 +271,17 @@ class CardDelegate(QStyledItemDelegate):
         painter.restore()
 
 
-def two_lines(name: str, metrics: QFontMetrics, width: int) -> tuple[str, ...]:
-    """Break a name over at most two lines, after a separator where there is one; names tell clips apart by
-    their ends.
+def two_lines(name: str, metrics: QFontMetrics, width: int, beside: Iterable[str] = ()) -> tuple[str, ...]:
+    """Break a name over at most two lines, after a separator where there is one. beside: names of the cards
+    round it, from which what is shown is to differ.
     """
     if metrics.horizontalAdvance(name) <= width:
         return (name,)
     fits = max((n for n in range(1, len(name)) if metrics.horizontalAdvance(name[:n]) <= width), default=1)
     cuts = [n for n in range(fits, fits // 2, -1) if name[n - 1] in "_- .@"]
     cut = cuts[0] if cuts else fits
-    return name[:cut], metrics.elidedText(name[cut:], Qt.TextElideMode.ElideMiddle, width)
+    rivals = [other[cut:] for other in beside if other.startswith(name[:cut])]
+    return name[:cut].rstrip(), fitting(name[cut:], width, metrics.horizontalAdvance, rivals)
 
 
 class Search(QLineEdit):
@@ -533,6 +549,30 @@ class LibraryPanel(QWidget):
                 "Drop a folder of clips here\n\nBVH, GLB, glTF, VRM animation\nand, with the extra, FBX"
             )
         self.stack.setCurrentIndex(1 if nothing or hidden else 0)
+
+    # --- names
+
+    def card_name(self, entry: ClipEntry) -> tuple[str, str]:
+        """Return the stance that a clip's name begins with, "" for none, and the rest of the name, as they are
+        read.
+        """
+        graphs = self.document.project.graphs
+        if self._named is None or self._named[0] is not graphs:
+            stances = {s.name for layer in LAYERS for s in graphs[layer].stances.values()}
+            self._named = graphs, sorted(stances, key=len, reverse=True), {}
+        _, names, kept = self._named
+        if entry.name not in kept:
+            found = next((n for n in names if short(entry.name, n) != entry.name), "")
+            kept[entry.name] = found, plain(entry.name, found)
+        return kept[entry.name]
+
+    _named: tuple[object, list[str], dict[str, tuple[str, str]]] | None = None
+
+    def beside(self, row: int) -> list[str]:
+        """Return what the cards round one are called, as far as names are shown in a line."""
+        near = range(max(0, row - NEAR), min(self.proxy.rowCount(), row + NEAR + 1))
+        entries = (self.proxy.index(n, 0).data(ENTRY) for n in near if n != row)
+        return [self.card_name(e)[1] for e in entries if e is not None]
 
     # --- selection
 

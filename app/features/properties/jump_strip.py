@@ -126,7 +126,7 @@ class JumpStrip(pg.PlotWidget):
         self.bad = pg.PlotDataItem(connect="finite", antialias=True)
         self.good = pg.PlotDataItem(connect="finite", antialias=True)
         self.limit = pg.InfiniteLine(pos=1.0, angle=0, movable=False)
-        self.words = pg.TextItem("shows as a jump", anchor=(1.0, 1.0))
+        self.words = pg.TextItem("shows as a jump", anchor=(0.5, 1.0))
         self.marks = pg.ScatterPlotItem(size=12)
         self.edges = [pg.InfiniteLine(movable=False) for _ in range(2)]
         for item in (self.bars, self.limit, *self.edges, self.bad, self.good, self.marks):
@@ -177,7 +177,10 @@ class JumpStrip(pg.PlotWidget):
         for edge, value in zip(self.edges, project.span(action), strict=True):
             edge.setVisible(True)
             edge.setValue(value)
-        self.words.setPos(float(self.viewRange()[0][1]), 1.0)
+        shows = seen.times[above]  # its words stand beneath what it is about, clear of the ends
+        self.words.setVisible(len(shows) > 0)
+        if len(shows):
+            self.words.setPos(float(shows[0] + shows[-1]) / 2, 1.0)
 
     def tip(self, at: QPointF) -> str:
         """Say what a point of the strip means."""
