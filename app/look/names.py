@@ -7,6 +7,9 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import lru_cache
+
+from PySide6.QtGui import QFont, QFontMetricsF
 
 from app.look.plural import short
 from metagraph.graph.model import Action, Kind, Layer, Limb, MetaGraph, Project
@@ -58,6 +61,13 @@ def row_names(project: Project, actions: Iterable[Action]) -> dict[str, str]:
     return {a.id: name for a, name in zip(some, apart(told), strict=True)}
 
 
+def told_names(words: str, name: str) -> str:
+    """Return what a tooltip says of something called `words` in its place: that, and its name where that is
+    another.
+    """
+    return words if words == name else f"{words}\n{name}"
+
+
 _KEPT: dict[tuple[int, str, Kind], tuple[MetaGraph, dict[str, str]]] = {}  # by a graph, which it holds on to
 
 
@@ -72,9 +82,11 @@ def node_names(project: Project, layer: Layer, stance: str, kind: Kind) -> dict[
     return _KEPT[key][1]
 
 
-def fitting(text: str, width: float, measure: Callable[[str], float], others: Iterable[str] = ()) -> str:
-    """Return as much of a text as a width has room for, its middle left out. others: what stands beside it;
-    what is left out is chosen so that the rest is not what is left of one of them, where that can be.
+def fitting(
+    text: str, width: float, measure: Callable[[str], float], others: Iterable[str] = (), sure: bool = False
+) -> str:
+    """Return as much of a text as a width has room for, its middle left out, or both ends. others: what
+    stands beside it; what is left is to be none of theirs, where that can be. sure: "" where it cannot.
     """
     if measure(text) <= width:
         return text
@@ -94,10 +106,57 @@ def fitting(text: str, width: float, measure: Callable[[str], float], others: It
         alike = sum(1 for o in rivals if o.startswith(begin) and o.endswith(end))
         found.append((alike, whole - head - last, abs(head - last), head))
     if not found:
-        return GAP
-    _, lost, _, head = min(found, key=lambda f: (f[0], f[1] // 3, f[2]))
-    return text[:head].rstrip() + GAP + _end(text, whole - head - lost)
+        return "" if sure else GAP
+    alike, lost, _, head = min(found, key=lambda f: (f[0], f[1] // 3, f[2]))
+    best = text[:head].rstrip() + GAP + _end(text, whole - head - lost)
+    if alike:
+        same, inner = _inner(text, width, measure, rivals)
+        if same < alike:
+            alike, best = same, inner
+    return "" if sure and alike else best
+
+
+def _inner(
+    text: str, width: float, measure: Callable[[str], float], rivals: Sequence[str]
+) -> tuple[int, str]:
+    """Return the part of a text that fewest rivals have, both ends left out, after how many have it."""
+    starts = {_common(text, o) for o in rivals} | {
+        text.rfind(" ", 0, _common(text, o) + 1) + 1 for o in rivals
+    }
+    best = len(rivals) + 1, 0, ""
+    for start in sorted(starts):
+        end = start
+        while end < len(text) and measure(GAP + text[start : end + 1] + GAP) <= width:
+            end += 1
+        piece = text[start:end].strip()
+        if len(piece) < 2:
+            continue
+        alike = sum(1 for o in rivals if piece in o)
+        front, back = GAP if start else "", GAP if end < len(text) else ""
+        best = min(best, (alike, -len(piece), front + piece + back))
+    return best[0], best[2]
+
+
+def _common(one: str, other: str) -> int:
+    """Return how many letters two texts begin with alike."""
+    return next(
+        (n for n, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other))
+    )
 
 
 def _end(text: str, letters: int) -> str:
     return text[len(text) - letters :].lstrip() if letters else ""
+
+
+@lru_cache(maxsize=8192)
+def fitted(text: str, width: int, font: str, others: tuple[str, ...] = (), sure: bool = False) -> str:
+    """Return `fitting` in a font, given as `QFont.toString` does; made once."""
+    return fitting(text, width, measured(font).horizontalAdvance, others, sure)
+
+
+@lru_cache(maxsize=8)
+def measured(font: str) -> QFontMetricsF:
+    """Return the measures of a font, given as `QFont.toString` does."""
+    made = QFont()
+    made.fromString(font)
+    return QFontMetricsF(made)

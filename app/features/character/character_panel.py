@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from PySide6.QtCore import QElapsedTimer, Qt, QTimer
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from app.features.character.no_mesh import NoMesh
 from app.look import icons
@@ -21,6 +21,7 @@ from app.stage.playhead import Playhead
 from app.stage.session import Session
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, Scrub
+from app.widgets.sentence import OneLine
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
 from preview.camera import close_up, whole_figure
@@ -138,10 +139,9 @@ class PreviewPanel(QWidget):
         lines = QBoxLayout(QBoxLayout.Direction.TopToBottom)
         lines.setContentsMargins(12, 0, 12, 8)
         lines.setSpacing(2)
-        self.caption, self.base = QLabel("", self), make_widget(QLabel, "", self, toolTip=BASE_TIP)
+        self.caption, self.base = OneLine(self), OneLine(self, BASE_TIP)
         for label in (self.caption, self.base):
             label.setProperty("dim", True)
-            label.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
             lines.addWidget(label)
         return lines
 
@@ -227,7 +227,7 @@ class PreviewPanel(QWidget):
         length = max(1e-6, self.performance.shown.length)
         if not self.scrub.isSliderDown():
             self.scrub.setValue(round(10000 * min(1.0, seconds / length)))
-        self.caption.setText(self._words())
+        self.caption.say(self._words())
         self._tell_mesh()
 
     def _tell_mesh(self) -> None:
@@ -306,12 +306,11 @@ class PreviewPanel(QWidget):
     def _edited(self, before: Project, after: Project) -> None:
         base, entry = after.base, after.clips.get(after.base.clip or "")
         if after.skeleton is None:
-            self.base.setText("")
+            self.base.say("")
         elif entry is None:
-            self.base.setText("Base pose: rest pose")
+            self.base.say("Base pose: rest pose")
         else:
-            self.base.setText(f"Base pose: {plain(entry.name)}, frame {base.frame}")
-        self.base.setToolTip(f"{self.base.text()}\n{BASE_TIP}")
+            self.base.say(f"Base pose: {plain(entry.name)}, frame {base.frame}")
         if after.skeleton is None:
             self._tell_mesh()
         self.view.update()

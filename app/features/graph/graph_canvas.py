@@ -37,6 +37,7 @@ from app.features.graph.graph_layout import (
     least_height,
 )
 from app.features.graph.graph_painter import GraphLook, paint
+from app.look.names import told_names
 from app.look.plural import many
 from app.look.theme import theme
 from app.project.document import Document
@@ -58,9 +59,10 @@ SLOW = 0.015  # seconds of drawing for each of which a picture of it is left out
 
 class Canvas(QWidget):
     """The meta-graph of the current layer. files_dropped: (paths, drop) to import and then place. refused:
-    words for the status bar.
+    words for the status bar. labelled: clips were placed by a key; (clips, the actions made of them).
     """
 
+    labelled = Signal(object, object)
     files_dropped = Signal(object, object)
     refused = Signal(str)
 
@@ -84,6 +86,7 @@ class Canvas(QWidget):
         self.row_actions: list[QAction] = []  # the window's commands that go into an action's menu
         self.hover = NOTHING
         self.focus: str | None = None
+        self.fresh: tuple[str, ...] = ()  # actions just made by a key
         self.misfits: dict[str, str] = {}
         self._drop: Drop | None = None
         self._drop_hit = NOTHING
@@ -161,6 +164,7 @@ class Canvas(QWidget):
                 theme=look,
                 project=project,
                 selected=self.session.selection.actions,
+                fresh=self.fresh,
                 hover=self.hover,
                 focus=self.focus if self.hasFocus() else None,
                 playing=self._playing(),
@@ -377,24 +381,26 @@ class Canvas(QWidget):
         return super().event(event)
 
     def _tip(self, hit: GraphHit) -> str:
-        action = self.document.project.action(hit.ident) if hit.ident else None
+        project = self.document.project
+        action = project.action(hit.ident) if hit.ident else None
         if hit.area == "bar" and action is not None:
             return f"Likelihood {action.likelihood:g}: drag to change"
-        if hit.area == "head" and action is not None and action.id not in self.misfits:
-            return f"{action.name}\nDrag the arrow onto another stance to end there"
         if action is not None:
-            words = self.misfits.get(action.id)
-            return (
-                f"{action.name}\n{words}"
-                if words
-                else f"{action.name}\nClick plays it in context, drag moves it"
-            )
-        stance = self.document.project.stance(hit.ident) if hit.ident else None
-        return {
-            "chip": f"{stance.name if stance is not None else ''}\nClick to make this the current stance",
+            row = self.layout_now().row(action.id)
+            name = told_names(row.words if row is not None else action.name, action.name)
+            head = "Drag the arrow onto another stance to end there"
+            plain = head if hit.area == "head" else "Click plays it in context, drag moves it"
+            return f"{name}\n{self.misfits.get(action.id) or plain}"
+        stance = project.stance(self.session.place.other() if hit.area == "other" else hit.ident)
+        to = "to " if hit.area == "other" else ""
+        name = f"{to}{stance.name}\n" if stance is not None else ""
+        words = {
+            "chip": "Click to make this the current stance",
+            "card": "Click selects its loops, double-click renames it",
             "add": "New stance: drop a clip here, or click",
             "other": "The stance that dropped transitions end in",
         }.get(hit.area, "")
+        return f"{name}{words}" if words else ""
 
     # --- drops
 
@@ -489,10 +495,20 @@ class Canvas(QWidget):
             else GraphHit("node", None, kind)
         )
         drop = self._what(hit, load)
-        if drop.possible:
-            self.do(drop, load)
-        else:
+        if not drop.possible:
             self.refused.emit(drop.words)
+            return
+        before = self.document.project
+        self.do(drop, load)
+        if load.clips and self.document.project is not before:
+            self.labelled.emit(load.clips, self.session.selection.actions)
+
+    def reveal(self, actions: Sequence[str]) -> None:
+        """Bring actions in sight, and mark them until something else is selected than now."""
+        self.fresh = tuple(actions)
+        for ident in actions[:1]:
+            self._scroll_to(ident)
+        self.update()
 
     # --- keyboard
 
@@ -541,6 +557,9 @@ class Canvas(QWidget):
         self.focus = action
         kept = self.session.selection.actions if extend else ()
         self.session.selection.select_actions((*(i for i in kept if i != action), action))
+        self._scroll_to(action)
+
+    def _scroll_to(self, action: str) -> None:
         found = self.document.project.action(action)
         node = self.layout_now().nodes.get(found.kind) if found is not None else None
         if node is not None and found is not None and self.layout_now().row(action) is None:

@@ -25,6 +25,8 @@ FOOT, FOOT_NARROW = 40, 62  # the sentence at the bottom, in two lines or three
 CHIP_MIN, CHIP_MAX = 108, 230
 BOLD = 1.12  # how much wider the card's name is than the chip's
 BARE = 0  # in the place of a width: chips as wide as their names, which is all they show
+TIGHT = -1  # and: as many in a line as can be told apart
+TIGHTEST = 84.0
 
 Area = Literal["chip", "add", "card", "loop", "node", "row", "bar", "head", "other", "start", "nothing"]
 
@@ -156,7 +158,7 @@ def arrange(
     graph = project.graphs[layer]
 
     # Many stances in a low window: narrower chips without words leave room for the nodes.
-    for widest in (CHIP_MAX, 150, BARE):
+    for widest in (CHIP_MAX, 150, BARE, TIGHT):
         chips = _chips(project, graph, width, widths, widest)
         top = chips[-1].rect.bottom() + 2 * GRID
         if top < height - FOOT - 320:
@@ -200,13 +202,16 @@ def _chips(
             + widths.get(str(count), 16.0)
             + (widths.get(words, 7 * len(words)) + 8 if words else 0)
         )
-        if widest == BARE:
-            w = min(widths.get(s.name, 7.2 * len(s.name)) + 26, width - 5 * GRID)
+        if widest == TIGHT:
+            many = max(2, int((width - 4 * GRID) // (TIGHTEST + GRID)))
+            w = (width - 4 * GRID - (many - 1) * GRID) / many
+        elif widest == BARE:
+            w = min(widths.get(s.name, 7.2 * len(s.name)) + 26, width - 4 * GRID)
         else:
             w = min(max(text + 80, CHIP_MIN), widest + (80 if words else 0))
         if x + w > width - 2 * GRID and x > 2 * GRID:
             x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID
-        chips.append(Chip(ident, QRectF(x, y, w, CHIP_HEIGHT), s.name, count, words, widest == BARE))
+        chips.append(Chip(ident, QRectF(x, y, w, CHIP_HEIGHT), s.name, count, words, widest <= BARE))
         x += w + GRID
     if x + CHIP_HEIGHT > width - GRID:
         x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID

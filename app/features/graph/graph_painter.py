@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
-from functools import lru_cache
 
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter, QPainterPath, QPen, QRegion
@@ -12,9 +11,9 @@ from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter, QPaint
 from app.features.graph.graph_drops import Drop
 from app.features.graph.graph_frames import GRID
 from app.features.graph.graph_layout import Chip, GraphHit, GraphRow, Layout, Node, bar_part
-from app.look.names import fitting
+from app.look.names import fitted
 from app.look.theme import KIND_MARKS, KIND_TITLES, Theme
-from metagraph.graph.model import Action, Kind, Project
+from metagraph.graph.model import Kind, Project
 
 RADIUS = 8.0
 NOWHERE = GraphHit("nothing")
@@ -32,6 +31,7 @@ class GraphLook:
     theme: Theme
     project: Project
     selected: Collection[str] = ()
+    fresh: Collection[str] = ()  # just made
     hover: GraphHit = NOWHERE
     focus: str | None = None
     playing: Collection[str] = ()  # actions under the playhead
@@ -108,14 +108,7 @@ def _box(
 
 def _between(font: QFont, text: str, width: float, others: tuple[str, ...] = ()) -> str:
     """Return as much of a text as there is room for, with what tells it from those beside it."""
-    return _cut(text, round(width, 1), others, font.toString())
-
-
-@lru_cache(maxsize=2048)
-def _cut(text: str, width: float, others: tuple[str, ...], font: str) -> str:
-    made = QFont()
-    made.fromString(font)
-    return fitting(text, width, QFontMetricsF(made).horizontalAdvance, others)
+    return fitted(text, int(width), font.toString(), others)
 
 
 def _upper(picture: QImage) -> QRectF:
@@ -180,7 +173,7 @@ def _chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, font: 
     if chip.bare:
         painter.setFont(font)
         painter.setPen(QColor(t.text if current else t.dim))
-        name = _between(font, chip.name, inner.width() + 1, beside)
+        name = _between(font, chip.name, inner.width(), beside)
         painter.drawText(inner, Qt.AlignmentFlag.AlignCenter, name)
         return
     picture = look.chip_pictures.get(chip.stance)
@@ -255,7 +248,9 @@ def _card(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -> No
         painter.setFont(font)
         painter.setPen(QColor(t.dim if loops else t.warning))
         foot = QRectF(card.left() + 12, card.bottom() - 26, card.width() - 24, 20)
-        words += "  ·  starts here" if start and card.width() > 150 else ""
+        more = f"{words}  ·  starts here"
+        if start and QFontMetricsF(font).horizontalAdvance(more) <= foot.width() - 1:
+            words = more
         painter.drawText(foot, Qt.AlignmentFlag.AlignCenter, _between(font, words, foot.width()))
     return _card_drop(painter, layout, look, font)
 
@@ -340,7 +335,7 @@ def _node(painter: QPainter, node: Node, layout: Layout, look: GraphLook, font: 
     painter.drawText(head, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight, str(node.count))
     if node.kind == "transition" and layout.stance is not None:
         _other(painter, node, look, font)
-    beside = tuple(row.words for row in node.rows)
+    beside = tuple(row.words for other in layout.nodes.values() for row in other.rows)
     for row in node.rows:
         _row(painter, row, node.kind, look, font, beside)
     if node.most > 0:
@@ -392,10 +387,13 @@ def _row(
         action.id in look.selected,
         look.hover.ident == action.id and look.hover.area in ("row", "bar", "head"),
     )
-    if selected or hover:
+    fresh = action.id in look.fresh
+    if selected or hover or fresh:
         fill = QColor(t.hover)
         fill.setAlpha(255 if selected else 130)
-        painter.setPen(QPen(QColor(t.dim), 1) if action.id == look.focus and selected else Qt.PenStyle.NoPen)
+        edge = t.kind(kind) if fresh else QColor(t.dim)
+        ringed = fresh or (action.id == look.focus and selected)
+        painter.setPen(QPen(edge, 1) if ringed else Qt.PenStyle.NoPen)
         painter.setBrush(fill)
         painter.drawRoundedRect(rect.adjusted(0, 1, 0, -1), 5, 5)
     left = rect.left() + 8

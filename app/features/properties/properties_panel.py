@@ -37,7 +37,6 @@ from metagraph.graph import edits
 from metagraph.graph.model import LIMBS, PARTS, REACH, Action, Project
 from metagraph.graph.words import Part
 
-
 LOW = 240  # pixels of height below which the curves of a timing leave no room for anything else
 
 
