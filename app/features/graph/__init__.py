@@ -40,7 +40,7 @@ def contribute(shell: Shell) -> Contribution:
         return canvas
 
     def go_on(clips: tuple[str, ...], made: tuple[str, ...]) -> None:
-        """After a label by key: the next clip that has none is selected and plays, what was made is in sight."""
+        """After a label by key the next clip without one is selected and plays; what was made is in sight."""
         following = shell.panel("library").next_unlabelled(clips[-1])
         canvas().reveal(made)
         places = shell.services[Places]

@@ -107,6 +107,7 @@ class Canvas(QWidget):
         self._hero_timer.timeout.connect(self._next_beat)
         self._hero_timer.start()
         document.changed.connect(self._edited)
+        document.loaded.connect(lambda: self.reveal(()))
         for signal in (session.place.stance_changed, session.place.layer_changed):
             signal.connect(self._moved_on)
         session.selection.changed.connect(self.update)

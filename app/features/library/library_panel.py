@@ -562,8 +562,8 @@ class LibraryPanel(QWidget):
         self.stack.setCurrentIndex(1 if nothing or hidden else 0)
 
     def next_unlabelled(self, clip: str) -> str | None:
-        """Return the clip that comes after one, as they are listed, and serves as nothing yet; from the first on
-        where none comes after it. None where all shown do.
+        """Return the clip that comes after one, as they are listed, and serves as nothing yet; from the first
+        on where none comes after it. None where there is no other.
         """
         project, filtered = self.document.project, self.proxy.filter
         ids = [i for i, e in project.clips.items() if i == clip or self._open(e, filtered)]
