@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from PySide6.QtCore import QElapsedTimer, Qt, QTimer
+from PySide6.QtCore import QElapsedTimer, QMargins, Qt, QTimer
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
@@ -31,6 +31,7 @@ from preview.scene import THEMES, Actor, Scene
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
 BASE_TIP = "The pose all layers are added to. Right-click a clip in the library to take it from there."
 FRAME = 16  # milliseconds between frames
+HINT = 4000  # milliseconds for which it is told how to come back
 WIDE = 560  # pixels from which the playhead stands in the line of the buttons
 
 
@@ -56,6 +57,14 @@ class PreviewPanel(QWidget):
         self.view.frame_wanted.connect(self.frame_all)
         self.view.setMinimumSize(240, 200)
         self.view.setToolTip("Drag to orbit, right-drag to pan, wheel to zoom, double-click to frame")
+        self.bare = False
+        self._margins: list[QMargins] = []  # of what is hidden then
+        self.hint = QLabel("F11 shows the rest again", self.view)
+        self.hint.setProperty("card", True)
+        self.hint.setContentsMargins(8, 4, 8, 4)
+        self.hint.hide()
+        self._hint_goes = QTimer(self, singleShot=True, interval=HINT)
+        self._hint_goes.timeout.connect(self.hint.hide)
         self.no_mesh = NoMesh(self.view, choose, may_choose)
         self.frames = 0
         self.view.painted.connect(self._painted)
@@ -256,6 +265,30 @@ class PreviewPanel(QWidget):
         self._timer.stop()
 
     # --- commands
+
+    def set_bare(self, on: bool) -> None:
+        """Show the character and nothing else, or its transport and captions, too."""
+        if on == self.bare:
+            return
+        self.bare = on
+        for layout in (self._above, self._row, self._lines):
+            if on:  # margins round nothing would be an edge beneath the view
+                self._margins.append(layout.contentsMargins())
+                layout.setContentsMargins(0, 0, 0, 0)
+            elif self._margins:
+                layout.setContentsMargins(self._margins.pop(0))
+            for n in range(layout.count()):
+                item = layout.itemAt(n)
+                part = item.widget() if item is not None else None
+                if part is not None:
+                    part.setVisible(not on)
+        self.hint.setVisible(on)
+        if on:
+            self.hint.adjustSize()
+            self.hint.move(12, 12)
+            self._hint_goes.start()
+        else:
+            self._hint_goes.stop()
 
     def frame_all(self) -> None:
         self.view.moved_by_hand = False

@@ -176,6 +176,7 @@ class Canvas(QWidget):
                 other=self.session.place.other(),
                 drop=self._drop,
                 drop_hit=self._drop_hit,
+                drop_at=self._drop_at,
                 arrow=self._arrow,
                 sentence=self._sentence(),
             ),
@@ -342,6 +343,7 @@ class Canvas(QWidget):
         self.update()
 
     _hover_shown = False
+    _drop_at: QPointF | None = None  # where something is held over it
 
     def _hovered_long(self) -> None:
         if self._drop is not None:
@@ -416,7 +418,7 @@ class Canvas(QWidget):
         hit = self.layout_now().hit(at, dragging=True)
         if hit != self._drop_hit and hit.area == "chip":
             self._hover_timer.start()
-        self._drop_hit = hit
+        self._drop_hit, self._drop_at = hit, at
         self._drop = self._what(hit, load_of(event.mimeData()))
         if self._drop.possible:
             event.setDropAction(
@@ -443,7 +445,7 @@ class Canvas(QWidget):
         self._end_drag()
 
     def _end_drag(self) -> None:
-        self._drop, self._drop_hit = None, NOTHING
+        self._drop, self._drop_hit, self._drop_at = None, NOTHING, None
         self._hover_timer.stop()
         self.update()
 

@@ -42,6 +42,7 @@ class GraphLook:
     other: str | None = None
     drop: Drop | None = None
     drop_hit: GraphHit = NOWHERE
+    drop_at: QPointF | None = None  # where something is held: what a drop does stands beside it
     arrow: tuple[QPointF, QPointF] | None = None  # being dragged, from where to where
     sentence: str = ""
 
@@ -75,6 +76,7 @@ def paint(
         Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft | Qt.TextFlag.TextWordWrap,
         look.sentence,
     )
+    _verdict(painter, layout, look, font)
     if look.arrow is not None:
         draw_arrow(
             painter, *look.arrow, look.theme.kind("transition"), look.drop is not None and look.drop.possible
@@ -301,6 +303,8 @@ def _offer(painter: QPainter, rect: QRectF, look: GraphLook, kind: Kind, font: Q
     fill = QColor(t.ground)
     fill.setAlpha(225)
     _box(painter, rect.adjusted(5, 5, -5, -5), fill, color, 1.4, dashed=True)
+    if look.drop_at is not None:
+        return  # it stands beside what is held
     painter.setPen(color)
     painter.setFont(font)
     painter.drawText(
@@ -308,6 +312,26 @@ def _offer(painter: QPainter, rect: QRectF, look: GraphLook, kind: Kind, font: Q
         Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap,
         look.drop.words.replace("*", ""),
     )
+
+
+def _verdict(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -> None:
+    """Say above what is held what letting it go would do, in a mark or a warning's colour."""
+    if look.drop is None or look.drop_at is None or not look.drop.words:
+        return
+    t, words = look.theme, look.drop.words.replace("*", "")
+    words = words[:1].upper() + words[1:]
+    flags = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap
+    painter.setFont(font)
+    room = QRectF(0, 0, min(300.0, layout.size.width() - 40), 200)
+    box = painter.boundingRect(room, flags, words).adjusted(-10, -6, 10, 6)
+    at = look.drop_at + QPointF(14, -8 - box.height())
+    x = min(max(4.0, at.x()), layout.size.width() - box.width() - 4)
+    y = at.y() if at.y() >= 4 else look.drop_at.y() + 134  # beneath what is held
+    box.moveTo(x, min(y, layout.size.height() - box.height() - 4))
+    color = QColor(t.kinds[look.drop_hit.kind]) if look.drop_hit.kind else QColor(t.text)
+    _box(painter, box, QColor(t.panel), color if look.drop.possible else QColor(t.warning), 1.4)
+    painter.setPen(QColor(t.text) if look.drop.possible else QColor(t.warning))
+    painter.drawText(box.adjusted(10, 6, -10, -6), flags, words)
 
 
 def _node(painter: QPainter, node: Node, layout: Layout, look: GraphLook, font: QFont) -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from PySide6.QtCore import QEvent, QObject, QSize, Qt, QTimer
+from PySide6.QtCore import QEvent, QModelIndex, QObject, QSize, Qt, QTimer
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -109,8 +109,12 @@ class CommandFinder(QDialog):
                     first = item
             head.setHidden(not shown)
         self.none.setVisible(not self.listed())
+        if first is None:
+            self.tree.clearSelection()
+            self.tree.setCurrentIndex(QModelIndex())
+            return
         self.tree.setCurrentItem(first)
-        if first is not None and not wanted:
+        if not wanted:
             self.tree.scrollToTop()
 
     def listed(self) -> list[Entry]:

@@ -17,6 +17,7 @@ from PySide6.QtCore import (
     QMimeData,
     QModelIndex,
     QPersistentModelIndex,
+    QPoint,
     QRect,
     QSize,
     QSortFilterProxyModel,
@@ -59,7 +60,7 @@ from PySide6.QtWidgets import (
 
 from app.look import icons
 from app.look.names import fitted, fitting, plain
-from app.look.plural import short
+from app.look.plural import many, short
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import Session
@@ -361,7 +362,10 @@ class ClipList(QListView):
             return
         drag = QDrag(self)
         drag.setMimeData(mime(clips=[e.id for e in chosen]))
-        drag.setPixmap(drag_picture(chosen[0].name if len(chosen) == 1 else f"{len(chosen)} clips", self))
+        words = " ".join(self.panel.card_name(chosen[0])) if len(chosen) == 1 else many(len(chosen), "clip")
+        picture = self.panel.thumbnails.picture(chosen[0].id, bare=True)
+        drag.setPixmap(drag_picture(words.strip(), self, picture))
+        drag.setHotSpot(QPoint(-14, -10))  # beside the pointer: what lies under that stays in sight
         drag.exec(Qt.DropAction.CopyAction)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
