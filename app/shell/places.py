@@ -14,6 +14,7 @@ from PySide6.QtWidgets import (
     QScrollArea,
     QSplitter,
     QStackedWidget,
+    QToolBar,
     QWidget,
 )
 
@@ -65,6 +66,8 @@ class Places:
         self._beside: set[str] = set()  # what is wanted beside the centre
         self._before: QByteArray | None = None  # how it was before one panel had the whole window
         self._shares = ""
+        self._hidden: list[QWidget] = []  # bars, while one panel has the whole window
+        self._bare: QDockWidget | None = None
         options = QMainWindow.DockOption
         window.setDockOptions(options.AnimatedDocks | options.AllowNestedDocks | options.AllowTabbedDocks)
         self.centre = QSplitter(Qt.Orientation.Horizontal, window)
@@ -223,16 +226,39 @@ class Places:
         return self._before is not None
 
     def only(self, ident: str) -> None:
-        """Give one panel the whole window, or put everything back."""
+        """Give one panel the whole window, its bars and titles included, or put everything back."""
         if self._before is None:
             self._before, self._shares = self.window.saveState(ARRANGED), self.proportions.text()
             for name, dock in self.docks.items():
                 dock.setVisible(name == ident)
+            self._bare = self.docks[ident]
+            self._bare.setTitleBarWidget(QWidget(self._bare))
+            self._hidden = [b for b in self._bars() if not b.isHidden()]
+            for bar in self._hidden:
+                bar.hide()
         else:
             before, self._before = self._before, None
+            self._show_bars()
             self.window.restoreState(before, ARRANGED)
             shares, self._shares = self._shares, ""
             self.proportions.read(shares)
+
+    def _bars(self) -> list[QWidget]:
+        window = self.window
+        tools = [b for b in window.findChildren(QToolBar) if b.parent() is window]
+        return [window.menuBar(), window.statusBar(), *tools]
+
+    def _show_bars(self) -> None:
+        """Show again what was hidden for one panel."""
+        for bar in self._hidden:
+            bar.show()
+        self._hidden = []
+        if self._bare is not None:
+            empty = self._bare.titleBarWidget()
+            self._bare.setTitleBarWidget(None)  # type: ignore[arg-type]
+            if empty is not None:
+                empty.deleteLater()
+            self._bare = None
 
     # --- arranging
 
@@ -256,6 +282,7 @@ class Places:
     def arrange(self, workspace: Workspace, kept: tuple[QByteArray, str] | None = None) -> None:
         """Put every dock where a workspace has it, or where it was when `kept` was taken by `state`."""
         self._before = None
+        self._show_bars()
         with self._quietly():
             if kept is None or not self.window.restoreState(kept[0], ARRANGED):
                 self._settle(workspace)

@@ -23,6 +23,7 @@ from app.shell.actions import Actions, Command, Standard
 from app.shell.context import Contribute, Contribution, HeaderItem, Services
 from app.shell.header import Header
 from app.shell.job_line import JobLine
+from app.shell.keyboard import Keyboard
 from app.shell.notice import Notice
 from app.shell.places import Places
 from app.shell.verbs import Verbs
@@ -107,6 +108,7 @@ class Window(QMainWindow):
         self.job_line = JobLine(shell.jobs, self)
         self.statusBar().addPermanentWidget(self.job_line)
         self.statusBar().addPermanentWidget(shell.notice)
+        self.keyboard = Keyboard(self, shell.actions)
         self._wire()
         self.resize(1680, 1020)
         self.workspaces.restore()

@@ -65,7 +65,7 @@ GRAPH = Workspace(
     "graph",
     "Graph",
     "The graph and the character, both large",
-    across(("list", 16), (down(("large", 75), ("below", 25)), 51), ("side", 33)),
+    across(("list", 16), (down(("large", 73), ("below", 27)), 51), ("side", 33)),
 )
 TIME = Workspace(
     "time",

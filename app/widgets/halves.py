@@ -35,7 +35,7 @@ class Halves(QWidget):
         self._box.setDirection(directions.LeftToRight if beside else directions.TopToBottom)
         self._box.setStretch(0, 3 if beside else 0)
         self._box.setStretch(1, 2 if beside else 1)
-        self._box.setContentsMargins(14, 6 if beside else 10, 0 if beside else 14, 4 if beside else 14)
+        self._box.setContentsMargins(14, 6 if beside else 10, 8 if beside else 14, 4 if beside else 14)
         self._second.whole = not beside
         self._second.updateGeometry()
         self.turned.emit(beside)

@@ -11,6 +11,7 @@ from app.project.files import Files
 from app.shell.actions import Command
 from app.shell.context import Contribution, Panel, Shell
 from app.shell.places import Places
+from app.shell.workspace_keeper import Workspaces
 from metagraph.graph import edits
 
 FRAME = 1 / 30  # seconds of a step
@@ -31,6 +32,7 @@ def contribute(shell: Shell) -> Contribution:
         )
         panel.view.failed.connect(shell.tell)
         panel.view.painted.connect(lambda _: stage.painted.emit())
+        shell.services[Workspaces].changed.connect(lambda: panel.set_bare(shell.services[Places].alone))
         return panel
 
     def preview() -> PreviewPanel:
@@ -60,6 +62,11 @@ def contribute(shell: Shell) -> Contribution:
         )
         if ident is not None:
             session.show_context(ident)
+
+    def only() -> None:
+        places = shell.services[Places]
+        places.only("character")
+        preview().set_bare(places.alone)
 
     def show_meshes() -> None:
         from app.features.character.meshes_dialog import MeshesDialog
@@ -216,7 +223,7 @@ def contribute(shell: Shell) -> Contribution:
                 view,
                 "character",
                 "Only the &character",
-                lambda: shell.services[Places].only("character"),
+                only,
                 ("F11",),
                 study=True,
             ),

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from PySide6.QtCore import QElapsedTimer, Qt, QTimer
+from PySide6.QtCore import QElapsedTimer, QMargins, Qt, QTimer
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from app.features.character.no_mesh import NoMesh
 from app.look import icons
+from app.look.names import plain
 from app.look.theme import theme
 from app.stage.figures import Figures
 from app.stage.gl_view import make_view
@@ -20,6 +21,7 @@ from app.stage.playhead import Playhead
 from app.stage.session import Session
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, Scrub
+from app.widgets.sentence import OneLine
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
 from preview.camera import close_up, whole_figure
@@ -30,6 +32,7 @@ SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
 BASE_TIP = "The pose all layers are added to. Right-click a clip in the library to take it from there."
 NOW = 0.03  # seconds from the present moment within which a ghost would only blur the figure
 FRAME = 16  # milliseconds between frames
+HINT = 4000  # milliseconds for which it is told how to come back
 WIDE = 560  # pixels from which the playhead stands in the line of the buttons
 
 
@@ -55,6 +58,14 @@ class PreviewPanel(QWidget):
         self.view.frame_wanted.connect(self.frame_all)
         self.view.setMinimumSize(240, 200)
         self.view.setToolTip("Drag to orbit, right-drag to pan, wheel to zoom, double-click to frame")
+        self.bare = False
+        self._margins: list[QMargins] = []  # of what is hidden then
+        self.hint = QLabel("F11 shows the rest again", self.view)
+        self.hint.setProperty("card", True)
+        self.hint.setContentsMargins(8, 4, 8, 4)
+        self.hint.hide()
+        self._hint_goes = QTimer(self, singleShot=True, interval=HINT)
+        self._hint_goes.timeout.connect(self.hint.hide)
         self.no_mesh = NoMesh(self.view, choose, may_choose)
         self.frames = 0
         self.view.painted.connect(self._painted)
@@ -139,10 +150,9 @@ class PreviewPanel(QWidget):
         lines = QBoxLayout(QBoxLayout.Direction.TopToBottom)
         lines.setContentsMargins(12, 0, 12, 8)
         lines.setSpacing(2)
-        self.caption, self.base = QLabel("", self), make_widget(QLabel, "", self, toolTip=BASE_TIP)
+        self.caption, self.base = OneLine(self), OneLine(self, BASE_TIP)
         for label in (self.caption, self.base):
             label.setProperty("dim", True)
-            label.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
             lines.addWidget(label)
         return lines
 
@@ -247,7 +257,7 @@ class PreviewPanel(QWidget):
         length = max(1e-6, self.performance.shown.length)
         if not self.scrub.isSliderDown():
             self.scrub.setValue(round(10000 * min(1.0, seconds / length)))
-        self.caption.setText(self._words())
+        self.caption.say(self._words())
         self._tell_mesh()
 
     def _tell_mesh(self) -> None:
@@ -261,12 +271,12 @@ class PreviewPanel(QWidget):
         """Say what plays: the clip alone, or each layer's action and when the next begins."""
         shown = self.performance.shown
         if shown.clip is not None:
-            return f"{shown.project.clips[shown.clip].name}, alone"
+            return f"{plain(shown.project.clips[shown.clip].name)}, alone"
         seconds, out = self.session.transport.seconds, []
         for layer in LAYERS:
             cue = shown.plan.layers[layer].cue_at(seconds)
             if cue is not None:
-                out.append(f"{layer}: {cue.action.name}")
+                out.append(f"{layer}: {plain(cue.action.name)}")
         if self.session.transport.show == "context":
             out.append("in context")
         return "   ".join(out)
@@ -276,6 +286,30 @@ class PreviewPanel(QWidget):
         self._timer.stop()
 
     # --- commands
+
+    def set_bare(self, on: bool) -> None:
+        """Show the character and nothing else, or its transport and captions, too."""
+        if on == self.bare:
+            return
+        self.bare = on
+        for layout in (self._above, self._row, self._lines):
+            if on:  # margins round nothing would be an edge beneath the view
+                self._margins.append(layout.contentsMargins())
+                layout.setContentsMargins(0, 0, 0, 0)
+            elif self._margins:
+                layout.setContentsMargins(self._margins.pop(0))
+            for n in range(layout.count()):
+                item = layout.itemAt(n)
+                part = item.widget() if item is not None else None
+                if part is not None:
+                    part.setVisible(not on)
+        self.hint.setVisible(on)
+        if on:
+            self.hint.adjustSize()
+            self.hint.move(12, 12)
+            self._hint_goes.start()
+        else:
+            self._hint_goes.stop()
 
     def frame_all(self) -> None:
         self.view.moved_by_hand = False
@@ -326,12 +360,11 @@ class PreviewPanel(QWidget):
     def _edited(self, before: Project, after: Project) -> None:
         base, entry = after.base, after.clips.get(after.base.clip or "")
         if after.skeleton is None:
-            self.base.setText("")
+            self.base.say("")
         elif entry is None:
-            self.base.setText("Base pose: rest pose")
+            self.base.say("Base pose: rest pose")
         else:
-            self.base.setText(f"Base pose: {entry.name}, frame {base.frame}")
-        self.base.setToolTip(f"{self.base.text()}\n{BASE_TIP}")
+            self.base.say(f"Base pose: {plain(entry.name)}, frame {base.frame}")
         if after.skeleton is None:
             self._tell_mesh()
         self.view.update()

@@ -11,6 +11,7 @@ from app.features.graph.graph_drops import Drop
 from app.project.importing import Importing
 from app.shell.actions import Command
 from app.shell.context import Contribution, HeaderItem, Panel, Shell
+from app.shell.places import Places
 from app.shell.verbs import Verbs
 from app.stage.problem_watch import ProblemWatch
 from app.widgets.choice_row import ChoiceRow
@@ -34,8 +35,20 @@ def contribute(shell: Shell) -> Contribution:
         canvas.row_actions = shell.actions.of_menu("action")
         canvas.files_dropped.connect(lambda paths, drop: importing.import_paths(list(paths), drop))
         canvas.refused.connect(stage.refused)
+        canvas.labelled.connect(go_on)
         problems.changed.connect(lambda: canvas.set_misfits(problems.misfits))
         return canvas
+
+    def go_on(clips: tuple[str, ...], made: tuple[str, ...]) -> None:
+        """After a label by key the next clip without one is selected and plays; what was made is in sight."""
+        following = shell.panel("library").next_unlabelled(clips[-1])
+        canvas().reveal(made)
+        places = shell.services[Places]
+        if places.belongs("properties", places.workspace) and not places.dock("properties").isHidden():
+            places.show("properties")
+        if following is not None:
+            session.selection.select_clips((following,))
+            session.transport.show_clip(following)
 
     def canvas() -> Canvas:
         found: Canvas = shell.panel("graph")

@@ -13,42 +13,64 @@ from metagraph.graph.model import Kind
 
 GRID = 8
 HEADER, ROW, PAD = 38, 24, 8
+ROWS = (84.0, 60.0, 42.0)  # pixels of rows with a picture: the highest with which all are in sight
 NARROW, LOW = 440.0, 320.0  # pixels below which there is no room all round the card
 TALL = 700.0  # pixels below which a room that is higher than wide is one column
 LINE = 560.0  # the least width of a line of the card and its nodes
 PICTURE = 96.0  # the least height of a card with a picture
+PICTURED = 480.0  # pixels of height from which rows may have pictures
 COLUMN = 170.0  # the least width of a column of rows, where a node has several
 
 
 @dataclass(frozen=True)
 class Frames:
-    """card, nodes: their rectangles. columns: of rows, in each node."""
+    """card, nodes: their rectangles. columns: of rows, in each node. row: pixels of each, the same in all."""
 
     card: QRectF
     nodes: Mapping[Kind, QRectF]
     columns: Mapping[Kind, int]
+    row: float = ROW
 
 
-def frames(width: float, top: float, bottom: float, counts: Mapping[Kind, int]) -> Frames:
-    """Share a room of a width between two heights. counts: of the actions of each node."""
+def frames(width: float, top: float, bottom: float, counts: Mapping[Kind, int], name: float = 0.0) -> Frames:
+    """Share a room of a width between two heights. counts: of the actions of each node. name: pixels that the
+    card's name needs.
+    """
     if width < (LINE if bottom - top < LOW else NARROW) or width < min(TALL, 0.9 * (bottom - top)):
         return _column(width, top, bottom, counts)
     if bottom - top < LOW:
         return _line(width, top, bottom, counts)
-    return _round(width, top, bottom, counts)
+    if bottom - top >= PICTURED:
+        for row in ROWS:
+            found = _round(width, top, bottom, counts, name, row)
+            if _all_seen(found, counts):
+                return found
+    return _round(width, top, bottom, counts, name, ROW)
 
 
-def _round(width: float, top: float, bottom: float, counts: Mapping[Kind, int]) -> Frames:
+def _all_seen(found: Frames, counts: Mapping[Kind, int]) -> bool:
+    """Return whether no node has to be scrolled."""
+    return all(
+        int((rect.height() - HEADER - PAD) // found.row) * found.columns[kind] >= counts[kind]
+        for kind, rect in found.nodes.items()
+    )
+
+
+def _round(
+    width: float, top: float, bottom: float, counts: Mapping[Kind, int], name: float, row: float
+) -> Frames:
     usable = bottom - top
     gap = min(max(width * 0.045, 16.0), 56.0)
-    side = min(max(300.0, width * 0.31), (width - 4 * GRID - max(width * 0.2, 112.0) - 2 * gap) / 2)
-    card_w = min(width - 4 * GRID - 2 * side - 2 * gap, max(240.0, usable * 0.42))
-    wide = min(max(width * 0.56, 300.0), max(520.0, width * 0.5))
-    columns: dict[Kind, int] = {"transition": max(1, min(4, int((wide - 2 * GRID) // 185)))}
+    middle = max(width * 0.2, 112.0, min(name, width * 0.3))
+    side = min(max(300.0, width * 0.36), (width - 4 * GRID - middle - 2 * gap) / 2)
+    card_w = min(width - 4 * GRID - 2 * side - 2 * gap, max(240.0, usable * 0.5))
+    wide = min(max(width * 0.56, 300.0), max(520.0, width * 0.6))
+    each = COLUMN + (row if row > ROW else 0)  # a picture takes its part of a row
+    columns: dict[Kind, int] = {"transition": max(1, min(4, int((wide - 2 * GRID) // (each + 15))))}
     lines = -(-counts["transition"] // columns["transition"])
-    low_h = min(HEADER + max(lines, 1) * ROW + PAD + 2, usable * 0.36)
+    low_h = min(HEADER + max(lines, 1) * row + PAD + 2, usable * 0.36)
     low_h = max(low_h, HEADER + 2.0 * ROW)
-    card_h = min(max(usable - low_h - 5 * GRID, 80.0), card_w * 1.3)
+    card_h = min(max(usable - low_h - 5 * GRID, 80.0), card_w * 1.5)
     slack = max(0.0, usable - low_h - card_h)
     card = QRectF((width - card_w) / 2, top + slack * 0.42, card_w, card_h)
     low_top = min(card.bottom() + max(3.0 * GRID, slack * 0.3), bottom - low_h - GRID)
@@ -57,14 +79,14 @@ def _round(width: float, top: float, bottom: float, counts: Mapping[Kind, int]) 
     nodes: dict[Kind, QRectF] = {}
     lefts: dict[Kind, float] = {"gesture": 2.0 * GRID, "fidget": width - side - 2.0 * GRID}
     for kind, left in lefts.items():
-        most = max(1, int((side - 2 * GRID) // COLUMN))
-        fits = max(1, int((beside - HEADER - PAD) // ROW))
+        most = max(1, int((side - 2 * GRID) // each))
+        fits = max(1, int((beside - HEADER - PAD) // row))
         columns[kind] = min(most, max(1, -(-counts[kind] // fits)))
         rows = -(-counts[kind] // columns[kind])
-        wanted = HEADER + max(rows, 2) * ROW + PAD + (ROW if rows else 0)
+        wanted = HEADER + max(rows, 2) * row + PAD + (ROW if rows else 0)
         nodes[kind] = QRectF(left, top, side, min(wanted, beside))
     nodes["transition"] = QRectF((width - wide) / 2, low_top, wide, low_h)
-    return Frames(card, nodes, columns)
+    return Frames(card, nodes, columns, row)
 
 
 def _column(width: float, top: float, bottom: float, counts: Mapping[Kind, int]) -> Frames:

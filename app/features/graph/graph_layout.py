@@ -10,7 +10,8 @@ from typing import Literal
 
 from PySide6.QtCore import QPointF, QRectF, QSizeF
 
-from app.features.graph.graph_frames import GRID, HEADER, LINE, NARROW, PAD, ROW, frames
+from app.features.graph.graph_frames import GRID, HEADER, LINE, NARROW, PAD, ROW, Frames, frames
+from app.look.names import node_names
 from metagraph.graph.model import Action, Kind, Layer, MetaGraph, Project
 
 LEAST_WIDTH, LEAST_HEIGHT = 240.0, 300.0  # pixels; a smaller canvas is laid out as if it was so large
@@ -19,9 +20,13 @@ BESIDE: tuple[Kind, ...] = ("gesture", "fidget", "transition")
 BAR = 44  # width of a likelihood bar
 ARROW = 26  # of a transition's arrow, which can be dragged
 TITLE = 124  # of a node's mark and title
+CHOOSER = 64.0  # at least, of the stance that transitions lead to
 FOOT, FOOT_NARROW = 40, 62  # the sentence at the bottom, in two lines or three
 CHIP_MIN, CHIP_MAX = 108, 230
+BOLD = 1.12  # how much wider the card's name is than the chip's
 BARE = 0  # in the place of a width: chips as wide as their names, which is all they show
+TIGHT = -1  # and: as many in a line as can be told apart
+TIGHTEST = 84.0
 
 Area = Literal["chip", "add", "card", "loop", "node", "row", "bar", "head", "other", "start", "nothing"]
 
@@ -41,6 +46,8 @@ class GraphRow:
     rect: QRectF
     bar: QRectF
     head: QRectF = field(default_factory=QRectF)  # of a transition's arrow
+    words: str = ""  # what it is called in its node
+    picture: QRectF = field(default_factory=QRectF)  # empty where rows have none
 
 
 @dataclass(frozen=True)
@@ -56,6 +63,7 @@ class Node:
     scroll: int
     most: int
     other: QRectF = field(default_factory=QRectF)  # the chooser of a transition's end
+    columns: int = 1
 
 
 @dataclass(frozen=True)
@@ -150,7 +158,7 @@ def arrange(
     graph = project.graphs[layer]
 
     # Many stances in a low window: narrower chips without words leave room for the nodes.
-    for widest in (CHIP_MAX, 150, BARE):
+    for widest in (CHIP_MAX, 150, BARE, TIGHT):
         chips = _chips(project, graph, width, widths, widest)
         top = chips[-1].rect.bottom() + 2 * GRID
         if top < height - FOOT - 320:
@@ -158,10 +166,14 @@ def arrange(
     foot = FOOT if width >= NARROW else FOOT_NARROW
     bottom = max(height - foot, top + 200.0)
     actions = {kind: graph.of(stance, kind) if stance else () for kind in BESIDE}
-    shared = frames(width, top, bottom, {kind: len(found) for kind, found in actions.items()})
+    found = graph.stances.get(stance or "")
+    name = widths.get(found.name, 7.2 * len(found.name)) * BOLD + 44 if found is not None else 0.0
+    shared = frames(width, top, bottom, {kind: len(found) for kind, found in actions.items()}, name)
     card = shared.card
     nodes = {
-        kind: _node(kind, shared.nodes[kind], actions[kind], scroll.get(kind, 0), shared.columns[kind])
+        kind: _node(
+            kind, shared, actions[kind], node_names(project, layer, stance or "", kind), scroll.get(kind, 0)
+        )
         for kind in BESIDE
     }
     loops = QRectF(card.left(), card.top() + card.height() * 0.58, card.width(), card.height() * 0.42)
@@ -190,23 +202,31 @@ def _chips(
             + widths.get(str(count), 16.0)
             + (widths.get(words, 7 * len(words)) + 8 if words else 0)
         )
-        if widest == BARE:
-            w = min(widths.get(s.name, 7.2 * len(s.name)) + 26, width - 5 * GRID)
+        if widest == TIGHT:
+            many = max(2, int((width - 4 * GRID) // (TIGHTEST + GRID)))
+            w = (width - 4 * GRID - (many - 1) * GRID) / many
+        elif widest == BARE:
+            w = min(widths.get(s.name, 7.2 * len(s.name)) + 26, width - 4 * GRID)
         else:
             w = min(max(text + 80, CHIP_MIN), widest + (80 if words else 0))
         if x + w > width - 2 * GRID and x > 2 * GRID:
             x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID
-        chips.append(Chip(ident, QRectF(x, y, w, CHIP_HEIGHT), s.name, count, words, widest == BARE))
+        chips.append(Chip(ident, QRectF(x, y, w, CHIP_HEIGHT), s.name, count, words, widest <= BARE))
         x += w + GRID
     if x + CHIP_HEIGHT > width - GRID:
         x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID
     return [*chips, Chip(None, QRectF(x, y, CHIP_HEIGHT, CHIP_HEIGHT), "+")]
 
 
-def _node(kind: Kind, rect: QRectF, actions: tuple[Action, ...], scroll: int, columns: int) -> Node:
+def _node(
+    kind: Kind, shared: Frames, actions: tuple[Action, ...], names: Mapping[str, str], scroll: int
+) -> Node:
+    rect, columns, high = shared.nodes[kind], shared.columns[kind], shared.row
     header = QRectF(rect.left(), rect.top(), rect.width(), HEADER)
-    body = QRectF(rect.left(), rect.top() + HEADER, rect.width(), rect.height() - HEADER - PAD)
-    lines = max(1, int(body.height() // ROW))
+    below = kind == "transition" and rect.width() < TITLE + CHOOSER + 42  # the chooser has a line of its own
+    top = HEADER + (ROW + PAD if below else 0)
+    body = QRectF(rect.left(), rect.top() + top, rect.width(), rect.height() - top - PAD)
+    lines = max(1, int(body.height() // high))
     total = -(-len(actions) // columns)
     most = max(0, total - lines)
     first = min(max(0, scroll), most)
@@ -214,16 +234,26 @@ def _node(kind: Kind, rect: QRectF, actions: tuple[Action, ...], scroll: int, co
     rows: list[GraphRow] = []
     for place in range(first * columns, min(len(actions), (first + lines) * columns)):
         line, at = divmod(place - first * columns, columns)
-        area = QRectF(rect.left() + GRID + at * (column + GRID), body.top() + line * ROW, column, ROW)
+        area = QRectF(
+            rect.left() + GRID + at * (column + GRID),
+            body.top() + line * high,
+            column,
+            min(high, body.height()),
+        )
         long = BAR if column > 150 else BAR / 2
         bar = QRectF(area.right() - long - 6, area.center().y() - 1.5, long, 3)
-        head = QRectF(area.left(), area.top(), ARROW, ROW) if kind == "transition" else QRectF()
-        rows.append(GraphRow(actions[place], area, bar, head))
+        head = QRectF(area.left(), area.top(), ARROW, area.height()) if kind == "transition" else QRectF()
+        left = area.left() + (ARROW if kind == "transition" else 6)
+        picture = QRectF(left, area.top() + 2, high - 4, high - 4) if high > ROW else QRectF()
+        action = actions[place]
+        rows.append(GraphRow(action, area, bar, head, names[action.id], picture))
     other = QRectF()
-    if kind == "transition":  # right of the title, as far as the count
+    if below:
+        other = QRectF(rect.left() + GRID, rect.top() + HEADER - 2, rect.width() - 2 * GRID, ROW)
+    elif kind == "transition":  # right of the title, as far as the count
         x = max(rect.right() - 168, rect.left() + TITLE)
         other = QRectF(x, rect.top() + 7, max(0.0, rect.right() - 42 - x), HEADER - 14)
-    return Node(kind, rect, header, body, tuple(rows), len(actions), first, most, other)
+    return Node(kind, rect, header, body, tuple(rows), len(actions), first, most, other, columns)
 
 
 def likelihood_at(row: GraphRow, x: float) -> float:

@@ -25,6 +25,7 @@ def contribute(shell: Shell) -> Contribution:
         problems.changed.connect(lambda: panel.set_misfits(problems.misfits))
         panel.set_misfits(problems.misfits)
         panel.plot.set_compatibility(compatibility)
+        panel.time_wanted.connect(lambda: shell.actions["workspace_3"].trigger())
         return panel
 
     def rename() -> None:

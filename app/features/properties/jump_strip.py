@@ -45,12 +45,14 @@ class JumpStrip(pg.PlotWidget):
         self.bad = pg.PlotDataItem(connect="finite", antialias=True)
         self.good = pg.PlotDataItem(connect="finite", antialias=True)
         self.limit = pg.InfiniteLine(pos=1.0, angle=0, movable=False)
-        self.words = pg.TextItem("shows as a jump", anchor=(1.0, 1.0))
+        self.words = pg.TextItem("shows as a jump", anchor=(0.5, 1.0))
         self.marks = pg.ScatterPlotItem(size=12)
         self.edges = [pg.InfiniteLine(movable=False) for _ in range(2)]
         for item in (self.bars, self.limit, *self.edges, self.bad, self.good, self.marks):
             self.addItem(item)
         self.addItem(self.words, ignoreBounds=True)
+        self.plotItem.vb.sigResized.connect(lambda _: self._put_words())
+        self.plotItem.vb.sigXRangeChanged.connect(lambda *_: self._put_words())
 
     def restyle(self, t: Theme, color: QColor) -> None:
         self.setBackground(t.panel)
@@ -96,7 +98,17 @@ class JumpStrip(pg.PlotWidget):
         for edge, value in zip(self.edges, project.span(action), strict=True):
             edge.setVisible(True)
             edge.setValue(value)
-        self.words.setPos(float(self.viewRange()[0][1]), 1.0)
+        shows = seen.times[above]  # its words stand beneath what it is about, clear of the ends
+        self.words.setVisible(len(shows) > 0)
+        self._shows = (float(shows[0] + shows[-1]) / 2) if len(shows) else 0.0
+        self._put_words()
+
+    _shows = 0.0  # seconds, the middle of what its words are about
+
+    def _put_words(self) -> None:
+        low, high = self.viewRange()[0]
+        half = (self.words.boundingRect().width() / 2 + 2) * self.plotItem.vb.viewPixelSize()[0]
+        self.words.setPos(max(low + half, min(self._shows, high - half)), 1.0)
 
     def tip(self, at: QPointF) -> str:
         """Say what a point of the strip means."""

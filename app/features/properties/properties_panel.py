@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from html import escape
 from typing import Any
 
-from PySide6.QtCore import QEvent, QObject, Qt
+from PySide6.QtCore import QEvent, QObject, Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
     QScrollArea,
     QSizePolicy,
     QStackedWidget,
+    QToolButton,
     QVBoxLayout,
     QWidget,
 )
@@ -37,9 +38,15 @@ from metagraph.graph.model import LIMBS, PARTS, REACH, Action, Project
 from metagraph.graph.words import Part
 from metagraph.playback.timing import retimed
 
+LOW = 330  # pixels of height below which the curves of a timing leave no room for anything else
+
 
 class PropertiesPanel(QScrollArea):
-    """Every control writes through one edit; what is shown is read back from the project."""
+    """Every control writes through one edit; what is shown is read back from the project. time_wanted: its
+    timing is to be seen whole.
+    """
+
+    time_wanted = Signal()
 
     def __init__(
         self, document: Document, session: Session, performance: Performance, parent: QWidget | None = None
@@ -95,6 +102,10 @@ class PropertiesPanel(QScrollArea):
         self.kind = QLabel(page)
         head.addWidget(self.name, 1)
         head.addWidget(self.kind)
+        self.timing = make_widget(QToolButton, page, text="Timing", toolTip="Show its timing whole")
+        self.timing.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.timing.clicked.connect(self.time_wanted)
+        head.addWidget(self.timing)
         upper.addLayout(head)
         self.plot = TimingPlot(self.document, self.session, page)
         self.plot.changed.connect(lambda fields: self._set("Change timing", merge="timing", timing=fields))
@@ -159,8 +170,19 @@ class PropertiesPanel(QScrollArea):
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         self.halves.fit(event.size())
+        self._fit_height(event.size().height())
         super().resizeEvent(event)
         self._bound()
+
+    def _fit_height(self, height: int) -> None:
+        """Where it is low and not wide, the curves give way: what can be typed is in sight."""
+        low = height < LOW and not self.halves.beside
+        if low == self.low:
+            return
+        self.low = low
+        self.show_selection()
+
+    low = False
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if watched is self.pages and event.type() == QEvent.Type.LayoutRequest:
@@ -282,6 +304,8 @@ class PropertiesPanel(QScrollArea):
         self.kind.setText(f"{title} · {layer.capitalize() if layer is not Mixed else 'layers'}")
         self.kind.setStyleSheet(f"color: {t.kinds[kind]}" if kind is not Mixed else "")
         self.plot.setVisible(one)
+        self.plot.set_curves(not self.low)
+        self.timing.setVisible(one and self.low)
         if one:
             self.plot.show_action(actions[0])
         spans = [project.span(a) for a in actions]

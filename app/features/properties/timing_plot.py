@@ -40,6 +40,7 @@ WORDS = {
 SNAP = 7  # pixels within which a handle comes to rest at a moment that does not jump
 
 
+LABEL, FIRST = 17.0, 12.0  # pixels of a row of words over the curves, and to the middle of the first
 ANY = 16_777_215  # Qt's largest height of a widget
 HEIGHT, LEAST = 132, 84  # pixels of the curves in a form; and where they have the room to themselves
 
@@ -71,6 +72,7 @@ class TimingPlot(QWidget):
         self.plot.addItem(self.hold)
         self.bands = [pg.TextItem(word, anchor=(0.5, 0.0)) for word in BANDS]
         for band in self.bands:
+            band.span = 0.0, 0.0
             self.plot.addItem(band, ignoreBounds=True)
         self.lines: dict[str, pg.InfiniteLine] = {}
         for name in HANDLES:
@@ -83,6 +85,7 @@ class TimingPlot(QWidget):
         self.playhead = pg.InfiniteLine(movable=False)
         self.plot.addItem(self.playhead)
         self.plot.scene().sigMouseClicked.connect(self._clicked)
+        self.plot.plotItem.vb.sigResized.connect(lambda _: self._line_up_soon())
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(2)
@@ -105,6 +108,11 @@ class TimingPlot(QWidget):
         """Let the curves have all the height there is, or as much as a form has for them."""
         self.plot.setMinimumHeight(LEAST if on else HEIGHT)
         self.plot.setMaximumHeight(ANY if on else HEIGHT)
+
+    def set_curves(self, on: bool) -> None:
+        """Show the curves over what is said of them, or that alone."""
+        self.plot.setVisible(on)
+        self.strip.setVisible(on)
 
     def set_compatibility(self, compatibility: Compatibility) -> None:
         """Show what it knows of the action's jumps."""
@@ -221,10 +229,8 @@ class TimingPlot(QWidget):
                 line.setPen(pg.mkPen(t.dim if own is None else t.text, width=1.2, style=Qt.PenStyle.DotLine))
             else:
                 line.label.setColor(t.dim)
-                line.label.setPosition(
-                    {"start": 0.78, "end": 0.78, "in": 0.62, "out": 0.62, "exit": 0.46, "stroke": 0.3}[name]
-                )
         self._bands(t, at)
+        self._line_up()
         fill = QColor(color)
         fill.setAlpha(46)
         for blend, (a, b) in zip(self.blends, ((at["start"], at["in"]), (at["out"], at["end"])), strict=True):
@@ -240,15 +246,11 @@ class TimingPlot(QWidget):
         whole = at["ready"] is not None
         self.hold.setVisible(whole)
         edges = [at[x] for x in ("start", "ready", "hold", "relax", "end")]
-        (low, high), (_, top) = self.plot.viewRange()
         for band, a, b in zip(self.bands, edges, edges[1:], strict=False):
-            wide = (
-                a is not None and b is not None and (b - a) * self.plot.width() / max(high - low, 1e-6) > 46
-            )
-            band.setVisible(whole and wide)
-            if whole and wide and a is not None and b is not None:
+            band.setVisible(whole)
+            if whole and a is not None and b is not None:
                 band.setColor(t.dim)
-                band.setPos((a + b) / 2, top)
+                band.span = a, b
         if whole:
             fill = QColor(t.text)
             fill.setAlpha(22)
@@ -256,6 +258,47 @@ class TimingPlot(QWidget):
             self.hold.setRegion((edges[2], edges[3]))
             for line in self.hold.lines:
                 line.setPen(pg.mkPen(None))
+
+    def _line_up_soon(self) -> None:
+        if self.action is not None and self.action.clip in self.document.project.clips:
+            self._bands(theme(self.session.look.name), times_of(self.document.project, self.action))
+            self._line_up()
+
+    def _line_up(self) -> None:
+        """Give words rows in which none lies on another: the phases on top, where each has room in its span,
+        then the handles. What finds no row is not written; the pointer's tooltip names it.
+        """
+        box = self.plot.plotItem.vb
+        (low, high), (_, top) = self.plot.viewRange()
+        wide, tall = max(1.0, box.width()), max(1.0, box.height())
+        each, measure = wide / max(high - low, 1e-6), self.fontMetrics()
+        taken: dict[int, list[tuple[float, float]]] = {}
+        for band, word in zip(self.bands, BANDS, strict=True):
+            if not band.isVisible():
+                continue
+            a, b = band.span
+            middle, half = ((a + b) / 2 - low) * each, measure.horizontalAdvance(word) / 2 + 3
+            seen = 2 * half <= (b - a) * each
+            band.setVisible(seen)
+            if seen:
+                band.setPos((a + b) / 2, top)
+                taken.setdefault(0, []).append((middle - half, middle + half))
+        last = int((tall - FIRST - LABEL / 2) // LABEL)
+        for name, line in self.lines.items():
+            if name in PHASES:
+                continue
+            x, length = (line.value() - low) * each, measure.horizontalAdvance(WORDS[name]) + 10
+            left, right = (x, x + length) if x < wide / 2 else (x - length, x)
+            free = (
+                row
+                for row in range(min(1, last), last + 1)
+                if all(right <= a or left >= b for a, b in taken.get(row, ()))
+            )
+            row = next(free, None) if line.isVisible() else None
+            line.label.setVisible(row is not None)
+            if row is not None:
+                taken.setdefault(row, []).append((left, right))
+                line.label.setPosition(1 - (FIRST + row * LABEL) / tall)
 
     def _dragged(self, name: str, seconds: float) -> None:
         if self._setting or self.action is None:
