@@ -38,12 +38,12 @@ from metagraph.graph.model import LIMBS, PARTS, REACH, Action, Project
 from metagraph.graph.words import Part
 from metagraph.playback.timing import retimed
 
-LOW = 330  # pixels of height below which the curves of a timing leave no room for anything else
+LOW = 240  # pixels of height below which the curves of a timing leave no room for anything else
 
 
 class PropertiesPanel(QScrollArea):
     """Every control writes through one edit; what is shown is read back from the project. time_wanted: its
-    timing is to be seen whole.
+    timing is to be seen whole. timing_elsewhere: whether it is, beside this panel.
     """
 
     time_wanted = Signal()
@@ -53,6 +53,7 @@ class PropertiesPanel(QScrollArea):
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.performance = document, session, performance
+        self.timing_elsewhere: Callable[[], bool] = lambda: False
         self.misfits: dict[str, str] = {}
         self.setWidgetResizable(True)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
@@ -176,7 +177,7 @@ class PropertiesPanel(QScrollArea):
 
     def _fit_height(self, height: int) -> None:
         """Where it is low and not wide, the curves give way: what can be typed is in sight."""
-        low = height < LOW and not self.halves.beside
+        low = self.timing_elsewhere() or (height < LOW and not self.halves.beside)
         if low == self.low:
             return
         self.low = low
@@ -305,7 +306,7 @@ class PropertiesPanel(QScrollArea):
         self.kind.setStyleSheet(f"color: {t.kinds[kind]}" if kind is not Mixed else "")
         self.plot.setVisible(one)
         self.plot.set_curves(not self.low)
-        self.timing.setVisible(one and self.low)
+        self.timing.setVisible(one and self.low and not self.timing_elsewhere())
         if one:
             self.plot.show_action(actions[0])
         spans = [project.span(a) for a in actions]
