@@ -1,7 +1,7 @@
 """Take the pictures of the documentation from the real window: `python docs/pictures.py` (on a screen, or
 under `xvfb-run`).
 
-Writes docs/workspace-*.png, practice.png, empty.png, light.png, requests.png, models.png, label.png,
+Writes docs/workspace-*.png, timing.png, practice.png, empty.png, light.png, requests.png, models.png, label.png,
 export.png, web.png, conversation.png, motion-graph.png and performance.png, from our own sample clips only;
 with names behind it, only those. The web page needs Node, Chromium and what tests/package.json names.
 """
@@ -107,6 +107,29 @@ def workspaces() -> None:
             session.transport.seek((cue.start + cue.end) / 2)
         wait(3000)
         shoot(out.window, f"workspace-{tab.id}.png")
+    close(out)
+
+
+def timing() -> None:
+    """The timing editor, with a hold, a line and onion skin."""
+    from app.project.files import SAMPLE
+    from metagraph.graph.retiming import set_hold
+
+    out = window()
+    out.window.resize(1680, 1050)
+    out.files.open(SAMPLE, template=True)
+    wait(20000, lambda: bool(out.document.project.clips))
+    wait(5000)
+    found = next(a for a in out.document.project.actions() if a.name == "shrug_bt_01")
+    out.document.edit("Hold", lambda p: set_hold(p, found.clip, 0.95, 0.4))
+    out.session.jump(action=found.id)
+    out.workspaces.choose("time")
+    subject = out.shell.panel("timing").subject
+    subject.show(onion=True, dope=True, heard=next(iter(out.document.project.lines)))
+    out.session.transport.scrub(found.clip, 0.62)
+    wait(20000, lambda: bool(subject.film(found.id)) and not out.jobs.running)
+    wait(3000)
+    shoot(out.window, "timing.png")
     close(out)
 
 
@@ -344,6 +367,7 @@ PICTURES: dict[str, Callable[[], None]] = {
     "empty": nothing,
     "light": lambda: finished("light.png", "light", True, "beat_large_bt_01"),
     "workspaces": workspaces,
+    "timing": timing,
     "practice": half_labelled,
     "requests": requests,
     "models": models,

@@ -36,22 +36,24 @@ def playhead(
     facts: Mapping[str, Facts],
     seconds: float,
 ) -> None:
-    """Paint the playhead, with the speed at it."""
+    """Paint the playhead; in the ruler, over whose words it is, the moment and the speed of the first."""
     x = axis.x(seconds)
     if not tracks or not axis.left - 1 <= x <= axis.left + axis.width + 1:
         return
     color = QColor(look.t.text)
     painter.setPen(QPen(color, 1.2))
-    upright(painter, tracks, x, 6)
+    upright(painter, tracks, x, RULER - 2)
+    painter.setFont(look.small)
+    shown = facts[tracks[0].ident]
+    words = f"{seconds:.2f} s"
+    if len(shown.speeds) and seconds <= shown.entry.duration:
+        words += f"  {shown.speed_at(seconds):.1f} m/s"
+    box = chip(painter, look, axis, words, x)
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(color)
-    painter.drawPolygon([QPointF(x - 5, 3), QPointF(x + 5, 3), QPointF(x, 10)])
-    painter.setFont(look.small)
-    for rows in tracks:
-        shown = facts[rows.ident]
-        if len(shown.speeds) and seconds <= shown.entry.duration:
-            words = f"{shown.speed_at(seconds):.1f} m/s at {seconds:.2f} s"
-            chip(painter, look, axis, words, x + 6, rows.rows["speed"].top() + 2)
+    painter.drawPolygon(
+        [QPointF(x - 4, box.bottom()), QPointF(x + 4, box.bottom()), QPointF(x, box.bottom() + 5)]
+    )
 
 
 def upright(painter: QPainter, tracks: Sequence[TrackRows], x: float, top: float) -> None:
@@ -63,16 +65,14 @@ def upright(painter: QPainter, tracks: Sequence[TrackRows], x: float, top: float
         top = rows.bottom
 
 
-def chip(painter: QPainter, look: Look, axis: Axis, words: str, left: float, top: float) -> QRectF:
-    """Paint words on a card, within the rows: beside the other side of where it stands if need be."""
-    wide = look.wide(words) + 10
-    if left + wide > axis.left + axis.width:
-        left -= wide + 12
-    box = QRectF(max(left, axis.left), top, wide, 16)
-    card = QColor(look.t.hover)
-    card.setAlpha(225)
+def chip(painter: QPainter, look: Look, axis: Axis, words: str, middle: float) -> QRectF:
+    """Paint words in the ruler about a point, over what is written there; return where."""
+    wide = look.wide(words) + 12
+    left = min(max(axis.left, middle - wide / 2), axis.left + axis.width - wide)
+    painter.fillRect(QRectF(left - 14, 0, wide + 28, RULER - 1), QColor(look.t.panel))
+    box = QRectF(left, 0, wide, RULER - 6)
     painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(card)
+    painter.setBrush(QColor(look.t.hover))
     painter.drawRoundedRect(box, 4, 4)
     painter.setPen(QColor(look.t.text))
     painter.drawText(box, Qt.AlignmentFlag.AlignCenter, words)

@@ -63,7 +63,7 @@ def names(painter: QPainter, look: Look, rows: TrackRows, facts: Facts) -> None:
     t, line = look.t, QFontMetricsF(look.small).height()
     if rows.title.height() > 0:
         painter.setPen(t.kind(facts.action.kind))
-        words = f"{KIND_MARKS[facts.action.kind]} {facts.action.name}"
+        words = f"{KIND_MARKS[facts.action.kind]} {facts.name}"
         painter.drawText(
             rows.title.adjusted(10, 2, -10, 0), MIDDLE, look.elided(words, rows.title.width() - 20, True)
         )

@@ -15,12 +15,12 @@ GAP = 4.0
 # Pixels of each row: the least, what it would like, and its share of what is left over. Rows that are not
 # wanted are not there; where it is low, pictures give way first.
 SIZES: dict[str, tuple[float, float, float]] = {
-    "poses": (40.0, 54.0, 0.9),
-    "line": (22.0, 30.0, 0.2),
+    "poses": (28.0, 54.0, 0.9),
+    "line": (20.0, 30.0, 0.2),
     "phases": (20.0, 22.0, 0.0),
-    "speed": (44.0, 90.0, 2.0),
+    "speed": (40.0, 90.0, 2.0),
     "numbers": (37.0, 37.0, 0.0),
-    "stance": (22.0, 30.0, 0.4),
+    "stance": (20.0, 30.0, 0.4),
 }
 MOST = {"poses": 150.0, "line": 60.0, "stance": 64.0}
 JOINT = 13.0  # pixels of a joint in the dope sheet

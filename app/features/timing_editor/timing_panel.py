@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 from app.features.timing_editor.subject import Subject
 from app.features.timing_editor.view import TimingView
 from app.look import icons
+from app.look.names import told_names
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import Session
@@ -132,13 +133,13 @@ class TimingPanel(QWidget):
             for button in (self.onion, self.compare, self.loop):
                 button.setChecked(False)
             return
-        name = first.action.name if len(shown) == 1 else f"{len(shown)} actions"
+        name = first.name if len(shown) == 1 else f"{len(shown)} actions"
         cut = name if len(name) <= LONGEST else f"{name[: LONGEST // 2]}…{name[-LONGEST // 2 + 1 :]}"
         self.name.setText(f"{KIND_MARKS[first.action.kind]} {cut}")
-        self.name.setToolTip(name)
+        self.name.setToolTip(told_names(name, first.action.name) if len(shown) == 1 else name)
         self.name.setStyleSheet(f"color: {t.kinds[first.action.kind]}")
         worse = next((f for f in shown.values() if not f.fine), first)
-        words = worse.verdict if len(shown) == 1 or worse.fine else f"{worse.action.name}: {worse.verdict}"
+        words = worse.verdict if len(shown) == 1 or worse.fine else f"{worse.name}: {worse.verdict}"
         self.verdict.say(words, strong=not worse.fine)
         self.verdict.setStyleSheet("" if worse.fine else f"color: {t.warning}")
         self.use.setVisible(first.seen is not None)

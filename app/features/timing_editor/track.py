@@ -10,6 +10,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from app.look.names import plain
 from app.widgets.memo import Once
 from metagraph.graph import end_gaps
 from metagraph.graph.clip_source import course_of
@@ -35,12 +36,14 @@ class Stay:
 
 @dataclass(frozen=True, eq=False)
 class Facts:
-    """An action as it is now. speeds `[F]`: of what it moves, which snapping goes by. curves: those that are
-    drawn. seen: what is known of its jumps. verdict: in words; fine: whether nothing shows. stays: where the
-    clip is held. kept: where a hand is kept on the body: first and last second, in words.
+    """An action as it is now. name: what it is called where its stance is clear. speeds `[F]`: of what it
+    moves, which snapping goes by. curves: those that are drawn. seen: what is known of its jumps. verdict: in
+    words; fine: whether nothing shows. stays: where the clip is held. kept: where a hand is kept on the body:
+    first and last second, in words.
     """
 
     action: Action
+    name: str
     entry: ClipEntry
     span: tuple[float, float]
     handles: tuple[Handle, ...]
@@ -114,8 +117,11 @@ class Track:
         )
         seen = Seen(action, known) if known is not None else None
         words, fine = _verdict(project, action, seen)
+        stance = project.stance(action.stance)
+        limb = action.limb if action.layer == "arms" else None
         return Facts(
             action,
+            plain(action.name, stance.name if stance is not None else "", limb),
             entry,
             project.span(action),
             handles_of(project, action),

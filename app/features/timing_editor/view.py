@@ -130,10 +130,10 @@ class TimingView(QWidget):
         painter.drawPixmap(0, 0, picture)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         look, tracks, facts = self._look(), self.tracks(), self.subject.facts()
-        overlay.part(painter, look, self.axis, self.transport.part, facts)
         seconds = self.subject.playhead()
         if seconds is not None:
             overlay.playhead(painter, look, self.axis, tracks, facts, seconds)
+        overlay.part(painter, look, self.axis, self.transport.part, facts)
         if self.held:
             overlay.held(painter, look, self.axis, self.width(), tracks, self.snaps, self.snapped, self.held)
         painter.end()
