@@ -1,9 +1,10 @@
 """Take the pictures of the documentation from the real window: `python docs/pictures.py` (on a screen, or
 under `xvfb-run`).
 
-Writes docs/workspace-*.png, timing.png, practice.png, empty.png, light.png, requests.png, models.png, label.png,
-export.png, web.png, conversation.png, motion-graph.png and performance.png, from our own sample clips only;
-with names behind it, only those. The web page needs Node, Chromium and what tests/package.json names.
+Writes docs/workspace-*.png, timing.png, practice.png, empty.png, light.png, requests.png, models.png,
+label.png, export.png, web.png, conversation.png, motion-graph.png and performance.png, from our own sample
+clips only; with names behind it, only those. The web page needs Node, Chromium and what tests/package.json
+names.
 """
 
 from __future__ import annotations

@@ -74,3 +74,22 @@ def test_another_contact_of_the_same_hand_takes_the_place_of_the_one_it_meets(to
     assert [c.first for c in kept.clips[clip].retime.contacts] == [0.5]
     both = keep_hand(kept, clip, "right", 0.5, 0.9)
     assert len(both.clips[clip].retime.contacts) == 2
+
+
+@pytest.mark.parametrize("name", ["Idle01_YouLf01", "Idle01_NegativeBt01", "Idle02_MeRt01"])
+def test_hands_of_a_figure_nobody_here_made_stay_too(shared_data, name):
+    from metagraph.formats.clips import read_clips
+    from metagraph.graph.model import Project
+
+    path = shared_data / "smartbody-brad" / f"ChrBrad@{name}.bvh"
+    project = edits.add_clips(Project(), [(path.as_posix(), 0, "", read_clips(path)[0])])
+    (clip,) = project.clips
+    length = project.clips[clip].duration
+    for side in ("left", "right"):
+        after = keep_hand(project, clip, side, 0.4 * length, 0.6 * length).clips[clip]
+        contact, motion = after.retime.contacts[0], after.motion
+        hand, to = (motion.skeleton.index(n) for n in (contact.hand, contact.to))
+        inside = slice(int(0.4 * length * motion.fps) + 1, int(0.6 * length * motion.fps))
+        slid = np.ptp(beside(motion, hand, to)[inside], axis=0).max()
+        was = np.ptp(beside(after.source, hand, to)[inside], axis=0).max()
+        assert slid < max(0.005, 0.1 * was), f"{side}: {slid:.3f} of {was:.3f} m"

@@ -153,7 +153,7 @@ def stays(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Fac
         painter.fillRect(box, QBrush(hatched, Qt.BrushStyle.BDiagPattern))
         painter.setPen(QPen(QColor(look.t.text), 1.2))
         painter.drawLine(box.topRight(), box.bottomRight())
-        words = f"held {stay.hold.seconds:.2f} s"
+        words = f"held +{stay.hold.seconds:.2f} s"
         if look.wide(words) + 8 <= box.width():
             label = QRectF(box.center().x() - look.wide(words) / 2 - 4, box.center().y() - 8, 0, 16)
             label.setWidth(look.wide(words) + 8)

@@ -329,3 +329,11 @@ def test_the_plot_in_the_properties_follows_a_clip_that_is_slowed(editor):
     editor.panel.speed.setValue(0.5)
     xs, _ = editor.properties.plot.curve.getData()
     assert xs[-1] == pytest.approx(4.8, abs=0.05)
+
+
+def test_a_drag_of_the_real_pointer_moves_the_end(editor):
+    start, end = (editor.view, at(editor, 1.5)), (editor.view, at(editor, 1.9))
+    editor.drag(start, end, lambda: (timing(editor).end or 9) > 1.8)
+    editor.pause(250)
+    assert timing(editor).end == pytest.approx(1.9, abs=0.06)
+    assert editor.document.undo_stack.undoText() == "Change timing" and editor.view.held == ""
