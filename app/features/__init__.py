@@ -13,6 +13,7 @@ FEATURES = (
     "twins",
     "repairs",
     "properties",
+    "notes",
     "manual",
     "labelling",
     "motion_graph",
