@@ -32,5 +32,6 @@ FEATURES = (
     "export",
     "render",
     "study",
+    "welcome",
     "help",
 )

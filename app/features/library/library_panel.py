@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from importlib.util import find_spec
 
 from PySide6.QtCore import (
     QAbstractListModel,
@@ -63,6 +62,7 @@ from app.look.names import fitted, fitting, plain
 from app.look.plural import many, short
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
+from app.project.load import readable
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
 from app.widgets.flow import Flow
@@ -271,13 +271,6 @@ class CardDelegate(QStyledItemDelegate):
                 "base",
             )
         painter.restore()
-
-
-def formats() -> str:
-    """Return the formats of clips that can be read here."""
-    if find_spec("ufbx") is None:
-        return "BVH, GLB, glTF, VRM animation\n(FBX needs the extra 'fbx')"
-    return "BVH, FBX, GLB, glTF, VRM animation"
 
 
 def two_lines(name: str, metrics: QFontMetrics, width: int, beside: Iterable[str] = ()) -> tuple[str, ...]:
@@ -502,7 +495,7 @@ class LibraryPanel(QWidget):
         page = QWidget(self)
         box = QVBoxLayout(page)
         box.addStretch(2)
-        self.empty = QLabel(EMPTY.format(formats()), page)
+        self.empty = QLabel(EMPTY.format(readable()), page)
         self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.empty.setProperty("dim", True)
         self.empty.setWordWrap(True)
@@ -562,7 +555,7 @@ class LibraryPanel(QWidget):
         if hidden:
             self.empty.setText("No clip matches.\nClear the search or the filters.")
         else:
-            self.empty.setText(EMPTY.format(formats()))
+            self.empty.setText(EMPTY.format(readable()))
         self.stack.setCurrentIndex(1 if nothing or hidden else 0)
 
     def next_unlabelled(self, clip: str) -> str | None:
