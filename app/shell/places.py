@@ -281,7 +281,7 @@ class Places:
 
     def arrange(self, workspace: Workspace, kept: tuple[QByteArray, str] | None = None) -> None:
         """Put every dock where a workspace has it, or where it was when `kept` was taken by `state`."""
-        self._before = None
+        self._before, self._shares = None, ""
         self._show_bars()
         with self._quietly():
             if kept is None or not self.window.restoreState(kept[0], ARRANGED):

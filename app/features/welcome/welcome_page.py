@@ -8,7 +8,16 @@ from functools import partial
 
 from PySide6.QtCore import QEvent, QObject, QPoint, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import QAbstractButton, QGridLayout, QLabel, QMenu, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QMenu,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
 
 from app.features.welcome.welcome_pictures import PICTURES
 from app.look.theme import theme
@@ -112,16 +121,17 @@ class WelcomePage(QWidget):
         grid = QGridLayout()
         grid.setSpacing(12)
         for n, card in enumerate(self.cards):
-            side = Qt.AlignmentFlag(0)
-            grid.addWidget(card, n // 2, n % 2, side)
-        grid.setColumnStretch(0, 1)
-        grid.setColumnStretch(1, 1)
+            grid.addWidget(card, n // 2, n % 2)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(20, 12, 20, 10)
         layout.addStretch(1)
         layout.addWidget(title)
         layout.addSpacing(8)
-        layout.addLayout(grid, 8)
+        middle = QHBoxLayout()
+        middle.addStretch(1)
+        middle.addLayout(grid, 100)
+        middle.addStretch(1)
+        layout.addLayout(middle, 8)
         layout.addSpacing(4)
         layout.addWidget(self.skip, 0, Qt.AlignmentFlag.AlignHCenter)
         layout.addStretch(1)
