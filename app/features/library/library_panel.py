@@ -279,16 +279,24 @@ def two_lines(name: str, metrics: QFontMetrics, width: int, beside: Iterable[str
     """
     if metrics.horizontalAdvance(name) <= width:
         return (name,)
-    lines = _broken(name, metrics, width)
-    if metrics.horizontalAdvance(lines[1]) > width:
-        lines = _broken(fitting(name, 2 * width - 16, metrics.horizontalAdvance, beside), metrics, width)
-    return lines[0], fitting(lines[1], width, metrics.horizontalAdvance)
+    measure = metrics.horizontalAdvance
+    first, second = _broken(name, metrics, width)
+    if measure(second) > width:
+        rivals = [o[len(name) - len(second) :] for o in beside if o.startswith(first)]
+        cut = fitting(second, width, measure, rivals, sure=True)
+        if cut:
+            return first, cut
+        first, second = _broken(fitting(name, 2 * width - 16, measure, beside), metrics, width, hard=True)
+    return first, fitting(second, width, measure)
 
 
-def _broken(name: str, metrics: QFontMetrics, width: int) -> tuple[str, str]:
+def _broken(name: str, metrics: QFontMetrics, width: int, hard: bool = False) -> tuple[str, str]:
+    """Break a name behind a separator, or where the line is full. hard: there if the rest needs it."""
     fits = max((n for n in range(1, len(name)) if metrics.horizontalAdvance(name[:n]) <= width), default=1)
     cuts = [n for n in range(fits, fits // 2, -1) if name[n - 1] in "_- .@"]
-    cut = cuts[0] if cuts and metrics.horizontalAdvance(name[cuts[0] :]) <= width else fits
+    cut = cuts[0] if cuts else fits
+    if hard and metrics.horizontalAdvance(name[cut:]) > width:
+        cut = fits
     return name[:cut].rstrip(), name[cut:]
 
 
@@ -593,14 +601,15 @@ class LibraryPanel(QWidget):
         """Return what is known of names by now; nothing after the graphs changed."""
         graphs = self.document.project.graphs
         if self._named[0] is not graphs:
-            names = {s.name for layer in LAYERS for s in graphs[layer].stances.values()}
+            some = [(layer, s.name) for layer in LAYERS for s in graphs[layer].stances.values()]
+            names = {name for _, name in some} | {f"{layer} {name}" for layer, name in some}
             self._named = graphs, tuple(sorted(names, key=len, reverse=True)), {}
         return self._named[2]
 
     _named: tuple[object, tuple[str, ...], dict[str, tuple[str, str]]] = None, (), {}
 
     def stances(self) -> tuple[str, ...]:
-        """Return the names of all stances, the longest first."""
+        """Return the names of all stances, with their layers in front, too, the longest first."""
         self._names()
         return self._named[1]
 
