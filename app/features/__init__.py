@@ -13,6 +13,7 @@ FEATURES = (
     "twins",
     "repairs",
     "properties",
+    "notes",
     "manual",
     "labelling",
     "motion_graph",
@@ -32,5 +33,6 @@ FEATURES = (
     "export",
     "render",
     "study",
+    "welcome",
     "help",
 )

@@ -11,8 +11,8 @@ from functools import lru_cache
 
 from PySide6.QtGui import QFont, QFontMetricsF
 
-from app.look.plural import short
-from metagraph.graph.model import Action, Kind, Layer, Limb, MetaGraph, Project
+from app.look.plural import parts, short
+from metagraph.graph.model import KINDS, Action, Kind, Layer, Limb, MetaGraph, Project
 
 GAP = "…"
 _TAKE = re.compile(r"[\s.#(-]*\d+\)?$")  # the number of a take, at a name's end
@@ -41,14 +41,38 @@ def apart(names: Sequence[str]) -> list[str]:
     return [short_ if count[short_] == 1 else name for name, short_ in zip(names, bare, strict=True)]
 
 
+def _shared(project: Project, action: Action) -> int:
+    """Return how many words all names on an action's stance begin with alike, its loop's among them: a stance
+    may be called after its loop.
+    """
+    graph = project.graphs[action.layer]
+    if not graph.of(action.stance, "stance"):
+        return 0
+    names = [parts(a.name) for kind in KINDS for a in graph.of(action.stance, kind)]
+    alike = 0
+    for words in zip(*names, strict=False):
+        if len({w for w, *_ in words}) > 1:
+            break
+        alike += 1
+    return min(alike, min(map(len, names)) - 1) if len(names) > 1 else 0
+
+
+def _without(name: str, stance: str, shared: int) -> str:
+    """Return a name without its stance's in front, or else without the words that all on the stance share."""
+    out = short(name, stance)
+    return name[parts(name)[shared][1] :] if out == name and shared > 0 else out
+
+
 def row_names(project: Project, actions: Iterable[Action]) -> dict[str, str]:
     """Return by id how the actions of one node are called in it: transitions by where they lead."""
     some = tuple(actions)
     told: list[str] = []
+    shared = _shared(project, some[0]) if some else 0
     for action in some:
         stance, end = project.stance(action.stance), project.stance(action.end_stance)
         limb = action.limb if action.layer == "arms" else None
-        name = plain(action.name, stance.name if stance is not None else "", limb)
+        name = _without(action.name, stance.name, shared) if stance is not None else action.name
+        name = plain(name, "", limb)
         if action.kind == "transition":
             name = end.name if end is not None else f"?  {name}"
         told.append(name)

@@ -28,6 +28,8 @@ ARRANGED = (
     6  # how panels are put into docks; an arrangement that was saved when it was done otherwise is void
 )
 
+BEHIND = 6  # the rank of panels above which they are behind the others where all are shown
+
 
 class Room(QScrollArea):
     """What a dock holds: it can always be made as small as it says, whatever is in it and whenever that was
@@ -281,7 +283,7 @@ class Places:
 
     def arrange(self, workspace: Workspace, kept: tuple[QByteArray, str] | None = None) -> None:
         """Put every dock where a workspace has it, or where it was when `kept` was taken by `state`."""
-        self._before = None
+        self._before, self._shares = None, ""
         self._show_bars()
         with self._quietly():
             if kept is None or not self.window.restoreState(kept[0], ARRANGED):
@@ -304,7 +306,8 @@ class Places:
         """Return the docks of each area; those that are shown at first come first."""
         out: dict[str, list[QDockWidget]] = {}
         rank = {n: (workspace.id not in self.panels[n].where, self.panels[n].rank) for n in self.docks}
-        order = sorted(self.docks, key=lambda n: (0, 0) if workspace.id == ALL.id else rank[n])
+        behind = {n: (self.panels[n].rank > BEHIND, 0) for n in self.docks}
+        order = sorted(self.docks, key=lambda n: behind[n] if workspace.id == ALL.id else rank[n])
         for ident in order:
             area = self.area(ident, workspace)
             if area not in workspace.areas:

@@ -171,6 +171,7 @@ STRUCTS: dict[str, Any] = {
     "conversations": dict[str, Conversation],
     "tiers": dict[str, str],
     "labels": dict[str, str],
+    "notes": dict[str, str],
     "joint_maps": dict[str, JointMap],
 }
 

@@ -355,7 +355,8 @@ class Project:
     character: path of the GLB to draw, relative to the project file, or None for a stick figure. hidden:
     names of its meshes that are not drawn. points:
     named places to look at, metres. lines: the dialogue an agent calls by id. performances, conversations:
-    those kept, by id. tiers: annotation tier -> what it was last read as. joint_maps: how clips of other
+    those kept, by id. tiers: annotation tier -> what it was last read as. notes: to read, by the id of the
+    action they are on, "" for the project's own. joint_maps: how clips of other
     skeletons are retargeted, by `joint_map.fingerprint` of theirs. manual: state machines drawn by hand, of
     the layers that have one. voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as
     read; never saved. body: what of it breathes and looks (`playback.life.body.Body`) as an export says; None
@@ -381,6 +382,7 @@ class Project:
     conversations: Mapping[str, Conversation] = field(default_factory=dict)
     tiers: Mapping[str, str] = field(default_factory=dict)
     labels: Mapping[str, str] = field(default_factory=dict)
+    notes: Mapping[str, str] = field(default_factory=dict)
     joint_maps: Mapping[str, JointMap] = field(default_factory=dict)
     manual: Mapping[Layer, Manual] = field(default_factory=dict)
     voices: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)

@@ -4,7 +4,7 @@ renamed at once. And the history of all that was done.
 
 from __future__ import annotations
 
-from PySide6.QtWidgets import QUndoView, QWidget
+from PySide6.QtWidgets import QFrame, QUndoView, QWidget
 
 from app.shell.actions import Command, Standard
 from app.shell.context import Contribution, Panel, Shell
@@ -51,6 +51,8 @@ def contribute(shell: Shell) -> Contribution:
 
     def history() -> QWidget:
         view = QUndoView(document.undo_stack, shell.widget)
+        view.setSpacing(3)
+        view.setFrameShape(QFrame.Shape.NoFrame)
         view.setEmptyLabel("As it was opened")
         view.setAccessibleName("What was done; a click goes back to it")
         return view

@@ -393,7 +393,8 @@ class Canvas(QWidget):
             name = told_names(row.words if row is not None else action.name, action.name)
             head = "Drag the arrow onto another stance to end there"
             plain = head if hit.area == "head" else "Click plays it in context, drag moves it"
-            return f"{name}\n{self.misfits.get(action.id) or plain}"
+            note = project.notes.get(action.id, "")
+            return "\n".join(x for x in (name, note, self.misfits.get(action.id) or plain) if x)
         stance = project.stance(self.session.place.other() if hit.area == "other" else hit.ident)
         to = "to " if hit.area == "other" else ""
         name = f"{to}{stance.name}\n" if stance is not None else ""

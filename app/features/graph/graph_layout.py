@@ -27,6 +27,7 @@ BOLD = 1.12  # how much wider the card's name is than the chip's
 BARE = 0  # in the place of a width: chips as wide as their names, which is all they show
 TIGHT = -1  # and: as many in a line as can be told apart
 TIGHTEST = 84.0
+LEAST_NODES = 300.0  # pixels of height for a card and its nodes below each other
 
 Area = Literal["chip", "add", "card", "loop", "node", "row", "bar", "head", "other", "start", "nothing"]
 
@@ -158,11 +159,14 @@ def arrange(
     graph = project.graphs[layer]
 
     # Many stances in a low window: narrower chips without words leave room for the nodes.
-    for widest in (CHIP_MAX, 150, BARE, TIGHT):
+    for widest in (CHIP_MAX, 150, BARE):
         chips = _chips(project, graph, width, widths, widest)
         top = chips[-1].rect.bottom() + 2 * GRID
         if top < height - FOOT - 320:
             break
+    if top > height - FOOT - LEAST_NODES:  # names alone take too much, too
+        chips = _chips(project, graph, width, widths, TIGHT)
+        top = chips[-1].rect.bottom() + 2 * GRID
     foot = FOOT if width >= NARROW else FOOT_NARROW
     bottom = max(height - foot, top + 200.0)
     actions = {kind: graph.of(stance, kind) if stance else () for kind in BESIDE}

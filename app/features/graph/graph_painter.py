@@ -11,7 +11,7 @@ from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter, QPaint
 from app.features.graph.graph_drops import Drop
 from app.features.graph.graph_frames import GRID
 from app.features.graph.graph_layout import Chip, GraphHit, GraphRow, Layout, Node, bar_part
-from app.look.names import fitted
+from app.look.names import fitted, plain
 from app.look.theme import KIND_MARKS, KIND_TITLES, Theme
 from metagraph.graph.model import Kind, Project
 
@@ -147,7 +147,7 @@ def _curves(painter: QPainter, layout: Layout, look: GraphLook) -> None:
 
 
 def _chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, font: QFont) -> None:
-    t, beside = look.theme, tuple(c.name for c in layout.chips)
+    t, beside = look.theme, tuple(plain(c.name) for c in layout.chips)
     target = look.drop is not None and (
         (look.drop_hit.area == "add" and chip.stance is None)
         or (look.drop_hit.area == "chip" and look.drop_hit.ident == chip.stance and chip.stance is not None)
@@ -175,7 +175,7 @@ def _chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, font: 
     if chip.bare:
         painter.setFont(font)
         painter.setPen(QColor(t.text if current else t.dim))
-        name = _between(font, chip.name, inner.width(), beside)
+        name = _between(font, plain(chip.name), inner.width(), beside)
         painter.drawText(inner, Qt.AlignmentFlag.AlignCenter, name)
         return
     picture = look.chip_pictures.get(chip.stance)
@@ -195,7 +195,7 @@ def _chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, font: 
     used = metrics.horizontalAdvance(count) + (metrics.horizontalAdvance(right) + 8 if right else 0) + 8
     painter.setFont(_bold(font) if current else font)
     painter.setPen(QColor(t.text))
-    name = _between(painter.font(), chip.name, inner.width() - used + 1, beside)
+    name = _between(painter.font(), plain(chip.name), inner.width() - used + 1, beside)
     painter.drawText(inner, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, name)
     painter.setFont(font)
     painter.setPen(QColor(t.dim))
@@ -233,7 +233,7 @@ def _card(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -> No
         )  # fmt: skip
     else:
         bold = _bold(font)
-        head = _card_name(painter, card, stance.name, bold, look)
+        head = _card_name(painter, card, plain(stance.name), bold, look)
         area = QRectF(
             card.left() + 4, head.bottom() + 2, card.width() - 8, card.height() - 24 - head.height() - 14
         )
@@ -373,7 +373,10 @@ def _node(painter: QPainter, node: Node, layout: Layout, look: GraphLook, font: 
         painter.setPen(QColor(t.dim))
         text = TEACH[node.kind] if layout.stance is not None else "Make a stance first."
         flags = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap
-        painter.drawText(node.body.adjusted(2 * GRID, 2, -GRID, 0), flags, text)
+        room = node.body.adjusted(2 * GRID, 2, -GRID, 0)
+        while text and painter.boundingRect(room, flags, text).height() > room.height():
+            text = text.rpartition("\n")[0]
+        painter.drawText(room, flags, text)
     if target:
         free = QRectF(node.rect.left() + 3, node.rect.bottom() - 60, node.rect.width() - 6, 56)
         if node.rect.height() < 130:
@@ -394,7 +397,7 @@ def _other(painter: QPainter, node: Node, look: GraphLook, font: QFont) -> None:
     _box(painter, rect, QColor(t.hover if hover else t.field), QColor(t.line))
     painter.setFont(font)
     painter.setPen(QColor(t.text if found is not None else t.warning))
-    text = f"to {found.name}" if found is not None else "needs another stance"
+    text = f"to {plain(found.name)}" if found is not None else "another stance?"
     painter.drawText(
         rect.adjusted(8, 0, -18, 0), Qt.AlignmentFlag.AlignVCenter, _between(font, text, rect.width() - 26)
     )

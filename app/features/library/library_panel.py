@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from importlib.util import find_spec
 
 from PySide6.QtCore import (
     QAbstractListModel,
@@ -63,6 +62,7 @@ from app.look.names import fitted, fitting, plain
 from app.look.plural import many, short
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
+from app.project.load import readable
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
 from app.widgets.flow import Flow
@@ -273,29 +273,30 @@ class CardDelegate(QStyledItemDelegate):
         painter.restore()
 
 
-def formats() -> str:
-    """Return the formats of clips that can be read here."""
-    if find_spec("ufbx") is None:
-        return "BVH, GLB, glTF, VRM animation\n(FBX needs the extra 'fbx')"
-    return "BVH, FBX, GLB, glTF, VRM animation"
-
-
 def two_lines(name: str, metrics: QFontMetrics, width: int, beside: Iterable[str] = ()) -> tuple[str, ...]:
     """Break a name over at most two lines, after a separator where there is one. beside: names of the cards
     round it, from which what is shown is to differ.
     """
     if metrics.horizontalAdvance(name) <= width:
         return (name,)
-    lines = _broken(name, metrics, width)
-    if metrics.horizontalAdvance(lines[1]) > width:
-        lines = _broken(fitting(name, 2 * width - 16, metrics.horizontalAdvance, beside), metrics, width)
-    return lines[0], fitting(lines[1], width, metrics.horizontalAdvance)
+    measure = metrics.horizontalAdvance
+    first, second = _broken(name, metrics, width)
+    if measure(second) > width:
+        rivals = [o[len(name) - len(second) :] for o in beside if o.startswith(first)]
+        cut = fitting(second, width, measure, rivals, sure=True)
+        if cut:
+            return first, cut
+        first, second = _broken(fitting(name, 2 * width - 16, measure, beside), metrics, width, hard=True)
+    return first, fitting(second, width, measure)
 
 
-def _broken(name: str, metrics: QFontMetrics, width: int) -> tuple[str, str]:
+def _broken(name: str, metrics: QFontMetrics, width: int, hard: bool = False) -> tuple[str, str]:
+    """Break a name behind a separator, or where the line is full. hard: there if the rest needs it."""
     fits = max((n for n in range(1, len(name)) if metrics.horizontalAdvance(name[:n]) <= width), default=1)
     cuts = [n for n in range(fits, fits // 2, -1) if name[n - 1] in "_- .@"]
-    cut = cuts[0] if cuts and metrics.horizontalAdvance(name[cuts[0] :]) <= width else fits
+    cut = cuts[0] if cuts else fits
+    if hard and metrics.horizontalAdvance(name[cut:]) > width:
+        cut = fits
     return name[:cut].rstrip(), name[cut:]
 
 
@@ -502,7 +503,7 @@ class LibraryPanel(QWidget):
         page = QWidget(self)
         box = QVBoxLayout(page)
         box.addStretch(2)
-        self.empty = QLabel(EMPTY.format(formats()), page)
+        self.empty = QLabel(EMPTY.format(readable()), page)
         self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.empty.setProperty("dim", True)
         self.empty.setWordWrap(True)
@@ -562,7 +563,7 @@ class LibraryPanel(QWidget):
         if hidden:
             self.empty.setText("No clip matches.\nClear the search or the filters.")
         else:
-            self.empty.setText(EMPTY.format(formats()))
+            self.empty.setText(EMPTY.format(readable()))
         self.stack.setCurrentIndex(1 if nothing or hidden else 0)
 
     def next_unlabelled(self, clip: str) -> str | None:
@@ -600,14 +601,15 @@ class LibraryPanel(QWidget):
         """Return what is known of names by now; nothing after the graphs changed."""
         graphs = self.document.project.graphs
         if self._named[0] is not graphs:
-            names = {s.name for layer in LAYERS for s in graphs[layer].stances.values()}
+            some = [(layer, s.name) for layer in LAYERS for s in graphs[layer].stances.values()]
+            names = {name for _, name in some} | {f"{layer} {name}" for layer, name in some}
             self._named = graphs, tuple(sorted(names, key=len, reverse=True)), {}
         return self._named[2]
 
     _named: tuple[object, tuple[str, ...], dict[str, tuple[str, str]]] = None, (), {}
 
     def stances(self) -> tuple[str, ...]:
-        """Return the names of all stances, the longest first."""
+        """Return the names of all stances, with their layers in front, too, the longest first."""
         self._names()
         return self._named[1]
 

@@ -397,11 +397,12 @@ class Lanes(QWidget):
                 words += f", held {cue.hold:.2f} s"
             return words + "\nClick selects it, double-click plays it in context"
         lane = lane_at(self.height(), at)
-        if lane is None or QApplication.mouseButtons():
+        if lane is None:
             return ""
         shown, here = self.performance.shown, ""
         plan = next((p for layer, p in shown.plan.layers.items() if layer == lane), None)
         if plan is not None:
             stance = shown.project.stance(plan.stance_at(self.scale().seconds(at.x())))
-            here = f"{stance.name}\n" if stance is not None else ""
-        return f"{here}Double-click to ask for something here"
+            here = stance.name if stance is not None else ""
+        more = "" if QApplication.mouseButtons() else "Double-click to ask for something here"
+        return "\n".join(x for x in (here, more) if x)

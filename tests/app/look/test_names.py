@@ -52,6 +52,23 @@ def test_two_ways_to_one_stance_are_told_apart(toy):
     assert all(names) and any(":" in n for n in names)
 
 
+def test_a_stance_called_after_its_loop_is_left_out_by_what_all_share(toy):
+    project = toy.project()
+    clips = list(project.clips)
+    project = edits.add_stance(project, "arms", "sitting_low__loop", [clips[0]])
+    stance = list(project.graphs["arms"].stances)[-1]
+    project = edits.place(project, clips[1:3], "arms", "gesture", stance)
+    graph = project.graphs["arms"]
+    (loop,) = graph.of(stance, "stance")
+    one, two = graph.of(stance, "gesture")
+    names = {loop.id: "sitting_low__loop", one.id: "sitting_low__nod_01", two.id: "sitting_low__wave_01"}
+    project = edits.update_each(project, {i: {"name": n} for i, n in names.items()})
+    assert list(node_names(project, "arms", stance, "gesture").values()) == ["nod", "wave"]
+    project = edits.update_actions(project, [two.id], name="wave")
+    told = list(node_names(project, "arms", stance, "gesture").values())
+    assert told == ["sitting low nod", "wave"], "what not all share may tell something"
+
+
 def test_a_nodes_names_follow_its_actions_and_its_stance(toy):
     project = toy.project()
     rest = toy.id(project, "rest")
