@@ -102,7 +102,7 @@ class TimingPanel(QWidget):
     def _button(self, text: str, tip: str, checkable: bool = False) -> QToolButton:
         out = make_widget(QToolButton, self, text=text, toolTip=tip, checkable=checkable)
         out.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # after a click the space bar still plays
-        out.setAccessibleName(f"{text}: {tip}")
+        out.setAccessibleName(f"{text}: {tip}" if text else tip)
         return out
 
     def resizeEvent(self, event: QResizeEvent) -> None:
