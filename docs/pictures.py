@@ -1,9 +1,10 @@
 """Take the pictures of the documentation from the real window: `python docs/pictures.py` (on a screen, or
 under `xvfb-run`).
 
-Writes docs/window.png, practice.png, empty.png, light.png, requests.png, models.png, label.png, export.png,
-web.png, conversation.png, motion-graph.png and performance.png, from our own sample clips only; with names
-behind it, only those. The web page needs Node, Chromium and what tests/package.json names.
+Writes docs/workspace-*.png, timing.png, practice.png, empty.png, light.png, requests.png, models.png,
+label.png, export.png, web.png, conversation.png, motion-graph.png and performance.png, from our own sample
+clips only; with names behind it, only those. The web page needs Node, Chromium and what tests/package.json
+names.
 """
 
 from __future__ import annotations
@@ -81,6 +82,58 @@ def finished(name: str, theme: str, machine: bool, action: str) -> None:
     close(out)
 
 
+def workspaces() -> None:
+    """The five workspaces, on the sample project."""
+    from app.project.files import SAMPLE
+
+    out = window()
+    out.window.resize(1680, 1050)
+    out.files.open(SAMPLE, template=True)
+    wait(20000, lambda: bool(out.document.project.clips))
+    wait(5000)
+    session = out.session
+    found = next(a for a in out.document.project.actions() if a.name == "shrug_bt_01")
+    session.jump(action=found.id)
+    session.transport.show_plan()
+    session.transport.set_playing(False)
+    for tab in out.workspaces.tabs:
+        out.workspaces.choose(tab.id)
+        if tab.id == "talk":
+            session.onstage.set_conversation(next(iter(out.document.project.conversations)))
+            wait(20000, lambda: out.performance.shown.partner is not None and not out.jobs.running)
+            session.transport.seek(9.7)
+        else:
+            cues = out.performance.shown.plan.layers[found.layer].cues
+            cue = next(c for c in cues if c.action.kind == "gesture" and c.end - c.start > 2)
+            session.transport.seek((cue.start + cue.end) / 2)
+        wait(3000)
+        shoot(out.window, f"workspace-{tab.id}.png")
+    close(out)
+
+
+def timing() -> None:
+    """The timing editor, with a hold, a line and onion skin."""
+    from app.project.files import SAMPLE
+    from metagraph.graph.retiming import set_hold
+
+    out = window()
+    out.window.resize(1680, 1050)
+    out.files.open(SAMPLE, template=True)
+    wait(20000, lambda: bool(out.document.project.clips))
+    wait(5000)
+    found = next(a for a in out.document.project.actions() if a.name == "shrug_bt_01")
+    out.document.edit("Hold", lambda p: set_hold(p, found.clip, 0.95, 0.4))
+    out.session.jump(action=found.id)
+    out.workspaces.choose("time")
+    subject = out.shell.panel("timing").subject
+    subject.show(onion=True, dope=True, heard=next(iter(out.document.project.lines)))
+    out.session.transport.scrub(found.clip, 0.62)
+    wait(20000, lambda: bool(subject.film(found.id)) and not out.jobs.running)
+    wait(3000)
+    shoot(out.window, "timing.png")
+    close(out)
+
+
 def half_labelled() -> None:
     """The practice project with a part of its clips placed, two holes and a misfit left to see."""
     from app.project.files import PRACTICE
@@ -150,6 +203,8 @@ def requests() -> None:
     session.onstage.select_requests(())
     session.transport.seek(2.0)
     wait(4000)
+    out.show("timeline")
+    wait(500)
     out.timeline.grab().save(str(ROOT / "docs" / "requests.png"))
     print("docs/requests.png")
     close(out)
@@ -311,8 +366,9 @@ def nothing() -> None:
 
 PICTURES: dict[str, Callable[[], None]] = {
     "empty": nothing,
-    "window": lambda: finished("window.png", "dark", False, "shrug_bt_01"),
     "light": lambda: finished("light.png", "light", True, "beat_large_bt_01"),
+    "workspaces": workspaces,
+    "timing": timing,
     "practice": half_labelled,
     "requests": requests,
     "models": models,

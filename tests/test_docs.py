@@ -27,7 +27,7 @@ PAGES = [
     *sorted((ROOT / "docs").glob("*.md")),
 ]
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.S | re.M)
-PICTURES = ("window", "practice", "empty", "performance")
+PICTURES = ("workspace-graph", "workspace-time", "practice", "empty", "performance")
 
 
 def blocks(page: Path) -> list[tuple[str, str]]:
@@ -144,7 +144,7 @@ def test_links_and_pictures_lead_somewhere(page: Path) -> None:
 
 def test_the_readme_shows_the_window_and_the_pictures_are_pictures() -> None:
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert "docs/window.png" in text
+    assert "docs/workspace-graph.png" in text
     for name in PICTURES:
         assert (ROOT / "docs" / f"{name}.png").read_bytes().startswith(b"\x89PNG"), name
 

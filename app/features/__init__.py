@@ -13,6 +13,7 @@ FEATURES = (
     "twins",
     "repairs",
     "properties",
+    "notes",
     "manual",
     "labelling",
     "motion_graph",
@@ -23,6 +24,7 @@ FEATURES = (
     "conversation",
     "models",
     "lines",
+    "timing_editor",
     "problems",
     "machine",
     "compatibility",
@@ -31,5 +33,6 @@ FEATURES = (
     "export",
     "render",
     "study",
+    "welcome",
     "help",
 )

@@ -17,7 +17,7 @@ def short(name: str, stance: str) -> str:
     """Return an action's name without its stance's name in front, nor what is before that up to one of FRONT:
     what is the same in every row tells nothing. Numbers count as such: "Idle01" is "idle 1".
     """
-    wanted, found = _parts(stance), _parts(name)
+    wanted, found = parts(stance), parts(name)
     words = [word for word, *_ in wanted]
     for first in range(len(found) - len(words) if words else 0):
         if first and name[found[first][1] - 1] not in FRONT:
@@ -27,7 +27,7 @@ def short(name: str, stance: str) -> str:
     return name
 
 
-def _parts(name: str) -> list[tuple[str, int, int]]:
+def parts(name: str) -> list[tuple[str, int, int]]:
     """Return a name's words and numbers, each with where it begins and ends."""
     return [
         (str(int(m[0])) if m[0].isdecimal() else m[0].lower(), m.start(), m.end())

@@ -142,6 +142,8 @@ def style_sheet(look: Theme) -> str:
     QDockWidget::title {{ background: {t.panel}; padding: 7px 10px; border-bottom: 1px solid {t.line}; }}
     QDockWidget > QWidget {{ background: {t.panel}; }}
     QToolBar {{ background: {t.panel}; border: none; border-bottom: 1px solid {t.line}; padding: 5px 8px; spacing: 4px; }}
+    QToolBar QToolButton {{ padding: 5px 9px; }}
+    QToolBar::separator {{ background: {t.line}; width: 1px; margin: 6px 4px; }}
     QStatusBar {{ background: {t.panel}; color: {t.dim}; border-top: 1px solid {t.line}; }}
     QStatusBar::item {{ border: none; }}
     QMenuBar {{ background: {t.panel}; color: {t.text}; padding: 2px 6px; }}

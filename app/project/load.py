@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from importlib.util import find_spec
 
 ANNOTATIONS = ".eaf"
 
@@ -21,3 +22,10 @@ class Load:
     @property
     def count(self) -> int:
         return len(self.clips) or len(self.actions) or len(self.files)
+
+
+def readable() -> str:
+    """Return the formats of clips that can be read here, in words."""
+    if find_spec("ufbx") is None:
+        return "BVH, GLB, glTF, VRM animation\n(FBX needs the extra 'fbx')"
+    return "BVH, FBX, GLB, glTF, VRM animation"

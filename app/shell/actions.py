@@ -23,7 +23,7 @@ MENUS: dict[str, tuple[str, ...]] = {
     "&Motion": ("make",),
     "&Play": ("transport", "live", "show"),
     "&Conversation": ("read", "settings", "stage", "write", "remove"),
-    "&View": ("character", "graph", "look"),
+    "&View": ("workspaces", "workspace", "character", "graph", "look"),
     "&Study": (),
     "&Help": (),
 }

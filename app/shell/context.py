@@ -4,8 +4,8 @@ returns a `Contribution`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 if TYPE_CHECKING:
@@ -76,10 +76,13 @@ class Shell(Protocol):
 
 @dataclass(frozen=True)
 class Panel:
-    """A panel of the window. make: its widget. place: where it stands at first. late: made after the first
-    picture, for a fast start. scrolls: it may need more room than there is. when: in which mode it is shown.
-    instead_of: the panel whose place it takes then. study: whether it is shown while somebody works on a
-    study's task.
+    """A panel of the window. make: its widget. place: where it stands where all stand at once. late: made
+    after the first picture, for a fast start. when: in which mode it is shown. instead_of: the panel whose
+    place it takes then. study: whether it is shown while somebody works on a study's task.
+
+    where: by workspace the area in which it stands; the first is where it is at home. opens: by workspace
+    the area in which it opens when it is asked for. rank: which of an area's panels is in front, the lowest.
+    least: width and height in pixels, so small it can always be made; what needs more room is scrolled.
     """
 
     id: str
@@ -87,10 +90,13 @@ class Panel:
     place: Place
     make: Callable[[], QWidget]
     late: bool = True
-    scrolls: bool = False
     when: When = "any"
     instead_of: str = ""
     study: bool = True
+    where: Mapping[str, str] = field(default_factory=dict)
+    opens: Mapping[str, str] = field(default_factory=dict)
+    rank: int = 5
+    least: tuple[int, int] = (200, 90)
 
 
 @dataclass(frozen=True)

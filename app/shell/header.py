@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from html import escape
 
 from PySide6.QtCore import QSize, Qt
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLabel, QSizePolicy, QToolBar, QWidget
 
 from app.look.theme import theme
@@ -15,6 +16,8 @@ from app.project.document import Document
 from app.shell.actions import Actions
 from app.shell.context import HeaderItem
 from app.stage.session import Session
+
+NARROW, WIDE = 100, 1600  # pixels of the project's name, and of a window that has room for three times that
 
 
 class Header(QToolBar):
@@ -36,7 +39,6 @@ class Header(QToolBar):
         self.setMovable(False)
         self.setIconSize(QSize(18, 18))
         self.name = QLabel(self)
-        self.name.setMinimumWidth(190)
         self.name.setContentsMargins(6, 0, 12, 0)
         self.name.setTextFormat(Qt.TextFormat.RichText)
         self.addWidget(self.name)
@@ -52,16 +54,24 @@ class Header(QToolBar):
                     self.addWidget(item.make(self))
             if side != "right":
                 self.addWidget(_stretch(self))
+            if side == "left":
+                self.addSeparator()
 
     def refresh(self) -> None:
         """Show name and dirty mark as they are now."""
         d = self.document
-        saved = "not saved yet" if d.path is None else "edited" if d.dirty else "saved"
+        saved = "not saved" if d.path is None else "edited" if d.dirty else "saved"
         saved = f"read-only, {saved}" if d.read_only else saved
         dim = theme(self.session.look.name).dim
-        self.name.setText(
-            f"<b>{escape(d.project.name)}</b>&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>"
-        )
+        room = NARROW if self.width() < WIDE else 3 * NARROW
+        name = self.name.fontMetrics().elidedText(d.project.name, Qt.TextElideMode.ElideMiddle, room)
+        self.name.setToolTip(f"{d.project.name}, {saved}")
+        self.name.setText(f"<b>{escape(name)}</b>&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>")
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        if (event.size().width() < WIDE) != (event.oldSize().width() < WIDE):
+            self.refresh()
 
 
 def _stretch(parent: QWidget) -> QWidget:

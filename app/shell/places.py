@@ -1,61 +1,103 @@
-"""Where panels are: docks round the centre, which can be moved, hidden, and put back."""
+"""Where panels are: each in a dock, and the docks in the areas of a workspace; they can be moved, hidden, and
+put back.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from itertools import pairwise
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 
-from PySide6.QtCore import QByteArray, QSettings, Qt
-from PySide6.QtWidgets import QDockWidget, QMainWindow, QScrollArea, QSplitter, QStackedWidget, QWidget
+from PySide6.QtCore import QByteArray, QSize, Qt
+from PySide6.QtWidgets import (
+    QDockWidget,
+    QMainWindow,
+    QScrollArea,
+    QSplitter,
+    QStackedWidget,
+    QToolBar,
+    QWidget,
+)
 
-from app.shell.context import Panel, Place
+from app.shell.arranging import arrange, shares
+from app.shell.context import Panel
+from app.shell.proportions import Proportions
+from app.shell.workspaces import ALL, Workspace
 from app.stage.session import Session
 
-AREAS: dict[Place, Qt.DockWidgetArea] = {
-    "left": Qt.DockWidgetArea.LeftDockWidgetArea,
-    "right": Qt.DockWidgetArea.RightDockWidgetArea,
-    "right below": Qt.DockWidgetArea.RightDockWidgetArea,
-    "bottom": Qt.DockWidgetArea.BottomDockWidgetArea,
-}
-WIDTHS: dict[Place, int] = {"left": 300, "right": 420}  # pixels at first
-HEIGHTS: dict[Place, int] = {"right": 470, "right below": 440, "bottom": 286}
-ARRANGED = 5  # which docks there are; an arrangement of others, saved before, is not restored
+ARRANGED = (
+    6  # how panels are put into docks; an arrangement that was saved when it was done otherwise is void
+)
+
+BEHIND = 6  # the rank of panels above which they are behind the others where all are shown
+
+
+class Room(QScrollArea):
+    """What a dock holds: it can always be made as small as it says, whatever is in it and whenever that was
+    made.
+    """
+
+    def __init__(self, least: tuple[int, int], parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setWidgetResizable(True)
+        self.setFrameShape(QScrollArea.Shape.NoFrame)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._least = QSize(*least)
+        self.setMinimumSize(self._least)
+
+    def minimumSizeHint(self) -> QSize:
+        return self._least
+
+    def sizeHint(self) -> QSize:
+        return self._least
 
 
 class Places:
-    """The panels' docks and the centre. A dock is empty until its panel is made, so that a window can be
-    shown before all are.
+    """The panels' docks. A dock is empty until its panel is made, so that a window can be shown before all
+    are.
 
-    centre: what stands in the middle, and beside it. docks: by the panel's id. ready: the late panels are
-    made, too.
+    docks: by the panel's id. centre: the panels that take turns in one dock, and what stands beside them.
+    workspace: the one whose areas the docks are in. ready: the late panels are made, too.
     """
 
     def __init__(self, window: QMainWindow, panels: Iterable[Panel], session: Session) -> None:
         self.window, self.session = window, session
         self.panels = {panel.id: panel for panel in panels}
+        self.workspace = ALL
         self.ready = False
         self._made: dict[str, QWidget] = {}
         self._beside: set[str] = set()  # what is wanted beside the centre
-        self._before = QByteArray()  # how it was before one panel had the whole window
-        self.centre = QSplitter(Qt.Orientation.Horizontal, window)
-        self.centre.setChildrenCollapsible(False)
-        window.setCentralWidget(self.centre)
+        self._before: QByteArray | None = None  # how it was before one panel had the whole window
+        self._shares = ""
+        self._hidden: list[QWidget] = []  # bars, while one panel has the whole window
+        self._bare: QDockWidget | None = None
         options = QMainWindow.DockOption
         window.setDockOptions(options.AnimatedDocks | options.AllowNestedDocks | options.AllowTabbedDocks)
+        self.centre = QSplitter(Qt.Orientation.Horizontal, window)
+        self.centre.setChildrenCollapsible(False)
         self.docks: dict[str, QDockWidget] = {}
-        for panel in self._docked():
+        for panel in self.panels.values():
+            if panel.place == "beside" or panel.instead_of:
+                continue
             dock = self.docks[panel.id] = QDockWidget(panel.title, window)
             dock.setObjectName(panel.id)
-            dock.setWidget(QWidget(window))
-            window.addDockWidget(AREAS[panel.place], dock)
+            room = Room(panel.least, dock)
+            room.setWidget(self.centre if panel.place == "centre" else QWidget(room))
+            dock.setWidget(room)
+            window.addDockWidget(Qt.DockWidgetArea.LeftDockWidgetArea, dock)
+        self.proportions = Proportions(window, self.docks)
         session.onstage.mode_changed.connect(self.follow_mode)
 
-    def _docked(self, place: Place | None = None) -> list[Panel]:
-        return [
-            p
-            for p in self.panels.values()
-            if p.place in AREAS and not p.instead_of and place in (None, p.place)
-        ]
+    def dock(self, ident: str) -> QDockWidget:
+        """Return the dock in which a panel is, alone, by turns or beside another. Raises LookupError."""
+        panel = self.panels.get(ident)
+        if panel is None:
+            raise LookupError(f"there is no panel {ident!r}")
+        if panel.instead_of:
+            return self.docks[panel.instead_of]
+        if panel.place == "beside":
+            centre = next((p.id for p in self.panels.values() if p.place == "centre"), "")
+            return self.docks[centre]
+        return self.docks[ident]
 
     # --- making
 
@@ -74,8 +116,6 @@ class Places:
             if panel.when in ("any", self.session.onstage.mode) or not panel.instead_of:
                 self.panel(panel.id)
         self.follow_mode()
-        if not self.restored:
-            self.size()
 
     def panel(self, ident: str) -> QWidget:
         """Return a panel's widget, made now where it was not yet. Raises LookupError."""
@@ -103,25 +143,18 @@ class Places:
             self.centre.addWidget(widget)
             widget.setVisible(self.shows(panel.id))
         else:
-            if panel.scrolls:
-                area = QScrollArea(widgetResizable=True)
-                area.setFrameShape(QScrollArea.Shape.NoFrame)
-                area.setWidget(widget)
-                widget = area
             self._into_dock(panel, widget)
 
     def _into_dock(self, panel: Panel, widget: QWidget) -> None:
-        dock = self.docks[panel.instead_of or panel.id]
+        room = self.docks[panel.instead_of or panel.id].widget()
+        assert isinstance(room, Room)
         if not panel.instead_of and not self._turns(panel.id):
-            old = dock.widget()
-            dock.setWidget(widget)
-            old.deleteLater()
+            room.setWidget(widget)  # what was in it is deleted
             return
-        stack = dock.widget()
+        stack = room.widget()
         if not isinstance(stack, QStackedWidget):
-            stack = QStackedWidget(dock)
-            dock.widget().deleteLater()
-            dock.setWidget(stack)
+            stack = QStackedWidget(room)
+            room.setWidget(stack)
         stack.addWidget(widget)
         if panel.when in ("any", self.session.onstage.mode):
             stack.setCurrentWidget(widget)
@@ -148,16 +181,16 @@ class Places:
             elif panel.place == "beside":
                 widget.setVisible(self.shows(panel.id))
             elif (panel.instead_of or self._turns(panel.id)) and panel.when in ("any", mode):
-                stack = self.docks[panel.instead_of or panel.id].widget()
+                stack = widget.parentWidget()
                 if isinstance(stack, QStackedWidget):
                     stack.setCurrentWidget(widget)
 
     # --- showing
 
     def show(self, ident: str, on: bool = True) -> None:
-        """Show a panel in front, or hide it."""
-        panel = self.panels[ident]
-        if panel.place == "beside":
+        """Show a panel in front, or hide it. Raises LookupError where there is none."""
+        dock = self.dock(ident)
+        if self.panels[ident].place == "beside":
             (self._beside.add if on else self._beside.discard)(ident)
             if ident in self._made:
                 self._made[ident].setVisible(self.shows(ident))
@@ -168,12 +201,11 @@ class Places:
                         for i in range(self.centre.count())
                     ]
                 )
-            return
-        dock = self.docks.get(panel.instead_of or ident)
-        if dock is not None:
-            dock.setVisible(on)
-            if on:
-                dock.raise_()
+            if not on:
+                return
+        dock.setVisible(on)
+        if on:
+            dock.raise_()
 
     def show_dock(self, ident: str, on: bool) -> None:
         """Show or hide a panel where it is, without bringing it to the front."""
@@ -188,75 +220,118 @@ class Places:
         panel = self.panels[ident]
         if panel.place == "beside":
             return ident in self._beside and panel.when in ("any", self.session.onstage.mode)
-        return not self.docks[panel.instead_of or ident].isHidden()
+        return not self.dock(ident).isHidden()
+
+    @property
+    def alone(self) -> bool:
+        """Whether one panel has the whole window."""
+        return self._before is not None
 
     def only(self, ident: str) -> None:
-        """Give one panel the whole window, or put everything back."""
-        if self.centre.isVisible():
-            self._before = self.window.saveState(ARRANGED)
-            self.centre.hide()
+        """Give one panel the whole window, its bars and titles included, or put everything back."""
+        if self._before is None:
+            self._before, self._shares = self.window.saveState(ARRANGED), self.proportions.text()
             for name, dock in self.docks.items():
                 dock.setVisible(name == ident)
+            self._bare = self.docks[ident]
+            self._bare.setTitleBarWidget(QWidget(self._bare))
+            self._hidden = [b for b in self._bars() if not b.isHidden()]
+            for bar in self._hidden:
+                bar.hide()
         else:
-            self.centre.show()
-            self.window.restoreState(self._before, ARRANGED)
+            before, self._before = self._before, None
+            self._show_bars()
+            self.window.restoreState(before, ARRANGED)
+            shares, self._shares = self._shares, ""
+            self.proportions.read(shares)
+
+    def _bars(self) -> list[QWidget]:
+        window = self.window
+        tools = [b for b in window.findChildren(QToolBar) if b.parent() is window]
+        return [window.menuBar(), window.statusBar(), *tools]
+
+    def _show_bars(self) -> None:
+        """Show again what was hidden for one panel."""
+        for bar in self._hidden:
+            bar.show()
+        self._hidden = []
+        if self._bare is not None:
+            empty = self._bare.titleBarWidget()
+            self._bare.setTitleBarWidget(None)  # type: ignore[arg-type]
+            if empty is not None:
+                empty.deleteLater()
+            self._bare = None
 
     # --- arranging
 
-    def arrange(self) -> None:
-        """Put every dock where it belongs; the window stays as large as it is, though they stand side by side
-        for a moment.
-        """
-        size = self.window.size()
-        for ident, dock in self.docks.items():
-            dock.setFloating(False)
-            self.window.addDockWidget(AREAS[self.panels[ident].place], dock)
-            dock.show()
-        for place in AREAS:
-            shared = [self.docks[p.id] for p in self._docked(place)]
-            for one, following in pairwise(shared):
-                self.window.tabifyDockWidget(one, following)
-            if shared:
-                shared[0].raise_()
-        self.window.setCorner(Qt.Corner.BottomLeftCorner, AREAS["bottom"])
-        self.window.setCorner(Qt.Corner.BottomRightCorner, AREAS["right"])
-        self.size()
-        self.centre.show()
-        layout = self.window.layout()
-        if layout is not None and not self.window.isMaximized() and not self.window.isFullScreen():
-            layout.activate()
-            self.window.resize(size)
+    def area(self, ident: str, workspace: Workspace) -> str:
+        """Return the area in which the dock of a panel stands in a workspace, or opens there."""
+        panel = self.panels[ident]
+        if workspace.id == ALL.id:
+            return panel.place
+        return panel.where.get(workspace.id) or panel.opens.get(workspace.id) or workspace.spare
 
-    def size(self) -> None:
-        """Give each dock its usual share of the window."""
-        first = {place: self.docks[found[0].id] for place in AREAS if (found := self._docked(place))}
-        across = [p for p in ("left", "right") if p in first]
-        self.window.resizeDocks(
-            [first[p] for p in across], [WIDTHS[p] for p in across], Qt.Orientation.Horizontal
-        )
-        for column in (("right", "right below"), ("bottom",)):
-            there = [p for p in column if p in first]
-            self.window.resizeDocks(
-                [first[p] for p in there], [HEIGHTS[p] for p in there], Qt.Orientation.Vertical
-            )
+    def belongs(self, ident: str, workspace: Workspace) -> bool:
+        """Return whether a panel has a place of its own in a workspace, shown at first or not."""
+        panel = self.panels[self.dock(ident).objectName()]
+        return workspace.id == ALL.id or workspace.id in panel.where or workspace.id in panel.opens
 
-    # --- from one time to the next
+    def large(self) -> str:
+        """Return the panel that is large in the present workspace."""
+        there = self._filled(self.workspace).get(self.workspace.large, ())
+        return there[0].objectName() if there else ""
 
-    def restore(self) -> None:
-        """Put docks where they were when the window was last closed."""
-        geometry, state = QSettings().value("geometry"), QSettings().value("state")
-        if isinstance(geometry, QByteArray):
-            self.window.restoreGeometry(geometry)
-        if isinstance(state, QByteArray):
-            self.window.restoreState(state, ARRANGED)
+    def arrange(self, workspace: Workspace, kept: tuple[QByteArray, str] | None = None) -> None:
+        """Put every dock where a workspace has it, or where it was when `kept` was taken by `state`."""
+        self._before, self._shares = None, ""
+        self._show_bars()
+        with self._quietly():
+            if kept is None or not self.window.restoreState(kept[0], ARRANGED):
+                self._settle(workspace)
+            else:
+                self.proportions.read(kept[1])
+            self.workspace = workspace
 
-    @property
-    def restored(self) -> bool:
-        """Whether there is an arrangement from before."""
-        return isinstance(QSettings().value("state"), QByteArray)
+    def _settle(self, workspace: Workspace) -> None:
+        shown = {
+            ident
+            for ident in self.docks
+            if workspace.id == ALL.id or workspace.id in self.panels[ident].where
+        }
+        filled = self._filled(workspace)
+        arrange(self.window, list(self.docks.values()), workspace, filled, shown)
+        self.proportions.want(shares(workspace, filled))
 
-    def save(self) -> None:
-        """Keep the arrangement for the next time."""
-        if self.centre.isVisible():
-            QSettings().setValue("geometry", self.window.saveGeometry())
-            QSettings().setValue("state", self.window.saveState(ARRANGED))
+    def _filled(self, workspace: Workspace) -> dict[str, list[QDockWidget]]:
+        """Return the docks of each area; those that are shown at first come first."""
+        out: dict[str, list[QDockWidget]] = {}
+        rank = {n: (workspace.id not in self.panels[n].where, self.panels[n].rank) for n in self.docks}
+        behind = {n: (self.panels[n].rank > BEHIND, 0) for n in self.docks}
+        order = sorted(self.docks, key=lambda n: behind[n] if workspace.id == ALL.id else rank[n])
+        for ident in order:
+            area = self.area(ident, workspace)
+            if area not in workspace.areas:
+                raise ValueError(f"panel {ident!r}: the workspace {workspace.title} has no area {area!r}")
+            out.setdefault(area, []).append(self.docks[ident])
+        return out
+
+    @contextmanager
+    def _quietly(self) -> Iterator[None]:
+        """Nothing is drawn before everything is in place, and the window stays as large as it is."""
+        window, size = self.window, self.window.size()
+        window.setUpdatesEnabled(False)
+        window.setAnimated(False)
+        try:
+            yield
+        finally:
+            window.setAnimated(True)
+            layout = window.layout()
+            if layout is not None and not window.isMaximized() and not window.isFullScreen():
+                layout.activate()
+                window.resize(size)
+            window.setUpdatesEnabled(True)
+
+    def state(self) -> tuple[QByteArray, str]:
+        """Return how the docks stand now, and which share of the window each has."""
+        state = self._before if self._before is not None else self.window.saveState(ARRANGED)
+        return state, self._shares if self._before is not None else self.proportions.text()

@@ -20,12 +20,15 @@ from app.project.jobs import Jobs
 from app.project.learned import Learned
 from app.project.watching import Watcher
 from app.shell.actions import Actions, Command, Standard
-from app.shell.context import Contribute, Contribution, Services
+from app.shell.context import Contribute, Contribution, HeaderItem, Services
 from app.shell.header import Header
 from app.shell.job_line import JobLine
+from app.shell.keyboard import Keyboard
 from app.shell.notice import Notice
 from app.shell.places import Places
 from app.shell.verbs import Verbs
+from app.shell.workspace_keeper import Workspaces
+from app.shell.workspace_tabs import WorkspaceTabs, commands
 from app.stage.compatibility_state import Compatibility
 from app.stage.problem_watch import ProblemWatch
 from app.stage.stage import Stage
@@ -40,6 +43,7 @@ class WindowShell:
     """
 
     places: Places
+    workspaces: Workspaces
     actions: Actions
 
     def __init__(self, window: QMainWindow) -> None:
@@ -67,7 +71,7 @@ class WindowShell:
         return self.places.panel(ident)
 
     def show(self, ident: str, on: bool = True) -> None:
-        self.places.show(ident, on)
+        self.workspaces.show(ident, on)
         self.actions.refresh()
 
 
@@ -90,22 +94,24 @@ class Window(QMainWindow):
         self.places = shell.places = shell.services.add(
             Places(self, (p for c in self.contributions for p in c.panels), session)
         )
+        self.workspaces = shell.workspaces = shell.services.add(Workspaces(self.places, self))
         shell.importing.drops = tuple(drop for c in self.contributions for drop in c.drops)
-        commands = (command for c in self.contributions for command in c.commands)
-        shell.actions = Actions(self, commands, lambda: session.onstage.mode)
+        offered = (command for c in self.contributions for command in c.commands)
+        shell.actions = Actions(self, offered, lambda: session.onstage.mode)
         self.places.make_early()
         self.menus = shell.actions.fill(self.menuBar())
         self._add_toggles()
-        items = (item for c in self.contributions for item in c.header)
-        self.header = shell.services.add(Header(shell.document, session, shell.actions, items, self))
+        items = [item for c in self.contributions for item in c.header]
+        tabs = HeaderItem("middle", lambda parent: WorkspaceTabs(self.workspaces, shell.actions, parent))
+        self.header = shell.services.add(Header(shell.document, session, shell.actions, [tabs, *items], self))
         self.addToolBar(self.header)
         self.job_line = JobLine(shell.jobs, self)
         self.statusBar().addPermanentWidget(self.job_line)
         self.statusBar().addPermanentWidget(shell.notice)
+        self.keyboard = Keyboard(self, shell.actions)
         self._wire()
         self.resize(1680, 1020)
-        self.places.arrange()
-        self.places.restore()
+        self.workspaces.restore()
         self.restyle()
         self.refresh()
 
@@ -118,7 +124,7 @@ class Window(QMainWindow):
         return Contribution(
             commands=(
                 Command("quit", "&File", "quit", "&Quit", self.close, (Standard.Quit, "Ctrl+Q"), study=True),
-                Command("arrange", "&View", "graph", "&Put the panels back", self.arrange, study=True),
+                *commands(lambda: self.workspaces, self),
                 Command(
                     "theme",
                     "&View",
@@ -156,6 +162,7 @@ class Window(QMainWindow):
             s.onstage.mode_changed,
             shell.stage.performance.live.changed,
             shell.compatibility.changed,
+            self.workspaces.changed,
         ):
             signal.connect(self.refresh)
         s.look.changed.connect(self.restyle)
@@ -202,10 +209,6 @@ class Window(QMainWindow):
             self.shell.compatibility.start()
 
     # --- looks
-
-    def arrange(self) -> None:
-        """Put every panel back where it belongs."""
-        self.places.arrange()
 
     def restyle(self) -> None:
         look = theme(self.shell.stage.session.look.name)
@@ -268,7 +271,7 @@ class Window(QMainWindow):
         if not self.shell.files.may_leave():
             event.ignore()
             return
-        self.places.save()
+        self.workspaces.save()
         self.shell.learned.keep(self.shell.document)
         self.shell.stage.stop()
         for contribution in self.contributions:

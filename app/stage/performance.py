@@ -32,7 +32,7 @@ AHEAD = 15.0  # seconds before the end at which more is planned
 
 class Performance(QObject):
     """changed: something else plays, or the same was planned anew. requests: edits what is asked for. live:
-    begins and ends live play.
+    begins and ends live play. before: the state of the project that clips and actions are shown of instead.
     """
 
     changed = Signal()
@@ -61,6 +61,7 @@ class Performance(QObject):
         self.live.changed.connect(self.replan)
         self.live.ticked.connect(self._ticked)
         self.requests = RequestEdits(document, session, self.live, lambda: self.length)
+        self.before: Project | None = None
         self._answered: Shown | None = None
         self._answers: dict[str, Answer] = {}
 
@@ -70,7 +71,16 @@ class Performance(QObject):
         """Plan anew, soon; many calls in a row make one plan."""
         self._soon.start()
 
+    def compare(self, before: Project | None) -> None:
+        """Show clips and actions alone as they were in another state of the project, or, for None, as they
+        are.
+        """
+        if before is not self.before:
+            self.before = before
+            self.replan()
+
     def _loaded(self) -> None:
+        self.before = None
         self.live.end()
         self.live.last = None
         self.length = LENGTH
@@ -161,6 +171,8 @@ class Performance(QObject):
             return
         self._busy, self._again = True, False
         project, kept, length = self.document.project, self.requests.kept, self.length
+        if self.before is not None and self.session.transport.show != "plan":
+            project = self.before
         manual, fires = self.session.onstage.mode == "manual", self._fires
         show, shown, anew = (
             self.session.transport.show,

@@ -24,12 +24,13 @@ MOVING_SIZE, MOVING_RATE, MOVING_MOST = (
     12,
     72,
 )  # the loop in the stance card: pixels, pictures a second, at most
+STRIP_RATE, STRIP_MOST = 6, 36  # a filmstrip's pictures a second, at most
 
 
 @dataclass(frozen=True)
 class PictureOrder:
-    """what: "card", "bare" or "moving". paper: sRGB 0..1 behind the figure, None for transparent. character:
-    its file. hidden: its meshes that are not drawn.
+    """what: "card", "bare", "moving" or "strip". paper: sRGB 0..1 behind the figure, None for transparent.
+    character: its file. hidden: its meshes that are not drawn.
     """
 
     number: int
@@ -53,6 +54,9 @@ def draw(offscreen: Any, figure: Any, order: PictureOrder) -> list[np.ndarray]:
     if order.what == "moving":
         count = max(1, min(MOVING_MOST, round(motion.duration * MOVING_RATE)))
         frames = np.linspace(0, motion.frames - 1, count, endpoint=False).round().astype(int)
+    elif order.what == "strip":
+        count = max(2, min(STRIP_MOST, round(motion.duration * STRIP_RATE) + 1))
+        frames = np.linspace(0, motion.frames - 1, count).round().astype(int)
     else:
         frames = np.array([telling_frame(motion)])
     size = MOVING_SIZE if order.what == "moving" else SIZE
@@ -95,7 +99,7 @@ def _read(orders: BinaryIO, waiting: _Waiting) -> None:
     try:
         while True:
             order = pickle.load(orders)
-            waiting.put((order.what == "moving", -order.number, order))
+            waiting.put((order.what in ("moving", "strip"), -order.number, order))
     except (EOFError, OSError, pickle.UnpicklingError):
         waiting.put((False, -math.inf, None))
 

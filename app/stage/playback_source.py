@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from metagraph.graph.edits import EditError, place
-from metagraph.graph.model import Layer, Project
+from metagraph.graph.model import Action, Layer, Project
 from metagraph.graph.requests import AnyRequest
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose, Skeleton
@@ -79,6 +79,25 @@ class Shown:
             motion = self.project.clips[self.clip].motion
             return motion.skeleton if motion is not None else None
         return self.project.skeleton
+
+    def clip_seconds(self, action: Action, seconds: float) -> float | None:
+        """Return the moment of an action's clip that plays at a time; None while it does not."""
+        if self.clip is not None:
+            return seconds if self.clip == action.clip else None
+        cue = self.plan.layers[action.layer].cue_at(seconds)
+        if cue is None or cue.action.id != action.id:
+            return None
+        return float(cue.clip_seconds(seconds))
+
+    def seconds_of(self, action: Action, moment: float) -> float | None:
+        """Return a time at which a moment of an action's clip plays, seconds; None where it never does."""
+        if self.clip is not None:
+            return moment if self.clip == action.clip else None
+        for cue in self.plan.layers[action.layer].cues:
+            if cue.action.id == action.id and cue.entry - 1e-6 <= moment <= cue.last + 1e-6:
+                times = np.linspace(cue.start, cue.end, 64)
+                return float(np.interp(moment, cue.clip_seconds(times), times))
+        return None
 
     def pose(self, seconds: Any) -> Pose | None:
         """Return the pose at a time, or at many, None when there is nothing to show."""

@@ -22,6 +22,10 @@ class Playhead:
             return
         seconds = transport.seconds + elapsed * transport.speed
         length = self.performance.shown.length
+        part = transport.part
+        if part is not None and (transport.show, transport.shown) == ("clip", part[0]) and seconds >= part[2]:
+            transport.seek(part[1] + (seconds - part[1]) % max(part[2] - part[1], 1e-3))
+            return
         endless = not self.performance.ends and transport.show == "plan" and not transport.loop
         if endless:
             self.performance.plan_beyond(seconds)

@@ -10,6 +10,7 @@ from app.look.theme_choice import ThemeChoice
 from app.project.document import Document
 from app.stage.current_place import CurrentPlace
 from app.stage.on_stage import Mode, OnStage
+from app.stage.onion import Onion
 from app.stage.selection import Selection
 from app.stage.transport import Transport
 from metagraph.graph.manual import Manual
@@ -20,7 +21,7 @@ OPENED_ON: tuple[Layer, ...] = ("arms", "body", "head")
 
 class Session(QObject):
     """place: layer and stance. selection. onstage: who is on stage, and in which mode. transport: the
-    playhead. look: the theme.
+    playhead. look: the theme. onion: other moments to be seen beside the present one.
     """
 
     def __init__(self, document: Document, parent: QObject | None = None) -> None:
@@ -31,6 +32,7 @@ class Session(QObject):
         self.onstage = OnStage(self)
         self.transport = Transport(self)
         self.look = ThemeChoice(self)
+        self.onion = Onion(self)
         document.changed.connect(self._follow)
 
     def set_mode(self, mode: Mode) -> None:

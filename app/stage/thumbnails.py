@@ -72,6 +72,12 @@ class Thumbnails(QObject):
         found = self._get(clip, "moving")
         return found[beat % len(found)] if found else self.picture(clip, bare=True)
 
+    def strip(self, clip: str) -> list[QImage]:
+        """Return pictures of a clip's poses from its first frame to its last, evenly apart, transparent
+        behind the figure; none until they are drawn.
+        """
+        return self._get(clip, "strip") or []
+
     def _get(self, clip: str, what: str) -> list[QImage] | None:
         entry = self.document.project.clips.get(clip)
         motion = entry.motion if entry is not None else None

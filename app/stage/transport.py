@@ -15,12 +15,13 @@ Show = Literal["plan", "clip", "context"]
 
 class Transport(QObject):
     """playing_changed, moved: the playhead; seconds. show_changed: the preview shows something else (see
-    `show`).
+    `show`). part_changed: another part of a clip is played again and again.
     """
 
     playing_changed = Signal()
     moved = Signal(float)
     show_changed = Signal()
+    part_changed = Signal()
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -31,6 +32,7 @@ class Transport(QObject):
         self.show: Show = "plan"
         self.shown: str | None = None  # the clip (or action) shown alone or in context
         self.tried: str | None = None  # the stance a clip is shown on as if it were placed there
+        self.part: tuple[str, float, float] | None = None  # of a clip shown alone: id, first and last second
         self._plan_seconds = 0.0  # where the performance was left
 
     def set_playing(self, playing: bool) -> None:
@@ -42,6 +44,21 @@ class Transport(QObject):
         """Move the playhead; `moved` is emitted."""
         self.seconds = max(0.0, seconds)
         self.moved.emit(self.seconds)
+
+    def set_part(self, part: tuple[str, float, float] | None) -> None:
+        """Play only a part of a clip, again and again, whenever that clip is shown alone: its id, first and
+        last second; None for all of it.
+        """
+        if part != self.part:
+            self.part = part
+            self.part_changed.emit()
+
+    def scrub(self, clip: str, seconds: float) -> None:
+        """Show a clip alone, still, at a moment."""
+        if (self.show, self.shown) != ("clip", clip):
+            self._show("clip", clip)
+        self.set_playing(False)
+        self.seek(seconds)
 
     def show_plan(self) -> None:
         """Play the whole performance, from where it was left."""

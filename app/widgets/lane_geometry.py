@@ -11,8 +11,9 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QFont, QFontMetricsF
+from PySide6.QtGui import QFont
 
+from app.look.names import measured
 from app.stage.playback_source import Shown
 from app.widgets.request_menu import STAGE, kind_of, lane_of, request_words
 from metagraph.graph.model import LAYERS, Layer, Project
@@ -209,18 +210,10 @@ def told(mark: Mark, editable: bool = True) -> str:
 @lru_cache(maxsize=8192)
 def advance(words: str, font: str) -> float:
     """Return how wide words are in a font, given as `QFont.toString` does."""
-    return _measure(font).horizontalAdvance(words)
+    return measured(font).horizontalAdvance(words)
 
 
 @lru_cache(maxsize=8192)
-def elided(text: str, font: str, width: int, middle: bool = False) -> str:
-    """Return as much of a text as there is room for. middle: leave that out, and not the end of a name."""
-    mode = Qt.TextElideMode.ElideMiddle if middle else Qt.TextElideMode.ElideRight
-    return _measure(font).elidedText(text, mode, width)
-
-
-@lru_cache(maxsize=8)
-def _measure(font: str) -> QFontMetricsF:
-    made = QFont()
-    made.fromString(font)
-    return QFontMetricsF(made)
+def elided(text: str, font: str, width: int) -> str:
+    """Return as much of a text as there is room for, from its beginning."""
+    return measured(font).elidedText(text, Qt.TextElideMode.ElideRight, width)

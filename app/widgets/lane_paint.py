@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
-from app.look.plural import short
+from app.look.names import fitted, node_names, plain
 from app.look.theme import KIND_MARKS, Theme
 from app.stage.playback_source import Shown
 from app.widgets.lane_geometry import LEFT, RULER, TITLES, Mark, Scale, elided, lanes, rows
@@ -21,6 +21,7 @@ from metagraph.graph.model import LAYERS, Action, Layer, Project
 INK = "#17181b"  # on the kinds' fills
 PLAIN = 5.0  # pixels up to which a bar is a plain stroke without words
 NARROW = 12.0  # the same of a request
+SIGNS = frozenset(KIND_MARKS.values())
 MIDDLE = Qt.AlignmentFlag.AlignVCenter
 
 
@@ -59,14 +60,14 @@ def paint(painter: QPainter, t: Theme, scene: LaneScene) -> None:
         _ties(painter, t, scene)
         for mark in scene.marks:
             if mark.rect.right() >= LEFT and mark.rect.left() <= scene.width:
-                _mark(painter, t, mark, mark.ask.id in scene.asks)
+                _mark(painter, t, mark, mark.ask.id in scene.asks, scene.width)
     else:
         entry = scene.shown.project.clips[scene.shown.clip]
         area = rows(lanes(scene.height)["body"])[1]
         rect = QRectF(
             scene.scale.x(0), area.top(), max(2.0, entry.duration * scene.scale.each), area.height()
         )
-        _bar(painter, t, rect, QColor(t.line), entry.name, t.text, False)
+        _bar(painter, t, rect, QColor(t.line), plain(entry.name), t.text, False, True, scene.width)
     if scene.ends is not None and (x := scene.scale.x(scene.ends)) < scene.width:
         veil = QColor(t.ground)
         veil.setAlpha(150)
@@ -102,8 +103,8 @@ def _ruler(painter: QPainter, t: Theme, scene: LaneScene) -> None:
     painter.setPen(QColor(t.dim))
     while scale.x(mark) < scene.width:
         x = scale.x(mark)
-        if x >= LEFT - 1:
-            words = f"{mark:g} s" if step < 60 else f"{mark / 60:g} min"
+        words = f"{mark:g} s" if step < 60 else f"{mark / 60:g} min"
+        if x >= LEFT - 1 and x + painter.fontMetrics().horizontalAdvance(words) / 2 + 1 <= scene.width:
             painter.drawText(QRectF(x - 40, 0, 80, RULER), Qt.AlignmentFlag.AlignCenter, words)
         mark = round(mark + step, 3)
 
@@ -124,7 +125,7 @@ def _stage(painter: QPainter, t: Theme, scene: LaneScene) -> None:
         left, right = scale.x(speech.start), scale.x(speech.end)
         if right > LEFT and left < scene.width:
             rect = QRectF(left, area.top(), max(3.0, right - left - 1), area.height() - 3)
-            _bar(painter, t, rect, QColor(t.hover), speech.text, t.text, False)
+            _bar(painter, t, rect, QColor(t.hover), speech.text, t.text, False, width=scene.width)
 
 
 def _layer(painter: QPainter, t: Theme, scene: LaneScene, layer: Layer) -> None:
@@ -141,32 +142,60 @@ def _layer(painter: QPainter, t: Theme, scene: LaneScene, layer: Layer) -> None:
     stances = [first or "", *(cue.then for cue in plan.cues if cue.then != cue.stance)] if plan.rests else []
     fill = t.fill("stance")
     fill.setAlpha(70 if t.name == "dark" else 90)
+    first_cue = bisect_left(plan.cues, begin, key=lambda c: c.end)
+    cues = [c for c in plan.cues[first_cue:] if c.start <= end]
+    spans = [(scale.x(c.start), max(scale.x(c.start) + 3.0, scale.x(c.end) - 1)) for c in cues]
     for stance, a, b in zip(stances, edges, edges[1:], strict=False):
         if b < begin or a > end:
             continue
         found = shown.project.stance(stance)
         left, right = max(scale.x(a), LEFT - 8.0), min(scale.x(b), scene.width + 8.0)
         rect = QRectF(left, area.top(), right - left - 1, area.height())
-        _bar(painter, t, rect, fill, found.name if found else "", t.text, False)
-    for n in range(bisect_left(plan.cues, begin, key=lambda c: c.end), len(plan.cues)):
-        cue = plan.cues[n]
-        if cue.start > end:
-            break
-        left = scale.x(cue.start)
-        rect = QRectF(left, area.top(), max(3.0, scale.x(cue.end) - left - 1), area.height())
-        words = f"{KIND_MARKS[cue.action.kind]} {cue_words(shown.project, cue.action)}"
+        _bar(painter, t, rect, fill, "", t.text, False)
+        if found is not None:
+            _in_the_clear(painter, t, rect, found.name, scene.width, spans)
+    names = [cue_words(shown.project, c.action) for c in cues]
+    beside = tuple(sorted(set(names)))
+    for cue, name, (left, right) in zip(cues, names, spans, strict=True):
+        words = f"{KIND_MARKS[cue.action.kind]} {name}"
+        rect = QRectF(left, area.top(), right - left, area.height())
         selected = cue.action.id in scene.actions
-        _bar(painter, t, rect, t.fill(cue.action.kind), words, INK, selected, middle=True)
+        fill = t.fill(cue.action.kind)
+        _bar(painter, t, rect, fill, words, INK, selected, True, scene.width, beside)
+
+
+def _in_the_clear(
+    painter: QPainter,
+    t: Theme,
+    rect: QRectF,
+    words: str,
+    width: float,
+    spans: Sequence[tuple[float, float]],
+) -> None:
+    """Write a stance's name on its band where nothing plays over it: where it first has room, else where it
+    has most.
+    """
+    at, gaps = max(rect.left(), LEFT), []
+    end = min(rect.right(), width)
+    for left, right in spans:
+        if right > at and left < end:
+            gaps.append((at, left))
+            at = max(at, right)
+    gaps.append((at, end))
+    wanted = painter.fontMetrics().horizontalAdvance(words) + 12
+    found = next((g for g in gaps if g[1] - g[0] >= wanted), max(gaps, key=lambda g: g[1] - g[0]))
+    inner = QRectF(found[0] + 7, rect.top(), found[1] - found[0] - 10, rect.height())
+    if inner.width() > 10:
+        painter.setPen(QColor(t.text))
+        out = fitted(words, int(inner.width()), painter.font().toString())
+        if len(out) > 4 or out == words:
+            painter.drawText(inner, MIDDLE, out)
 
 
 def cue_words(project: Project, action: Action) -> str:
-    """Return what tells an action from the others of its stance, which stands on the band behind it: without
-    the number of the take.
-    """
-    stance = project.stance(action.stance)
-    words = short(action.name, stance.name) if stance is not None else action.name
-    words = words.replace("_", " ").strip()
-    return words.rstrip("0123456789()").rstrip(" .-#") or words
+    """Return what tells an action from the others of its node; its stance stands on the band behind it."""
+    names = node_names(project, action.layer, action.stance, action.kind)
+    return names.get(action.id) or plain(action.name)
 
 
 def _bar(
@@ -178,6 +207,8 @@ def _bar(
     ink: str,
     selected: bool,
     middle: bool = False,
+    width: float = 1e6,
+    beside: tuple[str, ...] = (),
 ) -> None:
     if rect.width() <= PLAIN and not selected:
         painter.fillRect(rect, fill)
@@ -186,18 +217,26 @@ def _bar(
     painter.setBrush(fill)
     painter.drawRoundedRect(rect, 4, 4)
     left = max(rect.left(), LEFT)
-    inner = QRectF(left + 7, rect.top(), rect.right() - left - 10, rect.height())
+    inner = QRectF(left + 7, rect.top(), min(rect.right(), width) - left - 10, rect.height())
     if inner.width() > 10 and words:
         painter.setPen(QColor(ink))
-        painter.drawText(inner, MIDDLE, _fitting(painter, words, inner.width(), middle))
+        painter.drawText(inner, MIDDLE, _fitting(painter, words, inner.width(), middle, beside))
 
 
-def _fitting(painter: QPainter, words: str, width: float, middle: bool = False) -> str:
-    """Return as much of the words as there is room for; where there is none to speak of, the sign in front of
-    them alone.
+def _fitting(
+    painter: QPainter, words: str, width: float, middle: bool = False, beside: tuple[str, ...] = ()
+) -> str:
+    """Return as much of the words as there is room for, told apart from those `beside`; where there is no
+    room to speak of, the sign in front of them alone.
     """
-    out = elided(words, painter.font().toString(), int(width), middle)
-    return out if len(out) > 3 or out == words else words[:1]
+    key = painter.font().toString()
+    if not middle:
+        out = elided(words, key, int(width))
+        return out if len(out) > 3 or out == words else words[:1]
+    sign = f"{words[0]} " if words[:1] in SIGNS else ""
+    room = int(width - painter.fontMetrics().horizontalAdvance(sign))
+    out = fitted(words[len(sign) :], room, key, beside, sure=True)
+    return sign + out if len(out) > 3 or sign + out == words else words[:1]
 
 
 def _ties(painter: QPainter, t: Theme, scene: LaneScene) -> None:
@@ -214,7 +253,7 @@ def _ties(painter: QPainter, t: Theme, scene: LaneScene) -> None:
         painter.drawLine(QPointF(x, mark.rect.bottom()), QPointF(to, rows(lane)[1].top()))
 
 
-def _mark(painter: QPainter, t: Theme, mark: Mark, selected: bool) -> None:
+def _mark(painter: QPainter, t: Theme, mark: Mark, selected: bool, width: float) -> None:
     color = QColor(t.warning) if mark.lost else t.kind(mark.kind) if mark.kind else QColor(t.dim)
     if mark.rect.width() <= NARROW and not selected:
         painter.fillRect(mark.rect.adjusted(0, 1, -1, -1), color)
@@ -225,6 +264,7 @@ def _mark(painter: QPainter, t: Theme, mark: Mark, selected: bool) -> None:
     painter.setBrush(QColor(t.hover if selected else t.card))
     painter.drawRoundedRect(mark.rect.adjusted(0, 0.5, 0, -0.5), 4, 4)
     inner = mark.rect.adjusted(6, 0, -4, 0)
+    inner.setRight(min(inner.right(), width - 2))
     painter.setPen(QColor(t.warning if mark.lost else t.text))
     words = f"⚠ {mark.words}" if mark.lost else mark.words
     painter.drawText(inner, MIDDLE, _fitting(painter, words, inner.width()))

@@ -6,13 +6,15 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from PySide6.QtCore import QMimeData, QRectF, Qt
-from PySide6.QtGui import QFontMetricsF, QPainter, QPixmap
+from PySide6.QtGui import QFontMetricsF, QImage, QPainter, QPixmap
 from PySide6.QtWidgets import QWidget
 
+from app.look.names import fitting
 from app.project.load import ANNOTATIONS, Load
 from app.project.speech_files import kinds_of
 from metagraph.formats.clips import SUFFIXES
 
+PICTURE, WIDEST = 84, 200.0  # pixels of what is carried: its picture, its name
 CLIPS = "application/x-metagraph-clips"
 ACTIONS = "application/x-metagraph-actions"
 
@@ -46,21 +48,25 @@ def sounds_of(data: QMimeData) -> tuple[Path, ...]:
     return (*sounds, *transcripts) if sounds else ()
 
 
-def drag_picture(text: str, widget: QWidget) -> QPixmap:
-    """Return a small label to carry under the pointer."""
+def drag_picture(text: str, widget: QWidget, picture: QImage | None = None) -> QPixmap:
+    """Return what is carried under the pointer: a card with a picture, where there is one, over a name."""
     metrics = QFontMetricsF(widget.font())
     ratio = widget.devicePixelRatioF()
-    out = QPixmap(round((metrics.horizontalAdvance(text) + 24) * ratio), round(28 * ratio))
+    text = fitting(text, WIDEST, metrics.horizontalAdvance)
+    wide = max(metrics.horizontalAdvance(text) + 24, PICTURE + 16 if picture is not None else 0)
+    high = 28 + (PICTURE if picture is not None else 0)
+    out = QPixmap(round(wide * ratio), round(high * ratio))
     out.setDevicePixelRatio(ratio)
     out.fill(Qt.GlobalColor.transparent)
     painter = QPainter(out)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    painter.setRenderHints(QPainter.RenderHint.Antialiasing | QPainter.RenderHint.SmoothPixmapTransform)
     painter.setBrush(widget.palette().toolTipBase())
     painter.setPen(widget.palette().mid().color())
-    rect = out.deviceIndependentSize()
-    painter.drawRoundedRect(QRectF(0.5, 0.5, rect.width() - 1, rect.height() - 1), 6, 6)
+    painter.drawRoundedRect(QRectF(0.5, 0.5, wide - 1, high - 1), 6, 6)
+    if picture is not None:
+        painter.drawImage(QRectF((wide - PICTURE) / 2, 4, PICTURE, PICTURE), picture)
     painter.setPen(widget.palette().text().color())
     painter.setFont(widget.font())
-    painter.drawText(0, 0, round(rect.width()), round(rect.height()), Qt.AlignmentFlag.AlignCenter, text)
+    painter.drawText(QRectF(0, high - 28, wide, 28), Qt.AlignmentFlag.AlignCenter, text)
     painter.end()
     return out

@@ -1,10 +1,40 @@
-"""A sentence that gives way where there is no room for it."""
+"""Sentences that give way where there is no room for them."""
 
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLabel, QSizePolicy, QWidget
+
+from app.look.names import fitting
+
+
+class OneLine(QLabel):
+    """A line whose middle gives way where there is no room for it; a tooltip then tells all of it. more: what
+    the tooltip says besides.
+    """
+
+    def __init__(self, parent: QWidget, more: str = "") -> None:
+        super().__init__(parent)
+        self.words, self.more = "", more
+        self.setTextFormat(Qt.TextFormat.PlainText)
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+
+    def say(self, words: str) -> None:
+        """Show words."""
+        if words != self.words:
+            self.words = words
+            self._fit()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
+
+    def _fit(self) -> None:
+        shown = fitting(self.words, max(1, self.width() - 2), self.fontMetrics().horizontalAdvance)
+        self.setText(shown)
+        self.setToolTip("\n".join(x for x in (self.words if shown != self.words else "", self.more) if x))
+        self.setAccessibleName(self.words)
 
 
 class Sentence(QLabel):

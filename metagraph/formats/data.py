@@ -7,7 +7,7 @@ Fields at their default are left out, floats are rounded to microseconds, so tha
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from functools import lru_cache
 from typing import Any
@@ -54,7 +54,9 @@ from metagraph.graph.model import (
     Timing,
 )
 from metagraph.graph.requests import words_of
+from metagraph.motion.contact_hold import Contact
 from metagraph.motion.joint_map import JointMap
+from metagraph.motion.retime import LONGEST, MOST, SPEEDS, Hold, Retime
 from metagraph.motion.skeleton import Skeleton
 
 FORMAT = 1  # of the project file; older ones are upgraded when read
@@ -65,8 +67,17 @@ def action_data(action: Action) -> Data:
     return {**sparse(action, ("timing", "layer")), **sparse(action.timing)}
 
 
+_CONTACT = ("upper", "lower", "hand", "to", "first", "last")
+
+
 def clip_data(entry: ClipEntry) -> Data:
-    out = sparse(entry, ("motion", "digest"))
+    out = sparse(entry, ("motion", "source", "digest", "retime"))
+    if entry.retime.speed != 1.0:
+        out["speed"] = plain(entry.retime.speed)
+    if entry.retime.contacts:
+        out["contacts"] = [{n: plain(getattr(c, n)) for n in _CONTACT} for c in entry.retime.contacts]
+    if entry.retime.holds:
+        out["holds"] = [{"at": plain(h.at), "seconds": plain(h.seconds)} for h in entry.retime.holds]
     if entry.digest:
         out["sha256"] = entry.digest
     return out
@@ -160,6 +171,7 @@ STRUCTS: dict[str, Any] = {
     "conversations": dict[str, Conversation],
     "tiers": dict[str, str],
     "labels": dict[str, str],
+    "notes": dict[str, str],
     "joint_maps": dict[str, JointMap],
 }
 
@@ -209,7 +221,12 @@ def struct_from(data: Any, kind: Any, where: str) -> Any:
 # --- reading
 
 _ACTION_FIELDS = ({f.name for f in fields(Action)} | {f.name for f in fields(Timing)}) - {"layer", "timing"}
-_CLIP_FIELDS = ({f.name for f in fields(ClipEntry)} | {"sha256"}) - {"motion", "digest"}
+_CLIP_FIELDS = ({f.name for f in fields(ClipEntry)} | {"sha256", "speed", "holds", "contacts"}) - {
+    "motion",
+    "source",
+    "digest",
+    "retime",
+}
 _PROJECT_FIELDS = ({f.name for f in fields(Project)} | {"metagraph", "layers"}) - {"graphs", "voices"}
 
 
@@ -226,13 +243,44 @@ def action_from(data: Data, layer: Layer, where: str) -> Action:
 
 def _clip_from(data: Data, where: str) -> ClipEntry:
     known(data, _CLIP_FIELDS, where)
-    values = fill(ClipEntry, data, where, ("motion", "digest"))
+    values = fill(ClipEntry, data, where, ("motion", "source", "digest", "retime"))
     for key in ("name", "path"):
         if key not in values:
             raise DataError(f"{where}.{key}", "is missing")
     for name in values.get("as_is", ()):
         one_of(name, REPAIRS, f"{where}.as_is")
-    return ClipEntry(digest=get(data, "sha256", str, where, ""), **values)
+    return ClipEntry(digest=get(data, "sha256", str, where, ""), retime=_retime_from(data, where), **values)
+
+
+def _retime_from(data: Data, where: str) -> Retime:
+    speed = get(data, "speed", float, where, 1.0)
+    low, high = SPEEDS
+    if not low <= speed <= high:
+        raise DataError(f"{where}.speed", f"should be between {low:g} and {high:g}, found {speed:g}")
+    holds = []
+    for n, item in enumerate(get(data, "holds", list, where, ())):
+        place = f"{where}.holds[{n}]"
+        at, seconds = get(item, "at", float, place), get(item, "seconds", float, place)
+        known(item, ("at", "seconds"), place)
+        if not 0 <= at <= 1e5:
+            raise DataError(f"{place}.at", f"should be 0 or more, found {at:g}")
+        if not 0 < seconds <= LONGEST:
+            raise DataError(f"{place}.seconds", f"should be above 0 and up to {LONGEST:g}, found {seconds:g}")
+        holds.append(Hold(at, seconds))
+    if len(holds) > MOST or len({h.at for h in holds}) < len(holds):
+        raise DataError(f"{where}.holds", f"should be at most {MOST}, at different moments")
+    return Retime(speed, tuple(sorted(holds, key=lambda h: h.at)), tuple(_contacts_from(data, where)))
+
+
+def _contacts_from(data: Data, where: str) -> Iterator[Contact]:
+    for n, item in enumerate(get(data, "contacts", list, where, ())):
+        place = f"{where}.contacts[{n}]"
+        upper, lower, hand, to = (get(item, name, str, place) for name in _CONTACT[:4])
+        first, last = (get(item, name, float, place) for name in _CONTACT[4:])
+        known(item, _CONTACT, place)
+        if not 0 <= first < last <= 1e5:
+            raise DataError(f"{place}.first", f"should be 0 or more and before last, found {first:g}")
+        yield Contact(upper, lower, hand, to, first, last)
 
 
 def skeleton_from(joints: list[Any], where: str = "skeleton") -> Skeleton | None:

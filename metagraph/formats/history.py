@@ -153,7 +153,7 @@ def with_motion(
 
 
 def _source(entry: ClipEntry) -> tuple[Any, ...]:
-    return entry.path, entry.take, entry.as_is, entry.brought_from
+    return entry.path, entry.take, entry.as_is, entry.brought_from, entry.retime
 
 
 def _filled(entry: ClipEntry, read: Mapping[tuple[Any, ...], ClipEntry]) -> ClipEntry:
@@ -167,5 +167,6 @@ def _filled(entry: ClipEntry, read: Mapping[tuple[Any, ...], ClipEntry]) -> Clip
         frames=found.frames,
         fps=found.fps,
         motion=found.motion.renamed(entry.name),
+        source=found.source,
         brought_from=found.brought_from,
     )

@@ -11,6 +11,7 @@ from pathlib import Path
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.store import load_motions
 from metagraph.formats.takes import NAME, ONE_FRAME
+from metagraph.graph.clip_source import source_of, with_source
 from metagraph.graph.edits import EditError, add_clips, remove_clips
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
@@ -169,7 +170,7 @@ def _fitting(
         skeleton = odd[0].motion.skeleton
         try:
             return {
-                i: replace(e, motion=adopt(e.motion, skeleton))
+                i: with_source(e, adopt(source_of(e) or e.motion, skeleton))
                 for i, e in entries.items()
                 if e.motion is not None
             }, skeleton

@@ -23,6 +23,7 @@ from metagraph.formats.data import FORMAT, from_data, to_data
 from metagraph.formats.fbx_readers import batch
 from metagraph.formats.fields import Data, DataError
 from metagraph.formats.text import TextError, parse, to_text
+from metagraph.graph.clip_source import source_of, with_source
 from metagraph.graph.conversation import Conversation, Side
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.graph.project_retargeting import Bringing
@@ -354,9 +355,7 @@ def _load(
                 motion = adopt(motion, skeleton)
             except SkeletonMismatchError:
                 strangers.append(entry.id)
-            clips[entry.id] = replace(
-                entry, path=path, digest=now, frames=motion.frames, fps=motion.fps, motion=motion
-            )
+            clips[entry.id] = with_source(replace(entry, path=path, digest=now), motion)
     project = replace(project, clips=clips, skeleton=skeleton)
     return Opened(_brought(project, strangers, notes) if strangers else project, tuple(dict.fromkeys(notes)))
 
@@ -369,7 +368,7 @@ def _brought(project: Project, strangers: Iterable[str], notes: list[str]) -> Pr
     clips = dict(project.clips)
     for ident in strangers:
         entry = clips[ident]
-        motion: Clip = entry.motion  # type: ignore[assignment]
+        motion: Clip = source_of(entry)  # type: ignore[assignment]
         joint_map = bringing.known(motion)
         if joint_map is None:
             if entry.brought_from:
@@ -384,7 +383,7 @@ def _brought(project: Project, strangers: Iterable[str], notes: list[str]) -> Pr
                 f"'{entry.path}' could not be retargeted: {error}. Import it again to map its joints anew."
             )
             continue
-        clips[ident] = replace(entry, motion=motion, brought_from=motion.brought_from)
+        clips[ident] = with_source(replace(entry, brought_from=motion.brought_from), motion)
     return replace(project, clips=clips)
 
 

@@ -32,6 +32,7 @@ _REST = (
     "face",
     "tiers",
     "labels",
+    "notes",
     "joint_maps",
     "skeleton",
 )

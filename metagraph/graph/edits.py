@@ -12,6 +12,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from metagraph.graph.clip_source import with_source
 from metagraph.graph.manual import without_clips
 from metagraph.graph.model import (
     PARTS,
@@ -72,20 +73,17 @@ def add_clips(project: Project, loaded: Iterable[tuple[str, int, str, Clip]]) ->
         before = known.get((path, take))
         entry = before or ClipEntry(f"c{next_id}", clip.name, path, take)
         next_id += 0 if before else 1
-        clips[entry.id] = replace(
-            entry,
-            digest=digest,
-            frames=clip.frames,
-            fps=clip.fps,
-            brought_from=clip.brought_from,
-            motion=clip,
-        )
+        entry = replace(entry, digest=digest, brought_from=clip.brought_from)
+        clips[entry.id] = with_source(entry, clip)
     return replace(project, clips=clips, skeleton=skeleton, next_id=next_id)
 
 
 def with_motions(project: Project, motions: Mapping[str, Clip]) -> Project:
     """Return the project with loaded motion filled in for clip ids; what is saved does not change."""
-    clips = {i: replace(e, motion=motions[i]) if i in motions else e for i, e in project.clips.items()}
+    clips = {
+        i: replace(with_source(e, motions[i]), frames=e.frames, fps=e.fps) if i in motions else e
+        for i, e in project.clips.items()
+    }
     return replace(project, clips=clips)
 
 

@@ -18,6 +18,7 @@ from metagraph.graph.requests import Line, Performance, Point
 from metagraph.graph.words import KINDS, LAYERS, LIMBS, MODES, PARTS, Kind, Layer, Limb, Mode, Part
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import JointMap
+from metagraph.motion.retime import Retime
 from metagraph.motion.skeleton import Skeleton
 
 __all__ = [
@@ -257,11 +258,12 @@ class ClipEntry:
     """A clip the project knows. path: relative to the project file, `/` between folders. take: which
     animation in the file.
 
-    digest: SHA-256 of the file, hex. frames, fps: as last read. as_is: names of repairs that are not made
+    digest: SHA-256 of the file, hex. frames, fps: as it plays. as_is: names of repairs that are not made
     when it is read (`formats.takes.REPAIRS`). brought_from: fingerprint of the skeleton it is retargeted
     from, "" where the file has the project's own. made_by, made_seed: the learned model that made it, and
-    with what chance; "" for clips that were not generated. motion: the loaded clip, None while the file is
-    missing.
+    with what chance; "" for clips that were not generated. retime: how it is played faster, slower and held.
+    motion: the loaded clip as it plays, None while the file is missing. source: as it was read, where that is
+    another (see `graph.retiming`).
     """
 
     id: str
@@ -272,10 +274,12 @@ class ClipEntry:
     frames: int = 0
     fps: float = 30.0
     motion: Clip | None = field(default=None, compare=False, repr=False)
+    source: Clip | None = field(default=None, compare=False, repr=False)
     as_is: tuple[str, ...] = ()
     brought_from: str = ""
     made_by: str = ""
     made_seed: int = 0
+    retime: Retime = field(default_factory=Retime)
 
     @property
     def duration(self) -> float:
@@ -351,7 +355,8 @@ class Project:
     character: path of the GLB to draw, relative to the project file, or None for a stick figure. hidden:
     names of its meshes that are not drawn. points:
     named places to look at, metres. lines: the dialogue an agent calls by id. performances, conversations:
-    those kept, by id. tiers: annotation tier -> what it was last read as. joint_maps: how clips of other
+    those kept, by id. tiers: annotation tier -> what it was last read as. notes: to read, by the id of the
+    action they are on, "" for the project's own. joint_maps: how clips of other
     skeletons are retargeted, by `joint_map.fingerprint` of theirs. manual: state machines drawn by hand, of
     the layers that have one. voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as
     read; never saved. body: what of it breathes and looks (`playback.life.body.Body`) as an export says; None
@@ -377,6 +382,7 @@ class Project:
     conversations: Mapping[str, Conversation] = field(default_factory=dict)
     tiers: Mapping[str, str] = field(default_factory=dict)
     labels: Mapping[str, str] = field(default_factory=dict)
+    notes: Mapping[str, str] = field(default_factory=dict)
     joint_maps: Mapping[str, JointMap] = field(default_factory=dict)
     manual: Mapping[Layer, Manual] = field(default_factory=dict)
     voices: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)

@@ -175,7 +175,8 @@ def reset(window: Any) -> None:
             window.places.show(panel.id, False)
     reset_panels(window)
     settle(window)
-    window.arrange()
+    window.workspaces.restore()  # there are no settings: as at first
+    window.workspaces.everything()
     shell.notice.clear()
     window.statusBar().clearMessage()
     QSettings().clear()

@@ -32,8 +32,8 @@ PLAIN = (bool, int, float, str, bytes, Path, Enum, type(None))
 # What differs without a difference: what is counted, kept for speed, or drawn from it when there is occasion.
 PASSING = frozenset(
     """common frames owner painted pictures seconds sounds _beat _by_keys _came _clips _counted _curves
-    _era _guests _journal _known _last _layout _marks _matrices _missing _paths _places
-    _plan_seconds _played _read _rest _rows _skinned _sticks _still _voices""".split()  # noqa: SIM905 - thirty quotes more to read
+    _dialogs _era _guests _journal _known _last _layout _marks _matrices _missing _named _paths _places
+    _plan_seconds _played _read _rest _rows _skinned _sticks _still _voices _watched""".split()  # noqa: SIM905 - thirty quotes more to read
 )
 
 
@@ -78,6 +78,8 @@ def _parts(part: QObject, place: str) -> Iterator[tuple[str, QObject]]:
         if isinstance(child, QTabBar) and isinstance(part, QMainWindow):
             continue  # Qt hands them out anew; docks tell which is in front
         name = child.objectName() or type(child).__name__
+        if name.startswith("qt_scrollarea_") and name.endswith("container"):
+            continue  # scroll bars are set back, and those of what is behind another panel are laid out when it comes to the front
         n = count[name] = count.get(name, -1) + 1
         yield from _parts(child, f"{place}/{name}{n or ''}")
 

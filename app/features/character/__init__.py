@@ -11,6 +11,7 @@ from app.project.files import Files
 from app.shell.actions import Command
 from app.shell.context import Contribution, Panel, Shell
 from app.shell.places import Places
+from app.shell.workspace_keeper import Workspaces
 from metagraph.graph import edits
 
 FRAME = 1 / 30  # seconds of a step
@@ -31,6 +32,7 @@ def contribute(shell: Shell) -> Contribution:
         )
         panel.view.failed.connect(shell.tell)
         panel.view.painted.connect(lambda _: stage.painted.emit())
+        shell.services[Workspaces].changed.connect(lambda: panel.set_bare(shell.services[Places].alone))
         return panel
 
     def preview() -> PreviewPanel:
@@ -61,6 +63,11 @@ def contribute(shell: Shell) -> Contribution:
         if ident is not None:
             session.show_context(ident)
 
+    def only() -> None:
+        places = shell.services[Places]
+        places.only("character")
+        preview().set_bare(places.alone)
+
     def show_meshes() -> None:
         from app.features.character.meshes_dialog import MeshesDialog
 
@@ -70,7 +77,23 @@ def contribute(shell: Shell) -> Contribution:
     some = lambda: bool(session.selection.clips or session.selection.actions)  # noqa: E731
     sound, play, view = stage.sound, "&Play", "&View"
     return Contribution(
-        panels=(Panel("character", "Character", "right", make, late=False),),
+        panels=(
+            Panel(
+                "character",
+                "Character",
+                "right",
+                make,
+                late=False,
+                where={
+                    "graph": "side",
+                    "label": "side",
+                    "time": "large",
+                    "perform": "large",
+                    "talk": "large",
+                },
+                least=(300, 230),
+            ),
+        ),
         commands=(
             Command(
                 "character",
@@ -200,7 +223,7 @@ def contribute(shell: Shell) -> Contribution:
                 view,
                 "character",
                 "Only the &character",
-                lambda: shell.services[Places].only("character"),
+                only,
                 ("F11",),
                 study=True,
             ),

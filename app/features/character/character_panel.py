@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from PySide6.QtCore import QElapsedTimer, Qt, QTimer
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtCore import QElapsedTimer, QMargins, Qt, QTimer
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from app.features.character.no_mesh import NoMesh
 from app.look import icons
+from app.look.names import plain
 from app.look.theme import theme
 from app.stage.figures import Figures
 from app.stage.gl_view import make_view
@@ -19,6 +21,7 @@ from app.stage.playhead import Playhead
 from app.stage.session import Session
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, Scrub
+from app.widgets.sentence import OneLine
 from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
 from preview.camera import close_up, whole_figure
@@ -27,7 +30,10 @@ from preview.scene import THEMES, Actor, Scene
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
 BASE_TIP = "The pose all layers are added to. Right-click a clip in the library to take it from there."
+NOW = 0.03  # seconds from the present moment within which a ghost would only blur the figure
 FRAME = 16  # milliseconds between frames
+HINT = 4000  # milliseconds for which it is told how to come back
+WIDE = 560  # pixels from which the playhead stands in the line of the buttons
 
 
 class PreviewPanel(QWidget):
@@ -52,6 +58,14 @@ class PreviewPanel(QWidget):
         self.view.frame_wanted.connect(self.frame_all)
         self.view.setMinimumSize(240, 200)
         self.view.setToolTip("Drag to orbit, right-drag to pan, wheel to zoom, double-click to frame")
+        self.bare = False
+        self._margins: list[QMargins] = []  # of what is hidden then
+        self.hint = QLabel("F11 shows the rest again", self.view)
+        self.hint.setProperty("card", True)
+        self.hint.setContentsMargins(8, 4, 8, 4)
+        self.hint.hide()
+        self._hint_goes = QTimer(self, singleShot=True, interval=HINT)
+        self._hint_goes.timeout.connect(self.hint.hide)
         self.no_mesh = NoMesh(self.view, choose, may_choose)
         self.frames = 0
         self.view.painted.connect(self._painted)
@@ -65,12 +79,14 @@ class PreviewPanel(QWidget):
         self.scrub.setSingleStep(50)
         self.scrub.setPageStep(500)
         self.scrub.actionTriggered.connect(lambda _: self._scrubbed(self.scrub.sliderPosition()))
-        held = QHBoxLayout()
-        held.setContentsMargins(12, 6, 12, 0)
-        held.addWidget(self.scrub)
-        layout.addLayout(held)
-        layout.addLayout(self._transport())
-        layout.addLayout(self._captions())
+        self._above = QHBoxLayout()
+        self._above.setContentsMargins(12, 6, 12, 0)
+        self._above.addWidget(self.scrub)
+        layout.addLayout(self._above)
+        self._row = self._transport()
+        layout.addLayout(self._row)
+        self._lines = self._captions()
+        layout.addLayout(self._lines)
         self._clock = QElapsedTimer()
         self._clock.start()
         self._timer = QTimer(self, interval=FRAME)
@@ -82,6 +98,7 @@ class PreviewPanel(QWidget):
         session.transport.show_changed.connect(self._show_state)
         session.selection.changed.connect(self.view.update)
         session.look.changed.connect(self._restyle)
+        session.onion.changed.connect(self.view.update)
         performance.changed.connect(self._changed)
         performance.document.changed.connect(self._edited)
         figures.changed.connect(self.view.update)
@@ -116,6 +133,7 @@ class PreviewPanel(QWidget):
         self.speed_box.setCurrentIndex(SPEEDS.index(1.0))
         self.speed_box.activated.connect(lambda i: setattr(self.session.transport, "speed", SPEEDS[i]))
         row.addWidget(self.speed_box)
+        self._scrub_place = row.count()
         row.addStretch(1)
         self.time = QLabel("0:00.0", self)
         self.time.setMinimumWidth(52)
@@ -127,17 +145,32 @@ class PreviewPanel(QWidget):
         self.bones_button = button("Show the skeleton (B)", self._set_bones, checkable=True)
         return row
 
-    def _captions(self) -> QVBoxLayout:
+    def _captions(self) -> QBoxLayout:
         """What plays, and the base pose below it; long names are cut, not the window widened."""
-        lines = QVBoxLayout()
+        lines = QBoxLayout(QBoxLayout.Direction.TopToBottom)
         lines.setContentsMargins(12, 0, 12, 8)
         lines.setSpacing(2)
-        self.caption, self.base = QLabel("", self), make_widget(QLabel, "", self, toolTip=BASE_TIP)
+        self.caption, self.base = OneLine(self), OneLine(self, BASE_TIP)
         for label in (self.caption, self.base):
             label.setProperty("dim", True)
-            label.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
             lines.addWidget(label)
         return lines
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Where it is wide, what stands below the view takes half as many lines: the view is the larger."""
+        super().resizeEvent(event)
+        wide = event.size().width() >= WIDE
+        if wide == (self._row.indexOf(self.scrub) >= 0):
+            return
+        if wide:
+            self._above.removeWidget(self.scrub)
+            self._row.insertWidget(self._scrub_place, self.scrub, 12)
+        else:
+            self._row.removeWidget(self.scrub)
+            self._above.addWidget(self.scrub)
+        self._above.setContentsMargins(12, 0 if wide else 6, 12, 0)
+        directions = QBoxLayout.Direction
+        self._lines.setDirection(directions.LeftToRight if wide else directions.TopToBottom)
 
     def _restyle(self) -> None:
         look = theme(self.session.look.name)
@@ -168,15 +201,35 @@ class PreviewPanel(QWidget):
             morphs = figure.morph_weights(one.morphs(seconds)) if figure.morphs else None
             marks = self._marks() if one is shown else {}
             actors.append(Actor(figure, rotations, positions, morphs, marks, self.bones))
+            if one is shown:
+                actors += self._ghosts(figure, seconds)
         scene = Scene(tuple(actors))
-        framed = (*(actor.figure for actor in actors), *(one.stand for one in shown.both))
+        shape = round(self.view.width() / max(1, self.view.height()), 1)  # it is framed anew for another room
+        solid = Scene(tuple(actor for actor in actors if actor.opacity >= 1))  # ghosts do not move the camera
+        framed = (*(actor.figure for actor in solid.actors), *(one.stand for one in shown.both), shape)
         if actors and self._framed != framed and not self.view.moved_by_hand:
             self._framed = framed
             aside = ASIDE if shown.partner is not None else 0.0
             self.view.camera = whole_figure(
-                scene.bounds(), self.view.width() / max(1, self.view.height()), aside
+                solid.bounds(), self.view.width() / max(1, self.view.height()), aside
             )
         return scene
+
+    def _ghosts(self, figure: Figure, seconds: float) -> list[Actor]:
+        """Return the moments of an action that are to be seen through, but for those that are now."""
+        skin, shown = self.session.onion.skin, self.performance.shown
+        if skin is None or shown.skeleton is None or shown.partner is not None:
+            return []
+        out = []
+        for moment, opacity in skin.moments:
+            at = shown.seconds_of(skin.action, moment)
+            if at is None or abs(at - seconds) < NOW:
+                continue
+            pose = shown.pose(at)
+            if pose is not None:
+                rotations, positions = shown.skeleton.globals(pose)
+                out.append(Actor(figure, rotations, positions, opacity=opacity))
+        return out
 
     def _marks(self) -> dict[int, tuple[float, float, float]]:
         """Point out the joints of the selected action's mask."""
@@ -204,7 +257,7 @@ class PreviewPanel(QWidget):
         length = max(1e-6, self.performance.shown.length)
         if not self.scrub.isSliderDown():
             self.scrub.setValue(round(10000 * min(1.0, seconds / length)))
-        self.caption.setText(self._words())
+        self.caption.say(self._words())
         self._tell_mesh()
 
     def _tell_mesh(self) -> None:
@@ -218,12 +271,12 @@ class PreviewPanel(QWidget):
         """Say what plays: the clip alone, or each layer's action and when the next begins."""
         shown = self.performance.shown
         if shown.clip is not None:
-            return f"{shown.project.clips[shown.clip].name}, alone"
+            return f"{plain(shown.project.clips[shown.clip].name)}, alone"
         seconds, out = self.session.transport.seconds, []
         for layer in LAYERS:
             cue = shown.plan.layers[layer].cue_at(seconds)
             if cue is not None:
-                out.append(f"{layer}: {cue.action.name}")
+                out.append(f"{layer}: {plain(cue.action.name)}")
         if self.session.transport.show == "context":
             out.append("in context")
         return "   ".join(out)
@@ -233,6 +286,30 @@ class PreviewPanel(QWidget):
         self._timer.stop()
 
     # --- commands
+
+    def set_bare(self, on: bool) -> None:
+        """Show the character and nothing else, or its transport and captions, too."""
+        if on == self.bare:
+            return
+        self.bare = on
+        for layout in (self._above, self._row, self._lines):
+            if on:  # margins round nothing would be an edge beneath the view
+                self._margins.append(layout.contentsMargins())
+                layout.setContentsMargins(0, 0, 0, 0)
+            elif self._margins:
+                layout.setContentsMargins(self._margins.pop(0))
+            for n in range(layout.count()):
+                item = layout.itemAt(n)
+                part = item.widget() if item is not None else None
+                if part is not None:
+                    part.setVisible(not on)
+        self.hint.setVisible(on)
+        if on:
+            self.hint.adjustSize()
+            self.hint.move(12, 12)
+            self._hint_goes.start()
+        else:
+            self._hint_goes.stop()
 
     def frame_all(self) -> None:
         self.view.moved_by_hand = False
@@ -283,12 +360,11 @@ class PreviewPanel(QWidget):
     def _edited(self, before: Project, after: Project) -> None:
         base, entry = after.base, after.clips.get(after.base.clip or "")
         if after.skeleton is None:
-            self.base.setText("")
+            self.base.say("")
         elif entry is None:
-            self.base.setText("Base pose: rest pose")
+            self.base.say("Base pose: rest pose")
         else:
-            self.base.setText(f"Base pose: {entry.name}, frame {base.frame}")
-        self.base.setToolTip(f"{self.base.text()}\n{BASE_TIP}")
+            self.base.say(f"Base pose: {plain(entry.name)}, frame {base.frame}")
         if after.skeleton is None:
             self._tell_mesh()
         self.view.update()

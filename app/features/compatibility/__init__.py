@@ -5,6 +5,7 @@ from __future__ import annotations
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
 from app.stage.compatibility_state import Compatibility
+from app.widgets.beside import stand_beside
 from app.widgets.one_dialog import show_one
 
 
@@ -12,17 +13,18 @@ def contribute(shell: Shell) -> Contribution:
     def show() -> None:
         from app.features.compatibility.matrix_dialog import MatrixDialog
 
-        show_one(
-            shell.widget,
-            MatrixDialog,
-            lambda: MatrixDialog(
+        def make() -> MatrixDialog:
+            dialog = MatrixDialog(
                 shell.document,
                 shell.stage.session,
                 shell.services[Compatibility],
                 shell.jobs,
                 shell.widget,
-            ),
-        )
+            )
+            stand_beside(dialog, shell.panel("character"))  # what is clicked plays there
+            return dialog
+
+        show_one(shell.widget, MatrixDialog, make)
 
     return Contribution(
         commands=(

@@ -59,7 +59,18 @@ def contribute(shell: Shell) -> Contribution:
     staged = lambda: session.onstage.conversation is not None  # noqa: E731
     menu, mine = "&Conversation", ("conversation",)
     return Contribution(
-        panels=(Panel("conversation", "Conversation", "bottom", make, study=False),),
+        panels=(
+            Panel(
+                "conversation",
+                "Conversation",
+                "bottom",
+                make,
+                study=False,
+                least=(400, 222),
+                where={"talk": "below"},
+                rank=1,
+            ),
+        ),
         commands=(
             Command(
                 "converse",

@@ -20,10 +20,10 @@ from app.features.conversation.segment_lanes import (
     words_in,
 )
 from app.features.conversation.sound_reading import SideSound
-from app.features.conversation.waveforms import Envelope, joined, painted
 from app.look.theme import SOUND_MARKS, Theme
 from app.widgets.act_strip import STEPS, clock
 from app.widgets.lane_geometry import LEFT, RULER, Scale, advance, elided
+from app.widgets.waveforms import Envelope, joined, painted
 from metagraph.graph.conversation import Conversation, Segment, side_name
 
 INK = "#17181b"  # on the fills
@@ -81,10 +81,9 @@ def _ruler(painter: QPainter, t: Theme, scene: SegmentScene) -> None:
     painter.setPen(QColor(t.dim))
     n = int(scale.first // step)
     while (x := scale.x(n * step)) < scene.width:
-        if x >= LEFT - 1:
-            painter.drawText(
-                QRectF(x - 40, 0, 80, RULER), Qt.AlignmentFlag.AlignCenter, clock(round(n * step, 3))
-            )
+        words = clock(round(n * step, 3))
+        if x >= LEFT - 1 and x + advance(words, painter.font().toString()) / 2 + 1 <= scene.width:
+            painter.drawText(QRectF(x - 40, 0, 80, RULER), Qt.AlignmentFlag.AlignCenter, words)
         n += 1
 
 
@@ -202,7 +201,7 @@ def _words(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: Se
     some = words_in(scene.conversation.sides[side].words, scale.first, scale.seconds(scene.width))
     for n, word in enumerate(some):
         left = scale.x(word.start)
-        until = scale.x(some[n + 1].start) if n + 1 < len(some) else left + 300.0
+        until = min(scale.x(some[n + 1].start) if n + 1 < len(some) else left + 300.0, scene.width)
         words = (
             word.text
             if advance(word.text, key) <= until - left - 4
@@ -239,7 +238,7 @@ def _segments(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane:
         painter.setBrush(fill)
         painter.drawRoundedRect(rect, 4, 4)
         left = max(rect.left(), LEFT)
-        room = rect.right() - left - 10
+        room = min(rect.right(), scene.width) - left - 10
         mark = SOUND_MARKS[segment.kind]
         if room < advance(mark, key) - 2:
             continue

@@ -14,10 +14,10 @@ from typing import Any
 from PySide6.QtCore import QObject, Qt, Signal
 
 from app.features.conversation.segment_hits import pitch_maxima
-from app.features.conversation.waveforms import Envelope, binned
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.session import Session
+from app.widgets.waveforms import Envelope, binned
 from metagraph.errors import FileError
 from metagraph.graph.conversation import Conversation
 

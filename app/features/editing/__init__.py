@@ -1,11 +1,13 @@
 """Remove, rename, copy, paste, select all: each means what is selected, wherever that is; several actions are
-renamed at once.
+renamed at once. And the history of all that was done.
 """
 
 from __future__ import annotations
 
+from PySide6.QtWidgets import QFrame, QUndoView, QWidget
+
 from app.shell.actions import Command, Standard
-from app.shell.context import Contribution, Shell
+from app.shell.context import Contribution, Panel, Shell
 from app.shell.verbs import Verbs
 
 
@@ -47,8 +49,35 @@ def contribute(shell: Shell) -> Contribution:
         verbs.do("copy")
         shell.actions.refresh()
 
+    def history() -> QWidget:
+        view = QUndoView(document.undo_stack, shell.widget)
+        view.setSpacing(3)
+        view.setFrameShape(QFrame.Shape.NoFrame)
+        view.setEmptyLabel("As it was opened")
+        view.setAccessibleName("What was done; a click goes back to it")
+        return view
+
     return Contribution(
+        panels=(
+            Panel(
+                "history",
+                "History",
+                "right below",
+                history,
+                study=False,
+                opens={"label": "below", "graph": "list", "time": "list", "perform": "side", "talk": "side"},
+                rank=8,
+            ),
+        ),
         commands=(
+            Command(
+                "history",
+                "&Edit",
+                "history",
+                "&History",
+                lambda: shell.show("history"),
+                tip="What was done, step by step; a click goes back to it",
+            ),
             Command(
                 "delete",
                 "&Edit",

@@ -5,6 +5,7 @@ about it.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSizePolicy, QToolBar, QToolButton, QWidget
@@ -15,10 +16,13 @@ from app.project.importing import Importing
 from app.widgets.making import make_widget
 from metagraph.formats.import_words import Remedy, counted, head, remedies, said
 from metagraph.formats.imports import Imported
+from metagraph.graph.model import Project
+
+NEXT = "Next: let them be labelled, or drag them onto the nodes of the graph."
 
 
 class ImportLine(QToolBar):
-    """Hidden while there is nothing to say but how many clips came in, which the status bar tells.
+    """What was left out and what to do about it; where all came in, what to do next, until that is begun.
 
     do: what the remedies that concern no clips are done by, by name. show: shows (title, lines).
     """
@@ -60,28 +64,52 @@ class ImportLine(QToolBar):
         self.hide()
         importing.ended.connect(self.tell)
         document.loaded.connect(self.forget)
+        document.changed.connect(self._edited)
+        self._document = document
 
     def tell(self, result: Imported) -> None:
         """Show what came of an import."""
         self.forget()
         words = said(result)
-        if words == head(result) and not result.failures:
+        fresh = words == head(result) and not result.failures
+        if fresh and not self._unlabelled(result):
             return
-        self.result = result
+        if fresh:
+            words = f"{words}. {NEXT}"
+            self._offer("Label clips…", lambda: self._do("propose"))
+        self.result, self._fresh = result, fresh
         self.words.setText(words)
         self.words.setToolTip(words)
         self.why.setVisible(bool(result.failures or result.notes))
         for remedy in remedies(result):
-            button = make_widget(QPushButton, self, text=remedy.label)
-            strengthen(button)
-            button.clicked.connect(lambda _=False, r=remedy: self._mend(r))
-            self.buttons.addWidget(button)
-            self.offered.append(button)
+            self._offer(remedy.label, partial(self._mend, remedy))
         self.show()
+
+    def _offer(self, label: str, do: Callable[[], object]) -> None:
+        button = make_widget(QPushButton, self, text=label)
+        strengthen(button)
+        button.clicked.connect(lambda: do())
+        self.buttons.addWidget(button)
+        self.offered.append(button)
+
+    def _unlabelled(self, result: Imported) -> bool:
+        """Return whether anything came in that serves as nothing yet."""
+        return bool(result.loaded) and bool(self.importing.load_for(result).clips) and not self._placed()
+
+    def _placed(self) -> bool:
+        project = self._document.project
+        return all(clip in project.uses or clip in project.drawn for clip in project.clips)
+
+    def _edited(self, before: Project, after: Project) -> None:
+        """What was to be done next has begun."""
+        if self._fresh and before.graphs is not after.graphs:
+            self.forget()
+
+    _fresh = False  # all came in, and it says what to do next
 
     def forget(self) -> None:
         """Hide it; what it said is done, or of another project."""
-        self.result = None
+        self.result, self._fresh = None, False
         self.words.clear()
         for button in self.offered:
             self.buttons.removeWidget(button)

@@ -11,6 +11,7 @@ from app.features.graph.graph_drops import Drop
 from app.project.importing import Importing
 from app.shell.actions import Command
 from app.shell.context import Contribution, HeaderItem, Panel, Shell
+from app.shell.places import Places
 from app.shell.verbs import Verbs
 from app.stage.problem_watch import ProblemWatch
 from app.widgets.choice_row import ChoiceRow
@@ -34,8 +35,20 @@ def contribute(shell: Shell) -> Contribution:
         canvas.row_actions = shell.actions.of_menu("action")
         canvas.files_dropped.connect(lambda paths, drop: importing.import_paths(list(paths), drop))
         canvas.refused.connect(stage.refused)
+        canvas.labelled.connect(go_on)
         problems.changed.connect(lambda: canvas.set_misfits(problems.misfits))
         return canvas
+
+    def go_on(clips: tuple[str, ...], made: tuple[str, ...]) -> None:
+        """After a label by key the next clip without one is selected and plays; what was made is in sight."""
+        following = shell.panel("library").next_unlabelled(clips[-1])
+        canvas().reveal(made)
+        places = shell.services[Places]
+        if places.belongs("properties", places.workspace) and not places.dock("properties").isHidden():
+            places.show("properties")
+        if following is not None:
+            session.selection.select_clips((following,))
+            session.transport.show_clip(following)
 
     def canvas() -> Canvas:
         found: Canvas = shell.panel("graph")
@@ -131,9 +144,21 @@ def contribute(shell: Shell) -> Contribution:
         study=True,
     )
     return Contribution(
-        panels=(Panel("graph", "Graph", "centre", make, late=False, when="meta"),),
+        panels=(
+            Panel(
+                "graph",
+                "Graph",
+                "centre",
+                make,
+                late=False,
+                when="meta",
+                where={"graph": "large", "time": "list"},
+                opens={"label": "below"},
+                least=(250, 200),
+            ),
+        ),
         commands=(new, *labels, *layers, *places),
-        header=(HeaderItem("middle", lambda parent: LayerTabs(shell, parent)),),
+        header=(HeaderItem("left", lambda parent: LayerTabs(shell, parent)),),
         close=lambda: canvas().stop(),
     )
 
@@ -143,7 +168,7 @@ class LayerTabs(ChoiceRow):
 
     def __init__(self, shell: Shell, parent: QWidget) -> None:
         tips = ((x.capitalize(), f"The {x} layer ({LAYER_KEYS[x]})") for x in LAYERS)
-        super().__init__(parent, tips, least_width=72)
+        super().__init__(parent, tips, least_width=56)
         self.document, self.session = shell.document, shell.stage.session
         self.chosen.connect(lambda n: self.session.place.set_layer(LAYERS[n]))
         self.session.place.layer_changed.connect(self.refresh)

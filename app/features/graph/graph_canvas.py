@@ -28,8 +28,16 @@ from PySide6.QtWidgets import QInputDialog, QMenu, QToolTip, QWidget
 
 from app.features.graph.graph_drops import Drop, drop_at, perform
 from app.features.graph.graph_gestures import HeadDrag, LikelihoodDrag, RowDrag
-from app.features.graph.graph_layout import GraphHit, Layout, arrange
+from app.features.graph.graph_layout import (
+    LEAST_HEIGHT,
+    LEAST_WIDTH,
+    GraphHit,
+    Layout,
+    arrange,
+    least_height,
+)
 from app.features.graph.graph_painter import GraphLook, paint
+from app.look.names import told_names
 from app.look.plural import many
 from app.look.theme import theme
 from app.project.document import Document
@@ -51,9 +59,10 @@ SLOW = 0.015  # seconds of drawing for each of which a picture of it is left out
 
 class Canvas(QWidget):
     """The meta-graph of the current layer. files_dropped: (paths, drop) to import and then place. refused:
-    words for the status bar.
+    words for the status bar. labelled: clips were placed by a key; (clips, the actions made of them).
     """
 
+    labelled = Signal(object, object)
     files_dropped = Signal(object, object)
     refused = Signal(str)
 
@@ -77,6 +86,7 @@ class Canvas(QWidget):
         self.row_actions: list[QAction] = []  # the window's commands that go into an action's menu
         self.hover = NOTHING
         self.focus: str | None = None
+        self.fresh: tuple[str, ...] = ()  # actions just made by a key
         self.misfits: dict[str, str] = {}
         self._drop: Drop | None = None
         self._drop_hit = NOTHING
@@ -89,7 +99,7 @@ class Canvas(QWidget):
         self.setMouseTracking(True)
         self.setAcceptDrops(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setMinimumSize(460, 420)
+        self.setMinimumSize(int(LEAST_WIDTH), int(LEAST_HEIGHT))  # its height follows its width
         self.setAccessibleName("Meta-graph")
         self._hover_timer = QTimer(self, singleShot=True, interval=HOVER)
         self._hover_timer.timeout.connect(self._hovered_long)
@@ -97,6 +107,7 @@ class Canvas(QWidget):
         self._hero_timer.timeout.connect(self._next_beat)
         self._hero_timer.start()
         document.changed.connect(self._edited)
+        document.loaded.connect(lambda: self.reveal(()))
         for signal in (session.place.stance_changed, session.place.layer_changed):
             signal.connect(self._moved_on)
         session.selection.changed.connect(self.update)
@@ -128,6 +139,7 @@ class Canvas(QWidget):
         self.update()
 
     def resizeEvent(self, event: object) -> None:
+        self.setMinimumHeight(int(least_height(self.width())))
         self._stale()
 
     def paintEvent(self, event: QPaintEvent) -> None:
@@ -142,6 +154,9 @@ class Canvas(QWidget):
             picture = self.thumbnails.picture(loop.clip, bare=True) if loop is not None else None
             if picture is not None:
                 chips[ident] = picture
+        rows = (row for node in self.layout_now().nodes.values() for row in node.rows)
+        clips = {row.action.clip for row in rows if not row.picture.isEmpty()}
+        found = {clip: self.thumbnails.picture(clip, bare=True) for clip in clips}
         painter = QPainter(self)
         paint(
             painter,
@@ -150,15 +165,18 @@ class Canvas(QWidget):
                 theme=look,
                 project=project,
                 selected=self.session.selection.actions,
+                fresh=self.fresh,
                 hover=self.hover,
                 focus=self.focus if self.hasFocus() else None,
                 playing=self._playing(),
                 misfits=self.misfits,
                 picture=self.thumbnails.moving(hero.clip, self._beat) if hero is not None else None,
                 chip_pictures=chips,
+                row_pictures={clip: picture for clip, picture in found.items() if picture is not None},
                 other=self.session.place.other(),
                 drop=self._drop,
                 drop_hit=self._drop_hit,
+                drop_at=self._drop_at,
                 arrow=self._arrow,
                 sentence=self._sentence(),
             ),
@@ -325,6 +343,7 @@ class Canvas(QWidget):
         self.update()
 
     _hover_shown = False
+    _drop_at: QPointF | None = None  # where something is held over it
 
     def _hovered_long(self) -> None:
         if self._drop is not None:
@@ -365,23 +384,27 @@ class Canvas(QWidget):
         return super().event(event)
 
     def _tip(self, hit: GraphHit) -> str:
-        action = self.document.project.action(hit.ident) if hit.ident else None
+        project = self.document.project
+        action = project.action(hit.ident) if hit.ident else None
         if hit.area == "bar" and action is not None:
             return f"Likelihood {action.likelihood:g}: drag to change"
-        if hit.area == "head" and action is not None and action.id not in self.misfits:
-            return f"{action.name}\nDrag the arrow onto another stance to end there"
         if action is not None:
-            words = self.misfits.get(action.id)
-            return (
-                f"{action.name}\n{words}"
-                if words
-                else f"{action.name}\nClick plays it in context, drag moves it"
-            )
-        return {
+            row = self.layout_now().row(action.id)
+            name = told_names(row.words if row is not None else action.name, action.name)
+            head = "Drag the arrow onto another stance to end there"
+            plain = head if hit.area == "head" else "Click plays it in context, drag moves it"
+            note = project.notes.get(action.id, "")
+            return "\n".join(x for x in (name, note, self.misfits.get(action.id) or plain) if x)
+        stance = project.stance(self.session.place.other() if hit.area == "other" else hit.ident)
+        to = "to " if hit.area == "other" else ""
+        name = f"{to}{stance.name}\n" if stance is not None else ""
+        words = {
             "chip": "Click to make this the current stance",
+            "card": "Click selects its loops, double-click renames it",
             "add": "New stance: drop a clip here, or click",
             "other": "The stance that dropped transitions end in",
         }.get(hit.area, "")
+        return f"{name}{words}" if words else ""
 
     # --- drops
 
@@ -396,7 +419,7 @@ class Canvas(QWidget):
         hit = self.layout_now().hit(at, dragging=True)
         if hit != self._drop_hit and hit.area == "chip":
             self._hover_timer.start()
-        self._drop_hit = hit
+        self._drop_hit, self._drop_at = hit, at
         self._drop = self._what(hit, load_of(event.mimeData()))
         if self._drop.possible:
             event.setDropAction(
@@ -423,7 +446,7 @@ class Canvas(QWidget):
         self._end_drag()
 
     def _end_drag(self) -> None:
-        self._drop, self._drop_hit = None, NOTHING
+        self._drop, self._drop_hit, self._drop_at = None, NOTHING, None
         self._hover_timer.stop()
         self.update()
 
@@ -476,10 +499,20 @@ class Canvas(QWidget):
             else GraphHit("node", None, kind)
         )
         drop = self._what(hit, load)
-        if drop.possible:
-            self.do(drop, load)
-        else:
+        if not drop.possible:
             self.refused.emit(drop.words)
+            return
+        before = self.document.project
+        self.do(drop, load)
+        if load.clips and self.document.project is not before:
+            self.labelled.emit(load.clips, self.session.selection.actions)
+
+    def reveal(self, actions: Sequence[str]) -> None:
+        """Bring actions in sight, and mark them until something else is selected than now."""
+        self.fresh = tuple(actions)
+        for ident in actions[:1]:
+            self._scroll_to(ident)
+        self.update()
 
     # --- keyboard
 
@@ -528,11 +561,14 @@ class Canvas(QWidget):
         self.focus = action
         kept = self.session.selection.actions if extend else ()
         self.session.selection.select_actions((*(i for i in kept if i != action), action))
+        self._scroll_to(action)
+
+    def _scroll_to(self, action: str) -> None:
         found = self.document.project.action(action)
         node = self.layout_now().nodes.get(found.kind) if found is not None else None
         if node is not None and found is not None and self.layout_now().row(action) is None:
             ids = [a.id for a in self.document.project.graphs[found.layer].of(found.stance, found.kind)]
-            self.first_rows[found.kind] = ids.index(action) // (2 if found.kind == "transition" else 1)
+            self.first_rows[found.kind] = ids.index(action) // node.columns
             self._stale()
 
     # --- menus and dialogs

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QPointF, Qt
+from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QDrag
 
 from app.features.graph.graph_host import GraphHost
@@ -57,7 +57,11 @@ class RowDrag(PressDrag):
         widget = self.host.widget
         drag = QDrag(widget)
         drag.setMimeData(mime(actions=actions))
-        drag.setPixmap(drag_picture(f"{len(actions)} actions" if len(actions) > 1 else self._name(), widget))
+        action = self.host.document.project.action(self.action)
+        picture = self.host.thumbnails.picture(action.clip, bare=True) if action is not None else None
+        words = f"{len(actions)} actions" if len(actions) > 1 else self._name()
+        drag.setPixmap(drag_picture(words, widget, picture))
+        drag.setHotSpot(QPoint(-14, -10))
         self.host.hand.drop("taken over")
         drag.exec(Qt.DropAction.MoveAction)
 

@@ -12,6 +12,7 @@ from app.features.graph.graph_drops import Drop
 from app.features.graph.graph_layout import GraphHit, Layout
 from app.project.document import Document
 from app.stage.session import Session
+from app.stage.thumbnails import Thumbnails
 from app.widgets.gesture import Hand
 
 
@@ -21,6 +22,7 @@ class GraphHost(Protocol):
     document: Document
     session: Session
     hand: Hand
+    thumbnails: Thumbnails
 
     @property
     def widget(self) -> QWidget: ...

@@ -10,15 +10,24 @@ from typing import Literal
 
 from PySide6.QtCore import QPointF, QRectF, QSizeF
 
+from app.features.graph.graph_frames import GRID, HEADER, LINE, NARROW, PAD, ROW, Frames, frames
+from app.look.names import node_names
 from metagraph.graph.model import Action, Kind, Layer, MetaGraph, Project
 
-GRID = 8
+LEAST_WIDTH, LEAST_HEIGHT = 240.0, 300.0  # pixels; a smaller canvas is laid out as if it was so large
 CHIP_HEIGHT, CHIP_TOP = 34, 12
-HEADER, ROW, PAD = 38, 24, 8
+BESIDE: tuple[Kind, ...] = ("gesture", "fidget", "transition")
 BAR = 44  # width of a likelihood bar
 ARROW = 26  # of a transition's arrow, which can be dragged
-FOOT = 40  # the sentence at the bottom
+TITLE = 124  # of a node's mark and title
+CHOOSER = 64.0  # at least, of the stance that transitions lead to
+FOOT, FOOT_NARROW = 40, 62  # the sentence at the bottom, in two lines or three
 CHIP_MIN, CHIP_MAX = 108, 230
+BOLD = 1.12  # how much wider the card's name is than the chip's
+BARE = 0  # in the place of a width: chips as wide as their names, which is all they show
+TIGHT = -1  # and: as many in a line as can be told apart
+TIGHTEST = 84.0
+LEAST_NODES = 300.0  # pixels of height for a card and its nodes below each other
 
 Area = Literal["chip", "add", "card", "loop", "node", "row", "bar", "head", "other", "start", "nothing"]
 
@@ -38,6 +47,8 @@ class GraphRow:
     rect: QRectF
     bar: QRectF
     head: QRectF = field(default_factory=QRectF)  # of a transition's arrow
+    words: str = ""  # what it is called in its node
+    picture: QRectF = field(default_factory=QRectF)  # empty where rows have none
 
 
 @dataclass(frozen=True)
@@ -53,17 +64,19 @@ class Node:
     scroll: int
     most: int
     other: QRectF = field(default_factory=QRectF)  # the chooser of a transition's end
+    columns: int = 1
 
 
 @dataclass(frozen=True)
 class Chip:
-    """stance None is the "+" at the end. words: its hole, if any."""
+    """stance None is the "+" at the end. words: its hole, if any. bare: it has room for its name alone."""
 
     stance: str | None
     rect: QRectF
     name: str
     count: int = 0
     words: str = ""
+    bare: bool = False
 
 
 @dataclass(frozen=True)
@@ -122,6 +135,13 @@ def hole(project: Project, layer: Layer, stance: str) -> str:
     return ""
 
 
+def least_height(width: float) -> float:
+    """Return the least height at which a canvas of a width shows each node with a row: a narrow one needs
+    more.
+    """
+    return LEAST_HEIGHT if width >= LINE else 440.0
+
+
 def arrange(
     project: Project,
     layer: Layer,
@@ -134,50 +154,32 @@ def arrange(
     chips.
     """
     scroll, widths = scroll or {}, widths or {}
-    width, height = max(size.width(), 420.0), max(size.height(), 360.0)
+    width = max(size.width(), LEAST_WIDTH)
+    height = max(size.height(), least_height(width))
     graph = project.graphs[layer]
 
     # Many stances in a low window: narrower chips without words leave room for the nodes.
-    for widest in (CHIP_MAX, 150, CHIP_MIN):
+    for widest in (CHIP_MAX, 150, BARE):
         chips = _chips(project, graph, width, widths, widest)
         top = chips[-1].rect.bottom() + 2 * GRID
         if top < height - FOOT - 320:
             break
-    bottom = height - FOOT
-    usable = max(bottom - top, 200.0)
-    gap = min(max(width * 0.045, 16.0), 56.0)
-    side = min(300.0, (width - 4 * GRID - max(width * 0.2, 112.0) - 2 * gap) / 2)
-    card_w = min(width - 4 * GRID - 2 * side - 2 * gap, 240.0)
-    transitions = graph.of(stance, "transition") if stance else ()
-    wide = min(max(width * 0.56, 300.0), 520.0)
-    columns = 2 if wide > 400 else 1
-    lines = -(-len(transitions) // columns)
-    low_h = min(HEADER + max(lines, 1) * ROW + PAD + 2, usable * 0.36)
-    low_h = max(low_h, HEADER + 2 * ROW)
-    card_h = min(max(usable - low_h - 5 * GRID, 80.0), card_w * 1.15)
-    slack = max(0.0, usable - low_h - card_h)
-    card = QRectF((width - card_w) / 2, top + slack * 0.42, card_w, card_h)
-    low_top = min(card.bottom() + max(3.0 * GRID, slack * 0.3), bottom - low_h - GRID)
-
-    nodes: dict[Kind, Node] = {}
-    lefts: dict[Kind, float] = {"gesture": 2.0 * GRID, "fidget": width - side - 2.0 * GRID}
-    beside = (
-        max(low_top - 2 * GRID - top, 120.0)
-        if wide > width - 2 * side - 6 * GRID
-        else max(bottom - top - GRID, 120.0)
-    )
-    for kind, left in lefts.items():
-        actions = graph.of(stance, kind) if stance else ()
-        wanted = HEADER + max(len(actions), 2) * ROW + PAD + (ROW if len(actions) else 0)
-        h = min(wanted, beside)
-        nodes[kind] = _node(kind, QRectF(left, top, side, h), actions, scroll.get(kind, 0), 1)
-    nodes["transition"] = _node(
-        "transition",
-        QRectF((width - wide) / 2, low_top, wide, low_h),
-        transitions,
-        scroll.get("transition", 0),
-        columns,
-    )
+    if top > height - FOOT - LEAST_NODES:  # names alone take too much, too
+        chips = _chips(project, graph, width, widths, TIGHT)
+        top = chips[-1].rect.bottom() + 2 * GRID
+    foot = FOOT if width >= NARROW else FOOT_NARROW
+    bottom = max(height - foot, top + 200.0)
+    actions = {kind: graph.of(stance, kind) if stance else () for kind in BESIDE}
+    found = graph.stances.get(stance or "")
+    name = widths.get(found.name, 7.2 * len(found.name)) * BOLD + 44 if found is not None else 0.0
+    shared = frames(width, top, bottom, {kind: len(found) for kind, found in actions.items()}, name)
+    card = shared.card
+    nodes = {
+        kind: _node(
+            kind, shared, actions[kind], node_names(project, layer, stance or "", kind), scroll.get(kind, 0)
+        )
+        for kind in BESIDE
+    }
     loops = QRectF(card.left(), card.top() + card.height() * 0.58, card.width(), card.height() * 0.42)
     return Layout(
         QSizeF(width, height),
@@ -185,7 +187,7 @@ def arrange(
         card,
         loops,
         nodes,
-        QRectF(2 * GRID, bottom, width - 4 * GRID, FOOT),
+        QRectF(2 * GRID, bottom, width - 4 * GRID, foot),
         stance,
     )
 
@@ -204,18 +206,31 @@ def _chips(
             + widths.get(str(count), 16.0)
             + (widths.get(words, 7 * len(words)) + 8 if words else 0)
         )
-        w = min(max(text + 80, CHIP_MIN), widest + (80 if words else 0))
-        if x + w > width - 56 and x > 2 * GRID:
+        if widest == TIGHT:
+            many = max(2, int((width - 4 * GRID) // (TIGHTEST + GRID)))
+            w = (width - 4 * GRID - (many - 1) * GRID) / many
+        elif widest == BARE:
+            w = min(widths.get(s.name, 7.2 * len(s.name)) + 26, width - 4 * GRID)
+        else:
+            w = min(max(text + 80, CHIP_MIN), widest + (80 if words else 0))
+        if x + w > width - 2 * GRID and x > 2 * GRID:
             x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID
-        chips.append(Chip(ident, QRectF(x, y, w, CHIP_HEIGHT), s.name, count, words))
+        chips.append(Chip(ident, QRectF(x, y, w, CHIP_HEIGHT), s.name, count, words, widest <= BARE))
         x += w + GRID
+    if x + CHIP_HEIGHT > width - GRID:
+        x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID
     return [*chips, Chip(None, QRectF(x, y, CHIP_HEIGHT, CHIP_HEIGHT), "+")]
 
 
-def _node(kind: Kind, rect: QRectF, actions: tuple[Action, ...], scroll: int, columns: int) -> Node:
+def _node(
+    kind: Kind, shared: Frames, actions: tuple[Action, ...], names: Mapping[str, str], scroll: int
+) -> Node:
+    rect, columns, high = shared.nodes[kind], shared.columns[kind], shared.row
     header = QRectF(rect.left(), rect.top(), rect.width(), HEADER)
-    body = QRectF(rect.left(), rect.top() + HEADER, rect.width(), rect.height() - HEADER - PAD)
-    lines = max(1, int(body.height() // ROW))
+    below = kind == "transition" and rect.width() < TITLE + CHOOSER + 42  # the chooser has a line of its own
+    top = HEADER + (ROW + PAD if below else 0)
+    body = QRectF(rect.left(), rect.top() + top, rect.width(), rect.height() - top - PAD)
+    lines = max(1, int(body.height() // high))
     total = -(-len(actions) // columns)
     most = max(0, total - lines)
     first = min(max(0, scroll), most)
@@ -223,16 +238,26 @@ def _node(kind: Kind, rect: QRectF, actions: tuple[Action, ...], scroll: int, co
     rows: list[GraphRow] = []
     for place in range(first * columns, min(len(actions), (first + lines) * columns)):
         line, at = divmod(place - first * columns, columns)
-        area = QRectF(rect.left() + GRID + at * (column + GRID), body.top() + line * ROW, column, ROW)
-        bar = QRectF(area.right() - BAR - 6, area.center().y() - 1.5, BAR, 3)
-        head = QRectF(area.left(), area.top(), ARROW, ROW) if kind == "transition" else QRectF()
-        rows.append(GraphRow(actions[place], area, bar, head))
-    other = (
-        QRectF(rect.right() - 168, rect.top() + 7, 160 - 34, HEADER - 14)
-        if kind == "transition"
-        else QRectF()
-    )
-    return Node(kind, rect, header, body, tuple(rows), len(actions), first, most, other)
+        area = QRectF(
+            rect.left() + GRID + at * (column + GRID),
+            body.top() + line * high,
+            column,
+            min(high, body.height()),
+        )
+        long = BAR if column > 150 else BAR / 2
+        bar = QRectF(area.right() - long - 6, area.center().y() - 1.5, long, 3)
+        head = QRectF(area.left(), area.top(), ARROW, area.height()) if kind == "transition" else QRectF()
+        left = area.left() + (ARROW if kind == "transition" else 6)
+        picture = QRectF(left, area.top() + 2, high - 4, high - 4) if high > ROW else QRectF()
+        action = actions[place]
+        rows.append(GraphRow(action, area, bar, head, names[action.id], picture))
+    other = QRectF()
+    if below:
+        other = QRectF(rect.left() + GRID, rect.top() + HEADER - 2, rect.width() - 2 * GRID, ROW)
+    elif kind == "transition":  # right of the title, as far as the count
+        x = max(rect.right() - 168, rect.left() + TITLE)
+        other = QRectF(x, rect.top() + 7, max(0.0, rect.right() - 42 - x), HEADER - 14)
+    return Node(kind, rect, header, body, tuple(rows), len(actions), first, most, other, columns)
 
 
 def likelihood_at(row: GraphRow, x: float) -> float:

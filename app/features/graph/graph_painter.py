@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter, QPainterPath, QPen, QRegion
 
 from app.features.graph.graph_drops import Drop
-from app.features.graph.graph_layout import GRID, Chip, GraphHit, Layout, Node, bar_part
-from app.look.plural import short
+from app.features.graph.graph_frames import GRID
+from app.features.graph.graph_layout import Chip, GraphHit, GraphRow, Layout, Node, bar_part
+from app.look.names import fitted, plain
 from app.look.theme import KIND_MARKS, KIND_TITLES, Theme
-from metagraph.graph.model import Action, Kind, Project
+from metagraph.graph.model import Kind, Project
 
 RADIUS = 8.0
 NOWHERE = GraphHit("nothing")
@@ -30,15 +31,18 @@ class GraphLook:
     theme: Theme
     project: Project
     selected: Collection[str] = ()
+    fresh: Collection[str] = ()  # just made
     hover: GraphHit = NOWHERE
     focus: str | None = None
     playing: Collection[str] = ()  # actions under the playhead
     misfits: dict[str, str] = field(default_factory=dict)  # action -> what is wrong with its ends
     picture: QImage | None = None
     chip_pictures: dict[str, QImage] = field(default_factory=dict)
+    row_pictures: Mapping[str, QImage] = field(default_factory=dict)  # by clip
     other: str | None = None
     drop: Drop | None = None
     drop_hit: GraphHit = NOWHERE
+    drop_at: QPointF | None = None  # where something is held: what a drop does stands beside it
     arrow: tuple[QPointF, QPointF] | None = None  # being dragged, from where to where
     sentence: str = ""
 
@@ -72,6 +76,7 @@ def paint(
         Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft | Qt.TextFlag.TextWordWrap,
         look.sentence,
     )
+    _verdict(painter, layout, look, font)
     if look.arrow is not None:
         draw_arrow(
             painter, *look.arrow, look.theme.kind("transition"), look.drop is not None and look.drop.possible
@@ -103,9 +108,16 @@ def _box(
     painter.drawRoundedRect(rect.adjusted(width / 2, width / 2, -width / 2, -width / 2), RADIUS, RADIUS)
 
 
-def _elided(font: QFont, text: str, width: float, middle: bool = False) -> str:
-    mode = Qt.TextElideMode.ElideMiddle if middle else Qt.TextElideMode.ElideRight
-    return QFontMetricsF(font).elidedText(text, mode, width)
+def _between(font: QFont, text: str, width: float, others: tuple[str, ...] = ()) -> str:
+    """Return as much of a text as there is room for, with what tells it from those beside it."""
+    return fitted(text, int(width), font.toString(), others)
+
+
+def _upper(picture: QImage) -> QRectF:
+    """Return the part of a picture in which arms and head are."""
+    return QRectF(
+        picture.width() * 0.24, picture.height() * 0.03, picture.width() * 0.52, picture.height() * 0.52
+    )
 
 
 def _curves(painter: QPainter, layout: Layout, look: GraphLook) -> None:
@@ -120,11 +132,11 @@ def _curves(painter: QPainter, layout: Layout, look: GraphLook) -> None:
         painter.setPen(pen)
         painter.setBrush(Qt.BrushStyle.NoBrush)
         path = QPainterPath()
-        if kind == "transition":
+        if node.rect.top() >= card.bottom():
             path.moveTo(card.center().x(), card.bottom())
             path.lineTo(card.center().x(), node.rect.top())
         else:
-            sign = -1 if kind == "gesture" else 1
+            sign = -1 if node.rect.right() <= card.left() else 1
             start = QPointF(card.left() if sign < 0 else card.right(), card.top() + card.height() * 0.42)
             reach = node.rect.right() if sign < 0 else node.rect.left()
             end = QPointF(reach, min(node.rect.center().y(), card.bottom()))
@@ -135,7 +147,7 @@ def _curves(painter: QPainter, layout: Layout, look: GraphLook) -> None:
 
 
 def _chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, font: QFont) -> None:
-    t = look.theme
+    t, beside = look.theme, tuple(plain(c.name) for c in layout.chips)
     target = look.drop is not None and (
         (look.drop_hit.area == "add" and chip.stance is None)
         or (look.drop_hit.area == "chip" and look.drop_hit.ident == chip.stance and chip.stance is not None)
@@ -160,13 +172,18 @@ def _chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, font: 
         painter.drawLine(c - QPointF(0, 5), c + QPointF(0, 5))
         return
     inner = chip.rect.adjusted(10, 0, -10, 0)
+    if chip.bare:
+        painter.setFont(font)
+        painter.setPen(QColor(t.text if current else t.dim))
+        name = _between(font, plain(chip.name), inner.width(), beside)
+        painter.drawText(inner, Qt.AlignmentFlag.AlignCenter, name)
+        return
     picture = look.chip_pictures.get(chip.stance)
     if picture is not None:
         size = chip.rect.height() - 6
-        half = QRectF(
-            picture.width() * 0.24, picture.height() * 0.03, picture.width() * 0.52, picture.height() * 0.52
+        painter.drawImage(
+            QRectF(chip.rect.left() + 5, chip.rect.top() + 3, size, size), picture, _upper(picture)
         )
-        painter.drawImage(QRectF(chip.rect.left() + 5, chip.rect.top() + 3, size, size), picture, half)
     else:
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(t.fill("stance"))
@@ -178,7 +195,7 @@ def _chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, font: 
     used = metrics.horizontalAdvance(count) + (metrics.horizontalAdvance(right) + 8 if right else 0) + 8
     painter.setFont(_bold(font) if current else font)
     painter.setPen(QColor(t.text))
-    name = _elided(painter.font(), chip.name, inner.width() - used)
+    name = _between(painter.font(), plain(chip.name), inner.width() - used + 1, beside)
     painter.drawText(inner, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, name)
     painter.setFont(font)
     painter.setPen(QColor(t.dim))
@@ -215,35 +232,59 @@ def _card(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -> No
             "Drop a resting clip here\nto make the first stance\nof this layer:\nhands at the sides, say.",
         )  # fmt: skip
     else:
-        head = QRectF(card.left() + 12, card.top() + 8, card.width() - 24, 24)
         bold = _bold(font)
-        painter.setFont(bold)
-        name = _elided(bold, stance.name, head.width() - 20)
-        wide = QFontMetricsF(bold).horizontalAdvance(name)
-        left = head.center().x() - (wide + 16) / 2
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(t.fill("stance"))
-        painter.drawEllipse(QPointF(left + 4, head.center().y()), 4.5, 4.5)
-        painter.setPen(QColor(t.text))
-        painter.drawText(
-            QRectF(left + 16, head.top(), wide + 4, head.height()), Qt.AlignmentFlag.AlignVCenter, name
-        )
+        head = _card_name(painter, card, plain(stance.name), bold, look)
         area = QRectF(
             card.left() + 4, head.bottom() + 2, card.width() - 8, card.height() - 24 - head.height() - 14
         )
-        if look.picture is not None:
+        if look.picture is not None and area.height() >= 20:
             size = min(area.width(), area.height())
             painter.drawImage(
                 QRectF(area.center().x() - size / 2, area.center().y() - size / 2, size, size), look.picture
             )
+        if area.height() < 20:
+            painter.setFont(font)
+            return _card_drop(painter, layout, look, font)
         start = look.project.graphs[stance.layer].start == stance.id
         words = f"{len(loops)} loop{'s' if len(loops) != 1 else ''}" if loops else "no loop yet"
         painter.setFont(font)
         painter.setPen(QColor(t.dim if loops else t.warning))
         foot = QRectF(card.left() + 12, card.bottom() - 26, card.width() - 24, 20)
-        words += "  ·  starts here" if start and card.width() > 150 else ""
-        painter.drawText(foot, Qt.AlignmentFlag.AlignCenter, _elided(font, words, foot.width()))
-    if dragging and look.drop is not None and look.drop_hit.area in ("card", "loop"):
+        more = f"{words}  ·  starts here"
+        if start and QFontMetricsF(font).horizontalAdvance(more) <= foot.width() - 1:
+            words = more
+        painter.drawText(foot, Qt.AlignmentFlag.AlignCenter, _between(font, words, foot.width()))
+    return _card_drop(painter, layout, look, font)
+
+
+def _card_name(painter: QPainter, card: QRectF, name: str, bold: QFont, look: GraphLook) -> QRectF:
+    """Paint the stance's name on its card, in two lines where one is too short; return the room it takes."""
+    t, measure = look.theme, QFontMetricsF(bold)
+    room = card.width() - 24 - 16
+    lines = [name]
+    words = name.split()
+    if measure.horizontalAdvance(name) > room and card.height() > 96 and len(words) > 1:
+        cuts = ((" ".join(words[:n]), " ".join(words[n:])) for n in range(1, len(words)))
+        lines = list(min(cuts, key=lambda two: max(map(measure.horizontalAdvance, two))))
+    lines = [_between(bold, line, room) for line in lines]
+    head = QRectF(card.left() + 12, card.top() + 8, card.width() - 24, 24.0 + 17 * (len(lines) - 1))
+    wide = max(map(measure.horizontalAdvance, lines))
+    left = head.center().x() - (wide + 16) / 2
+    painter.setFont(bold)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(t.fill("stance"))
+    painter.drawEllipse(QPointF(left + 4, head.center().y()), 4.5, 4.5)
+    painter.setPen(QColor(t.text))
+    for n, line in enumerate(lines):
+        box = QRectF(left + 16, head.top() + 17 * n, wide + 4, 24)
+        painter.drawText(box, Qt.AlignmentFlag.AlignVCenter, line)
+    return head
+
+
+def _card_drop(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -> None:
+    """Say what a drop on the card will do, while something is dragged there."""
+    card, stance = layout.card, look.project.stance(layout.stance)
+    if look.drop is not None and look.drop_hit.area in ("card", "loop"):
         zone = (
             layout.loops
             if look.drop_hit.area == "loop"
@@ -262,6 +303,8 @@ def _offer(painter: QPainter, rect: QRectF, look: GraphLook, kind: Kind, font: Q
     fill = QColor(t.ground)
     fill.setAlpha(225)
     _box(painter, rect.adjusted(5, 5, -5, -5), fill, color, 1.4, dashed=True)
+    if look.drop_at is not None:
+        return  # it stands beside what is held
     painter.setPen(color)
     painter.setFont(font)
     painter.drawText(
@@ -269,6 +312,26 @@ def _offer(painter: QPainter, rect: QRectF, look: GraphLook, kind: Kind, font: Q
         Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap,
         look.drop.words.replace("*", ""),
     )
+
+
+def _verdict(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -> None:
+    """Say above what is held what letting it go would do, in a mark or a warning's colour."""
+    if look.drop is None or look.drop_at is None or not look.drop.words:
+        return
+    t, words = look.theme, look.drop.words.replace("*", "")
+    words = words[:1].upper() + words[1:]
+    flags = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap
+    painter.setFont(font)
+    room = QRectF(0, 0, min(300.0, layout.size.width() - 40), 200)
+    box = painter.boundingRect(room, flags, words).adjusted(-10, -6, 10, 6)
+    at = look.drop_at + QPointF(14, -8 - box.height())
+    x = min(max(4.0, at.x()), layout.size.width() - box.width() - 4)
+    y = at.y() if at.y() >= 4 else look.drop_at.y() + 134  # beneath what is held
+    box.moveTo(x, min(y, layout.size.height() - box.height() - 4))
+    color = QColor(t.kinds[look.drop_hit.kind]) if look.drop_hit.kind else QColor(t.text)
+    _box(painter, box, QColor(t.panel), color if look.drop.possible else QColor(t.warning), 1.4)
+    painter.setPen(QColor(t.text) if look.drop.possible else QColor(t.warning))
+    painter.drawText(box.adjusted(10, 6, -10, -6), flags, words)
 
 
 def _node(painter: QPainter, node: Node, layout: Layout, look: GraphLook, font: QFont) -> None:
@@ -296,8 +359,9 @@ def _node(painter: QPainter, node: Node, layout: Layout, look: GraphLook, font: 
     painter.drawText(head, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight, str(node.count))
     if node.kind == "transition" and layout.stance is not None:
         _other(painter, node, look, font)
+    beside = tuple(row.words for other in layout.nodes.values() for row in other.rows)
     for row in node.rows:
-        _row(painter, row.action, row.rect, row.bar, node.kind, look, font)
+        _row(painter, row, node.kind, look, font, beside)
     if node.most > 0:
         track = QRectF(node.rect.right() - 6, node.body.top(), 3, node.body.height())
         share = len(node.rows) / max(1, node.count)
@@ -309,7 +373,10 @@ def _node(painter: QPainter, node: Node, layout: Layout, look: GraphLook, font: 
         painter.setPen(QColor(t.dim))
         text = TEACH[node.kind] if layout.stance is not None else "Make a stance first."
         flags = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap
-        painter.drawText(node.body.adjusted(2 * GRID, 2, -GRID, 0), flags, text)
+        room = node.body.adjusted(2 * GRID, 2, -GRID, 0)
+        while text and painter.boundingRect(room, flags, text).height() > room.height():
+            text = text.rpartition("\n")[0]
+        painter.drawText(room, flags, text)
     if target:
         free = QRectF(node.rect.left() + 3, node.rect.bottom() - 60, node.rect.width() - 6, 56)
         if node.rect.height() < 130:
@@ -330,9 +397,9 @@ def _other(painter: QPainter, node: Node, look: GraphLook, font: QFont) -> None:
     _box(painter, rect, QColor(t.hover if hover else t.field), QColor(t.line))
     painter.setFont(font)
     painter.setPen(QColor(t.text if found is not None else t.warning))
-    text = f"to {found.name}" if found is not None else "needs another stance"
+    text = f"to {plain(found.name)}" if found is not None else "another stance?"
     painter.drawText(
-        rect.adjusted(8, 0, -18, 0), Qt.AlignmentFlag.AlignVCenter, _elided(font, text, rect.width() - 28)
+        rect.adjusted(8, 0, -18, 0), Qt.AlignmentFlag.AlignVCenter, _between(font, text, rect.width() - 26)
     )
     painter.setPen(QPen(QColor(t.dim), 1.4))
     c = QPointF(rect.right() - 12, rect.center().y())
@@ -340,24 +407,22 @@ def _other(painter: QPainter, node: Node, look: GraphLook, font: QFont) -> None:
 
 
 def _row(
-    painter: QPainter, action: Action, rect: QRectF, bar: QRectF, kind: Kind, look: GraphLook, font: QFont
+    painter: QPainter, row: GraphRow, kind: Kind, look: GraphLook, font: QFont, beside: tuple[str, ...]
 ) -> None:
-    t = look.theme
+    t, action, rect, bar = look.theme, row.action, row.rect, row.bar
     selected, hover = (
         action.id in look.selected,
         look.hover.ident == action.id and look.hover.area in ("row", "bar", "head"),
     )
-    if selected or hover:
+    fresh = action.id in look.fresh
+    if selected or hover or fresh:
         fill = QColor(t.hover)
         fill.setAlpha(255 if selected else 130)
-        painter.setPen(QPen(QColor(t.dim), 1) if action.id == look.focus and selected else Qt.PenStyle.NoPen)
+        edge = t.kind(kind) if fresh else QColor(t.dim)
+        ringed = fresh or (action.id == look.focus and selected)
+        painter.setPen(QPen(edge, 1) if ringed else Qt.PenStyle.NoPen)
         painter.setBrush(fill)
         painter.drawRoundedRect(rect.adjusted(0, 1, 0, -1), 5, 5)
-    stance = look.project.stance(action.stance)
-    text = short(action.name, stance.name) if stance is not None else action.name
-    if kind == "transition":
-        end = look.project.stance(action.end_stance)
-        text = end.name if end is not None else f"?  {action.name}"
     left = rect.left() + 8
     if kind == "transition":
         if hover and look.hover.area == "head":
@@ -371,6 +436,11 @@ def _row(
         painter.setPen(t.kind(kind))
         painter.drawText(QRectF(left, rect.top(), 18, rect.height()), Qt.AlignmentFlag.AlignVCenter, "→")
         left += 17
+    picture = look.row_pictures.get(action.clip)
+    if not row.picture.isEmpty():
+        left = row.picture.right() + 8
+        if picture is not None:
+            painter.drawImage(row.picture, picture, _upper(picture))
     if action.id in look.playing:
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(t.kind(kind))
@@ -388,7 +458,7 @@ def _row(
     painter.drawText(
         QRectF(left, rect.top(), room, rect.height()),
         Qt.AlignmentFlag.AlignVCenter,
-        _elided(font, text, room, middle=True),  # actions of a stance differ at their ends
+        _between(font, row.words, room, beside),
     )
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(QColor(t.line))

@@ -1,38 +1,54 @@
-"""The list of shortcuts, and what this program is."""
+"""What can be done and by which keys, and what this program is."""
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt
+from collections.abc import Iterator
+from functools import partial
+
 from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QMessageBox
 
+from app.features.help.command_finder import CommandFinder, Entry
 from app.look.theme import KIND_MARKS
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
+from app.shell.places import Places
 from metagraph.graph.model import KINDS
+
+LANES = (  # what the lanes take for themselves
+    ("Label as clause, response, hesitation", "1, 2, 3"),
+    ("Split a segment", "S"),
+    ("Merge segments", "M"),
+    ("Set the stress", "P"),
+    ("Go from segment to segment", "Tab, arrows"),
+)
 
 
 def contribute(shell: Shell) -> Contribution:
-    def keys() -> None:
-        rows = []
+    def entries(keyed: bool) -> Iterator[Entry]:
+        """Return every command as it can be used now; keyed: only those with keys."""
+        shell.actions.refresh()
         for command in shell.actions.commands:
-            shortcuts = shell.actions[command.id].shortcuts()
-            words = ", ".join(k.toString(QKeySequence.SequenceFormat.NativeText) for k in shortcuts)
-            if words and command.group != "stances":
-                rows.append(
-                    f"<tr><td style='padding-right:24px'>{command.plain}</td><td><b>{words}</b></td></tr>"
-                )
-        rows.append("<tr><td>Stance 1 to 9</td><td><b>Ctrl+1 … Ctrl+9</b></td></tr>")
-        rows.append(
-            "<tr><td colspan=2>In a conversation: 1 2 3 label, S split, M merge, P stress, Tab and arrows "
-            "choose</td></tr>"
-        )
-        table = f"<table>{''.join(rows)}</table>"
-        box = QMessageBox(
-            QMessageBox.Icon.NoIcon, "Keyboard shortcuts", table, QMessageBox.StandardButton.Ok, shell.widget
-        )
-        box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        box.open()
+            action = shell.actions[command.id]
+            keys = ", ".join(k.toString(QKeySequence.SequenceFormat.NativeText) for k in action.shortcuts())
+            if action.menu() is not None or not action.isVisible() or (keyed and not keys):
+                continue
+            tip = command.tip if command.tip != command.plain else ""
+            yield Entry(
+                command.menu.replace("&", ""), command.plain, keys, tip, action.trigger, action.isEnabled()
+            )
+        if keyed:
+            yield from (Entry("In a conversation", words, keys) for words, keys in LANES)
+            return
+        places = shell.services[Places]
+        for ident, dock in places.docks.items():
+            yield Entry("Panels", dock.windowTitle(), also="panel", run=partial(places.show, ident))
+
+    def keys() -> None:
+        CommandFinder("Keyboard shortcuts", entries(True), shell.widget).open()
+
+    def palette() -> None:
+        CommandFinder("Commands", entries(False), shell.widget).open()
 
     def about() -> None:
         from metagraph import __version__
@@ -47,6 +63,9 @@ def contribute(shell: Shell) -> Contribution:
     return Contribution(
         commands=(
             Command("keys", "&Help", "", "&Keyboard shortcuts", keys, ("F1",), study=True),
+            Command(
+                "palette", "&Help", "", "&Commands…", palette, ("Ctrl+Shift+P",), tip="Find what can be done"
+            ),
             Command("about", "&Help", "", "&About Metagraph", about, study=True),
         ),
     )

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from html import escape
 from typing import Any
 
-from PySide6.QtCore import QEvent, QObject, Qt
+from PySide6.QtCore import QEvent, QObject, QSize, Qt
 from PySide6.QtGui import QKeyEvent, QKeySequence
 from PySide6.QtWidgets import (
     QDialog,
@@ -50,6 +50,7 @@ TITLES: dict[str, str] = {
     "end_stance": "Ends in",
     "limb": "Arm",
 }
+LARGEST = QSize(1380, 850)  # pixels, where the window is that large
 FRAME = 1 / 30  # seconds a step goes
 LEAST = 2 / 30  # seconds a clip keeps at least
 
@@ -82,7 +83,7 @@ class ReviewDialog(QDialog):
             self.finished.connect(lambda _: session.transport.set_playing(True))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle("Label clips")
-        self.resize(1380, 850)
+        self.resize(LARGEST if parent is None else LARGEST.boundedTo(parent.window().size()))
         self.queue = ReviewQueue(session, self)
         self.stage = ReviewStage(session, figures, self)
         self.fields = ReviewFields(session, self)

@@ -44,7 +44,18 @@ def contribute(shell: Shell) -> Contribution:
         rank=0,
     )
     return Contribution(
-        panels=(Panel("library", "Clips", "left", make, late=False),),
+        panels=(
+            Panel(
+                "library",
+                "Clips",
+                "left",
+                make,
+                late=False,
+                where={"label": "large", "graph": "list"},
+                opens={"time": "list"},
+                least=(200, 180),
+            ),
+        ),
         commands=(
             Command(
                 "find",

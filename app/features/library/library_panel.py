@@ -16,6 +16,7 @@ from PySide6.QtCore import (
     QMimeData,
     QModelIndex,
     QPersistentModelIndex,
+    QPoint,
     QRect,
     QSize,
     QSortFilterProxyModel,
@@ -57,10 +58,14 @@ from PySide6.QtWidgets import (
 )
 
 from app.look import icons
+from app.look.names import fitted, fitting, plain
+from app.look.plural import many, short
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
+from app.project.load import readable
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
+from app.widgets.flow import Flow
 from app.widgets.making import make_widget
 from app.widgets.mime import drag_picture, load_of, mime
 from metagraph.graph import edits
@@ -68,9 +73,11 @@ from metagraph.graph.generated import origin
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry, Kind, Project
 
 Index = QModelIndex | QPersistentModelIndex
+EMPTY = "Drop a folder of clips here\n\n{}"
 ENTRY = Qt.ItemDataRole.UserRole
 CARD_WIDTH, CARD_HEIGHT = 124, 176
 PICTURE = 108
+NEAR = 48  # cards before and behind one, from which its name is told apart
 
 
 @dataclass(frozen=True)
@@ -232,7 +239,18 @@ class CardDelegate(QStyledItemDelegate):
         painter.setFont(font)
         painter.setPen(QColor(t.text))
         line = QRect(rect.left() + 11, rect.bottom() - 53, rect.width() - 16, 16)
-        for part in two_lines(entry.name, painter.fontMetrics(), line.width()):
+        front, rest = self.panel.card_name(entry)
+        key, beside = font.toString(), self.panel.beside(index.row())
+        shown = (
+            (
+                fitted(front, line.width(), key, self.panel.stances()),
+                fitted(rest, line.width(), key, beside),
+            )
+            if front
+            else two_lines(rest, painter.fontMetrics(), line.width(), beside)
+        )
+        for n, part in enumerate(shown):
+            painter.setPen(QColor(t.dim if front and n == 0 else t.text))
             painter.drawText(line, Qt.AlignmentFlag.AlignVCenter, part)
             line.translate(0, 16)
         painter.setPen(QColor(t.dim))
@@ -255,16 +273,31 @@ class CardDelegate(QStyledItemDelegate):
         painter.restore()
 
 
-def two_lines(name: str, metrics: QFontMetrics, width: int) -> tuple[str, ...]:
-    """Break a name over at most two lines, after a separator where there is one; names tell clips apart by
-    their ends.
+def two_lines(name: str, metrics: QFontMetrics, width: int, beside: Iterable[str] = ()) -> tuple[str, ...]:
+    """Break a name over at most two lines, after a separator where there is one. beside: names of the cards
+    round it, from which what is shown is to differ.
     """
     if metrics.horizontalAdvance(name) <= width:
         return (name,)
+    measure = metrics.horizontalAdvance
+    first, second = _broken(name, metrics, width)
+    if measure(second) > width:
+        rivals = [o[len(name) - len(second) :] for o in beside if o.startswith(first)]
+        cut = fitting(second, width, measure, rivals, sure=True)
+        if cut:
+            return first, cut
+        first, second = _broken(fitting(name, 2 * width - 16, measure, beside), metrics, width, hard=True)
+    return first, fitting(second, width, measure)
+
+
+def _broken(name: str, metrics: QFontMetrics, width: int, hard: bool = False) -> tuple[str, str]:
+    """Break a name behind a separator, or where the line is full. hard: there if the rest needs it."""
     fits = max((n for n in range(1, len(name)) if metrics.horizontalAdvance(name[:n]) <= width), default=1)
     cuts = [n for n in range(fits, fits // 2, -1) if name[n - 1] in "_- .@"]
     cut = cuts[0] if cuts else fits
-    return name[:cut], metrics.elidedText(name[cut:], Qt.TextElideMode.ElideMiddle, width)
+    if hard and metrics.horizontalAdvance(name[cut:]) > width:
+        cut = fits
+    return name[:cut].rstrip(), name[cut:]
 
 
 class Search(QLineEdit):
@@ -330,7 +363,10 @@ class ClipList(QListView):
             return
         drag = QDrag(self)
         drag.setMimeData(mime(clips=[e.id for e in chosen]))
-        drag.setPixmap(drag_picture(chosen[0].name if len(chosen) == 1 else f"{len(chosen)} clips", self))
+        words = " ".join(self.panel.card_name(chosen[0])) if len(chosen) == 1 else many(len(chosen), "clip")
+        picture = self.panel.thumbnails.picture(chosen[0].id, bare=True)
+        drag.setPixmap(drag_picture(words.strip(), self, picture))
+        drag.setHotSpot(QPoint(-14, -10))  # beside the pointer: what lies under that stays in sight
         drag.exec(Qt.DropAction.CopyAction)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -425,15 +461,15 @@ class LibraryPanel(QWidget):
         layout.addLayout(self.stack, 1)
         self.setAcceptDrops(True)
         document.changed.connect(self._follow)
+        document.loaded.connect(self.forget)
         session.selection.changed.connect(self._show_selection)
         session.look.changed.connect(self.restyle)
         thumbnails.ready.connect(lambda _: self.list.viewport().update())
         self.restyle()
         self._count()
 
-    def _filters(self) -> QHBoxLayout:
-        row = QHBoxLayout()
-        row.setSpacing(2)
+    def _filters(self) -> Flow:
+        row = Flow()
         self.chips: dict[str, QToolButton] = {}
 
         def chip(key: str, text: str, tip: str) -> None:
@@ -460,7 +496,6 @@ class LibraryPanel(QWidget):
             menu.addAction(f"{layer.capitalize()} layer", partial(self._narrow, layer, None))
         self.more.setMenu(menu)
         row.addWidget(self.more)
-        row.addStretch(1)
         self.chips["all"].setChecked(True)
         return row
 
@@ -468,11 +503,10 @@ class LibraryPanel(QWidget):
         page = QWidget(self)
         box = QVBoxLayout(page)
         box.addStretch(2)
-        self.empty = QLabel(
-            "Drop a folder of clips here\n\nBVH, GLB, glTF, VRM animation\nand, with the extra, FBX", page
-        )
+        self.empty = QLabel(EMPTY.format(readable()), page)
         self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.empty.setProperty("dim", True)
+        self.empty.setWordWrap(True)
         box.addWidget(self.empty)
         button = QPushButton("Import a folder…", page)
         button.clicked.connect(self.import_wanted)
@@ -529,10 +563,61 @@ class LibraryPanel(QWidget):
         if hidden:
             self.empty.setText("No clip matches.\nClear the search or the filters.")
         else:
-            self.empty.setText(
-                "Drop a folder of clips here\n\nBVH, GLB, glTF, VRM animation\nand, with the extra, FBX"
-            )
+            self.empty.setText(EMPTY.format(readable()))
         self.stack.setCurrentIndex(1 if nothing or hidden else 0)
+
+    def next_unlabelled(self, clip: str) -> str | None:
+        """Return the clip that comes after one, as they are listed, and serves as nothing yet; from the first
+        on where none comes after it. None where there is no other.
+        """
+        project, filtered = self.document.project, self.proxy.filter
+        ids = [i for i, e in project.clips.items() if i == clip or self._open(e, filtered)]
+        at = ids.index(clip) if clip in ids else -1
+        return next((i for i in (*ids[at + 1 :], *ids[: max(0, at)]) if i != clip), None)
+
+    def _open(self, entry: ClipEntry, rule: Filter) -> bool:
+        """Return whether a clip serves as nothing yet, and is looked for."""
+        project = self.document.project
+        used = entry.id in project.uses or entry.id in project.drawn
+        return not used and Filter(rule.text).takes(project, entry)
+
+    def forget(self) -> None:
+        """Show all clips: what was searched was of another project."""
+        self.search.clear()
+        self._narrow(None, None)
+        self._chip("all")
+
+    # --- names
+
+    def card_name(self, entry: ClipEntry) -> tuple[str, str]:
+        """Return the stance that a clip's name begins with, "" for none, and the rest, as they are read."""
+        kept, names = self._names(), self.stances()
+        if entry.name not in kept:
+            found = next((n for n in names if short(entry.name, n) != entry.name), "")
+            kept[entry.name] = found, plain(entry.name, found)
+        return kept[entry.name]
+
+    def _names(self) -> dict[str, tuple[str, str]]:
+        """Return what is known of names by now; nothing after the graphs changed."""
+        graphs = self.document.project.graphs
+        if self._named[0] is not graphs:
+            some = [(layer, s.name) for layer in LAYERS for s in graphs[layer].stances.values()]
+            names = {name for _, name in some} | {f"{layer} {name}" for layer, name in some}
+            self._named = graphs, tuple(sorted(names, key=len, reverse=True)), {}
+        return self._named[2]
+
+    _named: tuple[object, tuple[str, ...], dict[str, tuple[str, str]]] = None, (), {}
+
+    def stances(self) -> tuple[str, ...]:
+        """Return the names of all stances, with their layers in front, too, the longest first."""
+        self._names()
+        return self._named[1]
+
+    def beside(self, row: int) -> tuple[str, ...]:
+        """Return what the cards round one are called, as far as names are shown in a line."""
+        near = range(row // NEAR * NEAR - NEAR, row // NEAR * NEAR + 2 * NEAR)
+        entries = (self.proxy.index(n, 0).data(ENTRY) for n in near if 0 <= n < self.proxy.rowCount())
+        return tuple(dict.fromkeys(self.card_name(e)[1] for e in entries if e is not None))
 
     # --- selection
 
@@ -572,6 +657,7 @@ class LibraryPanel(QWidget):
                 first = first or index
         self.list.selectionModel().select(chosen, QItemSelectionModel.SelectionFlag.ClearAndSelect)
         if first is not None and len(wanted) == 1:
+            self.list.selectionModel().setCurrentIndex(first, QItemSelectionModel.SelectionFlag.NoUpdate)
             self.list.scrollTo(first)
         self._following = False
 

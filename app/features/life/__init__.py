@@ -14,6 +14,8 @@ def contribute(shell: Shell) -> Contribution:
         return LifePanel(shell.document, shell.stage.session, shell.widget)
 
     return Contribution(
-        panels=(Panel("life", "Life", "right below", make),),
+        panels=(
+            Panel("life", "Life", "right below", make, where={"perform": "side"}, opens={"talk": "side"}),
+        ),
         late_imports=("app.features.life.life_panel",),
     )

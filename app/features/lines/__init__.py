@@ -34,7 +34,18 @@ def contribute(shell: Shell) -> Contribution:
             shell.panel("lines").add_files(list(kinds_of(paths)[0]))
 
     return Contribution(
-        panels=(Panel("lines", "Lines", "bottom", make, study=False),),
+        panels=(
+            Panel(
+                "lines",
+                "Lines",
+                "bottom",
+                make,
+                study=False,
+                where={"perform": "side"},
+                opens={"talk": "side"},
+                rank=6,
+            ),
+        ),
         drops=(FileDrop(SOUNDS, claim, take),),
         late_imports=("app.features.lines.lines_panel",),
     )

@@ -6,11 +6,10 @@ from pathlib import Path
 
 import msgspec
 from PySide6.QtCore import QEvent, QItemSelection, QItemSelectionModel, Qt, Signal
-from PySide6.QtGui import QColor, QDragEnterEvent, QDragMoveEvent, QDropEvent, QKeyEvent
+from PySide6.QtGui import QColor, QDragEnterEvent, QDragMoveEvent, QDropEvent, QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QFileDialog,
-    QHBoxLayout,
     QHeaderView,
     QLabel,
     QLineEdit,
@@ -28,6 +27,7 @@ from app.project.document import Document, Edit
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
+from app.widgets.flow import Flow
 from app.widgets.making import make_widget
 from metagraph.graph import performance_edits
 from metagraph.graph.edits import EditError
@@ -94,16 +94,15 @@ class LinesPanel(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(12, 6, 12, 6)
         layout.setSpacing(6)
-        row = QHBoxLayout()
-        row.setSpacing(8)
+        row = Flow(spacing=6)
         self.search = QLineEdit(self, placeholderText="Search lines", clearButtonEnabled=True)
         self.search.setAccessibleName("Search lines")
-        self.search.setMaximumWidth(220)
+        self.search.setFixedWidth(170)
         self.search.textChanged.connect(self._search)
         row.addWidget(self.search)
         self.words = QLabel(self)
         self.words.setProperty("dim", True)
-        row.addWidget(self.words, 1)
+        row.addWidget(self.words)
         for text, tip, run in (
             ("Say it now", "The selected line, at the playhead (Enter)", self.say),
             ("Add files…", "Sounds, or a list of lines", self.ask_files),
@@ -212,10 +211,17 @@ class LinesPanel(QWidget):
             if column == SOUND:
                 item.setForeground(QColor(look.warning if lost else look.dim))
                 item.setToolTip(
-                    "The sound could not be read; the lips follow the letters" if lost else line.audio or ""
+                    f"{line.audio}\nThe sound could not be read; the lips follow the letters"
+                    if lost
+                    else line.audio or ""
                 )
             elif column in (ID, WORDS):
-                item.setToolTip(text if len(text) > 24 else "")
+                item.setToolTip(text)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """What is said has most of the width."""
+        super().resizeEvent(event)
+        self.table.setColumnWidth(SOUND, min(190, round(0.25 * event.size().width())))
 
     def _search(self, text: str) -> None:
         wanted = text.lower().split()

@@ -5,7 +5,17 @@ from __future__ import annotations
 import math
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QHelpEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPixmap
+from PySide6.QtGui import (
+    QColor,
+    QFont,
+    QFontMetrics,
+    QHelpEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+    QPixmap,
+)
 from PySide6.QtWidgets import QToolTip, QWidget
 
 from app.look.theme import KIND_MARKS, theme
@@ -119,45 +129,64 @@ class MachinePanel(QWidget):
             painter.setPen(QPen(QColor(t.text if ident in chosen else t.panel), 1.6))
             painter.setBrush(t.fill(action.kind))
             painter.drawEllipse(at, radius, radius)
-            if action.kind == "stance":
-                stance = graph.stances.get(action.stance)
-                below = max(
-                    (
-                        self._places[a.id].y()
-                        for a in graph.of(action.stance, "gesture")
-                        if a.id in self._places
-                    ),
-                    default=at.y(),
-                )
-                box = QRectF(at.x() - 70, max(below, at.y() + 4) + 7, 140, 18)
-                painter.setPen(QColor(t.text))
-                painter.drawText(box, Qt.AlignmentFlag.AlignCenter, stance.name if stance else "")
-        self._words(painter, whole.clips, whole.states, whole.connections)
+        taken = self._words(painter, whole.clips, whole.states, whole.connections)
+        painter.setFont(self.font())
+        painter.setPen(QColor(t.text))
+        for stance, box in self._names(graph, painter.fontMetrics(), taken):
+            painter.drawText(box, Qt.AlignmentFlag.AlignCenter, stance)
         painter.end()
         return out
 
-    def _words(self, painter: QPainter, clips: int, states: int, links: int) -> None:
+    def _names(
+        self, graph: MetaGraph, measure: QFontMetrics, taken: list[QRectF]
+    ) -> list[tuple[str, QRectF]]:
+        """Return each stance's name and where it stands: beneath its actions, or as near to that as it comes
+        without lying on another. taken: where words are already.
+        """
+        out: list[tuple[str, QRectF]] = []
+        room = QRectF(self.rect()).adjusted(4, 4, -4, -4)
+        for stance in graph.stances.values():
+            own = [self._places[a.id] for a in graph.of(stance.id, "stance") if a.id in self._places]
+            if not own:
+                continue
+            around = [self._places[a.id].y() for a in graph.of(stance.id, "gesture") if a.id in self._places]
+            name = measure.elidedText(stance.name, Qt.TextElideMode.ElideMiddle, round(room.width()))
+            wide, high = measure.horizontalAdvance(name) + 6, float(measure.height())
+            top = max(max(around, default=own[0].y()), own[0].y() + 4) + 7
+            box = QRectF(own[0].x() - wide / 2, top, wide, high)
+            box.moveLeft(min(max(box.left(), room.left()), room.right() - wide))
+            steps = (QRectF(box).translated(0, n * 0.5 * high * (-1) ** n) for n in range(80))
+            inside = (s for s in steps if room.contains(s))
+            box = next((s for s in inside if not any(s.intersects(x) for x in taken)), box)
+            taken.append(box)
+            out.append((name, box))
+        return out
+
+    def _words(self, painter: QPainter, clips: int, states: int, links: int) -> list[QRectF]:
+        """Say how large the machine is; return where that stands."""
         t = theme(self.session.look.name)
-        painter.setPen(QColor(t.text))
-        font = painter.font()
-        font.setPixelSize(22)
-        font.setBold(True)
-        painter.setFont(font)
-        painter.drawText(QRectF(20, 14, 400, 30), Qt.AlignmentFlag.AlignVCenter, f"{links:,} connections")
-        font.setPixelSize(13)
-        font.setBold(False)
-        painter.setFont(font)
-        painter.setPen(QColor(t.dim))
-        painter.drawText(
-            QRectF(20, 44, 420, 20),
-            Qt.AlignmentFlag.AlignVCenter,
-            f"among {states} states, in the {self.session.place.layer} layer alone.",
-        )
-        painter.drawText(QRectF(20, 64, 420, 20), Qt.AlignmentFlag.AlignVCenter, f"You placed {clips} clips.")
+        lines = [
+            (22, t.text, f"{links:,} connections"),
+            (13, t.dim, f"among {states} states, in the {self.session.place.layer} layer alone."),
+            (13, t.dim, f"You placed {clips} clips."),
+        ]
         if links > MOST:
-            painter.drawText(
-                QRectF(20, 84, 420, 20), Qt.AlignmentFlag.AlignVCenter, f"The first {MOST:,} are drawn."
-            )
+            lines.append((13, t.dim, f"The first {MOST:,} are drawn."))
+        out: list[QRectF] = []
+        left, top = 20.0, 14.0
+        for size_, color, words in lines:
+            font = QFont(self.font())
+            font.setPixelSize(size_)
+            font.setBold(size_ > 13)
+            painter.setFont(font)
+            painter.setPen(QColor(color))
+            room = QRectF(left, top, max(80.0, self.width() - left - 8), 200)
+            flags = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap
+            box = painter.boundingRect(room, flags, words)
+            painter.drawText(room, flags, words)
+            out.append(box)
+            top = box.bottom() + 3
+        return out
 
     def _at(self, point: QPointF) -> Action | None:
         near = min(self._places.items(), key=lambda item: (item[1] - point).manhattanLength(), default=None)

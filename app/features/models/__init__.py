@@ -35,7 +35,16 @@ def contribute(shell: Shell) -> Contribution:
         return panel
 
     return Contribution(
-        panels=(Panel("models", "Models", "bottom", make, scrolls=True, study=False),),
+        panels=(
+            Panel(
+                "models",
+                "Models",
+                "bottom",
+                make,
+                study=False,
+                opens={"talk": "below"},
+            ),
+        ),
         commands=(
             Command(
                 "annotate",

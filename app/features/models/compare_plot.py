@@ -80,6 +80,7 @@ class ComparePlot(QWidget):
         plot = still_plot(self)
         plot.getAxis("left").setWidth(34)
         plot.setMinimumHeight(96)
+        plot.setYRange(0, 1.08, padding=0.05)  # the uppermost number is whole, too
         plot.scene().sigMouseMoved.connect(lambda at, p=plot: self._hover(p, at))
         return plot
 
@@ -117,7 +118,7 @@ class ComparePlot(QWidget):
         self.often.getAxis("bottom").setTicks([ticks])
         self.long.getAxis("bottom").setTicks([[*ticks, (count, "rest")]])
         self.often.setXRange(-0.5, count - 0.5, padding=0.02)
-        self.often.setYRange(0, 108 * float(max(np.max(seen), np.max(made + chance), 0.05)), padding=0)
+        self.often.setYRange(0, 108 * float(max(np.max(seen), np.max(made + chance), 0.05)), padding=0.0)
         self.long.setXRange(-0.5, count + 0.5, padding=0.02)
         tallies = [x for x in (found.observed, found.generated) if x is not None]
         tops = [quantiles(x)[-1] for tally in tallies for x in (*tally.lengths, tally.rests) if len(x)]

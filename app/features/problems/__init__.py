@@ -26,7 +26,15 @@ def contribute(shell: Shell) -> Contribution:
         return panel
 
     return Contribution(
-        panels=(Panel("problems", "Problems", "bottom", make),),
+        panels=(
+            Panel(
+                "problems",
+                "Problems",
+                "bottom",
+                make,
+                opens={"graph": "below", "label": "below", "time": "below"},
+            ),
+        ),
         header=(HeaderItem("right", lambda parent: ProblemButton(shell, watch, parent)),),
         late_imports=("app.features.problems.problems_panel",),
     )

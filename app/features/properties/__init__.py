@@ -6,6 +6,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.shell.actions import Command
 from app.shell.context import Contribution, Panel, Shell
+from app.shell.places import Places
 from app.shell.verbs import Verbs
 from app.stage.compatibility_state import Compatibility
 from app.stage.problem_watch import ProblemWatch
@@ -21,10 +22,13 @@ def contribute(shell: Shell) -> Contribution:
     def make() -> QWidget:
         from app.features.properties.properties_panel import PropertiesPanel
 
+        places = shell.services[Places]
         panel = PropertiesPanel(shell.document, session, shell.stage.performance, shell.widget)
         problems.changed.connect(lambda: panel.set_misfits(problems.misfits))
         panel.set_misfits(problems.misfits)
         panel.plot.set_compatibility(compatibility)
+        panel.timing_elsewhere = lambda: places.workspace.id == "time" and "timing" in places.panels
+        panel.time_wanted.connect(lambda: shell.actions["workspace_3"].trigger())
         return panel
 
     def rename() -> None:
@@ -37,7 +41,16 @@ def contribute(shell: Shell) -> Contribution:
         "rename", lambda: session.onstage.mode == "meta" and len(session.selection.actions) == 1, rename
     )
     return Contribution(
-        panels=(Panel("properties", "Properties", "right below", make),),
+        panels=(
+            Panel(
+                "properties",
+                "Properties",
+                "right below",
+                make,
+                where={"time": "side", "graph": "below", "label": "below"},
+                rank=1,
+            ),
+        ),
         commands=(
             Command(
                 "use_times",

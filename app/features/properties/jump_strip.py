@@ -13,95 +13,14 @@ from PySide6.QtGui import QColor, QHelpEvent
 from PySide6.QtWidgets import QToolTip, QWidget
 
 from app.look.theme import Theme
-from metagraph.graph import end_gaps
 from metagraph.graph.model import Action, Project
 
 if TYPE_CHECKING:
-    from metagraph.suggest.jumps import Curves
+    from metagraph.suggest.seen_jumps import Seen
 
 HEIGHT = 58
 TOP = 2.4  # of what shows as a jump; more is cut off
 BAR = 0.22  # height of the allowed spans
-
-
-class Seen:
-    """An action's curves as its blends are now. times, enter, leave `[F]`; pivot: the frame from which on
-    leaving is shown.
-    """
-
-    def __init__(self, action: Action, curves: Curves) -> None:
-        from metagraph.suggest.compatibility import shown
-
-        t = action.timing
-        self.loops, self.times, self.proposed = action.kind == "stance", curves.times, curves.proposed
-        self.enter = np.array(shown(curves.enter, t.blend_in))
-        self.leave = np.array(shown(curves.leave, t.blend_in if self.loops else t.blend_out))
-        if curves.gaps is not None:  # a long blend covers an unhurried pace, none covers what is far
-            for cost, gap, blend in zip(
-                (self.enter, self.leave), curves.gaps, (t.blend_in, t.blend_out), strict=True
-            ):
-                covered = end_gaps.slow(gap, curves.height, blend)
-                cost[covered] = np.minimum(cost[covered], 1.0)
-                far = np.isfinite(gap) & (gap > end_gaps.hidden(curves.height, blend))
-                cost[far] = np.maximum(cost[far], gap[far] / end_gaps.hidden(curves.height, blend))
-        if self.loops:
-            self.pivot = 0
-        elif action.kind == "transition":
-            self.pivot = int(np.argmax(curves.leave <= curves.enter)) or len(self.times) // 2
-        else:
-            self.pivot = int(np.argmax(curves.enter))
-
-    def at(self, seconds: float) -> int:
-        return int(np.argmin(np.abs(self.times - seconds)))
-
-    def cost(self, edge: str, seconds: float) -> float:
-        """Return what beginning ("start") or ending ("end") at a moment would cost; up to 1 does not show."""
-        return float((self.enter if edge == "start" else self.leave)[self.at(seconds)])
-
-    def curve(self) -> np.ndarray:
-        """Return `[F]` what is drawn: entering before the pivot, leaving from there on."""
-        return np.where(np.arange(len(self.times)) < self.pivot, self.enter, self.leave)
-
-    def spans(self) -> list[tuple[float, float]]:
-        """Return where nothing shows, seconds; from the first such frame to the last."""
-        good = self.curve() <= 1
-        good_in, good_out = (
-            good & (np.arange(len(good)) < self.pivot),
-            good & (np.arange(len(good)) >= self.pivot),
-        )
-        out = []
-        for some in (good_in, good_out):
-            edges = np.flatnonzero(np.diff(np.concatenate(([0], some.astype(int), [0]))))
-            out += [(float(self.times[a]), float(self.times[b - 1])) for a, b in edges.reshape(-1, 2)]
-        return out
-
-    def snaps(self, handle: str) -> list[float]:
-        """Return the moments a handle comes to rest at: the proposed one, and where nothing begins to
-        show.
-        """
-        if handle == "start":
-            if self.loops:
-                return []
-            ends = [b for a, b in self.spans() if b <= self.times[self.pivot]]
-            return [self.proposed.start, *ends]
-        if handle == "end":
-            starts = [a for a, b in self.spans() if a >= self.times[self.pivot] and a > self.times[0] + 0.1]
-            return [self.proposed.end, *starts]
-        return []
-
-
-def words_at(project: Project, action: Action, seen: Seen, seconds: float) -> str:
-    """Say what a moment would be like to begin or end at."""
-    entering = seen.at(seconds) < seen.pivot
-    cost = seen.cost("start" if entering else "end", seconds)
-    blend = action.timing.blend_in if entering or seen.loops else action.timing.blend_out
-    stance = project.stance(action.stance if entering or action.end_stance is None else action.end_stance)
-    name = f"'{stance.name}'" if stance is not None else "its stance"
-    what = "repeats from" if seen.loops else "enters from" if entering else "leaves to"
-    to = "" if seen.loops else f" {name}"
-    how = f", blended over {blend:.2f} s" if blend > 0 else ""
-    verdict = f"{cost:.1f} of what shows as a jump" if cost <= 1 else f"{cost:.1f} times what shows as a jump"
-    return f"At {seconds:.2f} s it {what}{to}{' here' if seen.loops else ''}: {verdict}{how}"
 
 
 class JumpStrip(pg.PlotWidget):
@@ -126,12 +45,14 @@ class JumpStrip(pg.PlotWidget):
         self.bad = pg.PlotDataItem(connect="finite", antialias=True)
         self.good = pg.PlotDataItem(connect="finite", antialias=True)
         self.limit = pg.InfiniteLine(pos=1.0, angle=0, movable=False)
-        self.words = pg.TextItem("shows as a jump", anchor=(1.0, 1.0))
+        self.words = pg.TextItem("shows as a jump", anchor=(0.5, 1.0))
         self.marks = pg.ScatterPlotItem(size=12)
         self.edges = [pg.InfiniteLine(movable=False) for _ in range(2)]
         for item in (self.bars, self.limit, *self.edges, self.bad, self.good, self.marks):
             self.addItem(item)
         self.addItem(self.words, ignoreBounds=True)
+        self.plotItem.vb.sigResized.connect(lambda _: self._put_words())
+        self.plotItem.vb.sigXRangeChanged.connect(lambda *_: self._put_words())
 
     def restyle(self, t: Theme, color: QColor) -> None:
         self.setBackground(t.panel)
@@ -177,12 +98,24 @@ class JumpStrip(pg.PlotWidget):
         for edge, value in zip(self.edges, project.span(action), strict=True):
             edge.setVisible(True)
             edge.setValue(value)
-        self.words.setPos(float(self.viewRange()[0][1]), 1.0)
+        shows = seen.times[above]  # its words stand beneath what it is about, clear of the ends
+        self.words.setVisible(len(shows) > 0)
+        self._shows = (float(shows[0] + shows[-1]) / 2) if len(shows) else 0.0
+        self._put_words()
+
+    _shows = 0.0  # seconds, the middle of what its words are about
+
+    def _put_words(self) -> None:
+        low, high = self.viewRange()[0]
+        half = (self.words.boundingRect().width() / 2 + 2) * self.plotItem.vb.viewPixelSize()[0]
+        self.words.setPos(max(low + half, min(self._shows, high - half)), 1.0)
 
     def tip(self, at: QPointF) -> str:
         """Say what a point of the strip means."""
         if self.seen is None or self.subject is None:
             return ""
+        from metagraph.suggest.seen_jumps import words_at
+
         seconds = float(self.plotItem.vb.mapSceneToView(at).x())
         seconds = min(max(0.0, seconds), float(self.seen.times[-1]))
         more = "\nThe marks are the proposed times. Hold Alt while dragging to leave them out."

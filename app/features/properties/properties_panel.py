@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 from html import escape
 from typing import Any
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QEvent, QObject, Qt, Signal
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QCheckBox,
     QFormLayout,
@@ -15,12 +16,14 @@ from PySide6.QtWidgets import (
     QLabel,
     QPushButton,
     QScrollArea,
+    QSizePolicy,
     QStackedWidget,
+    QToolButton,
     QVBoxLayout,
     QWidget,
 )
 
-from app.features.properties.timing_plot import TimingPlot, retimed
+from app.features.properties.timing_plot import ANY, TimingPlot
 from app.features.properties.variation_rows import ActionRows, PlannerRows
 from app.look.theme import KIND_MARKS, KIND_TITLES, theme
 from app.project.document import Document
@@ -28,20 +31,29 @@ from app.stage.performance import Performance
 from app.stage.session import Session
 from app.widgets.choice_row import LimbRow
 from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, common
+from app.widgets.halves import Halves
 from app.widgets.making import make_widget
 from metagraph.graph import edits
 from metagraph.graph.model import LIMBS, PARTS, REACH, Action, Project
 from metagraph.graph.words import Part
+from metagraph.playback.timing import retimed
+
+LOW = 240  # pixels of height below which the curves of a timing leave no room for anything else
 
 
 class PropertiesPanel(QScrollArea):
-    """Every control writes through one edit; what is shown is read back from the project."""
+    """Every control writes through one edit; what is shown is read back from the project. time_wanted: its
+    timing is to be seen whole. timing_elsewhere: whether it is, beside this panel.
+    """
+
+    time_wanted = Signal()
 
     def __init__(
         self, document: Document, session: Session, performance: Performance, parent: QWidget | None = None
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.performance = document, session, performance
+        self.timing_elsewhere: Callable[[], bool] = lambda: False
         self.misfits: dict[str, str] = {}
         self.setWidgetResizable(True)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
@@ -79,18 +91,27 @@ class PropertiesPanel(QScrollArea):
         return form
 
     def _action_page(self) -> QWidget:
-        page, box = self._page()
+        first, second = QWidget(self), QWidget(self)
+        page, box = second, QVBoxLayout(second)
+        box.setContentsMargins(0, 0, 0, 0)
+        upper = QVBoxLayout(first)
+        upper.setContentsMargins(0, 0, 0, 0)
+        upper.setSpacing(8)
         head = QHBoxLayout()
         self.name = Field(page, "Name of the action", "Name")
         self.name.editingFinished.connect(self._rename)
         self.kind = QLabel(page)
         head.addWidget(self.name, 1)
         head.addWidget(self.kind)
-        box.addLayout(head)
+        self.timing = make_widget(QToolButton, page, text="Timing", toolTip="Show its timing whole")
+        self.timing.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.timing.clicked.connect(self.time_wanted)
+        head.addWidget(self.timing)
+        upper.addLayout(head)
         self.plot = TimingPlot(self.document, self.session, page)
         self.plot.changed.connect(lambda fields: self._set("Change timing", merge="timing", timing=fields))
         self.plot.finished.connect(self.document.finish_merging)
-        box.addWidget(self.plot)
+        upper.addWidget(self.plot)
         form = self._form(box)
 
         def pair(title: str, *fields: QWidget) -> QWidget:
@@ -144,7 +165,37 @@ class PropertiesPanel(QScrollArea):
         self.trouble = QLabel(page, wordWrap=True)
         box.addWidget(self.trouble)
         box.addStretch(1)
-        return page
+        self.halves = Halves(first, second, self)
+        self.halves.turned.connect(self.plot.set_large)
+        return self.halves
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        self.halves.fit(event.size())
+        self._fit_height(event.size().height())
+        super().resizeEvent(event)
+        self._bound()
+
+    def _fit_height(self, height: int) -> None:
+        """Where it is low and not wide, the curves give way: what can be typed is in sight."""
+        low = self.timing_elsewhere() or (height < LOW and not self.halves.beside)
+        if low == self.low:
+            return
+        self.low = low
+        self.show_selection()
+
+    low = False
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if watched is self.pages and event.type() == QEvent.Type.LayoutRequest:
+            self._bound()
+        return super().eventFilter(watched, event)
+
+    def _bound(self) -> None:
+        """Side by side, the halves are as high as what is seen of them: the second scrolls alone."""
+        beside = self.halves.beside and self.pages.currentIndex() == 1
+        self.pages.setMaximumHeight(
+            max(self.halves.minimumSizeHint().height(), self.viewport().height()) if beside else ANY
+        )
 
     def _layer_page(self) -> QWidget:
         page, box = self._page()
@@ -225,13 +276,23 @@ class PropertiesPanel(QScrollArea):
     def show_selection(self) -> None:
         actions = self.session.selection.selected_actions()
         clips = self.session.selection.clips
-        self.pages.setCurrentIndex(1 if actions else 2 if clips else 0)
+        self._turn_to(1 if actions else 2 if clips else 0)
         if actions:
             self._show_actions(actions)
         elif clips:
             self._show_clips(clips)
         else:
             self._show_layer()
+
+    def _turn_to(self, place: int) -> None:
+        """Show a page; the panel is as large as that one needs to be, and not as the largest."""
+        policy = QSizePolicy.Policy
+        for n in range(self.pages.count()):
+            page = self.pages.widget(n)
+            if page is not None:
+                page.setSizePolicy(policy.Preferred, policy.Preferred if n == place else policy.Ignored)
+        self.pages.setCurrentIndex(place)
+        self._bound()
 
     def _show_actions(self, actions: Sequence[Action]) -> None:
         project, t = self.document.project, theme(self.session.look.name)
@@ -244,6 +305,8 @@ class PropertiesPanel(QScrollArea):
         self.kind.setText(f"{title} · {layer.capitalize() if layer is not Mixed else 'layers'}")
         self.kind.setStyleSheet(f"color: {t.kinds[kind]}" if kind is not Mixed else "")
         self.plot.setVisible(one)
+        self.plot.set_curves(not self.low)
+        self.timing.setVisible(one and self.low and not self.timing_elsewhere())
         if one:
             self.plot.show_action(actions[0])
         spans = [project.span(a) for a in actions]

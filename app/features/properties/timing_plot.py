@@ -4,26 +4,31 @@ and exit.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor
-from PySide6.QtWidgets import QApplication, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QApplication,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
 
-from app.features.properties.jump_strip import JumpStrip, Seen
+from app.features.properties.jump_strip import JumpStrip
 from app.look.theme import Theme, theme
 from app.project.document import Document
 from app.stage.compatibility_state import Compatibility, proposed_fields
 from app.stage.session import Session
-from metagraph.graph import anatomy, edits, end_gaps
 from metagraph.graph.model import Action, Project
-from metagraph.motion import features
-from metagraph.playback.phases import phases
+from metagraph.motion.clip import Clip
+from metagraph.playback.speed_curves import speed_of
+from metagraph.playback.timing import BANDS, HANDLES, PHASES, moved, times_of
 
-HANDLES = ("start", "end", "in", "out", "exit", "stroke", "ready", "hold", "relax")
 WORDS = {
     "start": "start",
     "end": "end",
@@ -32,157 +37,12 @@ WORDS = {
     "exit": "earliest exit",
     "stroke": "stroke",
 }
-PHASES = ("ready", "hold", "relax")  # handles of a gesture's phases
-MOMENTS = ("earliest_exit", "ready", "stroke", "stroke_end", "relax")  # of Timing, seconds of the clip
-BANDS = ("prepare", "stroke", "hold", "retract")
 SNAP = 7  # pixels within which a handle comes to rest at a moment that does not jump
 
 
-def speed_of(project: Project, action: Action) -> tuple[np.ndarray, str]:
-    """Return the speed over an action's clip `[F]`, metres a second, and in words what of."""
-    entry = project.clips.get(action.clip)
-    motion = entry.motion if entry is not None else None
-    if motion is None or motion.skeleton != project.skeleton:
-        return np.zeros(0), ""
-    roles = anatomy.roles(project)
-    if action.layer == "arms":
-        sides = ("left", "right") if action.limb == "both" else (action.limb,)
-        joints = [roles[f"{s}_hand"] for s in sides if f"{s}_hand" in roles]
-        return features.speed(
-            motion, joints, roles.get("upper_chest", roles.get("chest", roles.get("spine")))
-        ), "hand speed"
-    if action.layer == "head":
-        joints = [roles["head"]] if "head" in roles else []
-        # A turning head's joint stays in place: its eyes or what else hangs on it tell.
-        ends = [i for i in range(len(motion.skeleton)) if joints and motion.skeleton.parents[i] == joints[0]]
-        return features.speed(motion, ends or joints, roles.get("neck")), "head speed"
-    joints = [roles[r] for r in ("hips", "head", "left_foot", "right_foot") if r in roles]
-    return features.speed(motion, joints), "body speed"
-
-
-def times_of(project: Project, action: Action) -> dict[str, float | None]:
-    """Return where each handle stands, seconds of the clip; None for one that is not set."""
-    start, end = project.span(action)
-    t = action.timing
-    return {
-        "start": start,
-        "end": end,
-        "in": min(end, start + t.blend_in),
-        "out": max(start, end - t.blend_out),
-        "exit": t.earliest_exit,
-        "stroke": t.stroke,
-        **_phases(project, action),
-    }
-
-
-def _phases(project: Project, action: Action) -> dict[str, float | None]:
-    if action.kind != "gesture":
-        return dict.fromkeys(PHASES)
-    found = phases(project, action)
-    return {"ready": found.ready, "hold": found.stroke_end, "relax": found.relax}
-
-
-def moved(project: Project, action: Action, handle: str, seconds: float) -> dict[str, Any]:
-    """Return the Timing fields that dragging a handle to `seconds` changes; a pure function of where it is
-    dropped.
-    """
-    entry = project.clips[action.clip]
-    start, end = project.span(action)
-    shortest = 1 / entry.fps
-    at = round(min(max(0.0, seconds), entry.duration), 3)
-    if handle == "start":
-        at = min(at, round(end - shortest, 3))
-        return {"start": at, **_within(action, at, end)}
-    if handle == "end":
-        at = max(at, round(start + shortest, 3))
-        whole = at >= entry.duration - shortest / 2
-        return {"end": None if whole else at, **_within(action, start, entry.duration if whole else at)}
-    if handle == "in":
-        return {"blend_in": round(min(max(0.0, at - start), end - start), 3)}
-    if handle == "out":
-        return {"blend_out": round(min(max(0.0, end - at), end - start), 3)}
-    if handle == "exit":
-        return {"earliest_exit": min(max(at, start), end)}
-    if handle in PHASES:
-        now = times_of(project, action)
-        order = (start, *(float(now[p] or start) for p in PHASES), end)
-        place = PHASES.index(handle) + 1
-        fields = dict(zip(PHASES, ("ready", "stroke_end", "relax"), strict=True))
-        return {fields[handle]: round(min(max(at, order[place - 1]), order[place + 1]), 3)}
-    return {"stroke": min(max(at, start), end)}
-
-
-def _within(action: Action, start: float, end: float) -> dict[str, Any]:
-    """Return the moments that have to follow when an action is from start to end: those outside."""
-    now = {name: getattr(action.timing, name) for name in MOMENTS}
-    then = {name: min(max(at, start), end) for name, at in now.items() if at is not None}
-    return {name: at for name, at in then.items() if at != now[name]}
-
-
-FIELDS = {
-    "start": "start",
-    "end": "end",
-    "blend_in": "in",
-    "blend_out": "out",
-    "earliest_exit": "exit",
-    "stroke": "stroke",
-}
-
-
-def retimed(project: Project, actions: Iterable[str], name: str, value: float) -> Project:
-    """Return the project with a Timing field of actions set, each kept within its own clip as a dragged
-    handle is.
-    """
-    changes: dict[str, dict[str, Any]] = {}
-    for ident in actions:
-        action = project.action(ident)
-        if action is None or action.clip not in project.clips:
-            continue
-        start, end = project.span(action)
-        at = {"blend_in": start + value, "blend_out": end - value}.get(name, value)
-        changes[ident] = {"timing": moved(project, action, FIELDS[name], at)}
-    return edits.update_each(project, changes)
-
-
-def verdict(costs: Mapping[str, float], far: Mapping[str, str] | None = None) -> str:
-    """Say what beginning and ending cost: "Begins without a jump, ends 2.7 times what shows as one". far: of
-    those that begin or end too far from their stance, what the problems say of it.
-    """
-    far = far or {}
-    if max(costs.values()) <= 1 and not far:
-        return f"{' and '.join(costs)} without a jump"
-    told: list[str] = []
-    for what, cost in costs.items():
-        of = "one" if any("jump" in words for words in told) else "a jump"
-        if what in far:
-            told.append(far[what][:1].upper() + far[what][1:] if not told else far[what])
-        else:
-            told.append(
-                f"{what} without {of}" if cost <= 1 else f"{what} {cost:.1f} times what shows as {of}"
-            )
-    return ", ".join(told)
-
-
-def far_ends(project: Project, action: Action) -> dict[str, str]:
-    """Return which ends of an action are too far from their stance, by how `verdict` calls them, in words."""
-    graph = project.graphs[action.layer]
-    return {
-        "Begins" if gap.edge == "begins" else "ends": end_gaps.gap_words(gap, graph.stances[gap.stance].name)
-        for gap in end_gaps.gaps(project, graph, action)
-        if gap.far and gap.stance in graph.stances
-    }
-
-
-def times_words(seen: Seen) -> str:
-    """Say proposed times."""
-    p = seen.proposed
-    if seen.loops:
-        return (
-            f"All of it, its seam blended over {p.blend_in:.2f} s"
-            if p.blend_in > 0
-            else "All of it, without a blend"
-        )
-    return f"{p.start:.2f} to {p.end:.2f} s, blended over {p.blend_in:.2f} and {p.blend_out:.2f} s"
+LABEL, FIRST = 17.0, 12.0  # pixels of a row of words over the curves, and to the middle of the first
+ANY = 16_777_215  # Qt's largest height of a widget
+HEIGHT, LEAST = 132, 84  # pixels of the curves in a form; and where they have the room to themselves
 
 
 class TimingPlot(QWidget):
@@ -200,7 +60,7 @@ class TimingPlot(QWidget):
         self.plot.setMenuEnabled(False)
         self.plot.setMouseEnabled(False, False)
         self.plot.hideButtons()
-        self.plot.setFixedHeight(132)
+        self.set_large(False)
         self.plot.getAxis("left").setWidth(30)
         self.curve = self.plot.plot(antialias=True)
         self.blends = [pg.LinearRegionItem(movable=False) for _ in range(2)]
@@ -212,6 +72,7 @@ class TimingPlot(QWidget):
         self.plot.addItem(self.hold)
         self.bands = [pg.TextItem(word, anchor=(0.5, 0.0)) for word in BANDS]
         for band in self.bands:
+            band.span = 0.0, 0.0
             self.plot.addItem(band, ignoreBounds=True)
         self.lines: dict[str, pg.InfiniteLine] = {}
         for name in HANDLES:
@@ -224,6 +85,7 @@ class TimingPlot(QWidget):
         self.playhead = pg.InfiniteLine(movable=False)
         self.plot.addItem(self.playhead)
         self.plot.scene().sigMouseClicked.connect(self._clicked)
+        self.plot.plotItem.vb.sigResized.connect(lambda _: self._line_up_soon())
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(2)
@@ -242,6 +104,16 @@ class TimingPlot(QWidget):
         session.look.changed.connect(self._restyle)
         self._restyle()
 
+    def set_large(self, on: bool) -> None:
+        """Let the curves have all the height there is, or as much as a form has for them."""
+        self.plot.setMinimumHeight(LEAST if on else HEIGHT)
+        self.plot.setMaximumHeight(ANY if on else HEIGHT)
+
+    def set_curves(self, on: bool) -> None:
+        """Show the curves over what is said of them, or that alone."""
+        self.plot.setVisible(on)
+        self.strip.setVisible(on)
+
     def set_compatibility(self, compatibility: Compatibility) -> None:
         """Show what it knows of the action's jumps."""
         self.compatibility = compatibility
@@ -252,6 +124,7 @@ class TimingPlot(QWidget):
         self._show_seen()
 
     compatibility: Compatibility | None = None
+    _motion: Clip | None = None  # whose speed is drawn
 
     def _show_seen(self) -> None:
         """Show where the action can begin and end without a jump, as far as that is known by now."""
@@ -263,6 +136,8 @@ class TimingPlot(QWidget):
         )
         if action is None or project.action(action.id) is None:
             return
+        from metagraph.suggest.seen_jumps import Seen, far_ends, times_words, verdict
+
         seen = Seen(action, curves) if curves is not None else None
         self.strip.show_seen(project, action, seen)
         self.use.setEnabled(seen is not None and bool(self._proposed()))
@@ -314,6 +189,8 @@ class TimingPlot(QWidget):
         )
         self.action = action
         entry = project.clips.get(action.clip)
+        fresh = fresh or (entry is not None and entry.motion is not self._motion)
+        self._motion = entry.motion if entry is not None else None
         if entry is None:
             return
         color = t.kind(action.kind)
@@ -352,10 +229,8 @@ class TimingPlot(QWidget):
                 line.setPen(pg.mkPen(t.dim if own is None else t.text, width=1.2, style=Qt.PenStyle.DotLine))
             else:
                 line.label.setColor(t.dim)
-                line.label.setPosition(
-                    {"start": 0.78, "end": 0.78, "in": 0.62, "out": 0.62, "exit": 0.46, "stroke": 0.3}[name]
-                )
         self._bands(t, at)
+        self._line_up()
         fill = QColor(color)
         fill.setAlpha(46)
         for blend, (a, b) in zip(self.blends, ((at["start"], at["in"]), (at["out"], at["end"])), strict=True):
@@ -371,15 +246,11 @@ class TimingPlot(QWidget):
         whole = at["ready"] is not None
         self.hold.setVisible(whole)
         edges = [at[x] for x in ("start", "ready", "hold", "relax", "end")]
-        (low, high), (_, top) = self.plot.viewRange()
         for band, a, b in zip(self.bands, edges, edges[1:], strict=False):
-            wide = (
-                a is not None and b is not None and (b - a) * self.plot.width() / max(high - low, 1e-6) > 46
-            )
-            band.setVisible(whole and wide)
-            if whole and wide and a is not None and b is not None:
+            band.setVisible(whole)
+            if whole and a is not None and b is not None:
                 band.setColor(t.dim)
-                band.setPos((a + b) / 2, top)
+                band.span = a, b
         if whole:
             fill = QColor(t.text)
             fill.setAlpha(22)
@@ -387,6 +258,47 @@ class TimingPlot(QWidget):
             self.hold.setRegion((edges[2], edges[3]))
             for line in self.hold.lines:
                 line.setPen(pg.mkPen(None))
+
+    def _line_up_soon(self) -> None:
+        if self.action is not None and self.action.clip in self.document.project.clips:
+            self._bands(theme(self.session.look.name), times_of(self.document.project, self.action))
+            self._line_up()
+
+    def _line_up(self) -> None:
+        """Give words rows in which none lies on another: the phases on top, where each has room in its span,
+        then the handles. What finds no row is not written; the pointer's tooltip names it.
+        """
+        box = self.plot.plotItem.vb
+        (low, high), (_, top) = self.plot.viewRange()
+        wide, tall = max(1.0, box.width()), max(1.0, box.height())
+        each, measure = wide / max(high - low, 1e-6), self.fontMetrics()
+        taken: dict[int, list[tuple[float, float]]] = {}
+        for band, word in zip(self.bands, BANDS, strict=True):
+            if not band.isVisible():
+                continue
+            a, b = band.span
+            middle, half = ((a + b) / 2 - low) * each, measure.horizontalAdvance(word) / 2 + 3
+            seen = 2 * half <= (b - a) * each
+            band.setVisible(seen)
+            if seen:
+                band.setPos((a + b) / 2, top)
+                taken.setdefault(0, []).append((middle - half, middle + half))
+        last = int((tall - FIRST - LABEL / 2) // LABEL)
+        for name, line in self.lines.items():
+            if name in PHASES:
+                continue
+            x, length = (line.value() - low) * each, measure.horizontalAdvance(WORDS[name]) + 10
+            left, right = (x, x + length) if x < wide / 2 else (x - length, x)
+            free = (
+                row
+                for row in range(min(1, last), last + 1)
+                if all(right <= a or left >= b for a, b in taken.get(row, ()))
+            )
+            row = next(free, None) if line.isVisible() else None
+            line.label.setVisible(row is not None)
+            if row is not None:
+                taken.setdefault(row, []).append((left, right))
+                line.label.setPosition(1 - (FIRST + row * LABEL) / tall)
 
     def _dragged(self, name: str, seconds: float) -> None:
         if self._setting or self.action is None:

@@ -12,6 +12,7 @@ from app.shell.actions import Command
 from app.shell.context import Shell
 from app.shell.header import Header
 from app.shell.places import Places
+from app.shell.workspace_keeper import Workspaces
 from app.stage.compatibility_state import Compatibility
 
 CLOSED = "Not during a study: everybody works on the same clips."
@@ -33,8 +34,8 @@ class ReservedWindow:
         if not self.labels:  # jumps found, and times proposed, for one condition alone would not be fair
             services[Compatibility].forget()
         self.allow(lambda command: False)
-        places, header = services[Places], services[Header]
-        places.arrange()
+        header = services[Header]
+        services[Workspaces].everything()
         self._show_others(False)
         shell.widget.insertToolBar(header, self.bar)
         shell.widget.insertToolBarBreak(header)
@@ -50,6 +51,7 @@ class ReservedWindow:
         shell.widget.removeToolBarBreak(services[Header])
         shell.widget.removeToolBar(self.bar)
         shell.stage.session.set_mode("meta")
+        services[Workspaces].choose(services[Workspaces].current)
         self.allow(None)
 
     def _show_others(self, on: bool) -> None:
@@ -81,7 +83,6 @@ class ReservedWindow:
             widget.menuBar(),
             self.shell.services[Header],
             self.bar,
-            places.centre,
             *places.docks.values(),
         )
         for part in below:

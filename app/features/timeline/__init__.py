@@ -29,7 +29,17 @@ def contribute(shell: Shell) -> Contribution:
         rank=1,
     )
     return Contribution(
-        panels=(Panel("timeline", "Performance", "bottom", make),),
+        panels=(
+            Panel(
+                "timeline",
+                "Performance",
+                "bottom",
+                make,
+                least=(400, 222),
+                where={"perform": "below"},
+                opens={"talk": "below"},
+            ),
+        ),
         commands=(
             Command(
                 "live",

@@ -20,12 +20,13 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QApplication, QMenu, QToolTip, QWidget
 
 from app.features.timeline.request_drag import RequestDrag
+from app.look.names import told_names
 from app.look.theme import theme
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.widgets.gesture import Hand
 from app.widgets.lane_geometry import LEFT, RULER, Mark, Scale, cue_at, lane_at, mark_at, marks, told
-from app.widgets.lane_paint import LaneScene, badge, paint, playhead
+from app.widgets.lane_paint import LaneScene, badge, cue_words, paint, playhead
 from app.widgets.memo import Once
 from app.widgets.request_menu import request_menu
 
@@ -390,12 +391,18 @@ class Lanes(QWidget):
         found = cue_at(self.performance.shown, self.scale(), self.height(), at)
         if found is not None:
             cue = found[1]
-            words = f"{cue.action.name}\n{cue.action.kind}, {cue.start:.2f} to {cue.end:.2f} s"
+            name = told_names(cue_words(self.performance.shown.project, cue.action), cue.action.name)
+            words = f"{name}\n{cue.action.kind}, {cue.start:.2f} to {cue.end:.2f} s"
             if cue.hold > 0:
                 words += f", held {cue.hold:.2f} s"
             return words + "\nClick selects it, double-click plays it in context"
-        return (
-            "Double-click to ask for something here"
-            if lane_at(self.height(), at) and not QApplication.mouseButtons()
-            else ""
-        )
+        lane = lane_at(self.height(), at)
+        if lane is None:
+            return ""
+        shown, here = self.performance.shown, ""
+        plan = next((p for layer, p in shown.plan.layers.items() if layer == lane), None)
+        if plan is not None:
+            stance = shown.project.stance(plan.stance_at(self.scale().seconds(at.x())))
+            here = stance.name if stance is not None else ""
+        more = "" if QApplication.mouseButtons() else "Double-click to ask for something here"
+        return "\n".join(x for x in (here, more) if x)

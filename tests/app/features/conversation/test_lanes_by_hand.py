@@ -214,7 +214,7 @@ def test_waves_pitch_and_segments_are_painted_and_the_playhead_alone_paints_noth
 
 def test_panning_half_an_hour_looks_only_at_what_is_in_sight(talk: Any) -> None:
     from app.features.conversation.sound_reading import SideSound
-    from app.features.conversation.waveforms import RATE, Envelope
+    from app.widgets.waveforms import RATE, Envelope
 
     sounds = talk.drive.conversation.sounds
     long = Envelope(1800)

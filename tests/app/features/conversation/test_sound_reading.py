@@ -9,10 +9,10 @@ import pytest
 
 from app.features.conversation import sound_reading
 from app.features.conversation.sound_reading import SideSound, Sounds
-from app.features.conversation.waveforms import Envelope
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.session import Session
+from app.widgets.waveforms import Envelope
 from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import Conversation, Side
 from metagraph.graph.model import Project

@@ -107,4 +107,5 @@ def test_the_menu_of_an_action_offers_them(toys):
         "paste",
         "replace_clip",
         "twins",
+        "note",
     ]

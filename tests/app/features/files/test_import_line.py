@@ -51,10 +51,19 @@ def leave(drive):
     drive.wait(lambda: not dialog.isVisible())
 
 
-def test_what_came_in_whole_is_no_line(drive, line, folder):
+def test_what_came_in_whole_says_what_to_do_next_until_it_is_done(drive, line, folder):
+    from app.features.labelling.review_dialog import ReviewDialog
+
     drive.importing.import_paths([str(folder / "rest.glb")])
-    drive.wait(lambda: bool(drive.document.project.clips))
-    drive.settle()
+    drive.wait(line.isVisible)
+    assert line.words.text().startswith("Imported 1 clip. Next: ")
+    (button,) = line.offered
+    press(button)
+    (dialog,) = drive.window.findChildren(ReviewDialog)
+    dialog.reject()
+    assert line.isVisible(), "nothing was labelled"
+    drive.session.selection.select_clips(tuple(drive.document.project.clips))
+    drive.do("label_stance")
     assert line.isHidden()
 
 

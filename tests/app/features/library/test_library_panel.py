@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QFont, QFontMetrics
 
 from app.features.library.library_panel import Filter, two_lines
@@ -69,10 +70,45 @@ def test_a_name_fits_in_at_most_two_lines(metrics, name):
         lines = two_lines(name, metrics, width)
         assert 1 <= len(lines) <= 2
         assert all(metrics.horizontalAdvance(line) <= width for line in lines)
-        assert lines[0] == name[: len(lines[0])]
+        place = 0
+        for piece in "".join(lines).split("…"):
+            place = name.replace(" ", "").index(piece.replace(" ", ""), place) + 1
 
 
 def test_a_long_name_breaks_after_a_separator_and_keeps_its_end(metrics):
     first, second = two_lines("arms_crossed__point_you_rt_01", metrics, 100)
     assert first.endswith("_")
     assert second.endswith("01")
+
+
+@pytest.mark.window
+@pytest.mark.gl
+def test_a_new_project_is_not_searched_for_what_was_wanted_of_the_last(toys, toy):
+    toys.library.search.setText("beat")
+    toys.library.chips["unlabelled"].click()
+    toys.document.load(toy.project(), None)
+    assert toys.library.search.text() == "" and toys.library.chips["all"].isChecked()
+    assert toys.library.proxy.rowCount() == len(toys.document.project.clips)
+
+
+@pytest.mark.window
+@pytest.mark.gl
+def test_after_a_label_by_key_the_next_clip_without_one_is_selected(toys, toy):
+    drive = toys
+    more = [(f"more/{n}.bvh", 0, "", toy.clip(f"more {n}")) for n in range(3)]
+    drive.document.edit("Add", lambda p: edits.add_clips(p, more))
+    ids = {e.name: e.id for e in drive.document.project.clips.values()}
+    drive.workspaces.choose("graph")
+    drive.session.selection.select_clips((ids["more 1"],))
+    drive.library.list.setFocus()
+    drive.key(Qt.Key.Key_2, widget=drive.library.list)
+    made = next(a for a in drive.document.project.actions() if a.clip == ids["more 1"])
+    assert drive.session.selection.clips == (ids["more 2"],)
+    assert drive.session.transport.shown == ids["more 2"]
+    assert drive.canvas.layout_now().row(made.id) is not None and drive.canvas.fresh == (made.id,)
+    assert drive.library.list.currentIndex().data() == "more 2"
+    drive.key(Qt.Key.Key_3, widget=drive.library.list)
+    assert drive.session.selection.clips == (ids["more 0"],), "it goes on from the first"
+    drive.key(Qt.Key.Key_3, widget=drive.library.list)
+    last = next(a for a in drive.document.project.actions() if a.clip == ids["more 0"])
+    assert drive.session.selection.actions == (last.id,), "there is no other: what was made is selected"

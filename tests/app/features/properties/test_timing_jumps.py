@@ -10,11 +10,10 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.features.properties.jump_strip import Seen, words_at
-from app.features.properties.timing_plot import verdict
 from app.stage.compatibility_state import proposed_fields
 from metagraph.graph import edits
 from metagraph.suggest.jumps import Measured, curves
+from metagraph.suggest.seen_jumps import Seen, far_ends, verdict, words_at
 
 
 @pytest.fixture(scope="module")
@@ -95,7 +94,6 @@ def test_the_verdict_is_one_sentence(costs, words):
 
 
 def test_what_the_problems_call_far_is_never_said_to_be_without_a_jump(toy, wide):
-    from app.features.properties.timing_plot import far_ends
     from metagraph.graph.check import check
 
     action = wide.action(toy.id(wide, "wide"))

@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 from PySide6.QtWidgets import QFormLayout, QWidget
 
-from app.features.properties.timing_plot import PHASES, moved, times_of
 from app.features.properties.variation_rows import ActionRows, PlannerRows
 from metagraph.graph import edits
 from metagraph.graph.model import Settings
 from metagraph.playback.phases import phases
+from metagraph.playback.timing import PHASES, moved, times_of
 
 
 @pytest.fixture

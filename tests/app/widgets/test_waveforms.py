@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PySide6.QtGui import QColor
 
-from app.features.conversation.waveforms import RATE, Envelope, joined, painted
+from app.widgets.waveforms import RATE, Envelope, joined, painted
 
 
 def made(seconds: float, seed: int = 3) -> tuple[Envelope, np.ndarray]:

@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.features.properties.timing_plot import HANDLES, PHASES, moved, retimed, speed_of, times_of
 from metagraph.graph import edits
+from metagraph.playback.speed_curves import speed_of
+from metagraph.playback.timing import HANDLES, PHASES, moved, retimed, times_of
 
 
 @pytest.fixture(scope="module")

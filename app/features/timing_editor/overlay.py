@@ -1,0 +1,158 @@
+"""What moves over the rows: the playhead, the part that is played again and again, and what a drag says."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QPainter, QPen
+
+from app.features.timing_editor.axis import Axis
+from app.features.timing_editor.hits import Hit
+from app.features.timing_editor.paint import Look
+from app.features.timing_editor.rows import RULER, TrackRows
+from app.features.timing_editor.track import Facts
+from metagraph.playback.timing import WORDS
+from metagraph.suggest.snapping import Snap
+
+HINTS = {
+    "start": "where it begins in the clip",
+    "end": "where it ends in the clip",
+    "in": "until here it blends in from its stance",
+    "out": "from here on it blends out to its stance",
+    "exit": "from here on it may be left",
+    "stroke": "its most telling moment, which a stressed word is put on",
+    "ready": "its preparation ends",
+    "hold": "its hold begins",
+    "relax": "its retraction begins",
+}
+
+
+def playhead(
+    painter: QPainter,
+    look: Look,
+    axis: Axis,
+    tracks: Sequence[TrackRows],
+    facts: Mapping[str, Facts],
+    seconds: float,
+) -> None:
+    """Paint the playhead; in the ruler, over whose words it is, the moment and the speed of the first."""
+    x = axis.x(seconds)
+    if not tracks or not axis.left - 1 <= x <= axis.left + axis.width + 1:
+        return
+    color = QColor(look.t.text)
+    painter.setPen(QPen(color, 1.2))
+    upright(painter, tracks, x, RULER - 2)
+    painter.setFont(look.small)
+    shown = facts[tracks[0].ident]
+    words = f"{seconds:.2f} s"
+    if len(shown.speeds) and seconds <= shown.entry.duration:
+        words += f"  {shown.speed_at(seconds):.1f} m/s"
+    box = chip(painter, look, axis, words, x)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(color)
+    painter.drawPolygon(
+        [QPointF(x - 4, box.bottom()), QPointF(x + 4, box.bottom()), QPointF(x, box.bottom() + 5)]
+    )
+
+
+def upright(painter: QPainter, tracks: Sequence[TrackRows], x: float, top: float) -> None:
+    """Paint a line through all rows but those in which numbers stand."""
+    for rows in tracks:
+        numbers = rows.rows["numbers"]
+        painter.drawLine(QPointF(x, top), QPointF(x, numbers.top() - 2))
+        painter.drawLine(QPointF(x, numbers.bottom()), QPointF(x, rows.bottom))
+        top = rows.bottom
+
+
+def chip(painter: QPainter, look: Look, axis: Axis, words: str, middle: float) -> QRectF:
+    """Paint words in the ruler about a point, over what is written there; return where."""
+    wide = look.wide(words) + 12
+    left = min(max(axis.left, middle - wide / 2), axis.left + axis.width - wide)
+    painter.fillRect(QRectF(left - 14, 0, wide + 28, RULER - 1), QColor(look.t.panel))
+    box = QRectF(left, 0, wide, RULER - 6)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(look.t.hover))
+    painter.drawRoundedRect(box, 4, 4)
+    painter.setPen(QColor(look.t.text))
+    painter.drawText(box, Qt.AlignmentFlag.AlignCenter, words)
+    return box
+
+
+def part(
+    painter: QPainter,
+    look: Look,
+    axis: Axis,
+    loop: tuple[str, float, float] | None,
+    facts: Mapping[str, Facts],
+) -> None:
+    """Paint the part that is played again and again, in the ruler."""
+    if loop is None or all(f.action.clip != loop[0] for f in facts.values()):
+        return
+    left, right = max(axis.x(loop[1]), axis.left), min(axis.x(loop[2]), axis.left + axis.width)
+    if right > left:
+        color = QColor(look.t.text)
+        color.setAlpha(46)
+        painter.fillRect(QRectF(left, 0, right - left, RULER - 2), color)
+        painter.setPen(QPen(QColor(look.t.text), 2))
+        for x in (left, right):
+            painter.drawLine(QPointF(x, 1), QPointF(x, RULER - 3))
+
+
+def held(
+    painter: QPainter,
+    look: Look,
+    axis: Axis,
+    width: float,
+    tracks: Sequence[TrackRows],
+    snaps: Sequence[Snap],
+    snapped: Snap | None,
+    words: str,
+) -> None:
+    """Paint what is dragged in words, where it may come to rest, and why it did."""
+    if not tracks:
+        return
+    for rows in tracks:
+        y = rows.rows["speed"].bottom()
+        painter.setPen(QPen(QColor(look.t.text), 1.4))
+        for snap in snaps:
+            painter.drawLine(QPointF(axis.x(snap.at), y - 6), QPointF(axis.x(snap.at), y))
+    if snapped is not None:
+        x = axis.x(snapped.at)
+        painter.setPen(QPen(QColor(look.t.warning), 1.6))
+        upright(painter, tracks, x, RULER - 4)
+        words = f"{words} — {snapped.why}"
+    wide = min(look.wide(words) + 18, width - axis.left)
+    middle = axis.x(snapped.at) if snapped is not None else axis.left + axis.width / 2
+    box = QRectF(min(max(axis.left, middle - wide / 2), max(axis.left, width - wide - 4)), 1, wide, RULER - 3)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(look.t.strong))
+    painter.drawRoundedRect(box, 4, 4)
+    painter.setFont(look.small)
+    painter.setPen(QColor(look.t.on_strong))
+    painter.drawText(box, Qt.AlignmentFlag.AlignCenter, look.elided(words, wide - 10))
+
+
+def tip(facts: Facts, hit: Hit, seconds: float) -> str:
+    """Say what is under the pointer, and what can be done with it."""
+    if hit.what == "handle":
+        found = facts.handle(hit.name)
+        own = "" if found is None or found.own else ", as found from the motion"
+        number = f" {found.number:.3f} s" if found is not None else ""
+        return (
+            f"{WORDS[hit.name]}{number}{own}: {HINTS[hit.name]}.\nDrag it, with Alt without coming to rest; "
+            "double-click its number to type."
+        )
+    if hit.what == "block":
+        return f"{hit.name}: drag it; with Shift all of it plays another part of the clip."
+    if hit.what == "stay":
+        return "The clip is held here. Drag to hold it longer or shorter; to nothing takes the hold away."
+    if hit.what == "ruler":
+        return (
+            "Drag to scrub, with Shift to mark a part that is played again and again; a double click takes "
+            "that back."
+        )
+    if not 0 <= seconds <= facts.entry.duration:
+        return ""
+    far = facts.distance.words(seconds)
+    return f"{seconds:.2f} s: {facts.speed_at(seconds):.2f} m/s" + (f", {far}" if far else "")

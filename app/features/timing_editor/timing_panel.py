@@ -1,0 +1,230 @@
+"""The panel of the timing editor: what it is about and what can be done with it on top, the rows below."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QRectF, Qt
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import (
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QMenu,
+    QPushButton,
+    QScrollArea,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.timing_editor.subject import Subject
+from app.features.timing_editor.view import TimingView
+from app.look import icons
+from app.look.names import told_names
+from app.look.theme import KIND_MARKS, theme
+from app.project.document import Document
+from app.stage.session import Session
+from app.widgets.form_fields import Chooser, Seconds, common
+from app.widgets.making import make_widget
+from app.widgets.sentence import Sentence
+from metagraph.graph.edits import EditError
+from metagraph.motion.retime import SPEEDS
+from metagraph.playback.speed_curves import joints_offered
+
+LONGEST = 30  # letters of an action's name before it is cut in its middle
+
+
+class TimingPanel(QWidget):
+    """Every control changes the project by one edit, or only what is shown."""
+
+    def __init__(self, document: Document, session: Session, subject: Subject, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.document, self.session, self.subject = document, session, subject
+        self.name = QLabel(self)
+        self.verdict = Sentence(self)
+        self.use = make_widget(QPushButton, "Use proposed", self, toolTip="Begin and end where no jump shows")
+        self.use.clicked.connect(self._use)
+        self.joint = Chooser(self, toolTip="Whose speed is drawn")
+        self.joint.setMinimumContentsLength(12)
+        self.joint.activated.connect(lambda n: subject.show(joint=self.joint.itemData(n)))
+        tip = "Speed of the clip, 1 as it was read; what uses it follows. The file stays as it is"
+        self.speed = Seconds(self, tip, SPEEDS[1], " ×", 0.05)
+        self.speed.valueChanged.connect(self._pace)
+        self.hold = self._button("Hold", "Hold the clip at the playhead for a while longer")
+        self.hold.clicked.connect(lambda: self._try(subject.hold_here))
+        self.onion = self._button("Onion", "See start, stroke and end beside the character", True)
+        self.onion.clicked.connect(lambda on: subject.show(onion=on))
+        self.compare = self._button("A/B", "Show it as it was when it was selected, or marked", True)
+        self.compare.clicked.connect(subject.compare)
+        self.loop = self._button("Loop", "Play only what the action plays, again and again", True)
+        self.loop.clicked.connect(subject.loop_action)
+        self.more = self._button("", "What is shown")
+        self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.menu = QMenu(self)
+        self.menu.setToolTipsVisible(True)
+        self.menu.aboutToShow.connect(self._fill)
+        self.more.setMenu(self.menu)
+        self.more.setStyleSheet("QToolButton::menu-indicator { image: none; }")
+        self.view = TimingView(document, session, subject, self)
+        self.view.typed.connect(self._type)
+        self.area = QScrollArea(self)
+        self.area.setWidgetResizable(True)
+        self.area.setFrameShape(QFrame.Shape.NoFrame)
+        self.area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.area.setWidget(self.view)
+        self.number = Seconds(self.view, "New number of the handle")
+        self.number.hide()
+        self.number.valueChanged.connect(self._typed)
+        self.number.editingFinished.connect(self._done)
+        self._typing: tuple[str, str] = ("", "")
+        self._row = QHBoxLayout()
+        self._row.setContentsMargins(10, 4, 8, 2)
+        self._row.setSpacing(4)
+        self._row.addWidget(self.name)
+        self._row.addWidget(self.verdict, 1)
+        for widget in (
+            self.use, self.joint, self.speed, self.hold, self.onion, self.compare, self.loop, self.more,
+        ):  # fmt: skip
+            self._row.addWidget(widget)
+        box = QVBoxLayout(self)
+        box.setContentsMargins(0, 0, 0, 0)
+        box.setSpacing(0)
+        box.addLayout(self._row)
+        box.addWidget(self.area, 1)
+        subject.changed.connect(self.refresh)
+        session.look.changed.connect(self.refresh)
+        session.transport.part_changed.connect(self.refresh)
+        self.refresh()
+        self.view.refresh()
+
+    def _button(self, text: str, tip: str, checkable: bool = False) -> QToolButton:
+        out = make_widget(QToolButton, self, text=text, toolTip=tip, checkable=checkable)
+        out.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # after a click the space bar still plays
+        out.setAccessibleName(f"{text}: {tip}" if text else tip)
+        return out
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.number.hide()
+
+    # --- showing
+
+    def refresh(self) -> None:
+        """Show what the subject is now."""
+        shown, t = self.subject.facts(), theme(self.session.look.name)
+        self.more.setIcon(icons.icon("more", t.text))
+        first = next(iter(shown.values()), None)
+        for widget in (self.use, self.joint, self.speed, self.hold, self.onion, self.compare, self.loop):
+            widget.setEnabled(first is not None)
+        joints = joints_offered(self.document.project)
+        offered = [("what it moves", ""), *((words, name) for name, words in joints)]
+        self.joint.show_entries(offered, self.subject.shows.joint)
+        self.speed.show_value(common([f.entry.retime.speed for f in shown.values()]) if shown else 1.0)
+        if first is None:
+            self._done()
+            self.name.setText("")
+            self.verdict.say("")
+            self.name.setToolTip("")
+            self.name.setStyleSheet("")
+            self.verdict.setStyleSheet("")
+            self.use.setVisible(False)
+            for button in (self.onion, self.compare, self.loop):
+                button.setChecked(False)
+            return
+        name = first.name if len(shown) == 1 else f"{len(shown)} actions"
+        cut = name if len(name) <= LONGEST else f"{name[: LONGEST // 2]}…{name[-LONGEST // 2 + 1 :]}"
+        self.name.setText(f"{KIND_MARKS[first.action.kind]} {cut}")
+        self.name.setToolTip(told_names(name, first.action.name) if len(shown) == 1 else name)
+        self.name.setStyleSheet(f"color: {t.kinds[first.action.kind]}")
+        worse = next((f for f in shown.values() if not f.fine), first)
+        words = worse.verdict if len(shown) == 1 or worse.fine else f"{worse.name}: {worse.verdict}"
+        self.verdict.say(words, strong=not worse.fine)
+        self.verdict.setStyleSheet("" if worse.fine else f"color: {t.warning}")
+        self.use.setVisible(first.seen is not None)
+        self.onion.setChecked(self.subject.shows.onion)
+        self.compare.setChecked(self.subject.before is not None)
+        part = self.session.transport.part
+        self.loop.setChecked(part is not None and part[0] == first.action.clip)
+
+    def _fill(self) -> None:
+        """Offer what is shown, and which line is heard."""
+        menu, subject = self.menu, self.subject
+        menu.clear()
+        for words, field in (
+            ("Poses", "poses"),
+            ("Line", "line"),
+            ("What moves when", "dope"),
+            ("… of each joint", "whole"),
+        ):
+            action = menu.addAction(words)
+            action.setCheckable(True)
+            action.setChecked(getattr(subject.shows, field))
+            action.setEnabled(field != "whole" or subject.shows.dope)
+            action.triggered.connect(lambda on, f=field: subject.show(**{f: on}))
+        lines = menu.addMenu("Line to hear")
+        for words, ident in (
+            ("The one that is spoken over it", ""),
+            *((line.text or i, i) for i, line in list(self.document.project.lines.items())[:30]),
+        ):
+            action = lines.addAction(words[:60])
+            action.setCheckable(True)
+            action.setChecked(subject.shows.heard == ident)
+            action.triggered.connect(lambda _, i=ident: subject.show(heard=i))
+        menu.addSeparator()
+        for side in ("left", "right"):
+            action = menu.addAction(f"Keep the {side} hand where it is")
+            action.setToolTip("During the part that is looped, or from the playhead to the end of its hold")
+            action.triggered.connect(lambda _, s=side: self._try(lambda: subject.keep_hand(s)))
+        first = next(iter(subject.facts().values()), None)
+        action = menu.addAction("Let go of the hands")
+        action.setEnabled(first is not None and bool(first.kept))
+        action.triggered.connect(lambda _: self._try(subject.let_go))
+        menu.addSeparator()
+        menu.addAction("Compare with what it is now", subject.mark)
+        menu.addAction("Show the whole clip", self.view.show_all)
+
+    # --- editing
+
+    def _use(self) -> None:
+        self.subject.compatibility.use_proposed(self.subject.idents)
+
+    def _pace(self, speed: float) -> None:
+        if speed >= SPEEDS[0]:
+            self._try(lambda: self.subject.set_speed(speed))
+        self.refresh()
+
+    def _try(self, edit: Callable[[], object]) -> None:
+        try:
+            edit()
+        except EditError as error:
+            self.document.failed.emit(str(error))
+
+    def _type(self, ident: str, handle: str, box: QRectF) -> None:
+        """Let a number be typed where it stands."""
+        facts = self.subject.facts().get(ident)
+        found = facts.handle(handle) if facts is not None else None
+        if found is None:
+            return
+        self._typing = (ident, handle)
+        self.number.show_value(found.number)
+        wide = max(86, round(box.width()))
+        left = min(max(0, round(box.center().x() - wide / 2)), self.view.width() - wide)
+        self.number.setGeometry(left, round(box.top()) - 4, wide, 26)
+        self.number.show()
+        self.number.setFocus()
+        self.number.selectAll()
+
+    def _done(self) -> None:
+        self._typing = ("", "")
+        self.number.hide()
+
+    def _typed(self, value: float) -> None:
+        ident, handle = self._typing
+        facts = self.subject.facts().get(ident)
+        if facts is None or value < 0:
+            return
+        start, end = facts.span
+        at = {"in": start + value, "out": end - value}.get(handle, value)
+        self.subject.set_number({ident: at}, handle)

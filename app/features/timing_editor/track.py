@@ -1,0 +1,167 @@
+"""What the editor shows of one action: all that is reckoned, made again only when what it rests on has
+changed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from numpy.typing import NDArray
+
+from app.look.names import plain
+from app.widgets.memo import Once
+from metagraph.graph import end_gaps
+from metagraph.graph.clip_source import course_of
+from metagraph.graph.model import Action, ClipEntry, Project, Timing
+from metagraph.motion.retime import Hold
+from metagraph.playback.speed_curves import SpeedCurve, curves_of, speed_of
+from metagraph.playback.timing import Block, Handle, blocks_of, handles_of
+from metagraph.suggest.jumps import Curves
+from metagraph.suggest.seen_jumps import Seen, far_ends, verdict
+from metagraph.suggest.stance_distance import StanceDistance, distance_of, measured
+
+Array = NDArray[Any]
+
+
+@dataclass(frozen=True)
+class Stay:
+    """A hold of the clip. hold: as it is kept. first, last: seconds of the clip as it plays."""
+
+    hold: Hold
+    first: float
+    last: float
+
+
+@dataclass(frozen=True, eq=False)
+class Facts:
+    """An action as it is now. name: what it is called where its stance is clear. speeds `[F]`: of what it
+    moves, which snapping goes by. curves: those that are drawn. seen: what is known of its jumps. verdict: in
+    words; fine: whether nothing shows. stays: where the clip is held. kept: where a hand is kept on the body:
+    first and last second, in words.
+    """
+
+    action: Action
+    name: str
+    entry: ClipEntry
+    span: tuple[float, float]
+    handles: tuple[Handle, ...]
+    blocks: tuple[Block, ...]
+    speeds: Array
+    curves: tuple[SpeedCurve, ...]
+    seen: Seen | None
+    distance: StanceDistance
+    verdict: str
+    fine: bool
+    stays: tuple[Stay, ...] = ()
+    kept: tuple[tuple[float, float, str], ...] = ()
+
+    def handle(self, name: str) -> Handle | None:
+        return next((h for h in self.handles if h.name == name), None)
+
+    def speed_at(self, seconds: float) -> float:
+        """Return the speed at a moment, metres a second."""
+        frame = round(seconds * self.entry.fps)
+        return float(self.speeds[min(max(frame, 0), len(self.speeds) - 1)]) if len(self.speeds) else 0.0
+
+    @property
+    def top(self) -> float:
+        """Metres a second that the curves reach up to."""
+        return max([0.2, *(float(c.speeds.max()) for c in self.curves if len(c.speeds))])
+
+
+class Track:
+    """ident: of the action. The slow parts - speeds, distances - rest on its clip and its stances, not on its
+    times, so that a drag makes nothing of them anew.
+    """
+
+    def __init__(self, ident: str) -> None:
+        self.ident = ident
+        self._curves: Once[tuple[tuple[SpeedCurve, ...], Array]] = Once()
+        self._far: Once[tuple[Array, Array, Array]] = Once()
+        self._facts: Once[Facts | None] = Once()
+
+    def facts(self, project: Project, joint: str, curves: Callable[[Action], Curves | None]) -> Facts | None:
+        """Return what is shown of its action; None where that or its clip is gone. joint: whose curve is
+        drawn, "" for what the action moves. curves: gives what is known of its jumps.
+        """
+        action = project.action(self.ident)
+        entry = project.clips.get(action.clip) if action is not None else None
+        if action is None or entry is None:
+            return None
+        known = curves(action)
+        return self._facts.of(
+            (action, joint), (project, known), lambda: self._make(project, action, entry, joint, known)
+        )
+
+    def _make(
+        self, project: Project, action: Action, entry: ClipEntry, joint: str, known: Curves | None
+    ) -> Facts:
+        timeless = (
+            replace(action, timing=Timing(start=project.span(action)[0]))
+            if action.kind == "stance"
+            else replace(action, timing=Timing())
+        )
+        curves, speeds = self._curves.of(
+            (action.clip, action.layer, action.limb, joint, tuple(project.roles.items())),
+            (entry.motion, project.skeleton),
+            lambda: (curves_of(project, action, joint), speed_of(project, action)[0]),
+        )
+        graph = project.graphs[action.layer]
+        loops = tuple(a for s in (action.stance, action.end_stance) if s for a in graph.of(s, "stance")[:1])
+        both = self._far.of(
+            (timeless, loops, tuple(graph.weights.items())),
+            (entry.motion, *(end_gaps.motion_of(project, a) for a in loops)),
+            lambda: measured(project, action),
+        )
+        seen = Seen(action, known) if known is not None else None
+        words, fine = _verdict(project, action, seen)
+        stance = project.stance(action.stance)
+        limb = action.limb if action.layer == "arms" else None
+        return Facts(
+            action,
+            plain(action.name, stance.name if stance is not None else "", limb),
+            entry,
+            project.span(action),
+            handles_of(project, action),
+            blocks_of(project, action),
+            speeds,
+            curves,
+            seen,
+            distance_of(project, action, seen, both),
+            words,
+            fine,
+            stays_of(entry),
+            kept_of(entry),
+        )
+
+
+def kept_of(entry: ClipEntry) -> tuple[tuple[float, float, str], ...]:
+    """Return where hands are kept on the body, first and last second of the clip as it plays, in words."""
+    course = course_of(entry) if entry.retime.contacts else None
+    if course is None:
+        return ()
+    return tuple(
+        (course.time(c.first), course.time(c.last, late=True), f"{c.hand} stays at {c.to}")
+        for c in entry.retime.contacts
+    )
+
+
+def stays_of(entry: ClipEntry) -> tuple[Stay, ...]:
+    """Return where a clip is held."""
+    course = course_of(entry) if entry.retime.holds else None
+    if course is None:
+        return ()
+    return tuple(Stay(hold, *ends) for hold, ends in zip(entry.retime.holds, course.stays, strict=True))
+
+
+def _verdict(project: Project, action: Action, seen: Seen | None) -> tuple[str, bool]:
+    """Return what is said of beginning and ending, and whether that is nothing to mend."""
+    if seen is None:
+        return "", True
+    start, end = project.span(action)
+    first, last = seen.cost("start", start), seen.cost("end", end)
+    costs = {"Repeats": last} if seen.loops else {"Begins": first, "ends": last}
+    far = far_ends(project, action)
+    return verdict(costs, far), max(costs.values()) <= 1 and not far

@@ -1,0 +1,46 @@
+"""What an empty window begins with: import, practice, the sample, what was worked on last."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QTimer
+
+from app.features.welcome.welcome_page import Choice, WelcomePage
+from app.project.files import PRACTICE, SAMPLE, Files
+from app.project.importing import Importing
+from app.project.load import readable
+from app.shell.context import Contribution, Shell
+from app.shell.places import Places
+
+
+def contribute(shell: Shell) -> Contribution:
+    files, importing, document = shell.services[Files], shell.services[Importing], shell.document
+    pages: list[WelcomePage] = []
+
+    def begin() -> None:
+        """Lay the page over the graph; once there are places."""
+        room = shell.services[Places].dock("graph").widget()
+        choices = (
+            Choice(
+                "import",
+                "Import clips",
+                f"A folder of your own motion: {readable().splitlines()[0]}",
+                importing.ask_import_folder,
+            ),
+            Choice(
+                "practice",
+                "Practice",
+                "152 clips without labels: say of each what it is, the graph grows with it",
+                lambda: files.open(PRACTICE, template=True),
+            ),
+            Choice(
+                "sample",
+                "Look at the sample",
+                "A finished character that stands, gestures and talks",
+                lambda: files.open(SAMPLE, template=True),
+            ),
+        )
+        page = WelcomePage(choices, files, shell.stage.session, document, room)
+        pages.append(page)
+
+    QTimer.singleShot(0, shell.widget, begin)
+    return Contribution()

@@ -1,0 +1,189 @@
+"""The page over an empty graph: a few ways to begin, each with a picture and what it is for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from PySide6.QtCore import QEvent, QObject, QPoint, QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QMenu,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.welcome.welcome_pictures import PICTURES
+from app.look.theme import theme
+from app.project.document import Document
+from app.project.files import Files
+from app.stage.session import Session
+from app.widgets.making import make_widget
+
+LEAST = QSize(400, 270)  # pixels of a room in which all of it is whole
+CARD = QSize(188, 92)  # at least
+LARGEST = QSize(400, 250)
+RECENT = 3  # projects that a card names
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A way to begin. id: of its picture too. what: what it is for."""
+
+    id: str
+    title: str
+    what: str
+    run: Callable[[], object]
+
+
+class Card(QAbstractButton):
+    """A picture over or beside a title and what it is for."""
+
+    def __init__(self, choice: Choice, session: Session, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.choice, self.session = choice, session
+        self.setText(choice.title)
+        self.setAccessibleName(choice.title)
+        self.setAccessibleDescription(choice.what)
+        self.setToolTip(choice.what)
+        self.setCursor(Qt.CursorShape.PointingHandCursor)
+        self.setMinimumSize(CARD)
+        self.setMaximumSize(LARGEST)
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+        self.clicked.connect(choice.run)
+
+    def tell(self, what: str, enabled: bool) -> None:
+        """Say what it is for now."""
+        self.setToolTip(what)
+        self.setAccessibleDescription(what)
+        self.setEnabled(enabled)
+        self.update()
+
+    def sizeHint(self) -> QSize:
+        return QSize(290, 170)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        t, painter = theme(self.session.look.name), QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        lit = self.isEnabled() and (self.underMouse() or self.hasFocus())
+        painter.setPen(QPen(QColor(t.text if self.hasFocus() else t.line), 1.2))
+        painter.setBrush(QColor(t.hover if lit else t.card))
+        painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), 8, 8)
+        words = QRectF(self.rect()).adjusted(14, 0, -14, -12)
+        bold, flags = QFont(self.font()), Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap
+        bold.setWeight(QFont.Weight.DemiBold)
+        what = painter.boundingRect(words, flags, self.toolTip())
+        painter.setFont(bold)
+        title = painter.boundingRect(words, flags, self.text())
+        top = self.height() - 12 - what.height() - title.height() - 3
+        if top >= 44:  # else there is room for the words alone
+            painter.setOpacity(1.0 if self.isEnabled() else 0.45)
+            PICTURES[self.choice.id](painter, t, QRectF(14, 10, self.width() - 28, top - 16))
+        else:
+            top = (self.height() - what.height() - title.height() - 3) / 2
+        painter.setOpacity(1.0)
+        painter.setPen(QColor(t.text if self.isEnabled() else t.dim))
+        painter.drawText(words.adjusted(0, top, 0, 0), flags, self.text())
+        painter.setFont(self.font())
+        painter.setPen(QColor(t.dim))
+        painter.drawText(words.adjusted(0, top + title.height() + 3, 0, 12), flags, self.toolTip())
+        painter.end()
+
+
+class WelcomePage(QWidget):
+    """Lies over a room as long as nothing is in the project and nothing was done; closed by hand it stays so
+    until another project is begun.
+    """
+
+    def __init__(
+        self, choices: Sequence[Choice], files: Files, session: Session, document: Document, room: QWidget
+    ) -> None:
+        super().__init__(room)
+        self.files, self.session, self.document, self.room = files, session, document, room
+        self.closed = False
+        self.setAutoFillBackground(True)
+        self.setAccessibleName("Begin")
+        title = QLabel("How would you like to begin?", self)
+        title.setProperty("heading", True)
+        title.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self.recent = Card(Choice("recent", "Go on", "", self._choose_recent), session, self)
+        self.cards = [*(Card(c, session, self) for c in choices), self.recent]
+        self.skip = make_widget(
+            QToolButton, self, text="Begin with an empty graph", toolTip="Close this page"
+        )
+        self.skip.clicked.connect(self._close)
+        grid = QGridLayout()
+        grid.setSpacing(12)
+        for n, card in enumerate(self.cards):
+            grid.addWidget(card, n // 2, n % 2)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(20, 12, 20, 10)
+        layout.addStretch(1)
+        layout.addWidget(title)
+        layout.addSpacing(8)
+        middle = QHBoxLayout()
+        middle.addStretch(1)
+        middle.addLayout(grid, 100)
+        middle.addStretch(1)
+        layout.addLayout(middle, 8)
+        layout.addSpacing(4)
+        layout.addWidget(self.skip, 0, Qt.AlignmentFlag.AlignHCenter)
+        layout.addStretch(1)
+        room.installEventFilter(self)
+        document.loaded.connect(self._again)
+        document.changed.connect(lambda *_: self.follow())
+        document.state_changed.connect(self.follow)
+        session.look.changed.connect(self.update)
+        session.onstage.mode_changed.connect(self.follow)
+        self._again()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.Resize:
+            self.follow()
+        return False
+
+    def _again(self) -> None:
+        self.closed = False
+        self.follow()
+
+    def _close(self) -> None:
+        self.closed = True
+        self.follow()
+
+    def follow(self) -> None:
+        """Be there while there is nothing else, and room for it."""
+        document, size = self.document, self.room.size()
+        project = document.project
+        empty = not project.clips and document.path is None and not document.undo_stack.count()
+        whole = size.width() >= LEAST.width() and size.height() >= LEAST.height()
+        shown = empty and whole and not self.closed and self.session.onstage.mode == "meta"
+        if shown:
+            self.setGeometry(self.room.rect())
+            if self.isHidden():
+                self._tell_recent()
+            self.raise_()
+        self.setVisible(shown)
+
+    def _tell_recent(self) -> None:
+        names = [path.name.split(".")[0] for path in self.files.recent()[:RECENT]]
+        self.recent.tell(
+            f"With {', '.join(names)}" if names else "Projects that you have saved are found here",
+            bool(names),
+        )
+
+    def _choose_recent(self) -> None:
+        recent = self.files.recent()
+        if len(recent) == 1:
+            self.files.open(recent[0])
+            return
+        menu = QMenu(self)
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        for path in recent:
+            menu.addAction(f"{path.name.split('.')[0]}   {path.parent}", partial(self.files.open, path))
+        menu.popup(self.recent.mapToGlobal(QPoint(0, self.recent.height())))

@@ -1,0 +1,96 @@
+"""The keyboard: commands have their keys whatever is typed in, and a dialog gives the focus back to what had
+it.
+"""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QEvent, QObject, Qt, QTimer
+from PySide6.QtGui import QKeyEvent, QKeySequence
+from PySide6.QtWidgets import QApplication, QDialog, QMainWindow, QWidget
+from shiboken6 import isValid
+
+from app.shell.actions import Actions, Standard
+
+# What a field does with its own text stays the field's.
+EDITING = (
+    Standard.Undo, Standard.Redo, Standard.Cut, Standard.Copy, Standard.Paste, Standard.SelectAll,
+    Standard.Delete, Standard.DeleteStartOfWord, Standard.DeleteEndOfWord, Standard.Backspace,
+    Standard.MoveToNextWord, Standard.MoveToPreviousWord, Standard.SelectNextWord,
+    Standard.SelectPreviousWord, Standard.MoveToStartOfDocument, Standard.MoveToEndOfDocument,
+)  # fmt: skip
+HELD = (
+    Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
+)
+
+
+class Keyboard(QObject):
+    """Watches what has the focus, and nothing else."""
+
+    def __init__(self, window: QMainWindow, actions: Actions) -> None:
+        super().__init__(window)
+        self.window, self.actions = window, actions
+        self._last: QWidget | None = None
+        self._watched: QWidget | None = None
+        self._dialogs: set[QDialog] = set()
+        application = QApplication.instance()
+        assert isinstance(application, QApplication)
+        application.focusChanged.connect(self._moved)
+
+    def _moved(self, old: QWidget | None, new: QWidget | None) -> None:
+        if self._watched is not None and isValid(self._watched):
+            self._watched.removeEventFilter(self)
+        self._watched = None
+        if new is None:
+            return
+        over = new.window()
+        if isinstance(over, QDialog):
+            if over not in self._dialogs and self._of_this(over):
+                self._dialogs.add(over)
+                over.installEventFilter(self)
+        elif self._of_this(over):
+            self._last = self._watched = new
+            new.installEventFilter(self)
+
+    def _of_this(self, over: QWidget) -> bool:
+        """Return whether a window is this one, or belongs to it."""
+        at: QWidget | None = over
+        while at is not None and at is not self.window:
+            at = at.parentWidget()
+        return at is not None
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if watched is self._watched and event.type() == QEvent.Type.ShortcutOverride:
+            return isinstance(event, QKeyEvent) and self._ours(event)
+        if event.type() == QEvent.Type.Hide and isinstance(watched, QDialog):
+            self._dialogs.discard(watched)
+            watched.removeEventFilter(self)
+            QTimer.singleShot(0, self, self._give_back)
+        return False
+
+    def _ours(self, event: QKeyEvent) -> bool:
+        """Keep a key from a field that would take it for itself, where it is a command's: Ctrl+E goes to the
+        end of a line on some systems, and exports here.
+        """
+        key, held = event.key(), event.modifiers() & HELD
+        function = Qt.Key.Key_F1 <= key <= Qt.Key.Key_F35
+        if (not held and not function) or any(event.matches(k) for k in EDITING):
+            return False
+        wanted = QKeySequence(event.keyCombination())
+        ours = any(wanted in a.shortcuts() and a.isEnabled() for a in self.actions.by_id.values())
+        if ours:
+            event.ignore()
+        return ours
+
+    def _give_back(self) -> None:
+        """Give the focus back to what had it before a dialog came."""
+        if not isValid(self.window) or not self.window.isVisible():
+            return
+        if QApplication.activeModalWidget() is not None or QApplication.activePopupWidget() is not None:
+            return
+        over = QApplication.activeWindow()
+        if isinstance(over, QDialog) and over.isVisible():
+            return  # another one is used now
+        self.window.activateWindow()
+        last = self._last
+        if last is not None and isValid(last) and last.isVisible() and not last.hasFocus():
+            last.setFocus()

@@ -1,0 +1,225 @@
+"""Which workspace is on, how each was left, and the user's own; all kept from one time to the next."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+
+from PySide6.QtCore import QByteArray, QObject, QSettings, Signal
+from PySide6.QtWidgets import QApplication, QWidget
+
+from app.shell.places import ARRANGED, Places
+from app.shell.workspaces import ALL, FIRST, WORKSPACES, Workspace
+
+GROUP = (
+    f"workspaces {ARRANGED}"  # what was kept when docks were made otherwise lies elsewhere, and is not read
+)
+OLD = "state"  # one arrangement for everything, as it was kept before there were workspaces
+
+
+@dataclass(frozen=True)
+class Tab:
+    """A workspace as it can be chosen. id: the workspace's own for those that come with the program. of: what
+    it is an arrangement of.
+    """
+
+    id: str
+    title: str
+    of: Workspace
+
+    @property
+    def own(self) -> bool:
+        """Whether the user made it."""
+        return self.id != self.of.id
+
+
+class Workspaces(QObject):
+    """changed: another is on, or there are others. current: the id of the one that is on."""
+
+    changed = Signal()
+
+    def __init__(self, places: Places, parent: QObject) -> None:
+        super().__init__(parent)
+        self.places = places
+        self.tabs: list[Tab] = [Tab(w.id, w.title, w) for w in WORKSPACES]
+        self.current = FIRST.id
+        self._panels = " ".join(sorted(places.docks))
+
+    @property
+    def tab(self) -> Tab:
+        """The workspace that is on."""
+        return next(t for t in self.tabs if t.id == self.current)
+
+    # --- from one time to the next
+
+    def restore(self) -> None:
+        """Open the workspace that was on when the window was last closed, as it was left."""
+        settings = QSettings()
+        settings.remove(OLD)
+        geometry = settings.value("geometry")
+        if isinstance(geometry, QByteArray):
+            self.places.window.restoreGeometry(geometry)
+        self.tabs = [t for t in self.tabs if not t.own] + _own(settings.value(f"{GROUP}/own"))
+        kept = settings.value(f"{GROUP}/current")
+        self.current = str(kept) if any(t.id == kept for t in self.tabs) else FIRST.id
+        self._open()
+
+    def save(self) -> None:
+        """Keep everything for the next time."""
+        settings = QSettings()
+        settings.setValue("geometry", self.places.window.saveGeometry())
+        settings.setValue(f"{GROUP}/current", self.current)
+        self._keep()
+
+    def _keep(self) -> None:
+        """Keep how the present workspace is left, unless all panels are shown for something else."""
+        if self.places.workspace.id != ALL.id:
+            self._write(self.current, "left")
+
+    def _write(self, ident: str, key: str) -> None:
+        settings = QSettings()
+        state, shares = self.places.state()
+        settings.setValue(f"{GROUP}/{ident}/{key}", state)
+        settings.setValue(f"{GROUP}/{ident}/{key} shares", shares)
+        settings.setValue(f"{GROUP}/{ident}/panels", self._panels)
+
+    def _read(self, ident: str, key: str) -> tuple[QByteArray, str] | None:
+        """Return an arrangement that was kept; None where it is of other panels than there are."""
+        settings = QSettings()
+        if settings.value(f"{GROUP}/{ident}/panels") != self._panels:
+            return None
+        state = settings.value(f"{GROUP}/{ident}/{key}")
+        shares = str(settings.value(f"{GROUP}/{ident}/{key} shares"))
+        return (state, shares) if isinstance(state, QByteArray) else None
+
+    # --- choosing
+
+    def choose(self, ident: str) -> None:
+        """Open a workspace as it was left. Raises LookupError where there is none."""
+        if not any(t.id == ident for t in self.tabs):
+            raise LookupError(f"there is no workspace {ident!r}")
+        if ident == self.current and self.places.workspace.id != ALL.id and not self.places.alone:
+            return
+        self._keep()
+        self.current = ident
+        self._open()
+
+    def _open(self) -> None:
+        tab, focus = self.tab, QApplication.focusWidget()
+        self.places.arrange(tab.of, self._read(tab.id, "left") or self._first())
+        self._follow_focus(focus)
+        self.changed.emit()
+
+    def _first(self) -> tuple[QByteArray, str] | None:
+        """Return how an own workspace was when it was saved."""
+        return self._read(self.current, "first") if self.tab.own else None
+
+    def _follow_focus(self, focus: QWidget | None) -> None:
+        """Give the keyboard back to what had it, or to what is large where that is not seen any more."""
+        window = self.places.window
+        if focus is None or focus is window or not window.isAncestorOf(focus):
+            return
+        if focus.isVisible():
+            focus.setFocus()
+            return
+        large = self.places.made(self.places.large())
+        while large is not None and not large.focusPolicy().value:
+            large = next((c for c in large.findChildren(QWidget) if c.focusPolicy().value), None)
+        (large or window).setFocus()
+
+    def everything(self) -> None:
+        """Show every panel at once, until a workspace is chosen."""
+        self._keep()
+        self.places.arrange(ALL)
+        self.changed.emit()
+
+    def show(self, ident: str, on: bool = True) -> None:
+        """Show a panel in front, or hide it. What has no place in the present workspace is shown where it is
+        at home, unless it was opened here already.
+        """
+        places = self.places
+        panel = places.panels[places.dock(ident).objectName()]
+        if on and places.dock(ident).isHidden() and not places.belongs(ident, places.workspace):
+            home = next(iter((*panel.where, *panel.opens)), None)
+            if home is not None:
+                self.choose(home)
+        places.show(ident, on)
+
+    # --- changing
+
+    def reset(self) -> None:
+        """Put the panels of the present workspace back."""
+        if self.places.workspace.id == ALL.id:
+            self.places.arrange(ALL)
+            return
+        QSettings().remove(f"{GROUP}/{self.current}/left")
+        self.places.arrange(self.tab.of, self._first())
+        self.changed.emit()
+
+    def save_as(self, title: str) -> None:
+        """Keep the present arrangement as an own workspace, and go on in it. Raises ValueError for a title
+        that is empty or taken.
+        """
+        title = self._free(title)
+        here = self.tab
+        taken = {t.id for t in self.tabs}
+        ident = next(i for n in range(1, len(taken) + 2) if (i := f"own-{n}") not in taken)
+        self._write(ident, "first")
+        self.tabs.append(Tab(ident, title, here.of))
+        self._keep_own()
+        self.current = ident
+        self.changed.emit()
+
+    def rename(self, title: str) -> None:
+        """Rename the present workspace, which is an own one. Raises ValueError for a title that is empty or
+        taken, and where it is not the user's.
+        """
+        tab = self._mine()
+        if title.strip() == tab.title:
+            return
+        title = self._free(title)
+        self.tabs = [Tab(t.id, title, t.of) if t.id == tab.id else t for t in self.tabs]
+        self._keep_own()
+        self.changed.emit()
+
+    def delete(self) -> None:
+        """Delete the present workspace, and go to the one it was made from. Raises ValueError where it is not
+        the user's.
+        """
+        tab = self._mine()
+        self.tabs = [t for t in self.tabs if t.id != tab.id]
+        self._keep_own()
+        self.current = tab.of.id
+        self._open()
+        QSettings().remove(f"{GROUP}/{tab.id}")
+
+    def _mine(self) -> Tab:
+        if not self.tab.own:
+            raise ValueError(
+                f"The workspace {self.tab.title} comes with the program and stays as it is named."
+            )
+        return self.tab
+
+    def _free(self, title: str) -> str:
+        title = " ".join(title.split())
+        if not title:
+            raise ValueError("A workspace needs a name.")
+        if any(t.title.casefold() == title.casefold() for t in self.tabs):
+            raise ValueError(f"There is a workspace {title} already.")
+        return title
+
+    def _keep_own(self) -> None:
+        own = [{"id": t.id, "title": t.title, "of": t.of.id} for t in self.tabs if t.own]
+        QSettings().setValue(f"{GROUP}/own", json.dumps(own))
+
+
+def _own(kept: object) -> list[Tab]:
+    """Return the user's own workspaces; what cannot be read is left out."""
+    of = {w.id: w for w in WORKSPACES}
+    try:
+        rows = json.loads(str(kept or "[]"))
+        return [
+            Tab(str(r["id"]), str(r["title"]), of[r["of"]]) for r in rows if str(r["id"]).startswith("own-")
+        ]
+    except (ValueError, KeyError, TypeError):
+        return []

@@ -1,0 +1,103 @@
+"""The workspaces as data: arrangements of the same panels, in each of which one thing is large.
+
+A workspace divides the window into named areas. Which panel stands in which area is not said here: panels
+declare it themselves, see `Panel.where` and `Panel.opens`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Split:
+    """Parts side by side, or below each other where `down`. parts: each an area's name or another split, with
+    its share of the whole.
+    """
+
+    parts: tuple[tuple[str | Split, int], ...]
+    down: bool = False
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """id: stable, and what panels name. title, tip: on its tab. tree: its areas. large: the area that has
+    most room. spare: the area in which a panel opens that has none of its own here.
+    """
+
+    id: str
+    title: str
+    tip: str
+    tree: Split
+    large: str = "large"
+    spare: str = "below"
+
+    @property
+    def areas(self) -> tuple[str, ...]:
+        """The names of its areas, from the upper left on."""
+        return tuple(_areas(self.tree))
+
+
+def _areas(part: str | Split) -> Iterator[str]:
+    if isinstance(part, str):
+        yield part
+    else:
+        for inner, _ in part.parts:
+            yield from _areas(inner)
+
+
+def across(*parts: tuple[str | Split, int]) -> Split:
+    return Split(parts)
+
+
+def down(*parts: tuple[str | Split, int]) -> Split:
+    return Split(parts, down=True)
+
+
+LABEL = Workspace(
+    "label",
+    "Label",
+    "Clips large: say of each what it is",
+    across(("large", 52), (down(("side", 57), ("below", 43)), 48)),
+)
+GRAPH = Workspace(
+    "graph",
+    "Graph",
+    "The graph and the character, both large",
+    across(("list", 16), (down(("large", 73), ("below", 27)), 51), ("side", 33)),
+)
+TIME = Workspace(
+    "time",
+    "Time",
+    "The character large, over the timing of an action",
+    across(("list", 17), (down((across(("large", 64), ("side", 36)), 54), ("below", 46)), 83)),
+)
+PERFORM = Workspace(
+    "perform",
+    "Perform",
+    "The character large, over what is asked of it and what plays",
+    down((across(("large", 68), ("side", 32)), 64), ("below", 36)),
+)
+TALK = Workspace(
+    "talk",
+    "Talk",
+    "Two who talk, over what they say",
+    down((across(("large", 70), ("side", 30)), 54), ("below", 46)),
+)
+WORKSPACES: tuple[Workspace, ...] = (LABEL, GRAPH, TIME, PERFORM, TALK)
+FIRST = GRAPH
+
+# Every panel at once, each in its `Panel.place`: what a study's tasks are done in, so that nothing has to be
+# looked for.
+ALL = Workspace(
+    "all",
+    "All",
+    "Every panel",
+    across(
+        (down((across(("left", 300), ("centre", 950)), 620), ("bottom", 286)), 1250),
+        (down(("right", 470), ("right below", 440)), 420),
+    ),
+    large="centre",
+    spare="bottom",
+)

@@ -1,0 +1,32 @@
+"""A clip as it was read, beside the clip as it plays."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from metagraph.graph.model import ClipEntry
+from metagraph.motion.clip import Clip
+from metagraph.motion.retime import Course, retimed
+
+
+def source_of(entry: ClipEntry) -> Clip | None:
+    """Return a clip as it was read, None while its file is missing."""
+    return entry.source if entry.source is not None else entry.motion
+
+
+def course_of(entry: ClipEntry) -> Course | None:
+    """Return which moment of the clip as it was read plays when; None while its file is missing."""
+    source = source_of(entry)
+    return None if source is None else Course(entry.retime, source.duration, source.fps)
+
+
+def with_source(entry: ClipEntry, source: Clip) -> ClipEntry:
+    """Return an entry whose clip was read, with its retiming made."""
+    motion = retimed(source, entry.retime)
+    return replace(
+        entry,
+        frames=motion.frames,
+        fps=motion.fps,
+        motion=motion,
+        source=None if motion is source else source,
+    )

@@ -1,0 +1,129 @@
+"""Clips played faster, slower and held: an edit that keeps the clip as it was read, and lets everything that
+names moments of it follow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from metagraph.graph import anatomy
+from metagraph.graph.clip_source import course_of, source_of, with_source
+from metagraph.graph.edits import EditError
+from metagraph.graph.manual import Manual
+from metagraph.graph.model import Action, BasePose, Project, Timing
+from metagraph.motion.contact_hold import Contact, nearest_joint
+from metagraph.motion.retime import Hold, Retime
+
+MOMENTS = ("start", "end", "earliest_exit", "stroke", "ready", "stroke_end", "relax")
+BODY = (
+    "hips",
+    "spine",
+    "chest",
+    "upper_chest",
+    "neck",
+    "head",
+    "left_upper_leg",
+    "right_upper_leg",
+)  # roles a hand may stay with
+LATE = ("end", "earliest_exit", "relax")  # go to the end of a hold that is put where they are
+
+
+def set_retime(project: Project, clip: str, retime: Retime) -> Project:
+    """Return the project with a clip retimed otherwise: its actions, the states and links that name moments
+    of it and the base pose follow. Raises EditError where the clip is gone or its file is missing.
+    """
+    entry = project.clips.get(clip)
+    if entry is None:
+        raise EditError("that clip is no longer in the project")
+    source, before = source_of(entry), course_of(entry)
+    if source is None or before is None:
+        raise EditError(f"the file of '{entry.name}' is missing: find it, then change its speed")
+    after = with_source(replace(entry, retime=retime.kept(source.duration)), source)
+    if after.retime == entry.retime:
+        return project
+    course = course_of(after)
+    assert course is not None
+
+    def moved(seconds: float | None, late: bool = False) -> float | None:
+        return None if seconds is None else round(before.along(seconds, course, late), 3)
+
+    out = replace(project, clips={**project.clips, clip: after})
+    for graph in project.graphs.values():
+        changes: dict[str, Action | None] = {
+            a.id: replace(a, timing=_timing(a.timing, moved)) for a in graph.uses.get(clip, ())
+        }
+        if changes:
+            out = out.with_graph(graph.with_actions(changes))
+    manual = {layer: _manual(machine, clip, moved) for layer, machine in project.manual.items()}
+    base = project.base
+    if base.clip == clip:
+        frame = round((moved(base.frame / entry.fps) or 0.0) * after.fps)
+        base = BasePose(clip, min(frame, after.frames - 1))
+    return replace(out, manual=manual, base=base)
+
+
+def set_speed(project: Project, clip: str, speed: float) -> Project:
+    """Return the project with a clip played at a speed, 1 as it was read. Raises EditError."""
+    entry = project.clips.get(clip)
+    return set_retime(project, clip, replace(entry.retime if entry else Retime(), speed=speed))
+
+
+def set_hold(project: Project, clip: str, at: float, seconds: float) -> Project:
+    """Return the project with a clip held at a moment, seconds of the clip as it was read, for some seconds
+    longer; 0 takes the hold away. Raises EditError.
+    """
+    entry = project.clips.get(clip)
+    retime = entry.retime if entry else Retime()
+    at = round(at, 3)
+    others = tuple(h for h in retime.holds if h.at != at)
+    return set_retime(project, clip, replace(retime, holds=(*others, Hold(at, seconds))))
+
+
+def keep_hand(project: Project, clip: str, side: str, first: float, last: float) -> Project:
+    """Return the project with a hand of a clip kept where it is on the body at the first of two moments,
+    until the second; seconds of the clip as it was read. side: "left" or "right". Raises EditError.
+    """
+    entry = project.clips.get(clip)
+    source = source_of(entry) if entry is not None else None
+    roles = anatomy.roles(project)
+    limb = [roles.get(f"{side}_{part}") for part in ("upper_arm", "lower_arm", "hand")]
+    if entry is None or source is None or source.skeleton != project.skeleton:
+        raise EditError("that clip has no motion of this skeleton: find its file")
+    if None in limb:
+        raise EditError(f"the {side} arm is not known: say which joints it has in the skeleton's roles")
+    upper, lower, hand = (int(j) for j in limb if j is not None)
+    other = "right" if side == "left" else "left"
+    among = [roles[r] for r in (*BODY, f"{other}_hand", f"{other}_lower_arm") if r in roles]
+    to = nearest_joint(source, hand, among, first)
+    if to is None or last <= first:
+        raise EditError("there is nothing the hand could stay with")
+    names = source.skeleton.names
+    contact = Contact(names[upper], names[lower], names[hand], names[to], first, last)
+    kept = tuple(c for c in entry.retime.contacts if c.hand != contact.hand or not _meet(c, contact))
+    return set_retime(project, clip, replace(entry.retime, contacts=(*kept, contact)))
+
+
+def _meet(one: Contact, other: Contact) -> bool:
+    return one.first <= other.last and other.first <= one.last
+
+
+def _timing(timing: Timing, moved: Callable[..., float | None]) -> Timing:
+    changes: dict[str, Any] = {n: moved(getattr(timing, n), n in LATE) for n in MOMENTS}
+    return replace(timing, **changes)
+
+
+def _manual(machine: Manual, clip: str, moved: Callable[..., float | None]) -> Manual:
+    used = {i for i, s in machine.states.items() if s.clip == clip}
+    if not used:
+        return machine
+    states = {
+        i: replace(s, start=moved(s.start) or 0.0, end=moved(s.end, True)) if i in used else s
+        for i, s in machine.states.items()
+    }
+    links = {
+        i: replace(k, exit_time=moved(k.exit_time, True)) if k.source in used else k
+        for i, k in machine.links.items()
+    }
+    return replace(machine, states=states, links=links)

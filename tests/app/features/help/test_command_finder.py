@@ -1,0 +1,65 @@
+"""Commands found by typing, and done from there; and the list of their keys."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+
+from app.features.help.command_finder import CommandFinder
+
+pytestmark = [pytest.mark.window, pytest.mark.gl]
+
+
+def opened(drive, command: str) -> CommandFinder:
+    drive.do(command)
+    dialog = drive.window.findChildren(CommandFinder)[-1]
+    drive.wait(dialog.search.hasFocus)
+    return dialog
+
+
+def test_every_command_is_found_by_its_words_in_any_order(toys):
+    dialog = opened(toys, "palette")
+    every = {e.words for e in dialog.listed()}
+    shown = [c for c in toys.actions.commands if c.fill is None and toys.actions[c.id].isVisible()]
+    assert {c.plain for c in shown} <= every
+    assert {"Problems", "Models"} <= every, "panels are found, too"
+    dialog.search.setText("theme  LIGHT")
+    assert [e.words for e in dialog.listed()] == ["Light theme"]
+    dialog.search.setText("no such thing")
+    assert not dialog.listed() and dialog.none.isVisible()
+    QTest.keyClick(dialog.search, Qt.Key.Key_Return)
+    assert dialog.isVisible(), "there is nothing to do"
+    dialog.close()
+
+
+def test_enter_does_what_is_chosen_and_gives_the_keyboard_back(toys):
+    toys.canvas.setFocus()
+    toys.wait(toys.canvas.hasFocus)
+    dialog = opened(toys, "palette")
+    QTest.keyClicks(dialog.search, "layer")
+    QTest.keyClick(dialog.search, Qt.Key.Key_Down)
+    wanted = dialog.tree.currentItem().text(0)
+    QTest.keyClick(dialog.search, Qt.Key.Key_Return)
+    toys.wait(lambda: f"{toys.session.place.layer.capitalize()} layer" == wanted)
+    toys.wait(toys.canvas.hasFocus)
+
+
+def test_what_cannot_be_done_now_is_shown_but_not_done(drive):
+    dialog = opened(drive, "palette")
+    dialog.search.setText("compatibility")
+    (found,) = [e for e in dialog.listed() if e.words == "Compatibility"]
+    assert not found.enabled
+    QTest.keyClick(dialog.search, Qt.Key.Key_Return)
+    assert dialog.isVisible()
+    dialog.close()
+
+
+def test_the_shortcuts_stand_in_groups(toys):
+    dialog = opened(toys, "keys")
+    assert all(e.keys for e in dialog.listed())
+    groups = list(dict.fromkeys(e.group for e in dialog.listed()))
+    assert groups[:3] == ["File", "Edit", "Graph"] and groups[-1] == "In a conversation"
+    dialog.search.setText("ctrl+e")
+    assert next(e.words for e in dialog.listed()).startswith("Export")
+    dialog.close()

@@ -1,0 +1,339 @@
+"""The timing editor in the window: what it shows, and what the mouse and the keys do."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import QPoint, QPointF, Qt
+from PySide6.QtGui import QWheelEvent
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+
+from metagraph.graph import edits
+from metagraph.playback.timing import EDGES, times_of
+
+pytestmark = [pytest.mark.window, pytest.mark.gl]
+
+
+@pytest.fixture(scope="module")
+def wide(toy):
+    project = edits.add_clips(toy.project(), [("wide.glb", 0, "", toy.clip("wide", 2.4, swing=2.4))])
+    project = edits.place(project, [toy.id(project, "wide")], "arms", "gesture", toy.id(project, "rest"))
+    return edits.update_actions(
+        project,
+        [toy.id(project, "wide")],
+        timing={"start": 0.1, "end": 1.5, "blend_out": 0.05, "ready": 0.5, "stroke_end": 0.9, "relax": 1.2},
+    )
+
+
+@pytest.fixture
+def editor(toys, toy, wide):
+    drive = toys
+    drive.document.load(wide, None)
+    drive.files.opened.emit()
+    drive.wait(lambda: drive.compatibility.judged is not None)
+    drive.show("timing")
+    drive.session.jump(action=toy.id(wide, "wide"))
+    drive.ident = toy.id(wide, "wide")
+    drive.panel = drive.shell.panel("timing")
+    drive.view = drive.panel.view
+    drive.wait(lambda: facts(drive) is not None and facts(drive).seen is not None)
+    drive.settle()
+    drive.view.grab()  # numbers have their places once they were painted
+    return drive
+
+
+def facts(drive):
+    return drive.panel.subject.facts().get(drive.ident)
+
+
+def timing(drive):
+    return drive.document.project.action(drive.ident).timing
+
+
+def at(drive, seconds: float, row: str = "speed") -> QPoint:
+    rows = drive.view.tracks()[0]
+    box = rows.rows[row] if row != "ruler" else None
+    y = box.center().y() if box is not None else 10
+    return QPoint(round(drive.view.axis.x(seconds)), round(y))
+
+
+def pull(drive, start: QPoint, end: QPoint, modifier=Qt.KeyboardModifier.NoModifier, let_go=True):
+    """Press, move in steps, and let go."""
+    left = Qt.MouseButton.LeftButton
+    QTest.mousePress(drive.view, left, modifier, start)
+    for n in range(1, 6):
+        point = start + (end - start) * n / 5
+        event_at = QPointF(point)
+        from PySide6.QtCore import QEvent
+        from PySide6.QtGui import QMouseEvent
+
+        QApplication.sendEvent(
+            drive.view,
+            QMouseEvent(
+                QEvent.Type.MouseMove,
+                event_at,
+                drive.view.mapToGlobal(event_at),
+                Qt.MouseButton.NoButton,
+                left,
+                modifier,
+            ),
+        )
+    if let_go:
+        QTest.mouseRelease(drive.view, left, modifier, end)
+
+
+ALT = Qt.KeyboardModifier.AltModifier
+SHIFT = Qt.KeyboardModifier.ShiftModifier
+
+
+def test_it_is_wide_under_the_character_and_says_what_the_problems_say(editor):
+    editor.workspaces.choose("time")
+    editor.settle()
+    panel, window = editor.panel, editor.window
+    assert panel.isVisible() and panel.width() > 0.7 * window.width()
+    assert panel.view.height() >= panel.view.minimumHeight()
+    shown = facts(editor)
+    assert not shown.fine and "ends" in shown.verdict and panel.verdict.words == shown.verdict
+    assert editor.properties.plot.verdict.text() == shown.verdict, "one verdict everywhere"
+
+
+def test_a_handle_is_dragged_by_its_line_and_comes_to_rest_with_a_reason_in_one_step(editor):
+    before = editor.document.undo_stack.count()
+    goal = facts(editor).seen.proposed.end
+    near = goal - 4 / editor.view.axis.each
+    pull(editor, at(editor, 1.5), at(editor, near), let_go=False)
+    assert timing(editor).end == pytest.approx(goal, abs=0.002) or timing(editor).end is None
+    assert editor.view.snapped is not None and "without a jump" in editor.view.snapped.why
+    assert editor.view.held.startswith("end ")
+    assert editor.session.transport.shown == editor.document.project.action(editor.ident).clip
+    QTest.mouseRelease(
+        editor.view, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, at(editor, near)
+    )
+    assert editor.view.snapped is None and editor.view.held == ""
+    assert editor.document.undo_stack.count() == before + 1
+    editor.document.undo_stack.undo()
+    assert timing(editor).end == 1.5
+
+
+def test_with_alt_it_rests_nowhere_and_escape_takes_it_back(editor):
+    near = min(facts(editor).seen.snaps("end")) + 4 / editor.view.axis.each
+    pull(editor, at(editor, 1.5), at(editor, near), ALT)
+    assert timing(editor).end == pytest.approx(near, abs=0.01)
+    before = editor.document.undo_stack.index()
+    pull(editor, at(editor, timing(editor).start), at(editor, 0.4), let_go=False)
+    assert timing(editor).start == pytest.approx(0.4, abs=0.03)
+    editor.view.setFocus()
+    editor.key(Qt.Key.Key_Escape, widget=editor.view)
+    assert timing(editor).start == 0.1 and editor.document.undo_stack.index() == before
+
+
+def test_what_gave_way_comes_back_within_one_drag(editor):
+    pull(editor, at(editor, 1.5), at(editor, 0.7), ALT, let_go=False)
+    assert timing(editor).relax < 0.8
+    pull(editor, at(editor, 0.7), at(editor, 0.7), ALT)  # another press breaks the first off
+    assert timing(editor).relax == 1.2 and timing(editor).end == 1.5
+
+
+def test_a_phase_is_dragged_as_a_block_and_with_shift_all_of_it(editor):
+    pull(editor, at(editor, 0.7, "phases"), at(editor, 0.8, "phases"), ALT)
+    found = times_of(editor.document.project, editor.document.project.action(editor.ident))
+    assert [found[e] for e in EDGES] == pytest.approx([0.1, 0.6, 1.0, 1.2, 1.5], abs=0.01)
+    pull(editor, at(editor, 0.8, "phases"), at(editor, 1.0, "phases"), ALT | SHIFT)
+    found = times_of(editor.document.project, editor.document.project.action(editor.ident))
+    assert [found[e] for e in EDGES] == pytest.approx([0.3, 0.8, 1.2, 1.4, 1.7], abs=0.02)
+
+
+def test_the_edge_between_two_phases_is_dragged_alone(editor):
+    pull(editor, at(editor, 0.9, "phases"), at(editor, 1.05, "phases"), ALT)
+    assert timing(editor).stroke_end == pytest.approx(1.05, abs=0.01)
+    assert (timing(editor).ready, timing(editor).relax) == (0.5, 1.2)
+
+
+def test_a_number_is_taken_like_its_line_and_typed_after_a_double_click(editor):
+    box = editor.view.numbers[editor.ident]["out"]
+    place = box.center().toPoint()
+    QTest.mouseDClick(editor.view, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, place)
+    assert editor.panel.number.isVisible()
+    editor.panel.number.setValue(0.3)
+    assert timing(editor).blend_out == pytest.approx(0.3)
+    editor.view.grab()
+    place = editor.view.numbers[editor.ident]["out"].center().toPoint()
+    pull(editor, place, place - QPoint(40, 0), ALT)
+    assert timing(editor).blend_out == pytest.approx(0.3 + 40 / editor.view.axis.each, abs=0.01)
+
+
+def test_the_character_is_scrubbed_and_a_part_of_the_clip_is_looped(editor):
+    pull(editor, at(editor, 0.2, "ruler"), at(editor, 1.0, "ruler"))
+    transport = editor.session.transport
+    assert transport.seconds == pytest.approx(1.0, abs=0.02) and not transport.playing
+    assert (
+        editor.panel.subject.playhead() is None
+        or editor.wait(lambda: editor.panel.subject.playhead() is not None) is None
+    )
+    pull(editor, at(editor, 0.4, "ruler"), at(editor, 0.8, "ruler"), SHIFT)
+    assert transport.part[1:] == pytest.approx((0.4, 0.8), abs=0.02)
+    transport.seek(0.79)
+    transport.set_playing(True)
+    editor.playhead.advance(0.05)
+    assert 0.4 <= transport.seconds < 0.5
+    transport.set_playing(False)
+    QTest.mouseDClick(
+        editor.view, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, at(editor, 0.6, "ruler")
+    )
+    assert transport.part is None
+
+
+def test_the_wheel_zooms_about_the_pointer(editor):
+    point = at(editor, 0.9)
+    seconds, each = editor.view.axis.seconds(point.x()), editor.view.axis.each
+    QApplication.sendEvent(
+        editor.view,
+        QWheelEvent(
+            QPointF(point),
+            editor.view.mapToGlobal(QPointF(point)),
+            QPoint(),
+            QPoint(0, 480),
+            Qt.MouseButton.NoButton,
+            Qt.KeyboardModifier.NoModifier,
+            Qt.ScrollPhase.NoScrollPhase,
+            False,
+        ),
+    )
+    assert editor.view.axis.each > 1.9 * each
+    assert editor.view.axis.x(seconds) == pytest.approx(point.x(), abs=0.5)
+    editor.key(Qt.Key.Key_0, widget=editor.view)
+    assert editor.view.axis.is_whole
+
+
+def test_keys_step_and_begin_and_end_the_action_at_the_playhead(editor):
+    transport = editor.session.transport
+    transport.scrub(editor.document.project.action(editor.ident).clip, 0.3)
+    editor.wait(lambda: editor.panel.subject.playhead() is not None)
+    editor.view.setFocus()
+    editor.key(Qt.Key.Key_Right, widget=editor.view)
+    assert transport.seconds == pytest.approx(0.3 + 1 / 30, abs=0.002)
+    editor.key(Qt.Key.Key_I, widget=editor.view)
+    assert timing(editor).start == pytest.approx(transport.seconds, abs=0.002)
+    transport.seek(1.3)
+    editor.key(Qt.Key.Key_O, widget=editor.view)
+    assert timing(editor).end == pytest.approx(1.3, abs=0.002)
+
+
+def test_before_and_after_are_compared_on_the_stage_and_nothing_is_changed(editor):
+    project = editor.document.project
+    pull(editor, at(editor, 1.5), at(editor, 1.9), ALT)
+    changed = editor.document.project
+    editor.panel.compare.click()
+    assert editor.performance.before is project and editor.panel.subject.before_facts()
+    editor.panel.compare.click()
+    assert editor.performance.before is None and editor.document.project is changed
+
+
+def test_onion_skin_shows_start_stroke_and_end(editor):
+    editor.panel.onion.click()
+    moments = [at for at, _ in editor.session.onion.skin.moments]
+    shown = facts(editor)
+    assert sorted(moments) == pytest.approx(sorted([0.1, 1.5, shown.handle("stroke").at]))
+    editor.session.transport.scrub(shown.action.clip, 0.7)
+    editor.wait(lambda: editor.performance.shown.clip is not None)
+    assert len(editor.preview._scene().actors) == 4
+    editor.panel.onion.click()
+    assert editor.session.onion.skin is None and len(editor.preview._scene().actors) == 1
+
+
+def test_many_actions_stand_below_each_other_and_are_moved_by_the_same(editor, toy):
+    project = editor.document.project
+    others = [editor.ident, toy.id(project, "rest wave rt"), toy.id(project, "rest loop")]
+    editor.session.selection.select_actions(tuple(others))
+    editor.settle()
+    editor.view.grab()
+    assert [t.ident for t in editor.view.tracks()] == others
+    starts = {i: project.action(i).timing.start for i in others}
+    pull(editor, at(editor, 0.1), at(editor, 0.3), ALT)
+    after = editor.document.project
+    moved_by = {i: after.action(i).timing.start - starts[i] for i in others}
+    assert all(by == pytest.approx(0.2, abs=0.02) for by in moved_by.values()), moved_by
+    editor.document.undo_stack.undo()
+    assert editor.document.project.action(others[1]).timing.start == starts[others[1]]
+
+
+def test_the_sheet_of_joints_and_the_joint_whose_speed_is_drawn_are_chosen(editor):
+    least = editor.view.minimumHeight()
+    editor.panel.subject.show(dope=True)
+    assert editor.view.minimumHeight() > least
+    sheet = editor.panel.subject.sheet(editor.ident)
+    assert "arms" in sheet.names
+    chosen = editor.panel.joint.itemData(1)
+    editor.panel.subject.show(joint=chosen)
+    assert [c.name for c in facts(editor).curves] == [chosen]
+
+
+def test_nothing_selected_is_said_and_a_new_project_forgets(editor):
+    editor.session.selection.clear()
+    editor.view.grab()
+    assert editor.view.tracks() == () and not editor.panel.joint.isEnabled()
+    assert editor.view.hit(QPointF(300, 60)) is None
+
+
+def test_a_clip_is_slowed_and_held_in_place_and_undone(editor):
+    clip = editor.document.project.action(editor.ident).clip
+    before = editor.document.project
+    editor.panel.speed.setValue(0.5)
+    assert editor.document.project.clips[clip].duration == pytest.approx(4.8, abs=0.04)
+    assert timing(editor).end == pytest.approx(3.0, abs=0.02)
+    assert editor.view.length == pytest.approx(4.8, abs=0.04), "the rows are as long as the clip is now"
+    editor.document.undo_stack.undo()
+    assert editor.document.project.clips == before.clips and timing(editor).end == 1.5
+    editor.session.transport.scrub(clip, 1.0)
+    editor.wait(lambda: editor.panel.subject.playhead() == pytest.approx(1.0))
+    editor.panel.hold.click()
+    (hold,) = editor.document.project.clips[clip].retime.holds
+    assert (hold.at, hold.seconds) == (1.0, 0.4)
+    assert timing(editor).end == pytest.approx(1.9, abs=0.03)
+
+
+def test_a_hold_is_dragged_longer_and_to_nothing(editor):
+    clip = editor.document.project.action(editor.ident).clip
+    editor.session.transport.scrub(clip, 1.0)
+    editor.wait(lambda: editor.panel.subject.playhead() == pytest.approx(1.0))
+    editor.panel.hold.click()
+    count = editor.document.undo_stack.count()
+    (stay,) = facts(editor).stays
+    middle = at(editor, (stay.first + stay.last) / 2)
+    pull(editor, middle, middle + QPoint(100, 0))
+    (hold,) = editor.document.project.clips[clip].retime.holds
+    assert hold.seconds > 0.45 and editor.document.undo_stack.count() == count + 1
+    (stay,) = facts(editor).stays
+    middle = at(editor, (stay.first + stay.last) / 2)
+    pull(editor, middle, middle - QPoint(900, 0))
+    assert editor.document.project.clips[clip].retime.plain
+
+
+def test_a_hand_is_kept_during_the_looped_part_and_let_go_again(editor):
+    clip = editor.document.project.action(editor.ident).clip
+    editor.session.transport.set_part((clip, 0.5, 0.9))
+    editor.panel.menu.aboutToShow.emit()
+    editor.pick(editor.panel.menu, "Keep the right hand where it is")
+    (contact,) = editor.document.project.clips[clip].retime.contacts
+    assert (contact.first, contact.last) == pytest.approx((0.5, 0.9), abs=0.01)
+    ((first, last, words),) = facts(editor).kept
+    assert (first, last) == pytest.approx((0.5, 0.9), abs=0.02) and "stays at" in words
+    editor.view.grab()
+    editor.panel.menu.aboutToShow.emit()
+    editor.pick(editor.panel.menu, "Let go of the hands")
+    assert editor.document.project.clips[clip].retime.plain
+    editor.session.transport.set_part(None)
+
+
+def test_the_plot_in_the_properties_follows_a_clip_that_is_slowed(editor):
+    editor.panel.speed.setValue(0.5)
+    xs, _ = editor.properties.plot.curve.getData()
+    assert xs[-1] == pytest.approx(4.8, abs=0.05)
+
+
+def test_a_drag_of_the_real_pointer_moves_the_end(editor):
+    start, end = (editor.view, at(editor, 1.5)), (editor.view, at(editor, 1.9))
+    editor.drag(start, end, lambda: (timing(editor).end or 9) > 1.8)
+    editor.pause(250)
+    assert timing(editor).end == pytest.approx(1.9, abs=0.06)
+    assert editor.document.undo_stack.undoText() == "Change timing" and editor.view.held == ""

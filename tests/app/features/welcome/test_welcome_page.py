@@ -1,0 +1,82 @@
+"""The page an empty window begins with."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+
+from app.features.welcome import welcome_page
+from app.features.welcome.welcome_page import WelcomePage
+from tests.app.painted_text import faults
+
+pytestmark = [pytest.mark.window, pytest.mark.gl]
+
+
+@pytest.fixture
+def page(drive):
+    drive.workspaces.choose("graph")
+    drive.wait(lambda: bool(drive.window.findChildren(WelcomePage)))
+    (found,) = drive.window.findChildren(WelcomePage)
+    drive.wait(found.isVisible)
+    return found
+
+
+def test_it_goes_when_there_is_something_and_comes_with_nothing(drive, page, toy):
+    from metagraph.graph.model import Project
+
+    drive.document.load(toy.project(), None)
+    assert page.isHidden()
+    drive.document.load(Project(), None)
+    assert page.isVisible()
+    QTest.mouseClick(page.skip, Qt.MouseButton.LeftButton)
+    assert page.isHidden()
+    drive.workspaces.choose("label")
+    drive.workspaces.choose("graph")
+    assert page.isHidden(), "closed it stays closed"
+    drive.document.load(Project(), None)
+    assert page.isVisible()
+    drive.session.set_mode("manual")
+    assert page.isHidden()
+    drive.session.set_mode("meta")
+
+
+def test_a_first_edit_is_not_covered(drive, page):
+    from metagraph.graph import edits
+
+    drive.document.edit("New stance", lambda p: edits.add_stance(p, "arms", "rest"))
+    assert page.isHidden()
+
+
+def test_each_card_does_what_it_says(drive, page, monkeypatch, tmp_path):
+    asked = []
+    monkeypatch.setattr(type(drive.files), "open", lambda self, path, template=False: asked.append(path.name))
+    for card in page.cards[1:3]:
+        QTest.mouseClick(card, Qt.MouseButton.LeftButton)
+    assert asked == ["practice.metagraph.yaml", "sample.metagraph.yaml"]
+    assert not page.recent.isEnabled(), "nothing was saved yet"
+    saved = tmp_path / "mine.metagraph.yaml"
+    saved.write_text("")
+    monkeypatch.setattr(type(drive.files), "recent", lambda self: [saved])
+    page.hide()
+    page.follow()
+    assert page.recent.isEnabled() and "mine" in page.recent.toolTip()
+    QTest.mouseClick(page.recent, Qt.MouseButton.LeftButton)
+    assert asked[-1] == saved.name
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (2560, 1440)], ids=str)
+def test_its_words_are_whole(drive, page, size):
+    drive.window.resize(*size)
+    drive.pause(30)
+    assert page.isVisible() and page.size() == page.room.size()
+    assert [f for f in faults(drive.window) if "Card" in f or "Welcome" in f or "Begin" in f] == []
+    drive.window.resize(1680, 1020)
+
+
+def test_a_room_too_small_for_it_is_left_alone(drive, page):
+    drive.workspaces.choose("time")
+    drive.window.resize(1280, 720)
+    drive.pause(30)
+    assert page.room.width() < welcome_page.LEAST.width() and page.isHidden()
+    drive.window.resize(1680, 1020)

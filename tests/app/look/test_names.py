@@ -1,0 +1,102 @@
+"""What actions are called where the place says the rest."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.look.names import GAP, apart, fitting, node_names, plain, row_names
+from metagraph.graph import edits
+
+
+@pytest.mark.parametrize(
+    ("name", "stance", "limb", "words"),
+    [
+        ("", "idle", None, ""),
+        ("_", "", None, "_"),
+        ("idle", "idle", None, "idle"),
+        ("hands_at_sides__beat_small_rt_01", "hands at sides", "right", "beat small R 01"),
+        ("hands_at_sides__beat_small_rt_01", "hands at sides", "left", "beat small rt 01"),
+        ("beat_small_rt", "", None, "beat small rt"),
+        ("shrug_bt_01", "idle", "both", "shrug 01"),
+        ("left", "idle", "left", "left"),
+        ("Wave Left", "idle", "left", "Wave L"),
+        ("ChrBrad@Idle01_Scratch01", "idle 1", "both", "Scratch01"),
+    ],
+)
+def test_a_name_is_read_without_what_the_place_says(name, stance, limb, words):
+    assert plain(name, stance, limb) == words
+
+
+def test_numbers_of_takes_go_where_nothing_else_has_the_name():
+    assert apart([]) == []
+    assert apart(["shrug 01", "nod 01", "nod 02", "07", "wave (2)"]) == [
+        "shrug",
+        "nod 01",
+        "nod 02",
+        "07",
+        "wave",
+    ]
+    assert apart(["nod", "nod 01"]) == ["nod", "nod 01"]
+
+
+def test_two_ways_to_one_stance_are_told_apart(toy):
+    project = toy.project()
+    rest = toy.id(project, "rest")
+    there = project.graphs["arms"].of(rest, "transition")
+    assert list(row_names(project, there).values()) == [project.stance(a.end_stance).name for a in there]
+    clip, end = there[0].clip, there[0].end_stance
+    project = edits.place(project, [clip], "arms", "transition", rest, end)
+    names = list(row_names(project, project.graphs["arms"].of(rest, "transition")).values())
+    assert all(names) and any(":" in n for n in names)
+
+
+def test_a_stance_called_after_its_loop_is_left_out_by_what_all_share(toy):
+    project = toy.project()
+    clips = list(project.clips)
+    project = edits.add_stance(project, "arms", "sitting_low__loop", [clips[0]])
+    stance = list(project.graphs["arms"].stances)[-1]
+    project = edits.place(project, clips[1:3], "arms", "gesture", stance)
+    graph = project.graphs["arms"]
+    (loop,) = graph.of(stance, "stance")
+    one, two = graph.of(stance, "gesture")
+    names = {loop.id: "sitting_low__loop", one.id: "sitting_low__nod_01", two.id: "sitting_low__wave_01"}
+    project = edits.update_each(project, {i: {"name": n} for i, n in names.items()})
+    assert list(node_names(project, "arms", stance, "gesture").values()) == ["nod", "wave"]
+    project = edits.update_actions(project, [two.id], name="wave")
+    told = list(node_names(project, "arms", stance, "gesture").values())
+    assert told == ["sitting low nod", "wave"], "what not all share may tell something"
+
+
+def test_a_nodes_names_follow_its_actions_and_its_stance(toy):
+    project = toy.project()
+    rest = toy.id(project, "rest")
+    first = node_names(project, "arms", rest, "gesture")
+    assert node_names(project, "arms", rest, "gesture") is first
+    ident = next(iter(first))
+    project = edits.update_actions(project, [ident], name="something_else_07")
+    assert node_names(project, "arms", rest, "gesture")[ident] == "something else"
+
+
+def letters(text: str) -> float:
+    return float(len(text))
+
+
+def test_what_tells_neighbours_apart_is_kept():
+    row = [f"a very long name {x} that ends alike" for x in ("left", "right", "both")]
+    shown = [fitting(name, 20, letters, row) for name in row]
+    assert len(set(shown)) == 3 and all(len(s) <= 20 and GAP in s for s in shown)
+    assert fitting(row[0], 20, letters) == "a very lo…ends alike"
+    assert fitting("hands at sides", 30, letters) == "hands at sides"
+    assert fitting("abc", 0.5, letters) == ""
+    assert fitting("abc", 1, letters) == GAP
+
+
+@given(st.text(max_size=40), st.integers(0, 45), st.lists(st.text(max_size=40), max_size=4))
+def test_what_is_shown_always_fits_and_is_of_the_text(text, width, others):
+    shown = fitting(text, width, letters, others)
+    assert len(shown) <= width or shown == text == ""
+    if shown not in (text, ""):
+        head, _, tail = shown.partition(GAP) if GAP not in text else ("", GAP, "")
+        assert text.startswith(head) and text.endswith(tail)

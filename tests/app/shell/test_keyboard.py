@@ -1,0 +1,73 @@
+"""Commands have their keys whatever has the focus, and dialogs give it back."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QDialog, QLineEdit, QVBoxLayout
+
+pytestmark = [pytest.mark.window, pytest.mark.gl]
+CTRL = Qt.KeyboardModifier.ControlModifier
+
+
+def fields(drive):
+    drive.session.selection.select_actions((next(drive.document.project.actions().__iter__()).id,))
+    panel = drive.properties
+    return (drive.library.search, drive.canvas, panel.name, panel.start, panel.stance, drive.library.list)
+
+
+def test_a_commands_key_is_its_own_wherever_the_focus_is(toys):
+    drive = toys
+    done = []
+    for ident in ("export", "compatibility", "workspace_2", "keys"):
+        drive.actions[ident].triggered.disconnect()
+        drive.actions[ident].triggered.connect(lambda *_, i=ident: done.append(i))
+    try:
+        drive.actions.refresh()
+        for field in fields(drive):
+            done.clear()
+            field.setFocus()
+            drive.wait(lambda f=field: QApplication.focusWidget() in (f, f.focusProxy()))
+            focus = QApplication.focusWidget()
+            QTest.keyClick(focus, Qt.Key.Key_E, CTRL)
+            QTest.keyClick(focus, Qt.Key.Key_K, CTRL)
+            QTest.keyClick(focus, Qt.Key.Key_2, CTRL | Qt.KeyboardModifier.AltModifier)
+            QTest.keyClick(focus, Qt.Key.Key_F1)
+            assert done == ["export", "compatibility", "workspace_2", "keys"], type(field).__name__
+    finally:
+        for command in drive.actions.commands:
+            if command.id in ("export", "compatibility", "workspace_2", "keys"):
+                action = drive.actions[command.id]
+                action.triggered.disconnect()
+                action.triggered.connect(lambda _=False, run=command.run: run())
+
+
+def test_what_a_field_does_with_its_own_text_stays_the_fields(toys):
+    field = toys.library.search
+    field.setFocus()
+    toys.wait(field.hasFocus)
+    QTest.keyClicks(field, "a 1 b")
+    assert field.text() == "a 1 b", "letters and numbers are typed"
+    QTest.keyClick(field, Qt.Key.Key_A, CTRL)
+    assert field.selectedText() == "a 1 b"
+    QTest.keyClick(field, Qt.Key.Key_Z, CTRL)
+    assert field.text() != "a 1 b"
+
+
+@pytest.mark.parametrize("modal", [False, True])
+def test_a_dialog_gives_the_focus_back(toys, modal):
+    drive = toys
+    drive.canvas.setFocus()
+    drive.wait(drive.canvas.hasFocus)
+    dialog = QDialog(drive.window)
+    dialog.setModal(modal)
+    inner = QLineEdit(dialog)
+    QVBoxLayout(dialog).addWidget(inner)
+    dialog.show()
+    dialog.activateWindow()
+    inner.setFocus()
+    drive.wait(inner.hasFocus)
+    dialog.accept()
+    drive.wait(drive.canvas.hasFocus)
+    dialog.deleteLater()
