@@ -108,7 +108,8 @@ def test_undo_leads_back_to_what_was_saved_and_redo_to_what_was_there(
         if twice:  # and once more, without an edit between
             again, count = recovered(crashed(again, path), path)
         assert to_data(again.project) == to_data(end)
-        assert again.dirty is (to_data(end) != to_data(saved)) or not count
+        # Edits that lead back to what was saved, by other steps than undo, may count as unsaved.
+        assert again.dirty or not count or to_data(end) == to_data(saved)
         assert undo_all(again) == count
         if count:
             assert to_data(again.project) == to_data(saved) and not again.dirty
