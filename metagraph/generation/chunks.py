@@ -18,7 +18,6 @@ Array = NDArray[Any]
 STEPS = 8  # of Euler a chunk
 GUIDED = 4  # first steps that are guided: what follows settles what was begun, with or without
 GUIDANCE = 1.75  # 0 sees who speaks alone, 1 hears as in training, above follows what is said more closely
-SMOOTH = 1.5  # frames: deviation of the Gaussian over the rotations' numbers
 
 
 def tokens_of(w: Layers, sizes: MatchingSizes, poses: Array) -> Array:
@@ -69,22 +68,3 @@ class Drawing:
             v = done[0] if count == 1 else (1 - self.guidance) * done[1] + self.guidance * done[0]
             x = (x + v / self.steps).astype(noise.dtype)
         yield x
-
-
-def gaussian(deviation: float) -> Array:
-    """Return the weights of a Gaussian over frames, an odd count, sum 1. deviation: frames; 0 gives one."""
-    reach = int(np.ceil(3 * deviation)) if deviation > 0 else 0
-    at = np.arange(-reach, reach + 1)
-    out = np.exp(-0.5 * (at / max(deviation, 1e-9)) ** 2)
-    return np.asarray(out / out.sum())
-
-
-def smoothed(numbers: Array, deviation: float = SMOOTH) -> Array:
-    """Return numbers `[T, X]` averaged over frames by a Gaussian; the ends repeat."""
-    weights = gaussian(deviation).astype(numbers.dtype)
-    reach = len(weights) // 2
-    padded = np.pad(numbers, ((reach, reach), (0, 0)), "edge")
-    out = np.zeros_like(numbers)
-    for n, weight in enumerate(weights):
-        out += weight * padded[n : n + len(numbers)]
-    return out

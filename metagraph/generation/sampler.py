@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.generation.chunks import GUIDANCE, SMOOTH, gaussian
+from metagraph.generation.averaging import Averaging
+from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.features import (
     MELS,
     RATE,
@@ -43,9 +44,9 @@ class Sampler:
     sound ahead that each frame may wait for; None: all that the model uses. guidance: how closely a matching
     model follows the speech. channels, gains: of the sound, as `features.AudioStream`. first: local
     rotations `[J, 4]` of all joints that it goes on from, None for the mean pose. smooth: frames, the
-    deviation of a Gaussian over the numbers of poses; None: SMOOTH for matching, 0 for others. delay: frames
-    by which poses come out later than the sound goes in. made, pieces: `advance` makes so many frames at
-    once, after it was called so often.
+    deviation of a Gaussian over the numbers of poses; None: as `averaging` has it for matching, 0 for others.
+    delay: frames by which poses come out later than the sound goes in. made, pieces: `advance` makes so many
+    frames at once, after it was called so often.
     """
 
     def __init__(
@@ -79,8 +80,8 @@ class Sampler:
                 raise PoseError("the first pose is one of another skeleton")
             before = model.poses.apply(encode(model.rig, rotations))
         self._made = generator(model.weights, sizes, before, temperature, lookahead, guidance)
-        smooth = (SMOOTH if isinstance(sizes, MatchingSizes) else 0.0) if smooth is None else smooth
-        self._weights = gaussian(smooth).astype(np.float32)
+        adaptive = smooth is None and isinstance(sizes, MatchingSizes)
+        self._averaging = Averaging() if adaptive else Averaging(smooth or 0.0, None)
         quiet = silence(model.card.tracks * MELS)
         # Features that are still needed, from `before` frames before the next one made.
         self._heard = model.heard(np.tile(quiet, (self._made.before, 1)))
@@ -90,7 +91,7 @@ class Sampler:
         self._out = np.zeros((0, sizes.pose), np.float32)  # poses that are made, and still averaged over
         self._begun = False
         self._steps: Iterator[Array | None] | None = None  # what `advance` is in the middle of
-        self.delay = self._made.needed + len(self._weights) // 2
+        self.delay = self._made.needed + self._averaging.reach
         self.made, self.pieces = self._made.made, self._made.pieces
 
     def push(self, audio: Array, activity: Array) -> Array:
@@ -158,16 +159,14 @@ class Sampler:
 
     def _averaged(self, poses: Array, last: bool) -> Array:
         """Return the poses of which all neighbours are known, not standardised."""
-        reach = len(self._weights) // 2
+        reach = self._averaging.reach
         if not self._begun and len(poses):
             poses = np.concatenate([np.repeat(poses[:1], reach, 0), poses])
             self._begun = True
         if last and len(poses):
             poses = np.concatenate([poses, np.repeat(poses[-1:], reach, 0)])
         count = max(0, len(poses) - 2 * reach)
-        out = np.zeros((count, poses.shape[1]), np.float32)
-        for n, weight in enumerate(self._weights):
-            out += weight * poses[n : n + count]
+        out = self._averaging.of(poses)
         self._out = poses[count:]
         return self.model.poses.undo(out)
 

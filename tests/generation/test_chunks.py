@@ -96,17 +96,6 @@ def test_eulers_steps_follow_a_straight_line_exactly():
         assert np.abs(out - (noise + w["final.out.bias"])).max() < 1e-12
 
 
-def test_a_gaussian_leaves_what_stands_still_and_takes_the_trembling():
-    still = np.full((9, 2), 3.0)
-    assert np.abs(chunks.smoothed(still) - still).max() < 1e-12
-    trembling = np.tile([[1.0], [-1.0]], (20, 1))
-    assert np.abs(chunks.smoothed(trembling)[8:-8]).max() < 0.02
-    assert (chunks.smoothed(trembling, 0) == trembling).all()
-    assert len(chunks.smoothed(trembling[:1])) == 1
-    assert chunks.gaussian(1.5).sum() == pytest.approx(1)
-    assert len(chunks.gaussian(1.5)) == 11
-
-
 def test_a_cvae_frame_by_frame_is_the_whole():
     sizes = CvaeSizes(pose=9, control=Control(past=0, width=4), dims=3, units=5, layers=3)
     w = shaken(sizes, dtype=np.float64)

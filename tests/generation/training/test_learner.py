@@ -10,7 +10,7 @@ import pytest
 
 torch = pytest.importorskip("torch", reason="training needs torch, which is not installed")
 
-from metagraph.generation import chunks, generators, vae  # noqa: E402
+from metagraph.generation import averaging, generators, vae  # noqa: E402
 from metagraph.generation.features import with_edges  # noqa: E402
 from metagraph.generation.landmarks import landmarks_of  # noqa: E402
 from metagraph.generation.networks import FlowSizes, Kind, sizes_of  # noqa: E402
@@ -136,7 +136,7 @@ def test_what_is_planted_is_found_with_what_is_heard_and_not_without(kind: Kind,
         heard = with_edges(heard, maker.before, maker.ahead + 64)
         reach = maker.before + 1 + maker.ahead
         rows = [maker.step(heard[f : f + reach], 1, 0, f) for f in range(0, len(told), maker.made)]
-        return own.poses.undo(chunks.smoothed(np.concatenate(rows)[: len(told)]))
+        return own.poses.undo(averaging.Averaging().whole(np.concatenate(rows)[: len(told)]))
 
     deaf = held.features.copy()
     deaf[:, :27] = other.features[:, :27]  # what is said to somebody else
