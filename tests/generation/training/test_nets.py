@@ -90,9 +90,10 @@ def _chunks(net: MatchingNet, model: Model, told: Any, seed: int, lookahead: int
         x = torch.from_numpy(noise(seed, 0, t, s.new * s.dims).reshape(1, s.new, s.dims))
         for n in range(chunks.STEPS):
             moment, before_it = torch.tensor([n / chunks.STEPS]), net.embed_past(past[None])
-            with_control = net.velocity(x, moment, before_it, own)
-            without = net.velocity(x, moment, before_it, free)
-            v = (1 - chunks.GUIDANCE) * without + chunks.GUIDANCE * with_control
+            v = net.velocity(x, moment, before_it, own)
+            if n < chunks.GUIDED:
+                without = net.velocity(x, moment, before_it, free)
+                v = (1 - chunks.GUIDANCE) * without + chunks.GUIDANCE * v
             x = x + v / chunks.STEPS
         tokens = x[0, :kept_tokens].clamp(-FURTHEST, FURTHEST)
         past = torch.cat([past, tokens])[-s.past :]
