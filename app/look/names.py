@@ -82,7 +82,12 @@ def row_names(project: Project, actions: Iterable[Action]) -> dict[str, str]:
             name if ways[name] == 1 else f"{name}: {plain(a.name)}"
             for name, a in zip(told, some, strict=True)
         ]
-    return {a.id: name for a, name in zip(some, apart(told), strict=True)}
+    # The number of a stance is no take's.
+    bare = [
+        whole if a.kind == "transition" else name
+        for a, whole, name in zip(some, told, apart(told), strict=True)
+    ]
+    return {a.id: name for a, name in zip(some, bare, strict=True)}
 
 
 def told_names(words: str, name: str) -> str:

@@ -9,7 +9,7 @@ from PySide6.QtGui import QColor, QPainter, QPen
 
 from app.features.timing_editor.axis import Axis
 from app.features.timing_editor.hits import Hit
-from app.features.timing_editor.paint import Look
+from app.features.timing_editor.paint import Look, ruler_words
 from app.features.timing_editor.rows import RULER, TrackRows
 from app.features.timing_editor.track import Facts
 from metagraph.playback.timing import WORDS
@@ -66,11 +66,13 @@ def upright(painter: QPainter, tracks: Sequence[TrackRows], x: float, top: float
 
 
 def chip(painter: QPainter, look: Look, axis: Axis, words: str, middle: float) -> QRectF:
-    """Paint words in the ruler about a point, over what is written there; return where."""
+    """Paint words in the ruler about a point, instead of what is written there; return where."""
     wide = look.wide(words) + 12
     left = min(max(axis.left, middle - wide / 2), axis.left + axis.width - wide)
-    painter.fillRect(QRectF(left - 14, 0, wide + 28, RULER - 1), QColor(look.t.panel))
     box = QRectF(left, 0, wide, RULER - 6)
+    for _, _, place in ruler_words(look, axis):
+        if place.adjusted(-4, 0, 4, 0).intersects(box):
+            painter.fillRect(place.adjusted(-1, 0, 1, 0), QColor(look.t.panel))
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(QColor(look.t.hover))
     painter.drawRoundedRect(box, 4, 4)

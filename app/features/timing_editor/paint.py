@@ -12,7 +12,7 @@ from PySide6.QtGui import QBrush, QColor, QFont, QFontMetricsF, QPainter, QPen, 
 
 from app.features.timing_editor.axis import Axis
 from app.features.timing_editor.numbers import placed
-from app.features.timing_editor.rows import GUTTER, RULER, TITLES, TrackRows
+from app.features.timing_editor.rows import GUTTER, RIGHT, RULER, TITLES, TrackRows
 from app.features.timing_editor.track import Facts
 from app.look.theme import KIND_MARKS, Theme
 from app.widgets.waveforms import joined, painted
@@ -44,16 +44,24 @@ class Look:
         return QFontMetricsF(self.small).elidedText(words, mode, width)
 
 
-def ruler(painter: QPainter, look: Look, axis: Axis, width: float) -> None:
-    """Paint seconds along the top."""
-    painter.setFont(look.small)
-    painter.setPen(QColor(look.t.dim))
+def ruler_words(look: Look, axis: Axis) -> list[tuple[float, str, QRectF]]:
+    """Return where the ruler's marks are, what is written at them, and where that stands."""
+    out = []
     for seconds in axis.marks():
         x = axis.x(seconds)
         words = f"{seconds:g}" + (" s" if seconds == 0 or axis.each < 800 else "")
         half = look.wide(words) / 2
-        left = min(max(x - half, GUTTER), width - 2 * half - 2)
-        painter.drawText(QRectF(left, 0, 2 * half + 2, RULER - 4), MIDDLE, words)
+        left = min(max(x - half, GUTTER), axis.left + axis.width + RIGHT - 2 * half - 2)
+        out.append((x, words, QRectF(left, 0, 2 * half + 2, RULER - 4)))
+    return out
+
+
+def ruler(painter: QPainter, look: Look, axis: Axis) -> None:
+    """Paint seconds along the top."""
+    painter.setFont(look.small)
+    painter.setPen(QColor(look.t.dim))
+    for x, words, place in ruler_words(look, axis):
+        painter.drawText(place, MIDDLE, words)
         painter.drawLine(QPointF(x, RULER - 4), QPointF(x, RULER - 1))
 
 

@@ -174,7 +174,7 @@ class TimingView(QWidget):
             )
             painter.end()
             return picture, {}
-        paint.ruler(painter, look, axis, self.width())
+        paint.ruler(painter, look, axis)
         for rows in self.tracks():
             shown = facts[rows.ident]
             paint.names(painter, look, rows, shown)

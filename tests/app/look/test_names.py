@@ -52,6 +52,15 @@ def test_two_ways_to_one_stance_are_told_apart(toy):
     assert all(names) and any(":" in n for n in names)
 
 
+def test_the_number_of_a_stance_is_no_takes_number(toy):
+    project = toy.project()
+    rest = toy.id(project, "rest")
+    way = project.graphs["arms"].of(rest, "transition")[0]
+    project = edits.rename_stance(project, way.end_stance, "idle 3")
+    assert row_names(project, [way]) == {way.id: "idle 3"}
+    assert row_names(project, project.graphs["arms"].of(rest, "transition"))[way.id] == "idle 3"
+
+
 def test_a_stance_called_after_its_loop_is_left_out_by_what_all_share(toy):
     project = toy.project()
     clips = list(project.clips)
