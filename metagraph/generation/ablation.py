@@ -85,6 +85,9 @@ CHANGES = (
     Change("past told", "past poses are never dropped in training", {"past_dropped": 0.0}),
     Change("no head", "no head that predicts how fast joints move", {"head": 0.0}),
     Change("own sounds", "no sounds but the takes' own: no other voices, rooms or noise", {"voices": 0.0}),
+    Change("any crop", "crops in which who speaks changes are as likely as others", {"turns": 0.0}),
+    Change("any moment", "moments of a flow as likely late as early", {"early": 0.0, "spread": 1.0}),
+    Change("apart", "pieces are told by their own tokens alone, and do not meet"),
     Change("no guidance", "follows the speech as it has learned to, no more", guidance=1.0),
     Change("mirrored", "mirror twins are learned from as well", mirrored=True),
 )
@@ -106,8 +109,10 @@ def sizes_for(change: Change, kind: Kind, sizes: Sizes) -> tuple[Kind, Sizes] | 
         if isinstance(sizes, MatchingSizes):  # its tokens go on from each other; nothing else joins them
             return None
         return None if isinstance(sizes, CvaeSizes) else (kind, _control(sizes, past=0))
-    if name == "no guidance":
+    if name in ("no guidance", "any moment"):
         return (kind, sizes) if isinstance(sizes, MatchingSizes) else None
+    if name == "apart":
+        return (kind, changed(sizes, around=0)) if isinstance(sizes, MatchingSizes) and sizes.around else None
     if name == "past told":
         return None if isinstance(sizes, CvaeSizes) else (kind, sizes)
     if name == "no ahead":

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ Array = NDArray[Any]
 
 STEPS = 8  # of Euler a chunk
 GUIDED = 4  # first steps that are guided: what follows settles what was begun, with or without
+RIDGE = 0.02  # deviation of what is chance in a token, where its neighbours tell its frames
 GUIDANCE = 1.75  # 0 sees who speaks alone, 1 hears as in training, above follows what is said more closely
 
 
@@ -30,6 +31,63 @@ def poses_of(w: Layers, sizes: MatchingSizes, tokens: Array) -> Array:
     """Return the poses `[n frames, X]`, standardised, of tokens `[n, D]`."""
     rows = (tokens * w["tokens.deviation"]) @ w["tokens.basis"] + w["tokens.mean"]
     return np.asarray(rows.reshape(-1, sizes.pose))
+
+
+class Joining:
+    """From tokens to poses, so that pieces meet: each token's frames are told by its neighbours, too, and
+    come `delay` frames later than the token. count: tokens at once; arrays of one shape give the same bits.
+    """
+
+    def __init__(self, w: Layers, sizes: MatchingSizes, count: int) -> None:
+        self.w, self.sizes, self.count = w, sizes, count
+        self.delay = sizes.around * sizes.frames
+        self._kept: Array | None = None  # tokens whose frames are not told yet, and those before them
+
+    def of(self, tokens: Array) -> Array:
+        """Return the poses `[n, X]`, standardised, that `count` more tokens `[count, D]` tell."""
+        if not self.delay:
+            return poses_of(self.w, self.sizes, tokens)
+        around, first = self.sizes.around, self._kept is None
+        before = np.repeat(tokens[:1], 2 * around, 0) if self._kept is None else self._kept
+        row = np.concatenate([before, tokens])
+        self._kept = row[-2 * around :]
+        poses = self._poses(row)
+        return poses[self.delay :] if first else poses
+
+    def rest(self) -> Array:
+        """Return the poses that are left: the last token stays."""
+        if not self.delay or self._kept is None:
+            return np.zeros((0, self.sizes.pose), np.float32)
+        last = np.repeat(self._kept[-1:], self.count, 0)
+        return self._poses(np.concatenate([self._kept, last]))[: self.delay]
+
+    def _poses(self, row: Array) -> Array:
+        told = neighbours(row, self.sizes.around)
+        return np.asarray(
+            (told @ self.w["tokens.joined"] + self.w["tokens.mean"]).reshape(-1, self.sizes.pose)
+        )
+
+
+def neighbours(tokens: Array, around: int) -> Array:
+    """Return `[n - 2 around, (2 around + 1) D]`: every token of `[n, D]` that has neighbours, with them."""
+    count = len(tokens) - 2 * around
+    return np.concatenate([tokens[k : k + count] for k in range(2 * around + 1)], 1)
+
+
+def joined(rows: Iterable[tuple[Array, Array]], around: int) -> Array:
+    """Return `tokens.joined` by least squares, float32. rows: of each take tokens `[n, D]` and their frames
+    less the mean, flat `[n, frames X]`. A little of each token counts as chance: RIDGE.
+    """
+    inner: Array | float = 0.0
+    outer: Array | float = 0.0
+    count = 0
+    for tokens, frames in rows:
+        if len(tokens) > 2 * around:
+            told = neighbours(tokens, around).astype(np.float64)
+            inner, outer = inner + told.T @ told, outer + told.T @ frames[around : len(frames) - around]
+            count += len(told)
+    square = np.asarray(inner)
+    return np.linalg.solve(square + RIDGE**2 * count * np.eye(len(square)), outer).astype(np.float32)
 
 
 def still_tokens(w: Layers, sizes: MatchingSizes, pose: Array) -> Array:

@@ -26,7 +26,8 @@ Array = NDArray[Any]
 class Generator(ABC):
     """A model that goes on and on. before, ahead: frames of features that it hears beside the first one made.
     made: frames that `step` makes. needed: frames after the first that must be known. most: frames of
-    features that are of use at once. pieces: of how many `steps` consists.
+    features that are of use at once. pieces: of how many `steps` consists. delay: frames by which poses come
+    out later than they are made: `step` gives fewer of them at first.
     """
 
     before: int
@@ -35,6 +36,7 @@ class Generator(ABC):
     needed: int
     most: int
     pieces: int = 1
+    delay: int = 0
 
     @abstractmethod
     def step(self, heard: Array, seed: int, take: int, frame: int) -> Array:
@@ -46,6 +48,10 @@ class Generator(ABC):
     def steps(self, heard: Array, seed: int, take: int, frame: int) -> Iterator[Array | None]:
         """Do what `step` does in pieces of less than a millisecond: yields None after each, then poses."""
         yield self.step(heard, seed, take, frame)
+
+    def rest(self) -> Array | None:
+        """Return the poses `[delay, X]` that are left when no more are made, None where none are."""
+        return None
 
     def _hears(self, control: Control, lookahead: int | None) -> None:
         self.before, self.ahead = control.before, control.ahead
@@ -131,6 +137,8 @@ class MatchingGenerator(Generator):
         self.hearing, self.drawing = ChunkHearing(w, sizes, self.needed), chunks.Drawing(w, sizes, guidance)
         self.pieces = self.drawing.pieces + 2
         self.past = chunks.still_tokens(w, sizes, first)
+        self._joining = chunks.Joining(w, sizes, kept)
+        self.delay = self._joining.delay
 
     def step(self, heard: Array, seed: int, take: int, frame: int) -> Array:
         *_, last = self.steps(heard, seed, take, frame)
@@ -151,7 +159,10 @@ class MatchingGenerator(Generator):
                 yield None
         tokens = _near(tokens[: self.kept])
         self.past = np.concatenate([self.past, tokens])[-sizes.past :]
-        yield _near(chunks.poses_of(self.w, sizes, tokens))
+        yield _near(self._joining.of(tokens))
+
+    def rest(self) -> Array | None:
+        return _near(self._joining.rest()) if self.delay else None
 
 
 def _near(poses: Array) -> Array:

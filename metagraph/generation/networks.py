@@ -58,7 +58,11 @@ past poses; in the paper's size it is the frame's own 31 numbers. Sampling needs
 are kept.
 
 **matching** (`MatchingSizes`). Tokens of `frames` frames: k = (x - tokens.mean) @ tokens.basis^T /
-tokens.deviation. A chunk draws `new` tokens at once, from `past` tokens before and the control of all
+tokens.deviation. Where `around` is not 0 the way back is a linear one from 2 `around` + 1 tokens in a row,
+first to last, to the middle one's frames: x = [k ...] @ tokens.joined + tokens.mean, by least squares over
+the takes; where it is 0, x = (k * tokens.deviation) @ tokens.basis + tokens.mean, and pieces do not quite
+meet, as each lacks the components left out.
+A chunk draws `new` tokens at once, from `past` tokens before and the control of all
 `past + new + ahead` tokens' frames: [audio, activity, g / most] through `control.input` and `control.blocks`
 as above but PADDED with zeros to the same length, then `frames` frames in a row, flat, through
 `control.token` to `hidden`. g counts from the chunk's first frame, 0..most = (new + ahead) * frames - 1.
@@ -180,7 +184,8 @@ class MatchingSizes(
 ):
     """Flow matching on tokens. pose: numbers a frame. frames: of a token. dims: numbers of a token. past,
     new, ahead: tokens. hidden, layers, heads: of the transformer; ratio: how much wider its inner layers
-    are. time: numbers that tell t. width, dilations: of the convolutions over the control.
+    are. time: numbers that tell t. width, dilations: of the convolutions over the control. around: tokens
+    before and after each that tell its frames, too; 0 in the first models.
     """
 
     pose: _Count = 78
@@ -197,6 +202,7 @@ class MatchingSizes(
     time: Annotated[int, Meta(ge=2, le=1024)] = 64
     width: _Count = 48
     dilations: Annotated[tuple[_Count, ...], Meta(max_length=16)] = (1, 2, 4, 8)
+    around: Annotated[int, Meta(ge=0, le=8)] = 0
 
     def __post_init__(self) -> None:
         if self.hidden % self.heads:
@@ -235,7 +241,7 @@ def sizes_of(kind: Kind, size: Size = "small", pose: int = 78, audio: int = 27) 
             pose=pose, control=Control(audio=audio), code="pca", dims=dims, steps=6, units=128, span=4
         )
     if kind == "matching":
-        return MatchingSizes(pose=pose, audio=audio, dims=min(48, 4 * pose))
+        return MatchingSizes(pose=pose, audio=audio, dims=min(48, 4 * pose), around=1)
     if kind == "cvae":
         if size == "paper":
             own = Control(kind="window", audio=audio, past=0, before=0, ahead=0)
@@ -343,6 +349,8 @@ def _matching(s: MatchingSizes) -> Shapes:
         "tokens.basis": (s.dims, s.frames * s.pose),
         "tokens.deviation": (s.dims,),
     }
+    if s.around:
+        out["tokens.joined"] = ((2 * s.around + 1) * s.dims, s.frames * s.pose)
     out |= _convolutions(s.audio + ACTIVITY + 1, s.width, s.dilations)
     out |= linear("control.token", s.frames * s.width, s.hidden)
     out |= linear("embed_past", s.dims, s.hidden) | linear("embed_new", s.dims, s.hidden)

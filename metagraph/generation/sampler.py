@@ -87,11 +87,12 @@ class Sampler:
         self._heard = model.heard(np.tile(quiet, (self._made.before, 1)))
         self._quiet = model.heard(quiet[None])
         self._next = 0  # number of the next frame made
+        self._given = 0  # poses that came of it: fewer, where a model is behind
         self._known = 0  # frames of sound that are known
         self._out = np.zeros((0, sizes.pose), np.float32)  # poses that are made, and still averaged over
         self._begun = False
         self._steps: Iterator[Array | None] | None = None  # what `advance` is in the middle of
-        self.delay = self._made.needed + self._averaging.reach
+        self.delay = self._made.needed + self._made.delay + self._averaging.reach
         self.made, self.pieces = self._made.made, self._made.pieces
 
     def push(self, audio: Array, activity: Array) -> Array:
@@ -140,7 +141,8 @@ class Sampler:
 
     def _on(self, new: Array) -> None:
         self._heard = self._heard[self._made.made :]
-        self._next += len(new)
+        self._next += self._made.made
+        self._given += len(new)
 
     def numbers(self, frames: Array, last: bool = False) -> Array:
         """Return the poses that are ready as numbers `[n, X]`, not standardised, of the next features `[m,
@@ -152,9 +154,10 @@ class Sampler:
             if self._next + made.needed >= self._known and not last:
                 break
             new = made.step(self._window(last), self.seed, self.take, self.start + self._next)
-            new = new[: self._known - self._next] if last else new
-            poses.append(new)
+            poses.append(new[: self._known - self._given])
             self._on(new)
+        if last and self._given < self._known and (rest := made.rest()) is not None:
+            poses.append(rest[: self._known - self._given])
         return self._averaged(np.concatenate(poses), last)
 
     def _averaged(self, poses: Array, last: bool) -> Array:

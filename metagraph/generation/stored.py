@@ -37,7 +37,7 @@ from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
 
-FORMAT = 1
+FORMAT = 2  # 2: pieces of motion that are told by their neighbours, too
 SUFFIX = ".mgmodel"
 MOST = 512 * 2**20  # bytes of all weights
 MOST_TOLD = 16 * 2**20  # bytes of model.json

@@ -44,7 +44,10 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     weight of the likelihood, in bits; third: of the paper's third term; noise: deviation on a whitened code.
     head: weight of the head that predicts speeds. known: share of stretches that know all ahead. kept: of
     the running mean of weights, a step. voices: share of crops that sound otherwise (`training.voices`), so
-    that a model does not learn one voice in one room.
+    that a model does not learn one voice in one room. early, spread: flow matching asks for velocities at
+    t = sigmoid(N(-early, spread)): near the noise it is settled whether something rare happens. turns: crops
+    in which who speaks changes n times weigh (1 + n)^turns; only what is heard decides, so that what is
+    learned of it stays unbiased.
     """
 
     loss: Loss | None = None
@@ -64,12 +67,15 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     known: _Share = 0.7
     kept: _Share = 0.999
     voices: _Share = 0.7
+    early: float = 0.7
+    spread: _Positive = 1.2
+    turns: Annotated[float, Meta(ge=0, le=8)] = 1.5
 
 
 def settings_for(loss: Loss | None) -> Settings:
     """Return the settings of a training by a loss: by the paper's nothing is done that the paper does not."""
     if loss == "paper":
-        return Settings(loss=loss, head=0.0, known=1.0, voices=0.0, noise=0.0)
+        return Settings(loss=loss, head=0.0, known=1.0, voices=0.0, noise=0.0, turns=0.0)
     return Settings(loss=loss)
 
 

@@ -46,7 +46,7 @@ def tiny(kind: Kind, pose: int = 78) -> Sizes:
         return CvaeSizes(pose=pose, control=Control(past=0, width=8), dims=5, units=6)
     if kind == "matching":
         return MatchingSizes(
-            pose=pose, dims=6, past=2, new=3, ahead=2, hidden=8, layers=2, heads=2, time=4, width=6
+            pose=pose, dims=6, past=2, new=3, ahead=2, hidden=8, layers=2, heads=2, time=4, width=6, around=1
         )
     code = "none" if kind == "moglow" else "autoencoder"
     dims = pose if kind == "moglow" else 7

@@ -66,6 +66,54 @@ def test_tokens_of_all_components_give_their_poses_back():
     assert np.ptp(held, axis=0).max() == 0
 
 
+def _few_components():
+    """Smooth motion, and less of its components than there are."""
+    sizes = MatchingSizes(pose=5, dims=7, around=1)
+    rows = np.cumsum(CHANCE.standard_normal((4000, 5)), 0)
+    poses = np.stack([np.convolve(r, np.ones(5) / 5, "same") for r in rows.T], 1)
+    w = vae.principal(vae.spans(poses, 4), 7, "tokens")
+    tokens = chunks.tokens_of(w, sizes, poses)
+    w["tokens.joined"] = chunks.joined([(tokens, vae.spans(poses, 4) - w["tokens.mean"])], 1)
+    return sizes, w, poses, tokens
+
+
+def test_pieces_told_by_their_neighbours_meet():
+    sizes, w, poses, tokens = _few_components()
+    apart = chunks.poses_of(w, sizes, tokens)
+    joining = chunks.Joining(w, sizes, len(tokens))
+    together = np.concatenate([joining.of(tokens), joining.rest()])
+    assert together.shape == poses.shape
+
+    def seams(made):
+        """How far frames are from what they were, at the seams of pieces and all over."""
+        wrong = np.abs(np.diff(made - poses, axis=0)).mean(1)
+        return wrong[3::4].mean(), wrong.mean()
+
+    assert seams(together)[0] < 0.6 * seams(apart)[0]
+    assert seams(together)[1] < seams(apart)[1]
+
+
+def test_pieces_come_out_once_and_in_order_however_many_at_once():
+    sizes, w, _, tokens = _few_components()
+    for count in (1, 2, 5):
+        joining = chunks.Joining(w, sizes, count)
+        parts = [joining.of(tokens[n : n + count]) for n in range(0, 40, count)]
+        assert len(parts[0]) == 4 * (count - 1)
+        made = np.concatenate([*parts, joining.rest()])
+        whole = chunks.Joining(w, sizes, 40)
+        assert np.allclose(made, np.concatenate([whole.of(tokens[:40]), whole.rest()]), atol=1e-5)
+    assert chunks.Joining(w, sizes, 2).rest().shape == (0, 5)
+
+
+def test_a_model_whose_pieces_are_told_alone_gives_them_at_once():
+    _, w, _, tokens = _few_components()
+    alone = MatchingSizes(pose=5, dims=7)
+    joining = chunks.Joining(w, alone, 2)
+    assert joining.delay == 0
+    assert np.array_equal(joining.of(tokens[:2]), chunks.poses_of(w, alone, tokens[:2]))
+    assert not len(joining.rest())
+
+
 def _places(sizes: MatchingSizes):
     w = shaken(sizes, dtype=np.float64)
     heard = CHANCE.standard_normal((sizes.tokens, sizes.hidden))

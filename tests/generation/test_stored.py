@@ -14,8 +14,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from metagraph.errors import FileError
+from metagraph.generation.sampler import poses_to
 from metagraph.generation.stored import Model, TakeCard, read_card, read_model, write_model
-from tests.generation.makers import untrained
+from tests.generation.makers import tiny, untrained
 
 
 @pytest.fixture(scope="module")
@@ -55,6 +56,23 @@ def test_a_model_comes_back_to_the_bit(tmp_path, kind):
     assert back.rig.skeleton == model.rig.skeleton
     assert back.rig.roles == model.rig.roles
     assert back.rig.lines == model.rig.lines
+
+
+def test_a_model_of_the_first_format_moves_as_it_did(tmp_path):
+    """Its pieces are told by their own tokens alone, and no file says so."""
+    sizes = msgspec.structs.replace(tiny("matching"), around=0)
+    model = untrained("matching", sizes=sizes)
+    write_model(model, tmp_path / "new.mgmodel")
+
+    def first(card):
+        card["format"] = 1
+        del card["sizes"]["around"]
+
+    old = read_model(_changed(tmp_path / "new.mgmodel", tmp_path / "old.mgmodel", told=first))
+    told = np.zeros((60, 31), np.float32)
+    told[:, -1] = 1
+    assert poses_to(old, told, 3).tobytes() == poses_to(model, told, 3).tobytes()
+    assert len(poses_to(old, told, 3)) == len(poses_to(untrained("matching"), told, 3)) == 60
 
 
 def test_what_is_told_of_a_model_comes_back(tmp_path):
@@ -204,7 +222,7 @@ def test_a_missing_weight_and_a_missing_card_are_told(kept, tmp_path):
 @pytest.mark.parametrize(
     ("field", "value", "why"),
     [
-        ("format", 2, "has format 2, this version reads 1.*newer version"),
+        ("format", 3, "has format 3, this version reads 2.*newer version"),
         ("kind", "gan", "Invalid enum"),
         ("fps", 30.0, "25 are made"),
         ("tracks", 2, "it hears 27 numbers a frame, 54"),

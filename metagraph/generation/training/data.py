@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from metagraph.generation.training.voices import sound_otherwise
 Array = NDArray[Any]
 
 STILL = 0.01  # standardised, a frame: what is slower counts as this fast
+TURNS = 4  # changes of who speaks in a crop at most: more say nothing more
 AVERAGED = 3  # frames over which speeds are averaged
 
 
@@ -50,14 +51,32 @@ class Corpus:
         spread = (told_speeds - known.mean(0)) / np.maximum(known.std(0), 1e-3)
         self.speeds = torch.from_numpy(spread.astype(np.float32))
         self.first, self.counts = np.array(first), np.array(counts)
+        self._crops: dict[tuple[int, float], tuple[Tensor, Tensor]] = {}
 
-    def starts(self, chance: torch.Generator, count: int, length: int) -> Tensor:
-        """Return numbers of the first frames `[count]` of crops that lie within a take."""
-        room = torch.from_numpy(np.maximum(0, self.counts - length + 1))
-        ends = torch.cumsum(room, 0)
-        at = torch.randint(int(ends[-1]), (count,), generator=chance)
-        which = torch.searchsorted(ends, at, right=True)
-        return torch.from_numpy(self.first)[which] + at - (ends - room)[which]
+    def each(self) -> Iterator[Array]:
+        """Yield the poses `[T, X]` of each take."""
+        for first, count in zip(self.first, self.counts, strict=True):
+            yield self.poses[first : first + count].numpy()
+
+    def starts(self, chance: torch.Generator, count: int, length: int, turns: float = 0.0) -> Tensor:
+        """Return numbers of the first frames `[count]` of crops that lie within a take. turns: what a crop in
+        which who speaks changes n times weighs, (1 + n)^turns; n is TURNS at most.
+        """
+        if (length, turns) not in self._crops:
+            self._crops[length, turns] = self._weighed(length, turns)
+        first, ends = self._crops[length, turns]
+        at = torch.rand(count, generator=chance, dtype=torch.float64) * ends[-1]
+        return first[torch.searchsorted(ends, at, right=True).clamp(max=len(first) - 1)]
+
+    def _weighed(self, length: int, turns: float) -> tuple[Tensor, Tensor]:
+        """Return the first frames of all crops `[N]`, and what they weigh, summed up `[N]`."""
+        who = self.heard[:, -ACTIVITY:].argmax(1)
+        changes = torch.zeros(len(who) + 1, dtype=torch.float64)
+        changes[2:] = torch.cumsum(who[1:] != who[:-1], 0)
+        rooms = zip(self.first.tolist(), self.counts.tolist(), strict=True)
+        first = torch.cat([torch.arange(f, f + max(0, c - length + 1)) for f, c in rooms])
+        often = (changes[first + length] - changes[first + 1]).clamp(max=TURNS)
+        return first, torch.cumsum((1 + often) ** turns, 0)
 
     def rows(self, what: Tensor, starts: Tensor, first: int, last: int) -> Tensor:
         """Return rows first to last, excluded, counted from starts `[B]`: `[B, last - first, ...]`."""
@@ -104,8 +123,7 @@ def stretches(corpus: Corpus, span: int, most: int = 60000) -> Array:
     """Return rows of `span` frames, flat, from evenly spread places: at most about `most`."""
     out = []
     step = max(1, int(corpus.counts.sum()) // most)
-    for first, count in zip(corpus.first, corpus.counts, strict=True):
-        rows = corpus.poses[first : first + count].numpy()
+    for rows in corpus.each():
         for shift in range(span):
             out.append(vae.spans(rows[shift:], span)[:: max(1, step)])
     return np.concatenate(out)

@@ -12,7 +12,7 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
-from metagraph.generation import vae
+from metagraph.generation import chunks, vae
 from metagraph.generation.networks import Control, CvaeSizes, MatchingSizes, Sizes
 from metagraph.generation.poses import NUMBERS
 from metagraph.generation.train_plan import Loss, Settings
@@ -69,7 +69,7 @@ class Objective(nn.Module, ABC):
         + ahead, inputs]`, and how far ahead each knows `[B]`; None: all do as far as they can.
         """
         batch = self.settings.batch
-        starts = corpus.starts(chance, batch, self.length)
+        starts = corpus.starts(chance, batch, self.length, self.settings.turns)
         poses = corpus.rows(corpus.poses, starts, 0, self.length)
         last = self.length + control.ahead
         features = corpus.hear(starts, -control.before, last, self.settings.voices, chance)
@@ -229,6 +229,13 @@ class MatchingObjective(Objective):
     def begin(self, corpus: Corpus, chance: torch.Generator) -> None:
         sizes = self.sizes
         parts = vae.principal(stretches(corpus, sizes.frames), sizes.dims, "tokens")
+        if sizes.around:
+            rows = [poses[n:] for poses in corpus.each() for n in range(sizes.frames)]
+            told = (
+                (chunks.tokens_of(parts, sizes, r), vae.spans(r, sizes.frames) - parts["tokens.mean"])
+                for r in rows
+            )
+            parts["tokens.joined"] = chunks.joined(told, sizes.around)
         load(self.net, weights_of(self.net) | parts)
         self.resume(corpus)
 
@@ -249,7 +256,7 @@ class MatchingObjective(Objective):
     def loss(self, corpus: Corpus, chance: torch.Generator) -> tuple[Tensor, dict[str, float]]:
         sizes, s, batch, net = self.sizes, self.settings, self.settings.batch, self.net
         frames = sizes.frames
-        starts = corpus.starts(chance, batch, self.length)
+        starts = corpus.starts(chance, batch, self.length, s.turns)
         places = torch.arange(-sizes.past, sizes.new) * frames
         tokens = self._tokens[starts[:, None] + places]
         past, new = tokens[:, : sizes.past], tokens[:, sizes.past :]
@@ -263,7 +270,7 @@ class MatchingObjective(Objective):
         past = net.embed_past(past + s.past_noise * torch.randn(past.shape, generator=chance))
         alone = torch.rand(batch, generator=chance) < s.past_dropped
         past = torch.where(alone[:, None, None], net.no_past, past)
-        t = torch.sigmoid(torch.randn(batch, generator=chance))
+        t = torch.sigmoid(s.spread * torch.randn(batch, generator=chance) - s.early)
         x0 = torch.randn(new.shape, generator=chance)
         noisy = (1 - t)[:, None, None] * x0 + t[:, None, None] * new
         v = net.velocity(noisy, t, past, heard)

@@ -52,6 +52,9 @@ class MatchingNet(nn.Module):
         super().__init__()
         self.sizes = sizes
         self.tokens = Code(sizes.dims, sizes.frames * sizes.pose)
+        if sizes.around:
+            rows = (2 * sizes.around + 1) * sizes.dims
+            self.tokens.register_buffer("joined", torch.zeros(rows, sizes.frames * sizes.pose))
         self.control = Hearing(sizes)
         self.embed_past = nn.Linear(sizes.dims, sizes.hidden)
         self.embed_new = nn.Linear(sizes.dims, sizes.hidden)

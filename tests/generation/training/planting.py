@@ -83,7 +83,18 @@ def toy(frames: int, seed: int) -> Take:
 def toy_sizes(kind: Kind) -> Sizes:
     if kind == "matching":
         return MatchingSizes(
-            pose=18, dims=8, past=3, new=4, ahead=3, hidden=32, heads=2, layers=2, ratio=2, time=16, width=16
+            pose=18,
+            dims=8,
+            past=3,
+            new=4,
+            ahead=3,
+            hidden=32,
+            heads=2,
+            layers=2,
+            ratio=2,
+            time=16,
+            width=16,
+            around=1,
         )
     return FlowSizes(pose=18, control=Control(width=16), code="pca", dims=8, steps=4, units=32, span=4)
 

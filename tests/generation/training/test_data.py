@@ -46,3 +46,26 @@ def test_both_tracks_sound_otherwise_each_in_its_own_way() -> None:
     plain = two.rows(two.heard, starts, 0, 40)
     changed = (heard - plain).abs().mean((0, 1))
     assert changed.shape == (58,) and float(changed[:54].min()) > 0 and not changed[54:].any()
+
+
+def test_crops_in_which_who_speaks_changes_are_drawn_oftener_and_none_leaves_its_take() -> None:
+    takes = [take(8.0, 1), take(6.0, 2)]
+    for one in takes:
+        told = one.features[:, -ACTIVITY:]
+        told[:] = 0
+        told[:, 0] = 1
+    told = takes[0].features[:, -ACTIVITY:]
+    told[100:110] = (0, 1, 0, 0)  # somebody says a word
+    own = Corpus(takes, *scales_of(takes), before=5, after=25)
+    drawn = {}
+    for turns in (0.0, 1.0, 2.0):
+        starts = own.starts(torch.Generator().manual_seed(3), 20000, 40, turns).numpy()
+        for start in starts:
+            assert any(f <= start <= f + c - 40 for f, c in zip(own.first, own.counts, strict=True))
+        inside = starts - own.first[0]
+        drawn[turns] = ((inside > 60) & (inside < 110)).mean()
+    # Both changes lie in 31 of the crops, one of them in 18; all others weigh 1.
+    count = int((own.counts - 39).sum())
+    for turns, share in drawn.items():
+        heavy = 30 * 3**turns + 20 * 2**turns
+        assert abs(share - (heavy - 2**turns) / (count - 50 + heavy)) < 0.03

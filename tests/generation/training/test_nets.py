@@ -97,10 +97,15 @@ def _chunks(net: MatchingNet, model: Model, told: Any, seed: int, lookahead: int
             x = x + v / chunks.STEPS
         tokens = x[0, :kept_tokens].clamp(-FURTHEST, FURTHEST)
         past = torch.cat([past, tokens])[-s.past :]
-        kept = net.tokens
+        out.append(tokens)
+    tokens, kept = torch.cat(out), net.tokens
+    if s.around:
+        beside = torch.nn.functional.pad(tokens.T[None], (s.around, s.around), "replicate")[0].T
+        near = torch.cat([beside[k : k + len(tokens)] for k in range(2 * s.around + 1)], 1)
+        rows = near @ kept.joined + kept.mean
+    else:
         rows = (tokens * kept.deviation) @ kept.basis + kept.mean
-        out.append(rows.reshape(-1, s.pose).clamp(-FURTHEST, FURTHEST))
-    return torch.cat(out).numpy()[: len(told)]
+    return rows.reshape(-1, s.pose).clamp(-FURTHEST, FURTHEST).numpy()[: len(told)]
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -120,7 +125,9 @@ def test_what_is_learned_is_what_is_counted(kind: Kind) -> None:
         for n, p in net_of(sizes).named_parameters()
         if n.endswith(("lower", "upper"))
     )
-    computed = 4 * 78 * 6 + 4 * 78 + 6 if isinstance(sizes, MatchingSizes) else 0  # the tokens' components
+    computed = (
+        4 * 78 * 6 + 4 * 78 + 6 + 3 * 6 * 4 * 78 if isinstance(sizes, MatchingSizes) else 0
+    )  # the tokens' components
     assert learned - triangles + computed == parameters(sizes)
 
 
