@@ -14,7 +14,7 @@ from metagraph.generation.poses import NUMBERS
 
 Array = NDArray[Any]
 
-MOVING, RESTING = 1.2, 2.0  # frames: deviations of Gaussians
+MOVING, RESTING = 1.0, 2.1  # frames: deviations of Gaussians
 SLOW, FAST = 0.015, 0.04  # standardised, a frame: how fast a joint's numbers change that rests, that moves
 
 

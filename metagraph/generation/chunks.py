@@ -17,8 +17,9 @@ Array = NDArray[Any]
 
 STEPS = 8  # of Euler a chunk
 GUIDED = 4  # first steps that are guided: what follows settles what was begun, with or without
+SPREAD = 1.12  # deviation of the noise at temperature 1: few steps of Euler draw what they make together
 RIDGE = 0.02  # deviation of what is chance in a token, where its neighbours tell its frames
-GUIDANCE = 1.75  # 0 sees who speaks alone, 1 hears as in training, above follows what is said more closely
+GUIDANCE = 1.5  # 0 sees who speaks alone, 1 hears as in training, above follows what is said more closely
 
 
 def tokens_of(w: Layers, sizes: MatchingSizes, poses: Array) -> Array:

@@ -152,7 +152,7 @@ class MatchingGenerator(Generator):
         told = self.hearing.of(window)
         yield None
         z = noise(seed, take, frame, sizes.new * sizes.dims).reshape(sizes.new, sizes.dims)
-        tokens = z * self.temperature
+        tokens = z * (chunks.SPREAD * self.temperature)
         for n, drawn in enumerate(self.drawing.drawing(tokens, self.past, told)):
             tokens = drawn
             if n < self.drawing.pieces:

@@ -87,7 +87,7 @@ def _chunks(net: MatchingNet, model: Model, told: Any, seed: int, lookahead: int
     for t in range(0, len(told), kept_tokens * s.frames):
         window = heard[t : t + s.tokens * s.frames][None]
         own, free = (net.heard(net.frames(window, ahead, d), d) for d in map(torch.tensor, ([False], [True])))
-        x = torch.from_numpy(noise(seed, 0, t, s.new * s.dims).reshape(1, s.new, s.dims))
+        x = chunks.SPREAD * torch.from_numpy(noise(seed, 0, t, s.new * s.dims).reshape(1, s.new, s.dims))
         for n in range(chunks.STEPS):
             moment, before_it = torch.tensor([n / chunks.STEPS]), net.embed_past(past[None])
             v = net.velocity(x, moment, before_it, own)
