@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.budgets import CONVERSATION_SECONDS as LONGEST
 from metagraph.errors import FileError
 from metagraph.formats.conversation_words import Told, Voice, sides_of, tell_unheard, within
 from metagraph.formats.store import relative
@@ -26,7 +27,6 @@ from metagraph.speech.sound import hear, read_recording
 Array = NDArray[Any]
 
 SOUNDS = (".wav", ".flac", ".ogg", ".mp3")
-LONGEST = 7200.0  # seconds of a conversation
 RATE = 16000  # samples a second that are kept; speech has nothing above half of that
 CLIPPED = 1e-4  # share of samples cut off at full scale that is worth a word
 SAME = 1e-4  # of full scale: two channels that differ by less are one

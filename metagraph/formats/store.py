@@ -16,7 +16,9 @@ from typing import Any
 
 import msgspec
 
-from metagraph.errors import FileError
+from metagraph.budgets import TEXT_FILE
+from metagraph.errors import FileError, shown
+from metagraph.files import is_file, read_file, unforeseen
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.data import FORMAT, from_data, to_data
@@ -126,7 +128,7 @@ def file_digest(path: Path | None) -> str | None:
     """Return the SHA-256 of a project file, hex, by which it is known to have changed; None where there is no
     file.
     """
-    if path is None or not path.is_file():
+    if path is None or not is_file(path):
         return None
     return content_digest(path.read_bytes())
 
@@ -218,12 +220,7 @@ def read_project(path: str | Path, notes: list[str] | None = None) -> Project:
 
 
 def _content(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise FileError(
-            path, f"cannot be read ({error.strerror or error})", "on opening it", "Check that it is there."
-        ) from None
+    return read_file(path, TEXT_FILE)
 
 
 def _decoded(content: bytes, path: Path, notes: list[str] | None = None) -> Project:
@@ -292,7 +289,7 @@ def _place(entry: ClipEntry, folder: Path | None) -> Path:
     place = (folder or Path()) / entry.path
     return (
         place
-        if "\\" not in entry.path or place.is_file()
+        if "\\" not in entry.path or is_file(place)
         else (folder or Path()) / entry.path.replace("\\", "/")
     )
 
@@ -301,7 +298,7 @@ def _lost(project: Project, folder: Path | None) -> dict[str, list[ClipEntry]]:
     """Return the clips whose file is not where it should be, by path."""
     out: dict[str, list[ClipEntry]] = {}
     for entry in project.clips.values():
-        if entry.motion is None and not _place(entry, folder).is_file():
+        if entry.motion is None and not is_file(_place(entry, folder)):
             out.setdefault(entry.path, []).append(entry)
     return out
 
@@ -332,14 +329,14 @@ def _load(
             path = place.resolve().as_posix() if absolute_path or folder is None else relative(place, folder)
         if name in found:
             notes.append(f"'{name}' has moved to '{path}'")
-        if not place.is_file():
-            notes.append(f"'{name}' is missing")
+        if not is_file(place):
+            notes.append(f"'{shown(name)}' is missing")
             continue
         try:
             read = {as_is: read_clips(place, as_is) for as_is in dict.fromkeys(e.as_is for e in entries)}
             now = digest(place)
-        except FileError as error:
-            notes.append(str(error))
+        except Exception as error:  # one bad file never spoils a project
+            notes.append(str(unforeseen(place, error)))
             continue
         if any(e.digest and now != e.digest for e in entries):
             notes.append(f"'{path}' has changed since it was imported")

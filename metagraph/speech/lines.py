@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.budgets import CONVERSATION_SECONDS, LINE_SECONDS
 from metagraph.errors import FileError
 from metagraph.graph.conversation import Word
 from metagraph.graph.model import Project
@@ -22,7 +23,6 @@ from metagraph.speech.textgrid import Interval, TextGrid, Tier, read_textgrid
 
 Array = NDArray[Any]
 
-CONVERSATION = 7200.0  # seconds of one at most
 FINE = 24000  # samples a second that a mouth is read from
 _VOWELS = ("aa", "E", "I", "O", "U", "RR")
 
@@ -40,7 +40,7 @@ def read_spoken(audio: str | Path, channel: int | None = None, words: Sequence[W
     """Read a voice from its sound and, where there are any, the words that were transcribed. Raises
     FileError.
     """
-    samples, rate = read_sound(audio, channel, CONVERSATION, FINE)
+    samples, rate = read_sound(audio, channel, CONVERSATION_SECONDS, FINE)
     if not words:
         return _voice(samples, rate, None)
     tier = Tier("words", tuple(Interval(w.start, w.end, w.text) for w in words))
@@ -70,6 +70,9 @@ def voice_from_phones(phones: str | Path) -> Voice:
     grid = read_textgrid(phones)
     pieces = [p for p in pieces_of(grid) if p.start >= 0]
     duration = max([grid.end, *(p.end for p in pieces)])
+    if duration > LINE_SECONDS:
+        why = f"lasts {duration:.0f} s, a line at most {LINE_SECONDS:.0f} s"
+        raise FileError(phones, why, "its end", "Cut it into lines.")
     if not pieces:
         return silent(max(duration, 0.0))
     vowels = [
