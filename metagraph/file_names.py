@@ -17,7 +17,9 @@ _DEVICES = frozenset(
     ["con", "prn", "aux", "nul", "conin$", "conout$", "clock$"]
     + [f"{kind}{n}" for kind in ("com", "lpt") for n in "0123456789¹²³"]
 )
-_FORBIDDEN = re.compile('[<>:"/\\\\|?*\x00-\x1f\x7f\ud800-\udfff\u200e\u200f\u202a-\u202e\u2066-\u2069\ufeff]+')
+_FORBIDDEN = re.compile(
+    '[<>:"/\\\\|?*\x00-\x1f\x7f\ud800-\udfff\u200e\u200f\u202a-\u202e\u2066-\u2069\ufeff]+'
+)
 
 
 def file_stem(text: str, otherwise: str = "unnamed", most: int = NAME_BYTES) -> str:

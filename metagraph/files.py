@@ -13,8 +13,9 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from functools import wraps
+from io import BufferedReader
 from pathlib import Path
-from typing import BinaryIO, Concatenate, ParamSpec, TypeVar
+from typing import ParamSpec, TypeVar
 
 from metagraph.errors import FileError
 
@@ -45,13 +46,13 @@ def is_text(path: str | Path) -> bool:
 def is_file(path: str | Path) -> bool:
     """Return whether there is a file; a path that cannot be one is none."""
     try:
-        return stat.S_ISREG(os.stat(path).st_mode)
+        return stat.S_ISREG(Path(path).stat().st_mode)
     except (OSError, ValueError):
         return False
 
 
 @contextmanager
-def opened(path: str | Path, most: int) -> Iterator[BinaryIO]:
+def opened(path: str | Path, most: int) -> Iterator[BufferedReader]:
     """Open a file of at most `most` bytes for reading. Raises FileError; so does reading it."""
     path = Path(path)
     try:
@@ -92,7 +93,7 @@ def unreadable(path: Path, error: OSError | ValueError) -> FileError:
     return FileError(path, f"cannot be read ({words})", "on opening it", _THERE)
 
 
-def _handle(path: Path) -> BinaryIO:
+def _handle(path: Path) -> BufferedReader:
     # A pipe that nobody writes to would keep open() waiting for ever.
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     return os.fdopen(os.open(path, flags), "rb")
@@ -111,24 +112,23 @@ def _too_large(path: Path, most: int) -> FileError:
     return FileError(path, f"is larger than the {size} that are read", "on opening it", "Split it.")
 
 
-def guarded(
-    read: Callable[Concatenate[str | Path, P], R],
-) -> Callable[Concatenate[str | Path, P], R]:
+def guarded(read: Callable[P, R]) -> Callable[P, R]:
     """Make a reader, whose first argument is the file's path, raise FileError for whatever goes wrong in it.
 
     ValueError for arguments that are no file's fault must be raised before, outside.
     """
 
     @wraps(read)
-    def safely(path: str | Path, *args: P.args, **kwargs: P.kwargs) -> R:
+    def safely(*args: P.args, **kwargs: P.kwargs) -> R:
         try:
-            return read(path, *args, **kwargs)
+            return read(*args, **kwargs)
         except (FileError, CancelledError):
             raise
         except Exception as error:
             if strict:
                 raise
-            raise unforeseen(path, error) from error
+            path = args[0] if args else kwargs["path"]
+            raise unforeseen(path, error) from error  # type: ignore[arg-type]
 
     return safely
 

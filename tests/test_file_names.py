@@ -28,7 +28,7 @@ def sound(stem: str) -> None:
         path = PureWindowsPath(stem + ending)
         assert path.name == stem + ending and len(path.parts) == 1  # no drive, no folder
         assert not reserved(stem + ending)
-    assert not set(stem) & set('<>:"/\\|?*') and stem[-1] not in ". " and stem.isprintable() or "\xad" in stem
+    assert not set(stem) & set('<>:"/\\|?*') and stem[-1] not in ". " and stem.isprintable()
     assert len(stem.encode()) <= NAME_BYTES + 2
 
 
@@ -44,7 +44,27 @@ def test_devices_of_windows_are_no_files(text: str) -> None:
         assert file_stem(name) != name
 
 
-@pytest.mark.parametrize("text", ["", ".", "..", "   ", "...", "a:b", "a/../b", "C:\\x", "x.", "x ", "\ud800", "a\0b", "\u202etxt", "n" * 400, "ü" * 200, "e\u0301" * 300])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        ".",
+        "..",
+        "   ",
+        "...",
+        "a:b",
+        "a/../b",
+        "C:\\x",
+        "x.",
+        "x ",
+        "\ud800",
+        "a\0b",
+        "\u202etxt",
+        "n" * 400,
+        "ü" * 200,
+        "e\u0301" * 300,
+    ],
+)
 def test_what_no_system_takes_gets_another_name(text: str) -> None:
     sound(file_stem(text))
     assert file_stem(text) != text or text == "~"
@@ -63,7 +83,13 @@ def test_cut_names_stay_apart() -> None:
 
 
 def test_names_that_some_system_cannot_tell_apart_get_numbers() -> None:
-    assert file_stems(["Wave", "wave", "WAVE", "wave-2", "bow"]) == ["Wave", "wave-2", "WAVE-3", "wave-2-2", "bow"]
+    assert file_stems(["Wave", "wave", "WAVE", "wave-2", "bow"]) == [
+        "Wave",
+        "wave-2",
+        "WAVE-3",
+        "wave-2-2",
+        "bow",
+    ]
     composed, apart = "\u00e9", "e\u0301"
     assert folded(composed) == folded(apart) and len(set(file_stems([composed, apart]))) == 2
     assert file_stems(["a:", "a?"]) == ["a_", "a_-2"]

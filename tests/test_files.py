@@ -27,7 +27,9 @@ def refused(path: Path | str, most: int = 100) -> str:
 
 @posix
 @pytest.mark.parametrize("kind", ["pipe", "socket", "device", "folder"])
-def test_what_is_no_file_is_refused_at_once(tmp_path: Path, kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_no_file_is_refused_at_once(
+    tmp_path: Path, kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     path = Path("/dev/zero") if kind == "device" else tmp_path / "x"
     if kind == "pipe":
         os.mkfifo(path)
@@ -90,9 +92,17 @@ def test_an_error_while_reading_is_told_and_one_of_the_reader_is_not_mistaken_fo
 
 @pytest.mark.parametrize(
     "error",
-    [KeyError("x"), RecursionError(), MemoryError(), OSError(36, "File name too long"), AssertionError("\x1b[31m")],
+    [
+        KeyError("x"),
+        RecursionError(),
+        MemoryError(),
+        OSError(36, "File name too long"),
+        AssertionError("\x1b[31m"),
+    ],
 )
-def test_whatever_a_reader_trips_over_names_the_file(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_whatever_a_reader_trips_over_names_the_file(
+    error: Exception, monkeypatch: pytest.MonkeyPatch
+) -> None:
     @guarded
     def read(path: Path | str) -> None:
         raise error

@@ -13,7 +13,6 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.compiling import CompilerError, there
 from metagraph.budgets import (
     CLIP_SECONDS,
     FRAME_SECONDS,
@@ -24,6 +23,7 @@ from metagraph.budgets import (
     OUT_OF_PROPORTION,
     Allowance,
 )
+from metagraph.compiling import CompilerError, there
 from metagraph.errors import FileError
 from metagraph.files import read_file
 from metagraph.formats.atomic import write_atomically

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from metagraph.budgets import CONVERSATION_SECONDS as LONGEST
 from metagraph.errors import FileError
 from metagraph.formats.conversation_words import Told, Voice, sides_of, tell_unheard, within
-from metagraph.formats.store import relative
+from metagraph.formats.store import kept_path
 from metagraph.formats.transcript_words import count
 from metagraph.formats.transcripts import read_transcript
 from metagraph.graph.conversation import HESITATIONS, RESPONSES, SHORTEST, Conversation, Segment, Side
@@ -259,7 +259,7 @@ def _side(
         _tell_wordless(reading, called, voice, None if mixed else other, found)
     elif words and not mixed and told.segments is None:
         tell_unheard(reading.notes, called, words, voice, other)
-    path = relative(voice.path, folder) if folder is not None else voice.path.resolve().as_posix()
+    path = kept_path(voice.path, folder)
     return Side(name=told.name, audio=path, channel=voice.channel, words=tuple(words), segments=found)
 
 

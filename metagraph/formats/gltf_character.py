@@ -14,8 +14,8 @@ from metagraph.errors import FileError
 from metagraph.formats.gltf_clips import morph_names
 from metagraph.formats.gltf_file import Gltf, Primitive
 from metagraph.formats.gltf_skeleton import GltfRig
-from metagraph.pictures import picture_size
 from metagraph.motion.character_mesh import Character, Material, Surface
+from metagraph.pictures import picture_size
 
 Array = NDArray[Any]
 

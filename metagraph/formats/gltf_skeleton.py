@@ -436,10 +436,7 @@ def _rest_pose(
             world, j = worlds[skin.joints[k]], own[k]
             _, world_r, world_s = decompose(world)
             where, bind_r, bind_s = decompose(bind[k])
-            if (
-                rotation.angle_between(world_r, bind_r) > np.radians(60)
-                or not _is_sound(base[j][None])
-            ):
+            if rotation.angle_between(world_r, bind_r) > np.radians(60) or not _is_sound(base[j][None]):
                 believable = False
                 break
             ratio = np.cbrt(abs(np.prod(world_s))) / np.cbrt(abs(np.prod(bind_s)))

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Literal
 
 from metagraph.errors import FileError
-from metagraph.files import is_text, unforeseen
+from metagraph.files import unforeseen
 from metagraph.formats.characters import CharacterFile, character_among
 from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
-from metagraph.formats.store import relative
+from metagraph.formats.store import kept_path, relative
 from metagraph.graph.edits import add_clips
 from metagraph.graph.model import Project
 from metagraph.graph.project_retargeting import Bringing
@@ -147,13 +147,11 @@ def import_files(
         assert skeleton is not None
         try:
             if path not in digests:
-                if not is_text(path):  # it could not be written down
-                    raise FileError(path, "has a name that is no text", "its name", "Rename it.")
                 digests[path] = digest(path)
+            name = kept_path(path, folder)
         except FileError as error:
             failures.append(str(error))
             continue
-        name = _name(path, folder)
         try:
             loaded.append((name, take, digests[path], adopt(clip, skeleton)))
             key = clip.skeleton.fingerprint

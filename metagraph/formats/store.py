@@ -18,7 +18,7 @@ import msgspec
 
 from metagraph.budgets import TEXT_FILE
 from metagraph.errors import FileError, shown
-from metagraph.files import is_file, read_file, unforeseen
+from metagraph.files import is_file, is_text, read_file, unforeseen
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.data import FORMAT, from_data, to_data
@@ -197,6 +197,17 @@ def absolute(project: Project, folder: Path) -> Project:
         return (folder / text).resolve().as_posix()
 
     return _with_paths(project, renew)
+
+
+def kept_path(path: Path, folder: Path | None) -> str:
+    """Return a file's path as a project in `folder` keeps it; absolute where there is no folder. Raises
+    FileError for one that is no text: it could not be written down.
+    """
+    whole = path.parent.resolve() / path.name  # a linked file keeps its name
+    name = relative(path, folder) if folder is not None else whole.as_posix()
+    if not is_text(name):
+        raise FileError(path, "has a name that is no text", "its name", "Rename it.")
+    return name
 
 
 def relative(path: Path, folder: Path) -> str:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from metagraph.budgets import CONVERSATION_SECONDS, LINE_SECONDS
 from metagraph.errors import FileError
+from metagraph.files import unforeseen
 from metagraph.graph.conversation import Word
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
@@ -115,8 +116,8 @@ def load_voices(project: Project, folder: str | Path) -> tuple[Project, tuple[st
         for attempt in tries:
             try:
                 voice = read_line(attempt, folder)
-            except FileError as error:
-                note = f"line '{ident}': {error}"
+            except Exception as error:  # one bad sound never spoils a project
+                note = f"line '{ident}': {unforeseen(folder / (line.audio or line.phones or ''), error)}"
                 if note not in notes:
                     notes.append(note)
                 continue
