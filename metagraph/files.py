@@ -51,6 +51,14 @@ def is_file(path: str | Path) -> bool:
         return False
 
 
+def is_inside(path: Path, folder: Path) -> bool:
+    """Return whether a path leads to somewhere below a folder, by whatever links."""
+    try:
+        return path.resolve().is_relative_to(folder.resolve())
+    except (OSError, ValueError, RuntimeError):  # it is none, or leads in a circle
+        return False
+
+
 @contextmanager
 def opened(path: str | Path, most: int) -> Iterator[BufferedReader]:
     """Open a file of at most `most` bytes for reading. Raises FileError; so does reading it."""

@@ -24,7 +24,7 @@ from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.data import FORMAT, from_data, to_data
 from metagraph.formats.fbx_readers import batch
 from metagraph.formats.fields import Data, DataError
-from metagraph.formats.text import TextError, parse, to_text
+from metagraph.formats.text import TextError, as_text, parse, to_text
 from metagraph.graph.clip_source import source_of, with_source
 from metagraph.graph.conversation import Conversation, Side
 from metagraph.graph.model import ClipEntry, Project
@@ -122,6 +122,22 @@ def encoded(project: Project, path: Path) -> bytes:
         return to_text(to_data(project)).encode()
     except DataError as error:
         raise FileError(path, f"cannot be saved: {error}", error.where, "Correct that value.") from None
+
+
+def writable(project: Project) -> Project:
+    """Return the project with texts that can all be written, whatever it is written to; itself, mostly."""
+    try:
+        data = to_data(project)
+    except DataError:
+        return project  # whoever writes it says what is wrong
+    if as_text(data) is data:
+        return project
+    clean = from_data(data)
+    clips = {
+        i: replace(e, motion=project.clips[i].motion, source=project.clips[i].source)
+        for i, e in clean.clips.items()
+    }
+    return replace(clean, clips=clips, skeleton=project.skeleton, voices=project.voices, body=project.body)
 
 
 def file_digest(path: Path | None) -> str | None:

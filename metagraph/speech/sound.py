@@ -25,7 +25,7 @@ from metagraph.budgets import (
     SOUND_SAMPLES,
 )
 from metagraph.errors import FileError
-from metagraph.files import check_file, guarded, is_file
+from metagraph.files import check_file, guarded, is_file, opened
 from metagraph.playback.life.mouth import MouthPiece
 
 Array = NDArray[Any]
@@ -121,6 +121,28 @@ def read_sound(
 
 
 @guarded
+def read_head(path: str | Path) -> tuple[int, int, int]:
+    """Return samples a second, channels and samples of each of a sound file. Raises FileError."""
+    import soundfile
+
+    path = check_file(path, SOUND_FILE)
+    try:
+        with soundfile.SoundFile(str(path)) as file:
+            if not file.frames:
+                raise RuntimeError("it holds no sound")
+            return int(file.samplerate), int(file.channels), int(file.frames)
+    except (soundfile.LibsndfileError, RuntimeError, TypeError, MemoryError, OSError) as error:
+        raise _no_sound(path, error) from error
+
+
+def _no_sound(path: Path, error: Exception) -> FileError:
+    cause = str(getattr(error, "error_string", error)).strip().rstrip(".") or type(error).__name__
+    if (kind := sound_kind(path)) and not kind.startswith("a WAV"):
+        cause = f"it is {kind}"
+    return FileError(path, f"cannot be read as sound: {cause}", "its content", f"Save it as {_SUFFIXES}.")
+
+
+@guarded
 def read_recording(path: str | Path, longest: float = LONGEST, most: int | None = None) -> Recording:
     """Read a sound file, channels apart, block by block. most: samples a second at most, at least 8000; where
     the file has more, what is too high is taken out, every second, third ... is kept, as float32, so that
@@ -166,20 +188,15 @@ def read_recording(path: str | Path, longest: float = LONGEST, most: int | None 
                 )
             return replace(_read_blocks(file, rate, every), really=misnamed(path))
     except (soundfile.LibsndfileError, RuntimeError, TypeError, MemoryError, OSError) as error:
-        cause = str(getattr(error, "error_string", error)).strip().rstrip(".") or type(error).__name__
-        if (kind := sound_kind(path)) and not kind.startswith("a WAV"):
-            cause = f"it is {kind}"
-        raise FileError(
-            path, f"cannot be read as sound: {cause}", remedy=f"Save it as {_SUFFIXES}."
-        ) from error
+        raise _no_sound(path, error) from error
 
 
 def sound_kind(path: str | Path) -> str:
     """Return what a file is by its first bytes, in words ("an MP3 file"), "" where they do not tell."""
     try:
-        with Path(path).open("rb") as file:
+        with opened(path, SOUND_FILE) as file:
             head = file.read(64)
-    except OSError:
+    except FileError:
         return ""
     if head[4:8] == b"ftyp":
         return "an MPEG-4 file (M4A, MP4)"
@@ -193,6 +210,19 @@ def sound_kind(path: str | Path) -> str:
     if len(head) > 2 and head[0] == 0xFF and head[1] & 0xE0 == 0xE0:
         return "an AAC file" if head[1] & 0xF6 == 0xF0 else "an MP3 file"
     return ""
+
+
+def sound_ending(path: str | Path) -> str:
+    """Return the ending of a file that reads as a sound, such as ".wav": its own where that is of a sound,
+    else that of its kind. Raises FileError for what is none.
+    """
+    path = Path(path)
+    read_head(path)
+    own = path.suffix.lower()
+    known = next((endings for words, endings in _ENDINGS.items() if words == sound_kind(path)), ())
+    if not known and not any(own in endings for endings in _ENDINGS.values()):
+        raise FileError(path, "is a sound of an unusual kind", "its content", f"Save it as {_SUFFIXES}.")
+    return path.suffix if not known or own in known else known[0]
 
 
 def misnamed(path: str | Path) -> str:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
@@ -14,7 +14,7 @@ from typing import Any
 
 from metagraph.budgets import LIST_FILE
 from metagraph.errors import FileError
-from metagraph.files import is_file, read_file, unforeseen
+from metagraph.files import is_file, is_inside, read_file, unforeseen
 from metagraph.formats.store import kept_path
 from metagraph.graph import performance_edits
 from metagraph.graph.edits import free_name
@@ -37,10 +37,16 @@ class Lines:
     notes: tuple[str, ...] = ()
 
 
-def read_lines(paths: Iterable[Path], folder: Path | None) -> Lines:
+def read_lines(
+    paths: Iterable[Path],
+    folder: Path | None,
+    keep: Callable[[Iterable[Path]], None] = lambda paths: None,
+) -> Lines:
     """Read sound files and lists. folder: what paths in the lines are relative to, None for absolute ones.
-    One bad file spoils no other.
+    keep: told which sounds the user chose by that: those given, and those beside a list that was. One bad
+    file spoils no other.
     """
+    paths = list(paths)
     lines: dict[str, Line] = {}
     notes: list[str] = []
     for path in paths:
@@ -63,6 +69,8 @@ def read_lines(paths: Iterable[Path], folder: Path | None) -> Lines:
 
     read, told = load_voices(Project(lines=lines), folder or Path())
     voices.update(read.voices)
+    sounds = [(folder or Path()) / line.audio for line in lines.values() if line.audio]
+    keep([s for s in sounds if any(is_inside(s, p.parent) for p in paths)])
     # A sound that cannot be read is no line; its text, if it has any, still is.
     for ident, line in list(lines.items()):
         if line.audio and ident not in voices:
