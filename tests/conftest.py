@@ -43,7 +43,7 @@ LONG = (
     "live/test_live_session.py",
     "engines/test_real_exports.py",
     "app/features/motion_graph/test_motion_graph_dialog.py",
-    "formats/test_fuzz.py",
+    "fuzz/test_clip_files.py",
     "label_zoo/test_label_zoo.py",
     "mimicry/test_mimic.py",
     "study/test_simulate.py",
