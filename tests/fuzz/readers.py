@@ -1,12 +1,13 @@
 """Every reader, with sound files to begin from and the words that matter in them.
 
-python -m tests.fuzz.readers READER|all [COUNT] [SEED] reads COUNT (1,000,000) broken files a reader and says
+python -m tests.fuzz.readers all|READER,READER... [COUNT] [SEED] reads COUNT (1,000,000) broken files a reader and says
 what went wrong with which; nights are meant for it. Each input that was found is kept among `KEPT`, or as a
 file in tests/fuzz/kept/READER.
 """
 
 from __future__ import annotations
 
+import copy
 import hashlib
 import json
 import math
@@ -81,12 +82,12 @@ def spoilt(chance: random.Random, document: Any) -> Any:
             case 0 if isinstance(holder, dict):
                 holder.pop(key, None)
             case 1 if isinstance(holder, list):
-                holder += [holder[key]] * chance.choice((1, 7))
+                holder += [copy.deepcopy(holder[key]) for _ in range(chance.choice((1, 7)))]
             case 2:
                 other, at = chance.choice(spots)
-                holder[key] = json.loads(json.dumps(other[at]))
+                holder[key] = copy.deepcopy(other[at])
             case _:
-                holder[key] = chance.choice(HOSTILE)
+                holder[key] = copy.deepcopy(chance.choice(HOSTILE))
     return document
 
 
@@ -389,7 +390,7 @@ def main(names: str, count: int = 1_000_000, seed: int = 0) -> int:
     files.strict = True
     warnings.simplefilter("error")
     found = 0
-    for name in _readers() if names == "all" else [names]:
+    for name in _readers() if names == "all" else names.split(","):
         begin, own, seen = time.perf_counter(), 0, set[str]()
         with tempfile.TemporaryDirectory() as folder:
             for data, why in fuzz(name, count, seed, Path(folder)):
