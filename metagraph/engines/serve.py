@@ -46,7 +46,7 @@ class _Quiet(SimpleHTTPRequestHandler):
 
     def send_head(self) -> BytesIO | BinaryIO | None:
         """Send what comes before a file, or why there is none."""
-        port = self.server.server_address[1]
+        port = self.connection.getsockname()[1]
         hosts = self.headers.get_all("Host") or []
         if [h.strip().lower() for h in hosts] not in [
             [f"{name}:{port}"] for name in ("127.0.0.1", "localhost")
