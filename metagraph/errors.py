@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 
-def _shown(text: str) -> str:
+def shown(text: str) -> str:
     """Return text from a file fit for a message: one line, no control characters, not endless."""
     text = "".join(c if c.isprintable() else "\ufffd" for c in text)
     return text if len(text) <= 400 else f"{text[:400]} ..."
@@ -19,8 +19,9 @@ class FileError(Exception):
 
     def __init__(self, path: str | Path, cause: str, where: str = "", remedy: str = "") -> None:
         self.path, self.cause, self.where, self.remedy = Path(path), cause, where, remedy
-        place = f"{self.path.name}, {_shown(where)}" if where else self.path.name
-        super().__init__(f"{place}: {_shown(cause)}." + (f" {remedy}" if remedy else ""))
+        name = shown(self.path.name)  # a name may be bytes in no known encoding
+        place = f"{name}, {shown(where)}" if where else name
+        super().__init__(f"{place}: {shown(cause)}." + (f" {remedy}" if remedy else ""))
 
     def __reduce__(self) -> tuple[type[FileError], tuple[Path, str, str, str]]:
         return type(self), (self.path, self.cause, self.where, self.remedy)

@@ -12,6 +12,8 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.budgets import PICTURE_PIXELS
+from metagraph.pictures import picture_size
 from preview.mesh import Mesh
 from preview.scene import Actor
 
@@ -176,6 +178,9 @@ def decoded(encoded: bytes) -> tuple[tuple[int, int], bytes]:
     from PIL import Image
 
     try:
+        size = picture_size(encoded)
+        if size is None or size[0] * size[1] > PICTURE_PIXELS:
+            raise ValueError("no picture that can be drawn")
         picture = Image.open(io.BytesIO(encoded)).convert("RGBA")
     except Exception:  # Pillow raises many kinds on broken files
         picture = Image.new("RGBA", (1, 1), "white")

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
+from metagraph import files
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Layer, Life, Project
 from metagraph.motion import rotation
@@ -42,7 +43,7 @@ LONG = (
     "live/test_live_session.py",
     "engines/test_real_exports.py",
     "app/features/motion_graph/test_motion_graph_dialog.py",
-    "formats/test_fuzz.py",
+    "fuzz/test_clip_files.py",
     "label_zoo/test_label_zoo.py",
     "mimicry/test_mimic.py",
     "study/test_simulate.py",
@@ -56,6 +57,8 @@ LONG = (
 settings.register_profile("gate", derandomize=True, deadline=None)
 settings.register_profile("desk", deadline=None)
 settings.register_profile("thorough", deadline=None, max_examples=1000)
+files.strict = True  # what a reader trips over is a bug to be seen here, though users are told in words
+
 settings.load_profile("thorough" if THOROUGH else "gate" if os.environ.get("CI") else "desk")
 
 

@@ -11,6 +11,7 @@ from typing import Any
 from app.cli.command_output import opened, say, until_told_to_stop
 from metagraph.engines.export import ExportError
 from metagraph.errors import FileError
+from metagraph.files import is_inside
 
 LOOK = 0.3  # seconds between two looks at the project file
 SHOWN = 8  # files named on the screen
@@ -43,6 +44,14 @@ def arguments(parser: ArgumentParser) -> None:
         "--overwrite",
         action="store_true",
         help="also files that an export of something else, or somebody, put there",
+    )
+    parser.add_argument(
+        "--sounds",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="FOLDER",
+        help="also copy sounds of lines that lie there, outside the project's folder",
     )
     parser.add_argument("--no-mesh", action="store_true", help="leave the character's mesh out of the GLB")
 
@@ -126,7 +135,8 @@ def _once(options: Namespace) -> None:
         else None
     )
     made = registry.write(project, options.target, options.out, character, options.expanded,
-                          base=options.project.resolve().parent, overwrite=options.overwrite)  # fmt: skip
+                          base=options.project.resolve().parent, overwrite=options.overwrite,
+                          chosen_by_hand=lambda p: any(is_inside(p, x) for x in options.sounds))  # fmt: skip
     files = list(made.files)
     if options.vectors:
         from metagraph.engines.vectors import write_vectors

@@ -9,6 +9,7 @@ import re
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
+from metagraph.file_names import file_stem
 from metagraph.graph.edits import free_name
 from metagraph.motion.clip import Clip
 
@@ -50,4 +51,4 @@ def save(clips: Sequence[Clip], folder: Path, inside: str, taken: Collection[str
 
 
 def _file(name: str) -> str:
-    return re.sub(r"[^\w .()-]", "_", name).strip(" .") or "clip"
+    return file_stem(re.sub(r"[^\w .()-]", "_", name).strip(" ."), "clip")

@@ -6,7 +6,9 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from metagraph.budgets import LIST_FILE
 from metagraph.errors import FileError
+from metagraph.files import read_file
 from metagraph.formats.atomic import write_atomically
 
 if TYPE_CHECKING:
@@ -20,17 +22,13 @@ def read_patterns(path: Path) -> Patterns:
     from metagraph.suggest.words_patterns import Patterns, PatternsError
 
     try:
-        return Patterns.from_json(json.loads(path.read_text(encoding="utf-8")))
+        return Patterns.from_json(json.loads(read_file(path, LIST_FILE).decode("utf-8")))
     except json.JSONDecodeError as error:
         raise FileError(path, f"it is not JSON: {error.msg}", f"line {error.lineno}", REMEDY) from None
     except (UnicodeDecodeError, RecursionError):
         raise FileError(path, "it is not JSON", "on reading name patterns", REMEDY) from None
     except PatternsError as error:
         raise FileError(path, str(error), "on reading name patterns", REMEDY) from None
-    except OSError as error:
-        raise FileError(
-            path, f"cannot be read ({error.strerror or error})", "on reading name patterns", REMEDY
-        ) from None
 
 
 def write_patterns(path: Path, patterns: Patterns) -> None:

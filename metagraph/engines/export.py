@@ -9,10 +9,14 @@ from pathlib import Path
 
 import msgspec
 
+from metagraph.budgets import SOUND_FILE
 from metagraph.engines import contract as c
 from metagraph.engines.export_rig import rig_of, voices_of
 from metagraph.errors import FileError
+from metagraph.file_names import file_stem, file_stems
+from metagraph.files import is_inside, read_file, unforeseen
 from metagraph.formats.atomic import write_atomically
+from metagraph.formats.store import writable
 from metagraph.graph import anatomy
 from metagraph.graph.check import check
 from metagraph.graph.expand import connections
@@ -33,6 +37,14 @@ from metagraph.playback import choice, markov
 from metagraph.playback.phases import LEAST_BLEND, phases
 from metagraph.playback.planner import WINDOW
 from metagraph.playback.sampling import HURRY, LOOP_FADE
+from metagraph.speech.sound import sound_ending
+
+Chosen = Callable[[Path], bool]
+
+
+def nothing_chosen(path: Path) -> bool:
+    """Say of every file that the user did not choose it."""
+    return False
 
 
 class ExportError(ValueError):
@@ -64,9 +76,21 @@ def export(
     `character` is it, or its file. Raises ExportError while the project has errors, FileError when a file
     cannot be written.
     """
+    from metagraph.engines.targets.placing import Staging
+
     warnings = sound(project)
-    made = write(project, folder, expanded, character if mesh else None, progress)
-    return replace(made, warnings=(*made.warnings, *warnings))
+    place = Path(folder)
+    with Staging(place) as staged:
+        made = write(project, staged.path, expanded, character if mesh else None, progress)
+        names = [path.relative_to(staged.path).as_posix() for path in (made.glb, *made.sounds, made.json)]
+        staged.move(names)
+    return replace(
+        made,
+        json=place / made.json.name,
+        glb=place / made.glb.name,
+        sounds=tuple(place / path.relative_to(staged.path) for path in made.sounds),
+        warnings=(*made.warnings, *warnings),
+    )
 
 
 def sound(project: Project) -> tuple[str, ...]:
@@ -85,7 +109,7 @@ def sound(project: Project) -> tuple[str, ...]:
 
 def stem_of(project: Project) -> str:
     """Return what a project's exported files are called."""
-    return re.sub(r"[^\w.-]+", "_", project.name).strip("._") or "metagraph"
+    return file_stem(re.sub(r"[^\w.-]+", "_", project.name).strip("._"), "metagraph")
 
 
 def write(
@@ -95,10 +119,13 @@ def write(
     character: Path | Character | None = None,
     progress: Callable[[int, int, str], None] | None = None,
     base: Path | None = None,
+    chosen: Chosen = nothing_chosen,
 ) -> Exported:
     """Write a project that has clips without asking whether it is sound. Arguments as for `export`. base: the
-    folder its lines' sounds are relative to; they are copied into `lines/`, where it is given.
+    folder its lines' sounds are relative to; they are copied into `lines/`, where it is given. chosen: see
+    `_sounds`.
     """
+    project = writable(project)
     tell = progress or (lambda done, total, words: None)
     assert project.skeleton is not None
     used = _used(project)
@@ -110,32 +137,39 @@ def write(
     notes = _write_glb(glb, clips, project.skeleton, character, project.hidden)
     tell(1, 3, "graph")
     document = to_document(project, glb.name, names, expanded)
-    sounds, missing = _sounds(document, target, base) if base is not None else ((), ())
+    sounds, missing = _sounds(document, target, base, chosen) if base is not None else ((), ())
     tell(2, 3, "writing")
     write_atomically(json, msgspec.json.format(msgspec.json.encode(document), indent=1))
     tell(3, 3, "done")
     return Exported(json, glb, len(used), (*notes, *missing), sounds)
 
 
-def _sounds(document: c.Export, folder: Path, base: Path) -> tuple[tuple[Path, ...], tuple[str, ...]]:
+def _sounds(
+    document: c.Export, folder: Path, base: Path, chosen: Chosen
+) -> tuple[tuple[Path, ...], tuple[str, ...]]:
     """Copy the sounds of a document's lines beside it, and name them there; return the files, and what is
     missing, in words.
+
+    A project may come from anybody and name any file: what goes into an export reads as a sound and lies in
+    the project's folder, or is one that this user has `chosen` by hand.
     """
     lines = [(ident, line) for ident, line in document.lines.items() if line.audio]
-    names = unique_names([Path(str(line.audio)).stem for _, line in lines])
+    names = file_stems(Path(str(line.audio)).stem for _, line in lines)
     files, missing = [], []
     for (ident, line), name in zip(lines, names, strict=True):
         source = base / str(line.audio)
-        inside = f"lines/{name}{source.suffix}" if line.channel is None else f"lines/{name}.wav"
         try:
-            content = source.read_bytes() if line.channel is None else _channel(source, line.channel)
-        except (OSError, FileError) as error:
-            cause = (
-                f"{source.name} cannot be read ({error.strerror})"
-                if isinstance(error, OSError)
-                else str(error)
+            ending = sound_ending(source)
+            if not is_inside(source, base) and not chosen(source):
+                remedy = "Move it there, or choose the line's sound by hand."
+                raise FileError(source, "lies outside the project's folder", "its sound", remedy)
+            inside = f"lines/{name}{ending}" if line.channel is None else f"lines/{name}.wav"
+            content = (
+                read_file(source, SOUND_FILE) if line.channel is None else _channel(source, line.channel)
             )
-            missing.append(f"the sound of line '{ident}' is left out: {cause}")
+        except Exception as error:  # one bad sound never spoils an export
+            missing.append(f"the sound of line '{ident}' is left out: {unforeseen(source, error)}")
+            document.lines[ident] = msgspec.structs.replace(line, audio=None, channel=None)
             continue
         write_atomically(folder / inside, content)
         document.lines[ident] = msgspec.structs.replace(line, audio=inside, channel=None)
@@ -143,7 +177,7 @@ def _sounds(document: c.Export, folder: Path, base: Path) -> tuple[tuple[Path, .
     return tuple(files), tuple(missing)
 
 
-def _channel(source: Path, channel: int) -> bytes:
+def _channel(source: Path, channel: int | None) -> bytes:
     """Return one channel of a sound as a WAV file of its own: what engines play have no channels to choose.
     Raises FileError.
     """

@@ -8,9 +8,11 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
+from metagraph.budgets import TEXT_FILE
 from metagraph.engines import contract as c
 from metagraph.engines.export_rig import LIFELESS, read_rig, read_voices
 from metagraph.errors import FileError
+from metagraph.files import guarded, read_file
 from metagraph.formats.data import above, markov_from, skeleton_from
 from metagraph.formats.fields import DataError
 from metagraph.graph.face import CHANNELS
@@ -32,6 +34,7 @@ from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.life.body import Body
 
 
+@guarded
 def read_export(path: str | Path, motions: bool = True, resolved: bool = False) -> Project:
     """Read an export back into a project with the same graph, ids and constants. motions: load the clips from
     its GLB. resolved: take gestures' phases, the base pose and the rig as the export has them, as a runtime
@@ -41,11 +44,7 @@ def read_export(path: str | Path, motions: bool = True, resolved: bool = False) 
     """
     path = Path(path)
     try:
-        document = msgspec.json.decode(path.read_bytes(), type=c.Export)
-    except OSError as error:
-        raise FileError(
-            path, f"cannot be read ({error.strerror})", "on opening it", "Check that it is there."
-        ) from None
+        document = msgspec.json.decode(read_file(path, TEXT_FILE), type=c.Export)
     except (msgspec.MsgspecError, RecursionError, UnicodeDecodeError) as error:
         cause, _, where = str(error).partition(" - at ")
         where = where.strip("`") or "$"

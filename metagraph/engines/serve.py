@@ -1,12 +1,26 @@
-"""A folder shown to this machine's browser: what the exported web page needs instead of a file's address."""
+"""A folder shown to this machine's browser: what the exported web page needs instead of a file's address.
+
+Any page of the web may send requests to this machine, and a name of its own may lead here: who does not ask
+for this machine by its own name gets nothing. Nor does anybody get a list of what there is, what is hidden,
+or what a link leads to elsewhere.
+"""
 
 from __future__ import annotations
 
 import functools
+import socket
 import threading
+from collections.abc import Callable
+from http import HTTPStatus
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
+
+from metagraph.files import is_file, is_inside
+
+WAIT = 10.0  # seconds for a request to be sent
+AT_ONCE = 64  # requests
 
 
 class _Quiet(SimpleHTTPRequestHandler):
@@ -19,13 +33,61 @@ class _Quiet(SimpleHTTPRequestHandler):
         ".glb": "model/gltf-binary",
         ".flac": "audio/flac",
     }
+    timeout = WAIT
 
     def log_message(self, format: str, *args: Any) -> None:
         """Say nothing: requests of one's own browser are not news."""
 
     def end_headers(self) -> None:
         self.send_header("Cache-Control", "no-cache")  # exporting again must show
+        self.send_header("X-Content-Type-Options", "nosniff")
+        self.send_header("Cross-Origin-Resource-Policy", "same-origin")
         super().end_headers()
+
+    def send_head(self) -> BytesIO | BinaryIO | None:
+        """Send what comes before a file, or why there is none."""
+        port = self.connection.getsockname()[1]
+        hosts = self.headers.get_all("Host") or []
+        if [h.strip().lower() for h in hosts] not in [
+            [f"{name}:{port}"] for name in ("127.0.0.1", "localhost")
+        ]:
+            self.send_error(HTTPStatus.FORBIDDEN, "This page is for this machine alone")
+            return None
+        path, root = Path(self.translate_path(self.path)), Path(self.directory)
+        path = path / "index.html" if path.is_dir() else path
+        inside = path.is_relative_to(root) and is_inside(path, root)
+        if not inside or any(p.startswith(".") for p in path.relative_to(root).parts) or not is_file(path):
+            self.send_error(HTTPStatus.NOT_FOUND)
+            return None
+        return super().send_head()
+
+    def list_directory(self, path: Any) -> None:
+        """Show nobody what lies in a folder."""
+        self.send_error(HTTPStatus.NOT_FOUND)
+
+
+class _Server(ThreadingHTTPServer):
+    daemon_threads = True
+
+    def __init__(self, address: tuple[str, int], handler: Callable[..., Any]) -> None:
+        self._room = threading.Semaphore(AT_ONCE)
+        super().__init__(address, handler)
+
+    def process_request(self, request: Any, client_address: Any) -> None:
+        """Answer on a thread, while there is room for one."""
+        if self._room.acquire(blocking=False):
+            super().process_request(request, client_address)
+        else:
+            self.shutdown_request(request)
+
+    def process_request_thread(self, request: Any, client_address: Any) -> None:
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            self._room.release()
+
+    def handle_error(self, request: socket.socket | tuple[bytes, socket.socket], client_address: Any) -> None:
+        """Say nothing: who hangs up in the middle is no news either."""
 
 
 class Served:
@@ -34,10 +96,7 @@ class Served:
     def __init__(self, folder: str | Path, port: int = 0) -> None:
         """port: 0 for any that is free. Raises OSError when it is taken."""
         self.folder = Path(folder).resolve()
-        self._server = ThreadingHTTPServer(
-            ("127.0.0.1", port), functools.partial(_Quiet, directory=str(self.folder))
-        )
-        self._server.daemon_threads = True
+        self._server = _Server(("127.0.0.1", port), functools.partial(_Quiet, directory=str(self.folder)))
         self.url = f"http://127.0.0.1:{self._server.server_address[1]}/"
         self._thread = threading.Thread(
             target=self._server.serve_forever, args=(0.1,), name="web page", daemon=True

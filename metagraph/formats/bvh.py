@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,11 +13,21 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.budgets import (
+    CLIP_SECONDS,
+    FRAME_SECONDS,
+    FRAMES,
+    JOINTS,
+    MIB,
+    MOTION_FILE,
+    OUT_OF_PROPORTION,
+    Allowance,
+)
 from metagraph.compiling import CompilerError, there
 from metagraph.errors import FileError
+from metagraph.files import read_file
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.bvh_space import USUAL, stand, unit, z_up
-from metagraph.formats.gltf_skeleton import MOST_JOINTS
 from metagraph.formats.takes import UNIT, UP, repaired, without_stray_poses
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip, Repair
@@ -33,6 +43,8 @@ _COMPILED_FROM, _INSTALLED_FROM = 24 << 20, 240 << 20
 _read_so_far = [0]  # bytes of motion this process has read
 _loops: list[Any] = []  # the module of compiled loops, once it is whole; None where it cannot be had
 _importing = Lock()
+_LONGEST_HEADER = 16 * MIB
+_PIECE = 8 << 20  # bytes of numbers taken apart at once
 _DAMAGED = "The file is damaged: export it again."
 
 
@@ -56,25 +68,30 @@ def read_bvh(path: str | Path, scale: float | None = None, as_is: Collection[str
     origin. Raises FileError with the line.
     """
     path = Path(path)
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise FileError(
-            path,
-            f"it cannot be read ({error.strerror})",
-            "on opening it",
-            "Check that it exists and that you may read it.",
-        ) from error
+    data = read_file(path, MOTION_FILE)
     head = data[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
     if head[:9].upper() != b"HIERARCHY":
         raise FileError(path, "it does not begin with HIERARCHY", "line 1", "Check that it is a BVH file.")
     motion = re.search(rb"(?im)^[ \t]*MOTION[ \t]*\r?$", data)
     if motion is None:
         raise FileError(path, "it has no MOTION section", "its end", "Export it with its motion.")
+    if motion.start() > _LONGEST_HEADER:
+        raise FileError(path, "its HIERARCHY is longer than any", "its HIERARCHY", _DAMAGED)
     joints = _Header(path, data[: motion.start()].decode("utf-8", "replace")).joints()
     notes: list[str] = []
     values, fps = _motion(path, data, motion.end(), sum(len(j.channels) for j in joints), notes)
+    _afford(path, len(data), len(values), joints)
     return _clip(path, joints, values, fps, scale, notes, as_is)
+
+
+def _afford(path: Path, size: int, frames: int, joints: list[_Joint]) -> None:
+    """Refuse what would take far more memory than the file has: joints without channels cost it nothing."""
+
+    def refuse(where: str) -> None:
+        raise FileError(path, OUT_OF_PROPORTION, where, "Leave out the joints that do not move.")
+
+    placed = sum(any(name[1] == "p" for name in joint.channels) for joint in joints)
+    Allowance(size, refuse).spend(frames * (len(joints) * 64 + placed * 96), f"its {len(joints)} joints")
 
 
 class _Header:
@@ -129,6 +146,8 @@ class _Header:
                 if kind == "END":
                     opened = -1
                 else:
+                    if len(out) >= JOINTS:
+                        self.fail(f"it has more than the {JOINTS} joints of any character", line)
                     out.append(_Joint(" ".join(name), stack[-1] if stack else -1, line))
                     opened = len(out) - 1
             elif kind == "{":
@@ -150,10 +169,6 @@ class _Header:
                 self._channels(out, stack, line)
             else:
                 self.fail(f"'{word[:40]}' is not expected here", line)
-        if len(out) > MOST_JOINTS:
-            self.fail(
-                f"{len(out)} joints are more than the {MOST_JOINTS} of any character", out[MOST_JOINTS].line
-            )
         if stack:
             self.fail(f"{len(stack)} '}}' are missing", self.words[-1][1])
         if not out:
@@ -167,7 +182,7 @@ class _Header:
         if not stack or stack[-1] < 0:
             self.fail("CHANNELS outside any joint", line)
         word, _ = self.next()
-        if not word.isdecimal() or int(word) > 64:
+        if not word.isdecimal() or len(word) > 9 or int(word) > 64:
             self.fail(f"'{word[:40]}' is not a number of channels", line)
         if out[stack[-1]].channels:
             self.fail(f"joint '{out[stack[-1]].name}' has CHANNELS twice", line)
@@ -198,7 +213,7 @@ def _motion(path: Path, data: bytes, at: int, channels: int, notes: list[str]) -
         promised, step = int(head[1]), float(head[2])
     except ValueError:
         raise FileError(path, "'Frames:' and 'Frame Time:' are not numbers", where, _DAMAGED) from None
-    if not 1e-5 <= step <= 1e4:
+    if not FRAME_SECONDS[0] <= step <= FRAME_SECONDS[1]:
         raise FileError(
             path,
             f"a frame time of {step:g} s makes no sense",
@@ -212,6 +227,9 @@ def _motion(path: Path, data: bytes, at: int, channels: int, notes: list[str]) -
     start = head.end()
     numbers = _numbers(path, data, start, channels)
     rows, rest = divmod(len(numbers), channels)
+    if rows > FRAMES or (rows - 1) * step > CLIP_SECONDS:
+        cause = f"it has {rows:,} frames, {rows * step:.0f} s"
+        raise FileError(path, cause, where, "Cut the take into pieces.")
     if rows == 0 or (promised <= 0 and rows > 1):
         cause = f"'Frames:' says {promised} but {rows} rows follow" if rows else "it has no frames"
         raise FileError(path, cause, where, "Export it with its motion.")
@@ -294,7 +312,7 @@ def _numbers(path: Path, data: bytes, start: int, channels: int) -> Array:
         numbers, stopped = _compiled_numbers(kernels.parse, data, start)
     else:
         try:
-            numbers, stopped = np.array(data[start:].split(), np.float64), len(data)
+            numbers, stopped = np.concatenate([*_parsed(data, start), np.zeros(0)]), len(data)
         except ValueError:
             numbers, stopped = np.zeros(0), start
     bad = ~np.isfinite(numbers) | (np.abs(numbers) > 1e9)
@@ -311,6 +329,15 @@ def _numbers(path: Path, data: bytes, start: int, channels: int) -> Array:
                 text = word[:40].decode("utf-8", "replace")
                 raise FileError(path, f"'{text}' is not a sensible number", f"line {first + i}", _DAMAGED)
     raise FileError(path, "it holds bytes that are not numbers", f"line {_line(data, stopped)}", _DAMAGED)
+
+
+def _parsed(data: bytes, start: int) -> Iterator[Array]:
+    """Yield the numbers a piece at a time: as words they take five times the memory."""
+    while start < len(data):
+        end = data.find(b"\n", start + _PIECE)
+        end = len(data) if end < 0 else end
+        yield np.array(data[start:end].split(), np.float64)
+        start = end
 
 
 def _compiled_numbers(parse: Any, data: bytes, start: int) -> tuple[Array, int]:

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from metagraph.errors import FileError
+from metagraph.files import is_text
 from metagraph.formats.gltf import has_skinned_mesh, read_character
 from metagraph.graph.edits import hide_meshes, set_character
 from metagraph.graph.face import with_morphs
@@ -52,6 +53,8 @@ class CharacterFile:
 
 def look_at(name: str, folder: Path | None, skeleton: Skeleton | None) -> CharacterFile:
     """Read what a project of a skeleton has to know of a character's file. Raises FileError."""
+    if not is_text(name):
+        raise FileError(name, "has a name that is no text", "its name", "Rename it.")
     return _described(name, read_character((folder or Path()) / name), skeleton)
 
 

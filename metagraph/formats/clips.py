@@ -10,7 +10,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from metagraph.budgets import MOTION_FILE, SOUND_FILE
 from metagraph.errors import FileError
+from metagraph.files import guarded, opened, unforeseen
 from metagraph.formats.stray_poses import is_bind_pose
 from metagraph.formats.takes import NAME, ONE_FRAME, repaired
 from metagraph.motion.clip import Clip, ClipError, Repair
@@ -36,6 +38,7 @@ class ImportReport:
     cancelled: bool = False
 
 
+@guarded
 def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
     """Return all takes of a file, poses of one frame behind the others. A bind pose of one frame without a
     name of its own is skipped where other takes are longer, with a note on those.
@@ -115,16 +118,8 @@ def _content(path: Path) -> str:
     """Return "bvh", "gltf", "fbx", or a description of something else. Raises FileError when it cannot be
     read.
     """
-    try:
-        with path.open("rb") as file:
-            head = file.read(4096)
-    except OSError as error:
-        raise FileError(
-            path,
-            f"it cannot be read ({error.strerror})",
-            "on opening it",
-            "Check that it exists and that you may read it.",
-        ) from error
+    with opened(path, MOTION_FILE) as file:
+        head = file.read(4096)
     start = head.lstrip(b"\xef\xbb\xbf \t\r\n")
     if not head:
         return "an empty file"
@@ -211,18 +206,8 @@ def _import_clips(
             progress(done, len(files), path)
         try:
             takes = begun[path].result() if path in begun else read_clips(path)
-        except FileError as error:
-            failures.append(error)
-            continue
-        except MemoryError:
-            failures.append(
-                FileError(
-                    path,
-                    "there is not enough memory for it",
-                    "on reading it",
-                    "Close other programs, or split the file.",
-                )
-            )
+        except Exception as error:  # no kind is trusted to be the only one
+            failures.append(unforeseen(path, error))
             continue
         for number, clip in enumerate(takes):
             known = skeletons.setdefault(clip.skeleton.fingerprint, clip)
@@ -241,14 +226,5 @@ def _import_clips(
 
 def digest(path: str | Path) -> str:
     """Return the SHA-256 of a file's content, hex. Raises FileError."""
-    path = Path(path)
-    try:
-        with path.open("rb") as file:
-            return hashlib.file_digest(file, "sha256").hexdigest()
-    except OSError as error:
-        raise FileError(
-            path,
-            f"it cannot be read ({error.strerror})",
-            "on opening it",
-            "Check that it exists and that you may read it.",
-        ) from error
+    with opened(path, SOUND_FILE) as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

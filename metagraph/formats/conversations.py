@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.budgets import CONVERSATION_SECONDS as LONGEST
 from metagraph.errors import FileError
 from metagraph.formats.conversation_words import Told, Voice, sides_of, tell_unheard, within
-from metagraph.formats.store import relative
+from metagraph.formats.store import kept_path
 from metagraph.formats.transcript_words import count
 from metagraph.formats.transcripts import read_transcript
 from metagraph.graph.conversation import HESITATIONS, RESPONSES, SHORTEST, Conversation, Segment, Side
@@ -26,7 +27,6 @@ from metagraph.speech.sound import hear, read_recording
 Array = NDArray[Any]
 
 SOUNDS = (".wav", ".flac", ".ogg", ".mp3")
-LONGEST = 7200.0  # seconds of a conversation
 RATE = 16000  # samples a second that are kept; speech has nothing above half of that
 CLIPPED = 1e-4  # share of samples cut off at full scale that is worth a word
 SAME = 1e-4  # of full scale: two channels that differ by less are one
@@ -259,7 +259,7 @@ def _side(
         _tell_wordless(reading, called, voice, None if mixed else other, found)
     elif words and not mixed and told.segments is None:
         tell_unheard(reading.notes, called, words, voice, other)
-    path = relative(voice.path, folder) if folder is not None else voice.path.resolve().as_posix()
+    path = kept_path(voice.path, folder)
     return Side(name=told.name, audio=path, channel=voice.channel, words=tuple(words), segments=found)
 
 

@@ -31,6 +31,7 @@ from metagraph.formats.fields import (
 )
 from metagraph.formats.manual_data import manual_data, manual_from
 from metagraph.formats.takes import REPAIRS
+from metagraph.formats.text import as_text
 from metagraph.graph.conversation import Conversation, Segment, Side, Word
 from metagraph.graph.model import (
     KINDS,
@@ -338,7 +339,7 @@ def from_data(data: Any, notes: list[str] | None = None) -> Project:
     """
     if not isinstance(data, Mapping) or "metagraph" not in data:
         raise DataError("metagraph", "is missing: this is not a Metagraph project")
-    data = dict(data)
+    data = dict(as_text(data))
     known(data, _PROJECT_FIELDS, "")
     clips = {item["id"]: _clip_from(item, where) for where, item in items(data, "clips", "", set())}
     layers = get(data, "layers", dict, "", {})

@@ -12,10 +12,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from xml.parsers import expat
 
+from metagraph.budgets import MARKS, MARKS_FILE, NESTING
 from metagraph.errors import FileError
+from metagraph.files import guarded, opened
 from metagraph.playback.annotation import Annotation, Interval, Tier
 
-DEEPEST = 64  # levels of elements; ELAN writes 5
 LONGEST = 1e7  # seconds, four months
 UNITS: Mapping[str, float] = {
     "milliseconds": 1e-3,
@@ -59,6 +60,7 @@ class _Reader:
         self.parser.StartElementHandler = self._begin
         self.parser.EndElementHandler = self._end
         self.parser.CharacterDataHandler = self._say
+        self.parser.EntityDeclHandler = self._entity
         self.slots: dict[str, float | None] = {}  # seconds, in the file's order
         self.tiers: dict[str, _Tier] = {}
         self.marks: dict[str, _Mark] = {}
@@ -79,6 +81,9 @@ class _Reader:
     def fail(self, cause: str, line: int | None = None, remedy: str = _AGAIN) -> FileError:
         return FileError(self.path, cause, f"line {self.line if line is None else line}", remedy)
 
+    def _entity(self, *_: object) -> None:
+        raise self.fail("it defines entities of its own, which no program of annotations does", remedy=_NOT)
+
     def _begin(self, name: str, at: dict[str, str]) -> None:
         self.depth += 1
         if self.depth == 1 and name != "ANNOTATION_DOCUMENT":
@@ -87,8 +92,8 @@ class _Reader:
                 "annotation",
                 remedy=_NOT,
             )
-        if self.depth > DEEPEST:
-            raise self.fail(f"elements lie more than {DEEPEST} deep")
+        if self.depth > NESTING:  # ELAN writes 5
+            raise self.fail(f"elements lie more than {NESTING} deep")
         if name == "HEADER":
             unit = at.get("TIME_UNITS", "milliseconds")
             if unit not in UNITS:
@@ -117,6 +122,8 @@ class _Reader:
 
     def _slot(self, at: Mapping[str, str]) -> None:
         ident, text = self._need(at, "TIME_SLOT_ID", "TIME_SLOT"), at.get("TIME_VALUE")
+        if len(self.slots) > 2 * MARKS:
+            raise self.fail(f"it has more than {2 * MARKS:,} time slots")
         if ident in self.slots:
             raise self.fail(f"time slot '{ident}' is there twice")
         seconds = None
@@ -144,6 +151,8 @@ class _Reader:
         if self.tier is None:
             raise self.fail("an annotation stands outside a tier")
         ident = self._need(at, "ANNOTATION_ID", name)
+        if len(self.marks) >= MARKS:
+            raise self.fail(f"it has more than {MARKS:,} annotations")
         if ident in self.marks:
             raise self.fail(f"annotation '{ident}' is there twice")
         if name == "ALIGNABLE_ANNOTATION":
@@ -187,6 +196,7 @@ class _Reader:
                 self.mark.text = text
 
 
+@guarded
 def read_elan(path: str | Path) -> Annotation:
     """Read an .eaf file (format 2.x or 3.0).
 
@@ -197,12 +207,8 @@ def read_elan(path: str | Path) -> Annotation:
     path = Path(path)
     reader = _Reader(path)
     try:
-        with path.open("rb") as file:
+        with opened(path, MARKS_FILE) as file:
             reader.parser.ParseFile(file)
-    except OSError as error:
-        raise FileError(
-            path, f"cannot be read ({error.strerror})", "on opening it", "Check that it is there."
-        ) from None
     except expat.ExpatError as error:
         empty = path.stat().st_size == 0
         cause = "it is empty" if empty else f"it is not well-formed XML ({expat.errors.messages[error.code]})"
@@ -261,7 +267,10 @@ def _aligned(reader: _Reader) -> dict[str, float]:
     for tier in reader.tiers.values():
         run: list[str] = []
         for first, second in (mark.slots for mark in tier.marks if mark.slots is not None):
-            run = [*run, second] if run and run[-1] == first else [first, second]
+            if run and run[-1] == first:
+                run.append(second)
+            else:
+                run = [first, second]
             if second in out:
                 if len(run) > 2 and run[0] in out:
                     for n, ident in enumerate(run[1:-1], 1):
@@ -288,7 +297,7 @@ def _refer(reader: _Reader, spans: dict[str, tuple[float, float]]) -> None:
     """Work out the spans of annotations that refer to others: those of one tier with one parent share its
     span evenly, in their order.
     """
-    waiting: list[tuple[str, list[_Mark]]] = []
+    waiting: dict[str, list[list[_Mark]]] = {}  # parent -> its children on one tier, on another ...
     for tier in reader.tiers.values():
         siblings: dict[str, list[_Mark]] = {}
         for mark in tier.marks:
@@ -298,23 +307,22 @@ def _refer(reader: _Reader, spans: dict[str, tuple[float, float]]) -> None:
                         f"annotation '{mark.ident}' refers to '{mark.of}', which is not there", mark.line
                     )
                 siblings.setdefault(mark.of, []).append(mark)
-        waiting += siblings.items()
-    while waiting:
-        left = []
-        for parent, marks in waiting:
-            if parent not in spans:
-                left.append((parent, marks))
-                continue
-            start, end = spans[parent]
+        for parent, marks in siblings.items():
+            waiting.setdefault(parent, []).append(marks)
+    ready = [parent for parent in waiting if parent in spans]
+    while ready:
+        parent = ready.pop()
+        start, end = spans[parent]
+        for marks in waiting.pop(parent):
             for n, mark in enumerate(_ordered(marks)):
                 spans[mark.ident] = (
                     start + (end - start) * n / len(marks),
                     start + (end - start) * (n + 1) / len(marks),
                 )
-        if len(left) == len(waiting):
-            mark = left[0][1][0]
-            raise reader.fail(f"annotation '{mark.ident}' refers to itself by way of '{mark.of}'", mark.line)
-        waiting = left
+            ready += [mark.ident for mark in marks if mark.ident in waiting]
+    if waiting:
+        mark = next(iter(waiting.values()))[0][0]
+        raise reader.fail(f"annotation '{mark.ident}' refers to itself by way of '{mark.of}'", mark.line)
 
 
 def _ordered(marks: Iterable[_Mark]) -> list[_Mark]:

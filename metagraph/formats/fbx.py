@@ -8,7 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from metagraph.budgets import MOTION_FILE
 from metagraph.errors import FileError
+from metagraph.files import check_file
 from metagraph.formats import fbx_child
 from metagraph.formats.fbx_readers import ReaderError, convert
 from metagraph.formats.gltf_clips import read_clip
@@ -28,14 +30,7 @@ def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT, as_is: Collection
     library is missing, takes longer than `timeout` seconds or crashes on the file. as_is: repairs
     (`takes.REPAIRS`) not to make.
     """
-    path = Path(path)
-    if not path.is_file():
-        raise FileError(
-            path,
-            "it cannot be read (no such file)",
-            "on opening it",
-            "Check that it exists and that you may read it.",
-        )
+    path = check_file(path, MOTION_FILE)
     if importlib.util.find_spec("ufbx") is None:
         raise FileError(
             path,

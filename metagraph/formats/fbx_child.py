@@ -12,10 +12,12 @@ import json
 import os
 import struct
 import sys
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
 
+from metagraph.budgets import CLIP_SECONDS, FBX_MEMORY, FBX_SAMPLES, NODES
 from metagraph.formats.gltf_writer import BinaryChunk, glb_bytes
 
 FPS = 30.0
@@ -32,6 +34,7 @@ def main() -> int:
         import ufbx
     except ImportError:
         return MISSING
+    _bound()
     out = sys.stdout.buffer
     sys.stdout = sys.stderr  # what a library prints is no answer
     for line in sys.stdin.buffer:
@@ -45,11 +48,24 @@ def main() -> int:
             )
             _held.append(scene)
             answer = _convert(ufbx, scene)
-        except (ufbx.UfbxError, ValueError) as error:
-            code, answer = REFUSED, str(error)[:500].encode("utf-8", "replace")
+        except (ufbx.UfbxError, ValueError, ArithmeticError, np.linalg.LinAlgError, MemoryError) as error:
+            said = str(error) or "there is not enough memory for it"
+            code, answer = REFUSED, said[:500].encode("utf-8", "replace")
         out.write(struct.pack("<Bq", code, len(answer)) + answer)
         out.flush()
     return 0
+
+
+def _bound() -> None:
+    """Take no more memory than a file is worth, where the system can see to that: what the library unpacks it
+    does not count.
+    """
+    with suppress(ImportError, OSError, ValueError):
+        import resource
+
+        most = resource.getrlimit(resource.RLIMIT_AS)[1]
+        wanted = FBX_MEMORY if most == resource.RLIM_INFINITY else min(FBX_MEMORY, most)
+        resource.setrlimit(resource.RLIMIT_AS, (wanted, most))
 
 
 def _matrix(m: Any) -> Any:
@@ -69,6 +85,8 @@ def _convert(ufbx: Any, scene: Any) -> bytes:
     stacks = list(scene.anim_stacks)
     clusters = list(scene.skin_clusters)
     _held.append((nodes, stacks, clusters))
+    if len(nodes) > NODES:
+        raise ValueError(f"it has more than {NODES:,} nodes")
     bones = [i for i, node in enumerate(nodes) if node.bone is not None]
     parents = [node.parent.typed_id if node.parent is not None else -1 for node in nodes]
     still = np.array([_transform(node.local_transform) for node in nodes])
@@ -76,6 +94,9 @@ def _convert(ufbx: Any, scene: Any) -> bytes:
 
     document: dict[str, Any] = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}]}
     described: list[dict[str, Any]] = []
+    below: dict[int, list[int]] = {}
+    for i, parent in enumerate(parents):
+        below.setdefault(parent, []).append(i)
     for i, node in enumerate(nodes):
         value: dict[str, Any] = {
             "name": node.name,
@@ -83,9 +104,8 @@ def _convert(ufbx: Any, scene: Any) -> bytes:
             "rotation": still[i, 3:7].tolist(),
             "scale": still[i, 7:].tolist(),
         }
-        children = [c for c, parent in enumerate(parents) if parent == i]
-        if children:
-            value["children"] = children
+        if i in below:
+            value["children"] = below[i]
         described.append(value)
     document["nodes"] = described
     body = BinaryChunk()
@@ -120,12 +140,14 @@ def _convert(ufbx: Any, scene: Any) -> bytes:
             i = parents[i]
             carrying.add(i)
     moving = [i for i in range(len(nodes)) if usable[i] and parents[i] >= 0 and (not bones or i in carrying)]
+    asked = 0
     for stack in stacks:
         anim = stack.anim
         length = float(stack.time_end - stack.time_begin)
-        frames = round(length * FPS) + 1 if 0 <= length < 6 * 3600 else 1
-        if frames * len(moving) > 40_000_000:
-            raise ValueError(f"its take '{stack.name}' lasts {length:.0f} s")
+        frames = round(length * FPS) + 1 if 0 <= length < CLIP_SECONDS else 1
+        asked += frames * len(moving)
+        if asked > FBX_SAMPLES:
+            raise ValueError(f"its takes, up to '{stack.name}' of {length:.0f} s, are too long")
         times = stack.time_begin + np.arange(frames) / FPS
         samplers: list[dict[str, Any]] = []
         channels: list[dict[str, Any]] = []

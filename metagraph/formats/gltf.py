@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from metagraph.errors import FileError
+from metagraph.files import guarded
 from metagraph.formats.gltf_character import character_of
 from metagraph.formats.gltf_clips import morph_names, read_clip
 from metagraph.formats.gltf_file import extras, open_gltf
@@ -26,6 +27,7 @@ _QUIET = np.errstate(all="ignore")
 __all__ = ["has_skinned_mesh", "read_character", "read_gltf_clips", "vrm_roles", "write_glb"]
 
 
+@guarded
 @_QUIET
 def read_gltf_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
     """Return every animation of a file as a clip; all share one Skeleton.
@@ -56,6 +58,7 @@ def read_gltf_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]
     return unique_takes(clips)
 
 
+@guarded
 @_QUIET
 def read_character(path: str | Path) -> Character:
     """Return all meshes of the default scene as one skinned character in its skeleton's rest pose. Raises
@@ -65,12 +68,14 @@ def read_character(path: str | Path) -> Character:
     return character_of(gltf, build_rig(gltf))
 
 
+@guarded
 def has_skinned_mesh(path: str | Path) -> bool:
     """Return whether a file holds a mesh on a skeleton: something to draw. Raises FileError."""
     nodes = open_gltf(path).json.nodes
     return any(node.mesh is not None and node.skin is not None for node in nodes)
 
 
+@guarded
 def morph_targets(path: str | Path) -> tuple[str, ...]:
     """Return the names of a character's morph targets, as `read_character` has them. Raises FileError."""
     gltf = open_gltf(path)
@@ -78,6 +83,7 @@ def morph_targets(path: str | Path) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for n in nodes for name in morph_names(gltf, n)))
 
 
+@guarded
 @_QUIET
 def vrm_roles(path: str | Path) -> dict[str, int]:
     """Return role -> joint as a VRM 0.x, VRM 1.0 or VRMA file states it; empty for other files. Raises
@@ -90,7 +96,7 @@ def vrm_roles(path: str | Path) -> dict[str, int]:
         humanoid = stated.get(name, {}).get("humanoid", {}) if isinstance(stated.get(name), dict) else {}
         found = humanoid.get("humanBones", {}) if isinstance(humanoid, dict) else {}
         if isinstance(found, list):  # VRM 0.x
-            found = {b.get("bone"): b for b in found if isinstance(b, dict)}
+            found = {b["bone"]: b for b in found if isinstance(b, dict) and isinstance(b.get("bone"), str)}
         if isinstance(found, dict):
             bones.update(
                 {k: v.get("node") for k, v in found.items() if isinstance(k, str) and isinstance(v, dict)}
@@ -101,6 +107,6 @@ def vrm_roles(path: str | Path) -> dict[str, int]:
     out = {}
     for bone, node in bones.items():
         role = "".join(f"_{c.lower()}" if c.isupper() else c for c in bone)
-        if isinstance(node, int) and node in places:
+        if isinstance(node, int) and not isinstance(node, bool) and node in places:
             out[role] = places[node]
     return out

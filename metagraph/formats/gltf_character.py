@@ -9,13 +9,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.budgets import PICTURE_PIXELS, VERTICES
 from metagraph.errors import FileError
 from metagraph.formats.gltf_clips import morph_names
 from metagraph.formats.gltf_file import Gltf, Primitive
 from metagraph.formats.gltf_skeleton import GltfRig
 from metagraph.motion.character_mesh import Character, Material, Surface
+from metagraph.pictures import picture_size
 
 Array = NDArray[Any]
+
+_VERTEX = 400  # bytes that a vertex takes while it is placed
 
 
 @dataclass
@@ -76,13 +80,16 @@ def character_of(gltf: Gltf, rig: GltfRig) -> Character:
         )
     names = tuple(dict.fromkeys(name for part in parts for name in part.morphs))
     starts = np.cumsum([0] + [len(p.positions) for p in parts])
+    if int(starts[-1]) > VERTICES:
+        gltf.fail(f"it has more than {VERTICES:,} vertices", "its meshes", "Export a simpler mesh.")
     morphs = None
     if names:
+        places_of = {name: n for n, name in enumerate(names)}
         gltf.spend(len(names) * int(starts[-1]) * 12, "morph targets")
         morphs = np.zeros((len(names), int(starts[-1]), 3), np.float32)
         for part, start in zip(parts, starts, strict=False):
             for name, offsets in part.morphs.items():
-                morphs[names.index(name), start : start + len(offsets)] = offsets
+                morphs[places_of[name], start : start + len(offsets)] = offsets
     materials, places = _materials(gltf, [material for _, _, material, _ in runs], notes)
     surfaces, first = [], 0
     for place, triangles, material, called in runs:
@@ -143,6 +150,7 @@ def _part(
     nothing.
     """
     attributes = primitive.attributes
+    gltf.spend(len(gltf.array(attributes["POSITION"], where, "VEC3")) * _VERTEX, where)
     positions = _floats(gltf, attributes["POSITION"], "VEC3", None, where)
     count = len(positions)
     normals = _floats(gltf, attributes["NORMAL"], "VEC3", count, where) if "NORMAL" in attributes else None
@@ -170,6 +178,7 @@ def _part(
     morphs = {}
     for name, target in zip(morph_names(gltf, node), primitive.targets, strict=False):
         if "POSITION" in target:
+            gltf.spend(count * 48, where)
             offsets = _floats(gltf, target["POSITION"], "VEC3", count, f"{where}, target '{name}'")
             morphs[name] = np.einsum("vab,vb->va", linear, offsets)
     if normals is None:
@@ -198,6 +207,8 @@ def _floats(gltf: Gltf, accessor: int, kind: str, count: int | None, where: str)
 
 def _triangles(gltf: Gltf, primitive: Primitive, count: int, where: str) -> Array:
     """Return vertex numbers `[N, 3]`; strips and fans are unrolled."""
+    asked = count if primitive.indices is None else len(gltf.array(primitive.indices, where, "SCALAR"))
+    gltf.spend(asked * (16 if primitive.mode == 4 else 64), where)
     if primitive.indices is None:
         order = np.arange(count)
     else:
@@ -333,7 +344,9 @@ def _image(gltf: Gltf, index: int, notes: list[str]) -> bytes | None:
     value = gltf.item(gltf.json.images, index, "image", "a texture")
     try:
         if value.buffer_view is not None:
-            data = bytes(gltf.view(value.buffer_view, f"image {index}")[0])
+            view = gltf.view(value.buffer_view, f"image {index}")[0]
+            gltf.spend(len(view), f"image {index}")
+            data = bytes(view)
         elif value.uri is not None:
             data = gltf.resource(value.uri, f"image {index}")
         else:
@@ -341,7 +354,20 @@ def _image(gltf: Gltf, index: int, notes: list[str]) -> bytes | None:
     except FileError as error:
         notes.append(f"texture left out: {error.cause}")
         return None
-    if data[:8] != b"\x89PNG\r\n\x1a\n" and data[:3] != b"\xff\xd8\xff":
-        notes.append(f"texture left out: image {index} is neither PNG nor JPEG")
+    why = _no_picture(data)
+    if why:
+        notes.append(f"texture left out: image {index} {why}")
         return None
     return data
+
+
+def _no_picture(data: bytes) -> str:
+    """Return in words what makes bytes no picture that can be drawn, "" for one. What is none goes into no
+    export.
+    """
+    if data[:8] != b"\x89PNG\r\n\x1a\n" and data[:3] != b"\xff\xd8\xff":
+        return "is neither PNG nor JPEG"
+    size = picture_size(data)
+    if size is None:
+        return "is damaged"
+    return f"is {size[0]} x {size[1]} pixels, too many" if size[0] * size[1] > PICTURE_PIXELS else ""

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.budgets import CLIP_SECONDS
 from metagraph.formats.gltf_file import Animation, Gltf, extras
 from metagraph.formats.gltf_skeleton import GltfRig
 from metagraph.formats.takes import frame_rate, repaired, take_name, take_repair, without_stray_poses
@@ -20,7 +21,6 @@ from metagraph.motion.skeleton import Pose
 Array = NDArray[Any]
 
 STILL = 1e-5  # metres: a translation channel that moves less than this from the rest pose is dropped
-_LONGEST = 6 * 3600.0  # seconds
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +44,7 @@ def read_clip(gltf: Gltf, rig: GltfRig, number: int, as_is: Collection[str] = ()
     inputs = {key[0] for key in groups} | {channel[0] for channel in morph_channels}
     keys = {i: _key_times(gltf, i, where) for i in sorted(inputs)}
     start, end = min(float(k[0]) for k in keys.values()), max(float(k[-1]) for k in keys.values())
-    if not end - start <= _LONGEST:
+    if not end - start <= CLIP_SECONDS:
         gltf.fail(f"it lasts {end - start:.3g} s", where)
     wanted = extras(animation.extras).get("fps")
     fps = frame_rate(
@@ -68,6 +68,8 @@ def read_clip(gltf: Gltf, rig: GltfRig, number: int, as_is: Collection[str] = ()
     }
     scaled = 0
     for (source, mode, path), targets in groups.items():
+        again = len(targets) - len({joint for joint, _ in targets})
+        gltf.spend(again * frames * 192, where)  # others were counted with the clip
         places = np.array([t[0] for t in targets])
         width = 4 if path == "rotation" else 3
         values = _stack(

@@ -17,7 +17,9 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.budgets import MOTION_FILE, OUT_OF_PROPORTION, PATH_LENGTH, Allowance
 from metagraph.errors import FileError
+from metagraph.files import read_file
 
 Array = NDArray[Any]
 Index = Annotated[int, msgspec.Meta(ge=0)]
@@ -44,8 +46,6 @@ _REMEDIES = {
     "KHR_draco_mesh_compression": "Export it again without Draco compression, or unpack it with "
     "'gltf-transform copy'.",
 }
-_FREE_BYTES = 64 << 20  # what a file of any size may ask for
-_BYTES_PER_BYTE = 64  # and what each of its bytes adds
 
 
 class _Value(msgspec.Struct, rename="camel", gc=False):
@@ -206,7 +206,8 @@ class Gltf:
         self.path, self.json = path, document
         self._binary = binary
         self._buffers: dict[int, memoryview] = {}
-        self._left = _FREE_BYTES + _BYTES_PER_BYTE * size
+        self._named: dict[str, bytes] = {}  # files beside this one
+        self._allowance = Allowance(size, lambda where: self.fail(OUT_OF_PROPORTION, where))
         for name in document.extensions_required:
             if not name.startswith(_KNOWN):
                 self.fail(
@@ -222,9 +223,7 @@ class Gltf:
         """Count `size` bytes that the file asks for beyond its own; FileError once it is out of all
         proportion.
         """
-        self._left -= size
-        if self._left < 0:
-            self.fail("it asks for far more memory than its size warrants", where)
+        self._allowance.spend(size, where)
 
     def item(self, items: list[Any], index: int, kind: str, where: str) -> Any:
         """Return `items[index]`, or fail naming what refers to it."""
@@ -242,7 +241,6 @@ class Gltf:
                 self._buffers[index] = self._binary
             else:
                 self._buffers[index] = memoryview(self.resource(value.uri, f"buffer {index}"))
-                self._left += _BYTES_PER_BYTE * len(self._buffers[index])
         return self._buffers[index]
 
     def resource(self, uri: str, where: str) -> bytes:
@@ -250,6 +248,7 @@ class Gltf:
         elsewhere.
         """
         if uri.startswith("data:"):
+            self.spend(len(uri), where)
             head, comma, body = uri.partition(",")
             try:
                 return (
@@ -259,21 +258,29 @@ class Gltf:
                 )
             except (binascii.Error, ValueError) as error:
                 self.fail(f"its data URI cannot be decoded ({error})", where)
-        name = unquote(uri)
-        folder = self.path.parent.resolve()
+        name = unquote(uri[:PATH_LENGTH])
+        if name in self._named:
+            return self._named[name]
         try:
+            folder = self.path.parent.resolve()
             target = (folder / name).resolve()
-            if "://" in name or not target.is_relative_to(folder):
-                self.fail(
-                    f"it points to '{name[:80]}', outside the file's own folder",
-                    where,
-                    "Put that file beside the glTF file.",
-                )
-            return target.read_bytes()
+            inside = "://" not in name and target.is_relative_to(folder)
         except (OSError, ValueError):
+            target, inside = self.path / name, True
+        if not inside:
             self.fail(
-                f"'{name[:80]}' is not there", where, "Put it beside the glTF file, or export one .glb file."
+                f"it points to '{name[:80]}', outside the file's own folder",
+                where,
+                "Put that file beside the glTF file.",
             )
+        try:
+            data = self._named[name] = read_file(target, MOTION_FILE)
+        except FileError as error:
+            self.fail(
+                f"'{name[:80]}' {error.cause}", where, "Put it beside the glTF file, or export one .glb file."
+            )
+        self._allowance.add(len(data))
+        return data
 
     def view(self, index: int, where: str) -> tuple[memoryview, BufferView]:
         """Return the bytes of a buffer view and its description."""
@@ -353,17 +360,7 @@ class Gltf:
 
 def open_gltf(path: str | Path) -> Gltf:
     """Open a .glb, .vrm or .gltf file. Raises FileError."""
-    path = Path(path)
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise FileError(
-            path,
-            f"it cannot be read ({error.strerror})",
-            "on opening it",
-            "Check that it exists and that you may read it.",
-        ) from error
-    return parse_gltf(path, data)
+    return parse_gltf(Path(path), read_file(path, MOTION_FILE))
 
 
 def parse_gltf(path: Path, data: bytes) -> Gltf:

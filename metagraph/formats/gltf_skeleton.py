@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.budgets import JOINTS, NODES
 from metagraph.formats.gltf_file import Gltf, Node
 from metagraph.formats.takes import UNIT
 from metagraph.motion import rotation
@@ -19,7 +20,6 @@ from metagraph.motion.skeleton import Skeleton, unique_names
 
 Array = NDArray[Any]
 
-MOST_JOINTS = 4096
 _TALL, _TINY = 20.0, 0.05  # metres: nothing that talks is taller or smaller, so the file is in other units
 _LARGEST = 1e7  # a translation or scale beyond this is damage
 
@@ -85,6 +85,8 @@ def build_rig(gltf: Gltf, as_is: Collection[str] = ()) -> GltfRig:
     nodes = gltf.json.nodes
     if not nodes:
         gltf.fail("it holds no nodes", "its nodes", "Export it with its skeleton.")
+    if len(nodes) > NODES:
+        gltf.fail(f"it has more than {NODES:,} nodes", "its nodes", "Export the character alone.")
     parents, order = _tree(gltf, nodes)
     members = _members(gltf, nodes, parents, order)
     key = hashlib.sha256(msgspec.json.encode((nodes, gltf.json.skins, sorted(members), UNIT in as_is)))
@@ -110,9 +112,9 @@ def _build(
 ) -> GltfRig:
     translations, rotations, scales = _transforms(gltf, nodes)
     joints = _in_order(gltf, members, parents, order)
-    if len(joints) > MOST_JOINTS:
+    if len(joints) > JOINTS:
         gltf.fail(
-            f"it has {len(joints)} joints, more than the {MOST_JOINTS} of any character",
+            f"it has {len(joints)} joints, more than the {JOINTS} of any character",
             "its nodes",
             "Export the character alone.",
         )
@@ -296,7 +298,9 @@ def _moves(gltf: Gltf, node: Node, outputs: list[tuple[str, int]]) -> bool:
         "scale": node.scale or (1, 1, 1),
     }
     for path, output in outputs:
-        values = np.asarray(gltf.array(output, f"node '{node.name}'"), float)
+        keys = gltf.array(output, f"node '{node.name}'")
+        gltf.spend(keys.size * 24, f"node '{node.name}'")
+        values = np.asarray(keys, float)
         rest = np.array(still[path], float)
         if values.ndim != 2 or values.shape[1] != len(rest):
             return True
@@ -373,6 +377,18 @@ def _globals(locals_: Array, parents: Array, order: Sequence[int]) -> Array:
     return out
 
 
+def _is_sound(matrices: Array) -> bool:
+    """Return whether matrices `[N, 4, 4]` are places, turns and sizes that can be undone."""
+    linear = matrices[:, :3, :3]
+    return bool(
+        np.isfinite(matrices).all()
+        and np.abs(matrices).max() <= _LARGEST
+        and np.abs(matrices[:, 3] - (0, 0, 0, 1)).max() < 1e-3
+        and (np.abs(np.linalg.det(linear)) >= 1e-15).all()
+        and (np.linalg.cond(linear) < 1e7).all()
+    )
+
+
 def _rest_pose(
     gltf: Gltf,
     places: dict[int, int],
@@ -397,11 +413,7 @@ def _rest_pose(
         if len(inverse) < len(skin.joints):
             gltf.fail(f"{len(inverse)} inverse bind matrices for {len(skin.joints)} joints", f"skin {s}")
         inverse = inverse[: len(skin.joints)].reshape(-1, 4, 4).transpose(0, 2, 1)
-        if (
-            not np.isfinite(inverse).all()
-            or np.abs(inverse).max() > _LARGEST
-            or (np.abs(np.linalg.det(inverse[:, :3, :3])) < 1e-15).any()
-        ):
+        if not _is_sound(inverse):
             continue
         bind = np.linalg.inv(inverse)
         own = np.array([places[j] for j in skin.joints])
@@ -424,10 +436,7 @@ def _rest_pose(
             world, j = worlds[skin.joints[k]], own[k]
             _, world_r, world_s = decompose(world)
             where, bind_r, bind_s = decompose(bind[k])
-            if (
-                rotation.angle_between(world_r, bind_r) > np.radians(60)
-                or abs(np.linalg.det(base[j, :3, :3])) < 1e-15
-            ):
+            if rotation.angle_between(world_r, bind_r) > np.radians(60) or not _is_sound(base[j][None]):
                 believable = False
                 break
             ratio = np.cbrt(abs(np.prod(world_s))) / np.cbrt(abs(np.prod(bind_s)))

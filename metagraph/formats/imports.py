@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Literal
 
 from metagraph.errors import FileError
+from metagraph.files import unforeseen
 from metagraph.formats.characters import CharacterFile, character_among
 from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
-from metagraph.formats.store import relative
+from metagraph.formats.store import kept_path, relative
 from metagraph.graph.edits import add_clips
 from metagraph.graph.model import Project
 from metagraph.graph.project_retargeting import Bringing
@@ -146,15 +147,11 @@ def import_files(
         assert skeleton is not None
         try:
             if path not in digests:
-                str(path).encode()  # a name in no known encoding could not be written down
                 digests[path] = digest(path)
+            name = kept_path(path, folder)
         except FileError as error:
             failures.append(str(error))
             continue
-        except UnicodeEncodeError:
-            failures.append(str(FileError(path, "has a name that is no text", "its name", "Rename it.")))
-            continue
-        name = _name(path, folder)
         try:
             loaded.append((name, take, digests[path], adopt(clip, skeleton)))
             key = clip.skeleton.fingerprint
@@ -254,6 +251,8 @@ def bring_over(
             loaded.append((path, take, content, bringing.bring(clip, joint_map)))
         except (RetargetError, ClipError) as error:
             failures.append(f"{Path(path).name}: {error}. {_ALONE}")
+        except Exception as error:  # one bad clip never spoils the others
+            failures.append(str(unforeseen(path, error)))
     maps = {strangers.fingerprint: joint_map} if loaded else {}
     return Imported(
         tuple(loaded), tuple(failures), cancelled=stopped, joint_maps=maps, retargeted=len(loaded)

@@ -12,6 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,9 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.budgets import KEYPOINT_FRAMES, KEYPOINT_SECONDS, KEYPOINTS_FILE
 from metagraph.errors import FileError
+from metagraph.files import guarded, read_file
 from metagraph.formats.keypoint_frames import (
     REMEDY,
     KeypointFrame,
@@ -36,7 +39,7 @@ Array = NDArray[Any]
 
 FPS = 30.0  # frames a second, where nothing says how many
 PICTURE = (16.0, 9.0)  # what a picture measures, where nothing says it
-LARGEST = 512 * 1024 * 1024  # bytes
+_CUT = "Correct them, or cut the recording into pieces."
 _WHOLE = ("frames", "data", "results", "poses", "predictions", "instance_info")
 _FRAME_NAME = re.compile(r"(\d+)(?:_keypoints)?\.json$", re.I)
 
@@ -59,18 +62,26 @@ def read_keypoints(
     shares of them. Times begin at 0. Points come in three dimensions where the file has them. Raises
     FileError.
     """
-    path = Path(path)
-    head = _Head()
-    if path.is_dir():
-        frames = list(_folder(path))
-    else:
-        frames = list(_file(path, head))
-    if not frames:
-        raise FileError(path, "there are no frames in it", "", REMEDY)
     if fps is not None and not 0 < fps <= 1000:
         raise ValueError("there are more than 0 and at most 1000 frames a second")
+    return _read(Path(path), fps, picture)
+
+
+@guarded
+def _read(path: str | Path, fps: float | None, picture: tuple[float, float] | None) -> Keypoints:
+    path = Path(path)
+    head = _Head()
+    found = _folder(path) if path.is_dir() else _file(path, head)
+    frames = list(islice(found, KEYPOINT_FRAMES + 1))
+    if len(frames) > KEYPOINT_FRAMES:
+        raise FileError(path, f"it has more than {KEYPOINT_FRAMES:,} frames", "", _CUT)
+    if not frames:
+        raise FileError(path, "there are no frames in it", "", REMEDY)
     notes: list[str] = []
     times = _times(frames, fps or head.fps, notes)
+    lasts = float(np.max(times, initial=0.0))
+    if not lasts <= KEYPOINT_SECONDS:
+        raise FileError(path, f"its frames lie {lasts:.3g} s apart", "their times or numbers", _CUT)
     kept = np.flatnonzero(np.concatenate([[True], np.diff(np.maximum.accumulate(times)) > 0]))
     if len(kept) < len(times):
         notes.append(
@@ -145,19 +156,7 @@ def _lines(path: Path, lines: Sequence[tuple[int, bytes]], head: _Head) -> Itera
 
 
 def _bytes(path: Path) -> bytes:
-    try:
-        if path.stat().st_size > LARGEST:
-            raise FileError(
-                path,
-                f"it is larger than {LARGEST // 1024 // 1024} MiB",
-                "on opening it",
-                "Cut the recording into pieces.",
-            )
-        return path.read_bytes()
-    except OSError as error:
-        raise FileError(
-            path, f"cannot be read ({error.strerror})", "on opening it", "Check that it is there."
-        ) from None
+    return read_file(path, KEYPOINTS_FILE)
 
 
 def _decoded(path: Path, text: bytes) -> Any:

@@ -16,13 +16,15 @@ from typing import Any
 
 import msgspec
 
-from metagraph.errors import FileError
+from metagraph.budgets import TEXT_FILE
+from metagraph.errors import FileError, shown
+from metagraph.files import is_file, is_text, read_file, unforeseen
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.data import FORMAT, from_data, to_data
 from metagraph.formats.fbx_readers import batch
 from metagraph.formats.fields import Data, DataError
-from metagraph.formats.text import TextError, parse, to_text
+from metagraph.formats.text import TextError, as_text, parse, to_text
 from metagraph.graph.clip_source import source_of, with_source
 from metagraph.graph.conversation import Conversation, Side
 from metagraph.graph.model import ClipEntry, Project
@@ -122,11 +124,27 @@ def encoded(project: Project, path: Path) -> bytes:
         raise FileError(path, f"cannot be saved: {error}", error.where, "Correct that value.") from None
 
 
+def writable(project: Project) -> Project:
+    """Return the project with texts that can all be written, whatever it is written to; itself, mostly."""
+    try:
+        data = to_data(project)
+    except DataError:
+        return project  # whoever writes it says what is wrong
+    if as_text(data) is data:
+        return project
+    clean = from_data(data)
+    clips = {
+        i: replace(e, motion=project.clips[i].motion, source=project.clips[i].source)
+        for i, e in clean.clips.items()
+    }
+    return replace(clean, clips=clips, skeleton=project.skeleton, voices=project.voices, body=project.body)
+
+
 def file_digest(path: Path | None) -> str | None:
     """Return the SHA-256 of a project file, hex, by which it is known to have changed; None where there is no
     file.
     """
-    if path is None or not path.is_file():
+    if path is None or not is_file(path):
         return None
     return content_digest(path.read_bytes())
 
@@ -197,6 +215,17 @@ def absolute(project: Project, folder: Path) -> Project:
     return _with_paths(project, renew)
 
 
+def kept_path(path: Path, folder: Path | None) -> str:
+    """Return a file's path as a project in `folder` keeps it; absolute where there is no folder. Raises
+    FileError for one that is no text: it could not be written down.
+    """
+    whole = path.parent.resolve() / path.name  # a linked file keeps its name
+    name = relative(path, folder) if folder is not None else whole.as_posix()
+    if not is_text(name):
+        raise FileError(path, "has a name that is no text", "its name", "Rename it.")
+    return name
+
+
 def relative(path: Path, folder: Path) -> str:
     """Return `path` relative to `folder` with `/` between parts; absolute where there is no way (another
     drive).
@@ -218,12 +247,7 @@ def read_project(path: str | Path, notes: list[str] | None = None) -> Project:
 
 
 def _content(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise FileError(
-            path, f"cannot be read ({error.strerror or error})", "on opening it", "Check that it is there."
-        ) from None
+    return read_file(path, TEXT_FILE)
 
 
 def _decoded(content: bytes, path: Path, notes: list[str] | None = None) -> Project:
@@ -292,7 +316,7 @@ def _place(entry: ClipEntry, folder: Path | None) -> Path:
     place = (folder or Path()) / entry.path
     return (
         place
-        if "\\" not in entry.path or place.is_file()
+        if "\\" not in entry.path or is_file(place)
         else (folder or Path()) / entry.path.replace("\\", "/")
     )
 
@@ -301,7 +325,7 @@ def _lost(project: Project, folder: Path | None) -> dict[str, list[ClipEntry]]:
     """Return the clips whose file is not where it should be, by path."""
     out: dict[str, list[ClipEntry]] = {}
     for entry in project.clips.values():
-        if entry.motion is None and not _place(entry, folder).is_file():
+        if entry.motion is None and not is_file(_place(entry, folder)):
             out.setdefault(entry.path, []).append(entry)
     return out
 
@@ -332,14 +356,14 @@ def _load(
             path = place.resolve().as_posix() if absolute_path or folder is None else relative(place, folder)
         if name in found:
             notes.append(f"'{name}' has moved to '{path}'")
-        if not place.is_file():
-            notes.append(f"'{name}' is missing")
+        if not is_file(place):
+            notes.append(f"'{shown(name)}' is missing")
             continue
         try:
             read = {as_is: read_clips(place, as_is) for as_is in dict.fromkeys(e.as_is for e in entries)}
             now = digest(place)
-        except FileError as error:
-            notes.append(str(error))
+        except Exception as error:  # one bad file never spoils a project
+            notes.append(str(unforeseen(place, error)))
             continue
         if any(e.digest and now != e.digest for e in entries):
             notes.append(f"'{path}' has changed since it was imported")

@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+import msgspec
 import yaml
 
 HEADER = "# A Metagraph project. One line a clip, stance or action; times in seconds.\n"
@@ -26,6 +27,30 @@ class TextError(ValueError):
     def __init__(self, line: int, message: str) -> None:
         self.line = line
         super().__init__(message)
+
+
+_HALVES = re.compile("[\ud800-\udfff]")
+
+
+def as_text(data: Any) -> Any:
+    """Return plain data whose texts can all be written: half a surrogate pair, which JSON can say and names
+    of files can hold, is no character. What holds none is returned as it is.
+    """
+    try:
+        msgspec.json.encode(data)
+        return data
+    except UnicodeEncodeError:
+        return _whole(data)
+    except (TypeError, ValueError, RecursionError, OverflowError):  # whoever reads it says what is wrong
+        return data
+
+
+def _whole(value: Any) -> Any:
+    if isinstance(value, str):
+        return _HALVES.sub("\ufffd", value)
+    if isinstance(value, dict):
+        return {_whole(k): _whole(v) for k, v in value.items()}
+    return [_whole(v) for v in value] if isinstance(value, list | tuple) else value
 
 
 # --- writing

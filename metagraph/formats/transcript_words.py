@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
 
+from metagraph.budgets import MARKS, TEXT_FILE
 from metagraph.errors import FileError
+from metagraph.files import read_file
 from metagraph.graph.conversation import SHORTEST, Segment, Word
 
-LARGEST = 256 << 20  # bytes
-MOST = 1_000_000  # words
 LATEST = 1e6  # seconds
 _TEXT = 1000  # characters of a word
 SUFFIXES = (".TextGrid", ".eaf", ".vtt", ".srt", ".json", ".ctm")
@@ -89,8 +89,8 @@ class Collected:
             self.wrong += 1
             end = start + 0.06 * len(text)
         self.count += len(texts)
-        if self.count > MOST:
-            raise self.fail(f"has more than {MOST:,} words", where, "Cut the recording into pieces.")
+        if self.count > MARKS:
+            raise self.fail(f"has more than {MARKS:,} words", where, "Cut the recording into pieces.")
         if len(texts) == 1:
             words.append(Word(text=texts[0][:_TEXT], start=round(start, 4), end=round(end, 4)))
             return
@@ -174,14 +174,7 @@ def settled(words: Iterable[Word]) -> tuple[tuple[Word, ...], list[str]]:
 
 def text_of(path: Path) -> str:
     """Return a text file's content. Raises FileError."""
-    try:
-        if path.stat().st_size > LARGEST:
-            raise FileError(path, f"is larger than {LARGEST >> 20} MiB, no transcript is", remedy=REMEDY)
-        data = path.read_bytes()
-    except OSError as error:
-        raise FileError(
-            path, f"cannot be read ({error.strerror or error})", remedy="Check that it is there."
-        ) from None
+    data = read_file(path, TEXT_FILE)
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return data.decode("utf-16", "replace").replace("\r\n", "\n").replace("\r", "\n")
     try:

@@ -10,12 +10,14 @@ from __future__ import annotations
 from pathlib import Path
 
 from metagraph.errors import FileError
+from metagraph.files import guarded
 from metagraph.formats.transcript_words import REMEDY, Transcript, text_of
 from metagraph.formats.transcripts_json import read_json
 from metagraph.formats.transcripts_text import is_ctm, read_ctm, read_cues
 from metagraph.formats.transcripts_tiers import read_elan_tiers, read_textgrid_tiers
 
 
+@guarded
 def read_transcript(path: str | Path) -> Transcript:
     """Read a transcript, whatever of `SUFFIXES` it is. Raises FileError."""
     path = Path(path)

@@ -20,7 +20,9 @@ import numpy as np
 from msgspec import Meta, Struct
 from numpy.typing import NDArray
 
+from metagraph.budgets import ARRAYS
 from metagraph.errors import FileError
+from metagraph.files import check_file, guarded
 from metagraph.formats.atomic import write_atomically
 from metagraph.generation.features import MELS, as_heard
 from metagraph.generation.networks import (
@@ -247,15 +249,14 @@ def _member(name: str) -> zipfile.ZipInfo:
 # --- reading
 
 
+@guarded
 def read_model(path: str | Path) -> Model:
     """Read a model. Raises FileError for whatever is not one."""
-    path = Path(path)
+    path = check_file(path, ARRAYS)
     try:
         with zipfile.ZipFile(path) as archive:
             card = _card(path, archive)
             return Model(card, _weights(path, archive, card))
-    except FileNotFoundError:
-        raise FileError(path, "there is no such model", remedy="Check where it is.") from None
     except OSError as error:
         raise FileError(path, f"cannot be read ({error.strerror or error})", remedy=_REMEDY) from None
     except (zipfile.BadZipFile, zipfile.LargeZipFile, EOFError, NotImplementedError, RuntimeError) as error:
@@ -268,9 +269,10 @@ def read_model(path: str | Path) -> Model:
         raise
 
 
+@guarded
 def read_card(path: str | Path) -> ModelCard:
     """Read what is told of a model, without its weights. Raises FileError."""
-    path = Path(path)
+    path = check_file(path, ARRAYS)
     try:
         with zipfile.ZipFile(path) as archive:
             return _card(path, archive)

@@ -18,7 +18,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.budgets import CONVERSATION_SECONDS as LONGEST
 from metagraph.errors import FileError
+from metagraph.files import unforeseen
 from metagraph.formats.clips import digest, find_clip_files, read_clips
 from metagraph.formats.conversations import SOUNDS, read_conversation
 from metagraph.formats.transcript_words import SUFFIXES as TRANSCRIPTS
@@ -31,7 +33,6 @@ from metagraph.speech.sound import read_recording
 
 Array = NDArray[Any]
 
-LONGEST = 7200.0  # seconds of a take's sound
 _SIDE = re.compile(r"(?i)[ ._-]*(1|2|a|b|left|right)$")
 _LICENCE = re.compile(r"(?i)(licen[cs]e|copying)([ ._-].*)?")
 UNLICENSED = "no licence found beside it"
@@ -142,8 +143,8 @@ def read_takes(
             raise CancelledError
         try:
             there = read_clips(each.clip)
-        except FileError as error:
-            failures.append(str(error))
+        except Exception as error:  # one bad file spoils no other
+            failures.append(str(unforeseen(each.clip, error)))
             continue
         clip = max(there, key=lambda c: c.frames)
         read.append((each, clip))
@@ -168,8 +169,11 @@ def read_takes(
         assert rig is not None
         try:
             take = _take(rig, each, clip, tracks, licences)
-        except (FileError, TakeError) as error:
+        except TakeError as error:
             failures.append(str(error))
+            continue
+        except Exception as error:
+            failures.append(str(unforeseen(each.clip, error)))
             continue
         takes.append(take)
         clips.append(clip)

@@ -20,7 +20,7 @@ from metagraph.live.wire import Batch, Result
 CLIENTS = 64  # at most
 BACKLOG = 4 * 1024 * 1024  # bytes a client may leave unread
 POSES_BACKLOG = 128 * 1024  # bytes unread beyond which poses are left out rather than queued
-PER_BATCH = 2000  # requests passed on at once; half of them for one client
+PER_BATCH = 2000  # requests passed on at once; each client has its share, half where there is one other
 UNANSWERED = 20000  # requests of one client for which no answer has come
 PROVE = 5.0  # seconds within which a client has to show its token
 
@@ -166,7 +166,7 @@ class Hub:
                 )
                 return encode(Reply(id=message.id or None, error=words))
             item = HeardMessage(msgspec.structs.replace(message, token=""))
-        if len(self._asked) >= PER_BATCH or client.taken >= PER_BATCH // 2:
+        if len(self._asked) >= PER_BATCH or client.taken >= PER_BATCH // max(2, len(self.clients)):
             return encode(Reply(id=message.id, state="refused", why=BUSY_WORDS)) if message.id else BUSY
         client.taken += 1
         self._asked.append((number, item))

@@ -5,7 +5,7 @@ reason.
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right, insort
-from collections import deque
+from collections import Counter, deque
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -24,6 +24,10 @@ TAG = 200  # characters that a tag of it counts for besides its own
 HINTS = 4  # words nobody knows that are looked up among those known, in a second
 NAMES = 64  # points a session knows by name
 SPAN = 4.0  # seconds over which these rates are counted
+FLOOD = (
+    32  # asks of one client for one layer in SPAN seconds, beyond which only one waits while others are there
+)
+HUNGRY = 1.5  # seconds for which others make way for who was turned away
 RATES = {
     "look": 60,
     "place": 500,
@@ -58,6 +62,12 @@ class LimitLane:
         low = bisect_left(self.waiting, (at - wait, -1001, ""))
         high = bisect_right(self.waiting, (at + wait, 1001, ""))
         return sum(1 for _, other, _ in self.waiting[low:high] if other >= priority)
+
+    def own(self, at: float, wait: float, client: int) -> int:
+        """Return how many of one client wait for times at which another of its could play."""
+        low = bisect_left(self.waiting, (at - wait, -1001, ""))
+        high = bisect_right(self.waiting, (at + wait, 1001, ""))
+        return sum(1 for _, _, key in self.waiting[low:high] if key.startswith(f"c{client}/"))
 
     def forget(self, now: float) -> None:
         """Drop what has begun."""
@@ -106,46 +116,137 @@ def _only(layers: set[str] | None, layer: str | None) -> str | None:
 
 
 @dataclass
+class Share:
+    """What clients had of one layer or kind lately. asked: client -> when last. had: client -> when it was
+    taken on. turned_away: client -> when last, with how important an ask.
+    """
+
+    asked: dict[int, float] = field(default_factory=dict)
+    had: dict[int, deque[float]] = field(default_factory=dict)
+    turned_away: dict[int, tuple[float, int]] = field(default_factory=dict)
+    asks: Counter[int] = field(default_factory=Counter)
+    since: float = 0.0
+
+    def tick(self, now: float) -> None:
+        if now >= self.since + SPAN:
+            self.since = now
+            self.asks = Counter({c: n // 2 for c, n in self.asks.items() if n > 1})
+        for client in [c for c, at in self.asked.items() if at < now - SPAN]:
+            del self.asked[client]
+            self.had.pop(client, None)
+            self.turned_away.pop(client, None)
+        for times in self.had.values():
+            while times and times[0] < now - SPAN:
+                times.popleft()
+
+    def count(self, client: int) -> int:
+        return len(self.had.get(client, ()))
+
+    def of(self, whole: int) -> int:
+        """Return how many of a whole are a client's for certain."""
+        return max(1, whole // max(1, len(self.asked)))
+
+    def greedy(self, client: int, priority: int, now: float) -> bool:
+        """Return whether a client has had more than one that was turned away just now with what is as
+        important.
+        """
+        return any(
+            other != client
+            and at > now - HUNGRY
+            and as_important >= priority
+            and self.count(client) > self.count(other)
+            for other, (at, as_important) in self.turned_away.items()
+        )
+
+    def flooding(self, client: int) -> bool:
+        """Return whether a client asks for far more than can be played."""
+        return self.asks[client] > FLOOD
+
+    def take(self, client: int, now: float) -> None:
+        self.had.setdefault(client, deque()).append(now)
+        self.turned_away.pop(client, None)
+
+
+@dataclass
 class Limits:
-    """What has been taken on lately. lanes: layer -> what waits. recent: kind -> when such asks came."""
+    """What has been taken on lately. lanes: layer -> what waits. shares: layer or kind -> what each client
+    had of it. full: layer and client -> until when there is no room for it, for what is how important.
+    """
 
     lanes: dict[str, LimitLane] = field(default_factory=lambda: {layer: LimitLane() for layer in LAYERS})
-    recent: dict[str, deque[float]] = field(default_factory=dict)
-    full: dict[str, tuple[float, int]] = field(default_factory=dict)
-    planned: int = 0
+    shares: dict[str, Share] = field(default_factory=dict)
+    full: dict[tuple[str, int], tuple[float, int]] = field(default_factory=dict)
+    planned: Counter[int] = field(default_factory=Counter)
+    several: bool = False
+    around: set[int] = field(default_factory=set)
     characters: int = 0
     hints: int = 0
     hinted: float = 0.0
 
     def tick(self, now: float) -> None:
         """Begin a tick."""
-        self.planned = self.characters = 0
+        self.characters = 0
+        self.planned.clear()
         if now >= self.hinted + 1.0:
             self.hinted, self.hints = now, 0
         for lane in self.lanes.values():
             lane.forget(now)
-        for times in self.recent.values():
-            while times and times[0] < now - SPAN:
-                times.popleft()
+        for share in self.shares.values():
+            share.tick(now)
 
-    def refusal(self, lane: str, at: float, wait: float, priority: int, now: float) -> str:
-        """Return why an ask is not taken on, "" when it is."""
-        if self.planned >= PLANNED_PER_TICK:
+    def share(self, lane: str) -> Share:
+        return self.shares.setdefault(lane, Share())
+
+    def refusal(self, lane: str, at: float, wait: float, priority: int, now: float, client: int = 0) -> str:
+        """Return why an ask of a client is not taken on, "" when it is: each has its share for certain, and
+        more while nobody else is turned away.
+        """
+        share = self.share(lane)
+        share.asked[client] = now
+        share.asks[client] += 1
+        why = self._refusal(share, lane, at, wait, priority, now, client)
+        if why:
+            share.turned_away[client] = now, priority
+        else:
+            share.take(client, now)
+        return why
+
+    def turned_away(self, lane: str, client: int, priority: int, now: float) -> None:
+        """Take note that there was no room after all for what a client asked for."""
+        share = self.share(lane)
+        if times := share.had.get(client):
+            times.pop()
+        share.turned_away[client] = now, priority
+
+    def busy(self, client: int) -> bool:
+        """Return whether no more of a client's asks are worked into the plan at this tick."""
+        own = self.planned[client]
+        return self.planned.total() >= PLANNED_PER_TICK and own >= PLANNED_PER_TICK // max(
+            1, len(self.around)
+        )
+
+    def _refusal(
+        self, share: Share, lane: str, at: float, wait: float, priority: int, now: float, client: int
+    ) -> str:
+        if self.busy(client):
             return BUSY
+        if share.greedy(client, priority, now):
+            return f"others ask for '{lane}', too, and had less of it; try again in a moment"
         if lane in self.lanes:
-            until, above = self.full.get(lane, (0.0, 0))
+            until, above = self.full.get((lane, client), (0.0, 0))
             if now < until and at <= now + wait and priority <= above:
                 return f"the {lane} layer is taken for the next {wait:g} s by what is as important"
+            if self.several and share.flooding(client) and self.lanes[lane].own(at, wait, client):
+                return f"others are here, too, and you ask for '{lane}' too often; one of yours waits already"
             count = self.lanes[lane].before(at, wait, priority)
-            if count >= WAITING:
+            if count >= WAITING and self.lanes[lane].own(at, wait, client) >= share.of(WAITING):
                 return (
                     f"{count} requests as important wait for the {lane} layer within {wait:g} s of that time"
                 )
             return ""
-        times = self.recent.setdefault(lane, deque())
-        if lane in RATES and len(times) >= RATES[lane]:
+        over = lane in RATES and sum(map(len, share.had.values())) >= RATES[lane]
+        if over and share.count(client) >= share.of(RATES[lane]):
             return f"more than {RATES[lane]} of '{lane}' in {SPAN:g} s; try again in a moment"
-        times.append(now)
         return ""
 
 

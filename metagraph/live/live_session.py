@@ -54,7 +54,7 @@ from metagraph.live.messages import (
 )
 from metagraph.live.pose_stream import Stream, due
 from metagraph.live.tape import Tape
-from metagraph.live.tick_work import Client, Open, Out, TickWork, thinned
+from metagraph.live.tick_work import Client, Open, Out, TickWork, in_turn, thinned
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.bml import Block, read_block
 from metagraph.playback.overlay import Overlay, overlaid
@@ -147,16 +147,20 @@ class LiveSession:
         self.ledger.limits.tick(self.now)
         self._told.pop("status", None)
         out, work = Out(), TickWork()
-        for place, (client, item) in enumerate(queue):
+        out.replies = [Reply()] * len(queue)
+        self.ledger.limits.several = len(self.clients) > 1
+        self.ledger.limits.around = {client for client, _ in queue}
+        for done, place in enumerate(in_turn([client for client, _ in queue])):
+            client, item = queue[place]
             if isinstance(item, Reply):
-                out.replies.append(item)
-            elif place >= PER_TICK:
-                out.replies.append(Reply(id=item.message.id or None, state="refused", why=BUSY))
+                out.replies[place] = item
+            elif done >= PER_TICK:
+                out.replies[place] = Reply(id=item.message.id or None, state="refused", why=BUSY)
             else:
                 if client not in self.clients:
                     self.join(client)
                 found = self._take(self.clients[client], item, work, place)
-                out.replies.append(Reply() if found is None else found)
+                out.replies[place] = Reply() if found is None else found
         self._plan(work, out)
         self.generating.reach(self.now, self.plan, self.project, self.clients)
         out.events += happenings(self.plan, self.ledger, before, self.now, self.clients.values())
@@ -177,7 +181,9 @@ class LiveSession:
         if isinstance(message, Keypoints):
             return self._keypoints(client, message, work, place)
         if isinstance(message, Generate | Hear):
-            if self.ledger.limits.refusal(str(message.__struct_config__.tag), self.now, 0.0, 0, self.now):
+            if self.ledger.limits.refusal(
+                str(message.__struct_config__.tag), self.now, 0.0, 0, self.now, client.number
+            ):
                 return Reply(id=message.id or None, state="refused", why=BUSY)
             if isinstance(message, Hear):
                 return self.generating.hear(client.number, message)
@@ -256,22 +262,24 @@ class LiveSession:
             self._names.add(ask.name)
         ledger = self.ledger
         if key not in ledger.known and len(ledger.known) >= PENDING and ledger.pending(self.now) >= PENDING:
-            return f"{PENDING} requests wait already; try again when some of them have played"
+            own = sum(1 for _ in ledger.of(client.number))
+            if own >= PENDING // max(1, len(self.clients)):
+                return f"{PENDING} requests wait already; try again when some of them have played"
         wanted = stroke if stroke is not None else self.now if ask.at is None else ask.at
-        why = ledger.limits.refusal(lane, wanted, wait, ask.priority, self.now)
+        why = ledger.limits.refusal(lane, wanted, wait, ask.priority, self.now, client.number)
         if why:
             return why
         if key in ledger.blocks:
             self._take_back([key], work)
         work.close(key, "asked again under the same id")
-        ledger.limits.planned += 1
+        ledger.limits.planned[client.number] += 1
         ledger.add(key, Known(client.number, ident, lane, ask.priority, wanted, missed=missed))
         work.asks[key] = msgspec.structs.replace(ask, id=key)
         return ""
 
     def _withdraw(self, client: Client, ident: str, ask: a.Withdraw, work: TickWork) -> Reply:
         """Take back what a client asked for itself; what has begun plays on."""
-        if self.ledger.limits.refusal("withdraw", self.now, 0.0, 0, self.now):
+        if self.ledger.limits.refusal("withdraw", self.now, 0.0, 0, self.now, client.number):
             return Reply(id=ident, state="refused", why=BUSY)
         target, mine = key_of(client.number, ask.what), key_of(client.number, "")
         keys = self.ledger.belonging(target) if ask.what else list(self.ledger.of(client.number))
@@ -345,7 +353,7 @@ class LiveSession:
     def _keypoints(self, client: Client, message: Keypoints, work: TickWork, place: int) -> Reply | None:
         """Look at whoever is before a client's camera; take on what is asked for because of them."""
         ident = message.id or None
-        if self.ledger.limits.refusal("keypoints", self.now, 0.0, 0, self.now):
+        if self.ledger.limits.refusal("keypoints", self.now, 0.0, 0, self.now, client.number):
             return Reply(id=ident, state="refused", why=BUSY)
         try:
             client.camera, asks, seen = see(
@@ -395,7 +403,8 @@ class LiveSession:
         if found.state in ("refused", "done"):
             full = ask.lane in LAYERS and any(r.outcome in ("covered", "no-room") for r in found.reports)
             if full and ask.at <= self.now + self.project.settings.wait:
-                self.ledger.limits.full[ask.lane] = (self.now + AGAIN, ask.priority)
+                self.ledger.limits.full[ask.lane, ask.client] = (self.now + AGAIN, ask.priority)
+                self.ledger.limits.turned_away(ask.lane, ask.client, ask.priority, self.now)
             self.ledger.drop(key)
         else:
             self.ledger.settle(key, found)

@@ -11,16 +11,12 @@ from typing import Any
 from metagraph.graph.words import LAYERS
 from metagraph.live.hub import Hub
 from metagraph.live.messages import LONGEST_MESSAGE, encode
-from metagraph.live.osc_bytes import padded
+from metagraph.live.osc_bytes import OscError, messages_of, padded
 
 ROOT = "/metagraph/"
 SILENT = 60.0  # seconds after which a sender is forgotten
 SENDERS = 32  # known at once
 LARGEST = 60_000  # bytes of one datagram that is sent
-
-
-class OscError(ValueError):
-    """A message that cannot be turned into a request."""
 
 
 def request(address: str, values: Sequence[Any]) -> Mapping[str, Any]:
@@ -90,15 +86,12 @@ def texts_of(datagram: bytes) -> Iterator[tuple[str, bytes | str | OscError | bo
     """Yield, for each message of a datagram, its address and the JSON it says, what is wrong, or whether
     replies are wanted.
     """
-    from pythonosc.osc_packet import OscPacket  # only sessions that listen for OSC pay for it
-
     try:
-        messages = [timed.message for timed in OscPacket(datagram).messages]
-    except Exception as error:  # its reader raises many kinds on broken datagrams
-        yield "", OscError(f"not OSC: {str(error)[:200] or type(error).__name__}")
+        messages = list(messages_of(datagram))
+    except OscError as error:
+        yield "", OscError(f"not OSC: {error}")
         return
-    for message in messages:
-        address, values = str(message.address), list(message.params)
+    for address, values in messages:
         try:
             if address == ROOT + "replies":
                 yield address, bool(values[0]) if values else True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from metagraph.graph import requests as a
@@ -69,6 +70,18 @@ class TickWork:
         if found is not None:
             found.why = why
             self.over.append(found)
+
+
+def in_turn(clients: Sequence[int]) -> list[int]:
+    """Return the places of requests in the order in which they are taken up: one of each client, then the
+    next of each ..., so that who sends a thousand at once comes before nobody. clients: who sent each.
+    """
+    counts: dict[int, int] = {}
+    turns = []
+    for place, client in enumerate(clients):
+        counts[client] = counts.get(client, 0) + 1
+        turns.append((counts[client], place))
+    return [place for _, place in sorted(turns)] if len(counts) > 1 else list(range(len(turns)))
 
 
 def thinned(plan: Plan, now: float) -> Track:

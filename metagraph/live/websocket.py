@@ -36,20 +36,28 @@ class WebSocketLine(asyncio.Protocol):
         self.number = 0
         self.parts: list[bytes] = []
         self.transport: asyncio.Transport | None = None
-        self.heard = 0.0
+        self.heard = self.made = 0.0
         self.pinged = False
 
     # --- from the other side
 
     def connection_made(self, transport: Any) -> None:
         self.transport = transport
+        waiting = [line for line in self.lines if line.protocol.state is State.CONNECTING]
+        if len(waiting) >= CLIENTS:  # who has waited longest has had the most time to say hello
+            min(waiting, key=lambda line: line.made).drop()
         if len(self.lines) >= 2 * CLIENTS:
             transport.abort()
             return
         loop = asyncio.get_running_loop()
-        self.heard = loop.time()
+        self.heard = self.made = loop.time()
         loop.call_later(GREET, self._greeted)
         self.lines.add(self)
+
+    def drop(self) -> None:
+        """Make room for another line, at once."""
+        self.lines.discard(self)
+        self.cut()
 
     def _greeted(self) -> None:
         if self.protocol.state is State.CONNECTING and self.transport is not None:

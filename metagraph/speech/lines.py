@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.budgets import CONVERSATION_SECONDS, LINE_SECONDS
 from metagraph.errors import FileError
+from metagraph.files import unforeseen
 from metagraph.graph.conversation import Word
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
@@ -22,7 +24,6 @@ from metagraph.speech.textgrid import Interval, TextGrid, Tier, read_textgrid
 
 Array = NDArray[Any]
 
-CONVERSATION = 7200.0  # seconds of one at most
 FINE = 24000  # samples a second that a mouth is read from
 _VOWELS = ("aa", "E", "I", "O", "U", "RR")
 
@@ -40,7 +41,7 @@ def read_spoken(audio: str | Path, channel: int | None = None, words: Sequence[W
     """Read a voice from its sound and, where there are any, the words that were transcribed. Raises
     FileError.
     """
-    samples, rate = read_sound(audio, channel, CONVERSATION, FINE)
+    samples, rate = read_sound(audio, channel, CONVERSATION_SECONDS, FINE)
     if not words:
         return _voice(samples, rate, None)
     tier = Tier("words", tuple(Interval(w.start, w.end, w.text) for w in words))
@@ -70,6 +71,9 @@ def voice_from_phones(phones: str | Path) -> Voice:
     grid = read_textgrid(phones)
     pieces = [p for p in pieces_of(grid) if p.start >= 0]
     duration = max([grid.end, *(p.end for p in pieces)])
+    if duration > LINE_SECONDS:
+        why = f"lasts {duration:.0f} s, a line at most {LINE_SECONDS:.0f} s"
+        raise FileError(phones, why, "its end", "Cut it into lines.")
     if not pieces:
         return silent(max(duration, 0.0))
     vowels = [
@@ -112,8 +116,8 @@ def load_voices(project: Project, folder: str | Path) -> tuple[Project, tuple[st
         for attempt in tries:
             try:
                 voice = read_line(attempt, folder)
-            except FileError as error:
-                note = f"line '{ident}': {error}"
+            except Exception as error:  # one bad sound never spoils a project
+                note = f"line '{ident}': {unforeseen(folder / (line.audio or line.phones or ''), error)}"
                 if note not in notes:
                     notes.append(note)
                 continue

@@ -9,6 +9,9 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from math import inf
 
 from metagraph.playback.life.graphemes import shapes
 from metagraph.playback.life.mouth import MouthPiece
@@ -168,9 +171,18 @@ def pieces_of(grid: TextGrid) -> list[MouthPiece]:
     phones = _pick(tiers, r"phon|segment|sampa|ipa|\bmau\b|\bph\b|^phs?$", short=True)
     if phones is not None:
         arpabet = is_arpabet(i.text for i in phones.intervals)
-        return [p for i in phones.intervals for p in _spread(i, *visemes_of(i.text, arpabet))]
+        return [p for i in _in_turn(phones) for p in _spread(i, *visemes_of(i.text, arpabet))]
     words = _pick(tiers, r"word|ort|transcript|text|utter|phrase", short=False)
-    return [p for i in words.intervals for p in _spell(i)] if words is not None else []
+    return [p for i in _in_turn(words) for p in _spell(i)] if words is not None else []
+
+
+def _in_turn(tier: Tier) -> list[Interval]:
+    """Return a tier's intervals by start, each ending where the next begins: a mouth says one thing at a
+    time.
+    """
+    ordered = sorted(tier.intervals, key=lambda i: i.start)
+    ends = [min(a.end, b.start) for a, b in pairwise(ordered)]
+    return [replace(i, end=end) if end < i.end else i for i, end in zip(ordered, [*ends, inf], strict=False)]
 
 
 def _pick(tiers: Sequence[Tier], pattern: str, short: bool) -> Tier | None:

@@ -15,13 +15,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.budgets import (
+    LINE_SECONDS,
+    SOUND_BLOCK,
+    SOUND_CHANNELS,
+    SOUND_FILE,
+    SOUND_LOUDEST,
+    SOUND_RATES,
+    SOUND_SAMPLES,
+)
 from metagraph.errors import FileError
+from metagraph.files import check_file, guarded, is_file, opened
 from metagraph.playback.life.mouth import MouthPiece
 
 Array = NDArray[Any]
 
 HOP, WINDOW = 0.010, 0.030  # seconds
-LONGEST = 1800.0  # seconds of one line
+LONGEST = LINE_SECONDS  # of one line
 LONG = 300.0  # seconds from which samples are kept as float32
 SPEECH = (250.0, 3400.0)  # Hz: where syllables are loud and hum and hiss are not
 SMOOTH = 0.020  # seconds, of loudness
@@ -110,6 +120,29 @@ def read_sound(
     return samples[channel], read.rate
 
 
+@guarded
+def read_head(path: str | Path) -> tuple[int, int, int]:
+    """Return samples a second, channels and samples of each of a sound file. Raises FileError."""
+    import soundfile
+
+    path = check_file(path, SOUND_FILE)
+    try:
+        with soundfile.SoundFile(str(path)) as file:
+            if not file.frames:
+                raise RuntimeError("it holds no sound")
+            return int(file.samplerate), int(file.channels), int(file.frames)
+    except (soundfile.LibsndfileError, RuntimeError, TypeError, MemoryError, OSError) as error:
+        raise _no_sound(path, error) from error
+
+
+def _no_sound(path: Path, error: Exception) -> FileError:
+    cause = str(getattr(error, "error_string", error)).strip().rstrip(".") or type(error).__name__
+    if (kind := sound_kind(path)) and not kind.startswith("a WAV"):
+        cause = f"it is {kind}"
+    return FileError(path, f"cannot be read as sound: {cause}", "its content", f"Save it as {_SUFFIXES}.")
+
+
+@guarded
 def read_recording(path: str | Path, longest: float = LONGEST, most: int | None = None) -> Recording:
     """Read a sound file, channels apart, block by block. most: samples a second at most, at least 8000; where
     the file has more, what is too high is taken out, every second, third ... is kept, as float32, so that
@@ -118,10 +151,11 @@ def read_recording(path: str | Path, longest: float = LONGEST, most: int | None 
     import soundfile
 
     path = Path(path)
-    if not path.is_file():
+    if not is_file(path) and not path.exists():
         raise FileError(
             path, "there is no such sound file", remedy="Check where it is, or choose the file anew."
         )
+    check_file(path, SOUND_FILE)
     try:
         with soundfile.SoundFile(str(path)) as file:
             rate = int(file.samplerate)
@@ -131,7 +165,7 @@ def read_recording(path: str | Path, longest: float = LONGEST, most: int | None 
                     f"lasts {file.frames / rate:.0f} s, at most {longest:.0f} s are read",
                     remedy="Cut it into pieces.",
                 )
-            if not file.frames or rate < 4000:
+            if not file.frames or rate < SOUND_RATES[0]:
                 why = (
                     "holds no sound"
                     if not file.frames
@@ -140,23 +174,29 @@ def read_recording(path: str | Path, longest: float = LONGEST, most: int | None 
                 raise FileError(
                     path, why, remedy=f"Save it as {_SUFFIXES}, with 16000 samples a second or more."
                 )
+            if rate > SOUND_RATES[1] or file.channels > SOUND_CHANNELS:
+                why = (
+                    f"has {rate:,} samples a second, more than any recorder's {SOUND_RATES[1]:,}"
+                    if rate > SOUND_RATES[1]
+                    else f"has {file.channels} channels, at most {SOUND_CHANNELS} are read"
+                )
+                raise FileError(path, why, remedy=f"Save it anew as {_SUFFIXES}, with 48000.")
             every = 1 if most is None else max(1, -(-rate // most))
+            if file.frames // every * file.channels > SOUND_SAMPLES:
+                raise FileError(
+                    path, "holds more samples than are read", remedy="Cut it, or save it with 48000 a second."
+                )
             return replace(_read_blocks(file, rate, every), really=misnamed(path))
     except (soundfile.LibsndfileError, RuntimeError, TypeError, MemoryError, OSError) as error:
-        cause = str(getattr(error, "error_string", error)).strip().rstrip(".") or type(error).__name__
-        if (kind := sound_kind(path)) and not kind.startswith("a WAV"):
-            cause = f"it is {kind}"
-        raise FileError(
-            path, f"cannot be read as sound: {cause}", remedy=f"Save it as {_SUFFIXES}."
-        ) from error
+        raise _no_sound(path, error) from error
 
 
 def sound_kind(path: str | Path) -> str:
     """Return what a file is by its first bytes, in words ("an MP3 file"), "" where they do not tell."""
     try:
-        with Path(path).open("rb") as file:
+        with opened(path, SOUND_FILE) as file:
             head = file.read(64)
-    except OSError:
+    except FileError:
         return ""
     if head[4:8] == b"ftyp":
         return "an MPEG-4 file (M4A, MP4)"
@@ -170,6 +210,19 @@ def sound_kind(path: str | Path) -> str:
     if len(head) > 2 and head[0] == 0xFF and head[1] & 0xE0 == 0xE0:
         return "an AAC file" if head[1] & 0xF6 == 0xF0 else "an MP3 file"
     return ""
+
+
+def sound_ending(path: str | Path) -> str:
+    """Return the ending of a file that reads as a sound, such as ".wav": its own where that is of a sound,
+    else that of its kind. Raises FileError for what is none.
+    """
+    path = Path(path)
+    read_head(path)
+    own = path.suffix.lower()
+    known = next((endings for words, endings in _ENDINGS.items() if words == sound_kind(path)), ())
+    if not known and not any(own in endings for endings in _ENDINGS.values()):
+        raise FileError(path, "is a sound of an unusual kind", "its content", f"Save it as {_SUFFIXES}.")
+    return path.suffix if not known or own in known else known[0]
 
 
 def misnamed(path: str | Path) -> str:
@@ -186,8 +239,11 @@ def _read_blocks(file: Any, rate: int, every: int) -> Recording:
     parts: list[Array] = []
     clipped, count = np.zeros(file.channels), 0
     before = np.zeros((4 * every, file.channels))  # the filter reaches back, and forward
-    for block in file.blocks(blocksize=every * rate * 20, dtype="float64", always_2d=True):
+    size = max(1, min(every * rate * 20, SOUND_BLOCK // file.channels))
+    for block in file.blocks(blocksize=size, dtype="float64", always_2d=True):
         block = np.nan_to_num(block, nan=0.0, posinf=0.0, neginf=0.0)
+        if block.size and max(block.max(), -block.min()) > SOUND_LOUDEST:
+            raise RuntimeError("its samples are far beyond full scale")
         clipped += _cut_off(block)
         count += len(block)
         if every == 1:
@@ -243,14 +299,16 @@ def hear(samples: Array, rate: int) -> HeardSound:
     ]
     middles = [(hertz >= low) & (hertz < high) for low, high in ((220, 1050), (2500, 8000))]
     energies, centres = np.empty((len(bands), count)), np.empty((len(middles), count))
-    for n in range(0, count, 1000):  # a few seconds at a time, so that hours fit into memory
-        frames = padded[starts[n : n + 1000, None] + np.arange(size)] * window
+    some_at_once = max(1, min(1000, SOUND_BLOCK // size))  # so that hours fit into memory
+    for n in range(0, count, some_at_once):
+        now = slice(n, n + some_at_once)
+        frames = padded[starts[now, None] + np.arange(size)] * window
         power = np.abs(np.fft.rfft(frames, axis=1)) ** 2 / scale
         for row, some in enumerate(bands):
-            energies[row, n : n + 1000] = power[:, some].sum(1)
+            energies[row, now] = power[:, some].sum(1)
         for row, some in enumerate(middles):
             amplitude = np.sqrt(power[:, some])
-            centres[row, n : n + 1000] = (amplitude @ hertz[some]) / np.maximum(amplitude.sum(1), 1e-12)
+            centres[row, now] = (amplitude @ hertz[some]) / np.maximum(amplitude.sum(1), 1e-12)
     speech, high, forward, back, low = energies
     level = _smooth(10 * np.log10(speech + 1e-12), SMOOTH / HOP)
     floor, top = float(np.percentile(level, 8)), float(np.percentile(level, 97))

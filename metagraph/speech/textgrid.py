@@ -13,10 +13,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from metagraph.budgets import MARKS, MARKS_FILE
 from metagraph.errors import FileError
+from metagraph.files import guarded, read_file
 
 _TOKEN = re.compile(r'"(?:[^"]|"")*"|<[a-z]+>|(?<![^\s=])[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?%?(?!\S)')
-_LARGEST = 64 << 20  # bytes
 _REMEDY = "Save it from Praat as a text file or a short text file."
 
 
@@ -45,6 +46,7 @@ class TextGrid:
     tiers: tuple[Tier, ...]
 
 
+@guarded
 def read_textgrid(path: str | Path) -> TextGrid:
     """Read a TextGrid. Raises FileError naming the line."""
     path = Path(path)
@@ -52,14 +54,7 @@ def read_textgrid(path: str | Path) -> TextGrid:
 
 
 def _text(path: Path) -> str:
-    try:
-        if path.stat().st_size > _LARGEST:
-            raise FileError(path, f"is larger than {_LARGEST >> 20} MiB, no TextGrid is", remedy=_REMEDY)
-        data = path.read_bytes()
-    except OSError as error:
-        raise FileError(
-            path, f"cannot be read ({error.strerror or error})", remedy="Check the path and the permissions."
-        ) from error
+    data = read_file(path, MARKS_FILE)
     if data.startswith(b"ooBinaryFile"):
         raise FileError(path, "is a binary Praat file", remedy=_REMEDY)
     utf16 = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
@@ -74,7 +69,7 @@ def _text(path: Path) -> str:
 class _Reader:
     def __init__(self, path: Path, text: str) -> None:
         self.path, self.text = path, text
-        self.at = 0
+        self.at = self.marks = 0
         self.tokens = self._tokens()
 
     def _tokens(self) -> Iterator[str]:
@@ -134,6 +129,9 @@ class _Reader:
         self.number("tier's end")
         out: list[Interval] = []
         for _ in range(self.count("number of intervals")):
+            self.marks += 1
+            if self.marks > MARKS:
+                raise self.fail(f"it has more than {MARKS:,} intervals")
             start = self.number("interval's start")
             end = self.number("interval's end") if kind == "IntervalTier" else start
             if end < start:

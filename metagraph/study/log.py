@@ -22,7 +22,9 @@ from typing import Any
 
 import msgspec
 
+from metagraph.budgets import LOG_FILE
 from metagraph.errors import FileError
+from metagraph.files import read_file
 from metagraph.formats.atomic import write_atomically
 from metagraph.study.tasks import Answer, Event, TaskRun, answers, moment, task_runs
 
@@ -104,12 +106,7 @@ def read(path: str | Path) -> Log:
     problems.
     """
     path = Path(path)
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise FileError(
-            path, f"cannot be read ({error.strerror or error})", "on opening it", "Check that it is there."
-        ) from None
+    content = read_file(path, LOG_FILE)
     *lines, tail = content.split(b"\n")
     events: list[Event] = []
     problems: list[str] = []

@@ -17,7 +17,9 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta, Struct
 
+from metagraph.budgets import TEXT_FILE
 from metagraph.errors import FileError
+from metagraph.files import read_file
 from metagraph.formats.clips import find_clip_files
 from metagraph.formats.text import TextError, parse
 from metagraph.study.klm import Times
@@ -223,12 +225,8 @@ def read_study(path: str | Path) -> Study:
     path = Path(path)
     path = path / FILE if path.is_dir() else path
     try:
-        content = path.read_bytes()
+        content = read_file(path, TEXT_FILE)
         text = content.decode("utf-8-sig")
-    except OSError as error:
-        raise FileError(
-            path, f"cannot be read ({error.strerror or error})", "on opening it", "Check that it is there."
-        ) from None
     except UnicodeDecodeError as error:
         raise FileError(path, "is not text", f"byte {error.start}", "Choose a study file.") from None
     return Study(path.resolve(), from_text(text, path), hashlib.sha256(content).hexdigest())

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from metagraph.engines.targets import registry
-from metagraph.engines.targets.placing import RECORD, ForeignFilesError, place, read_record
+from metagraph.engines.targets.placing import RECORD, ForeignFilesError, Staging, place, read_record
 
 
 def staged(folder: Path, **files: str) -> Path:
@@ -21,7 +21,9 @@ def staged(folder: Path, **files: str) -> Path:
 def put(tmp_path: Path, target: str, overwrite: bool = False, project: str = "anna", **files: str) -> Path:
     out = tmp_path / "out"
     out.mkdir(exist_ok=True)
-    place(staged(tmp_path / "staged", **files), out, files, target, project, overwrite)
+    with Staging(out) as beside:
+        staged(beside.path, **files)
+        place(beside, out, files, target, project, overwrite)
     return out
 
 
@@ -84,7 +86,7 @@ def test_an_export_that_fails_leaves_nothing_behind(tmp_path, toy, monkeypatch):
     monkeypatch.setattr(registry, "targets", lambda: {"xstate": replace(target, write=broken)})
     with pytest.raises(RuntimeError):
         registry.write(toy.project(), "xstate", tmp_path / "out")
-    assert list((tmp_path / "out").iterdir()) == []
+    assert not (tmp_path / "out").exists(), "nor the folder it made"
 
 
 def test_two_targets_of_one_project_do_not_break_each_other(tmp_path, toy):

@@ -2,13 +2,92 @@
 
 from __future__ import annotations
 
+import http.client
+import os
+import socket
 import urllib.error
 import urllib.request
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from metagraph.engines import serve
 from metagraph.engines.serve import Served
+
+
+@pytest.fixture
+def shown(tmp_path: Path) -> Iterator[Served]:
+    folder = tmp_path / "page"
+    (folder / "inner").mkdir(parents=True)
+    (folder / "index.html").write_text("<p>here")
+    (folder / "inner" / "secret.txt").write_text("listed")
+    (folder / ".env").write_text("hidden")
+    (tmp_path / "secret").write_text("outside")
+    served = Served(folder)
+    yield served
+    served.close()
+
+
+def asked(served: Served, path: str, host: str | None = None, method: str = "GET") -> tuple[int, bytes]:
+    port = int(served.url.rstrip("/").rpartition(":")[2])
+    line = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
+    try:
+        line.request(method, path, headers={} if host is None else {"Host": host.format(port=port)})
+        answer = line.getresponse()
+        return answer.status, answer.read()
+    finally:
+        line.close()
+
+
+@pytest.mark.parametrize(
+    "host",
+    ["evil.example", "evil.example:{port}", "127.0.0.1", "127.0.0.1.evil.example:{port}", "", "localhost:1"],
+)
+def test_who_asks_by_another_name_gets_nothing(shown: Served, host: str) -> None:
+    status, body = asked(shown, "/", host)
+    assert status == 403 and b"here" not in body
+
+
+@pytest.mark.parametrize("host", [None, "127.0.0.1:{port}", "LOCALHOST:{port}"])
+def test_this_machine_s_own_names_are_known(shown: Served, host: str | None) -> None:
+    assert asked(shown, "/", host) == (200, b"<p>here")
+    assert asked(shown, "/", host, "HEAD") == (200, b"")
+
+
+def test_folders_are_not_listed_and_what_is_hidden_stays_so(shown: Served) -> None:
+    for path in ("/inner/", "/inner", "/.env", "/./.env", "/inner/../.env", "/%2eenv", "//etc/passwd"):
+        status, body = asked(shown, path)
+        assert status == 404 and b"secret.txt" not in body and b"hidden" not in body, path
+    assert asked(shown, "/inner/secret.txt") == (200, b"listed")
+    assert asked(shown, "/", method="POST")[0] == 501
+
+
+def test_links_that_lead_elsewhere_and_pipes_are_not_followed(shown: Served) -> None:
+    try:
+        (shown.folder / "link").symlink_to(shown.folder.parent / "secret")
+        (shown.folder / "up").symlink_to(shown.folder.parent)
+        (shown.folder / "fine").symlink_to(shown.folder / "index.html")
+    except OSError:
+        pytest.skip("links are not to be had here")
+    assert asked(shown, "/link")[0] == 404 and asked(shown, "/up/secret")[0] == 404
+    assert asked(shown, "/fine") == (200, b"<p>here")
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(shown.folder / "pipe")
+        assert asked(shown, "/pipe")[0] == 404
+
+
+def test_who_says_nothing_takes_no_room_from_others_for_long(
+    shown: Served, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(serve._Quiet, "timeout", 0.2)
+    port = int(shown.url.rstrip("/").rpartition(":")[2])
+    silent = [socket.create_connection(("127.0.0.1", port)) for _ in range(serve.AT_ONCE)]
+    for line in silent:
+        line.settimeout(10)
+        assert line.recv(100) == b""  # hung up on
+        line.close()
+    assert asked(shown, "/")[0] == 200
 
 
 def test_a_folder_is_served_with_the_types_browsers_want(tmp_path: Path) -> None:

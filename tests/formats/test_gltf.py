@@ -566,7 +566,7 @@ def moving(frames: int = 40, fps: float = 24.0) -> list[Clip]:
 def figure() -> Character:
     skeleton = mannequin_skeleton()
     positions = np.array([[0, 1, 0], [0.1, 1, 0], [0, 1.1, 0], [0, 1.7, 0]], np.float32)
-    png = b"\x89PNG\r\n\x1a\n" + b"\0" * 20
+    png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1" + b"\0" * 20
     return Character(
         "figure",
         skeleton,

@@ -210,7 +210,7 @@ def test_a_missing_weight_and_a_missing_card_are_told(kept, tmp_path):
         read_model(_changed(kept, tmp_path / "x.mgmodel", without=("weights/encode.0.bias.npy",)))
     with pytest.raises(FileError, match=r"holds no model\.json"):
         read_model(_changed(kept, tmp_path / "y.mgmodel", without=("model.json",)))
-    with pytest.raises(FileError, match="no such model"):
+    with pytest.raises(FileError, match="No such file"):
         read_model(tmp_path / "nowhere.mgmodel")
     with pytest.raises(FileError):
         read_model(tmp_path)

@@ -103,3 +103,61 @@ def test_senders_are_forgotten_when_they_are_silent_and_only_so_many_are_known()
     now[0] = SILENT + 1
     line.datagram_received(message, ("127.0.0.1", 5))
     assert list(line.senders) == [("127.0.0.1", 5)] and len(hub.clients) == 1
+
+
+# --- what nobody should send
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"",
+        b"\x1b[31mred\0\0\0",
+        b"/a",
+        b"/a\0\0",
+        b"/\x1b[2J\0\0\0,i\0\0\0\0\0\1",
+        b"/metagraph/nod\0\0,z\0\0",
+        b"/metagraph/nod\0\0,i\0\0\0",
+        b"/metagraph/nod\0\0,[[\0",
+        b"/metagraph/nod\0\0,]\0\0",
+        b"#bundle\0" + bytes(8) + b"\xff\xff\xff\xff/a\0\0",
+        b"#bundle\0" + bytes(8) + b"\0\0\0\1abc",
+        b"#bundle\0" * 3,
+        bytes(range(256)),
+    ],
+)
+def test_junk_is_told_in_words_and_never_shown(
+    data: bytes, capfd: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
+) -> None:
+    from metagraph.live.osc import texts_of
+    from metagraph.live.osc_bytes import OscError
+
+    for _, found in texts_of(data):
+        if isinstance(found, OscError):
+            assert str(found).isascii() and str(found).isprintable()
+    assert capfd.readouterr() == ("", "") and not caplog.records
+
+
+def test_bundles_within_bundles_end_somewhere() -> None:
+    from metagraph.live.osc_bytes import OscError, messages_of, padded
+
+    data = padded("/a") + padded(",")
+    for _ in range(30):
+        data = b"#bundle\0" + bytes(8) + len(data).to_bytes(4, "big") + data
+    with pytest.raises(OscError, match="deep"):
+        list(messages_of(data))
+    many = b"#bundle\0" + bytes(8) + (b"\0\0\0\x08" + padded("/a") + padded(",")) * 1001
+    with pytest.raises(OscError, match="more than"):
+        list(messages_of(many))
+
+
+def test_values_of_every_type_are_taken_apart() -> None:
+    from pythonosc.osc_message_builder import OscMessageBuilder
+
+    from metagraph.live.osc_bytes import messages_of
+
+    built = OscMessageBuilder("/x/é")
+    values = [1, 2.5, "wört", b"abc", True, False, None, [3, ["four"]], ""]
+    for value in values:
+        built.add_arg(value)
+    assert list(messages_of(built.build().dgram)) == [("/x/é", values)]

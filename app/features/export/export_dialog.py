@@ -33,6 +33,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.look.theme import strengthen
+from app.project.chosen import was_chosen
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.widgets.making import make_widget
@@ -292,7 +293,9 @@ class ExportDialog(QDialog):
         self.progress.show()
 
         def work(job: Job) -> Report:
-            made = registry.write(project, name, folder, character, expanded, job.tell, base, overwrite)
+            made = registry.write(
+                project, name, folder, character, expanded, job.tell, base, overwrite, was_chosen
+            )
             if vectors:
                 write_vectors(next(path for path in made.files if path.suffix == ".json"))
             return made

@@ -6,13 +6,16 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
+from metagraph.budgets import LIST_FILE
 from metagraph.errors import FileError
-from metagraph.formats.store import relative
+from metagraph.files import is_file, is_inside, read_file, unforeseen
+from metagraph.formats.store import kept_path
 from metagraph.graph import performance_edits
 from metagraph.graph.edits import free_name
 from metagraph.graph.model import Project
@@ -34,10 +37,16 @@ class Lines:
     notes: tuple[str, ...] = ()
 
 
-def read_lines(paths: Iterable[Path], folder: Path | None) -> Lines:
+def read_lines(
+    paths: Iterable[Path],
+    folder: Path | None,
+    keep: Callable[[Iterable[Path]], None] = lambda paths: None,
+) -> Lines:
     """Read sound files and lists. folder: what paths in the lines are relative to, None for absolute ones.
-    One bad file spoils no other.
+    keep: told which sounds the user chose by that: those given, and those beside a list that was. One bad
+    file spoils no other.
     """
+    paths = list(paths)
     lines: dict[str, Line] = {}
     notes: list[str] = []
     for path in paths:
@@ -53,13 +62,15 @@ def read_lines(paths: Iterable[Path], folder: Path | None) -> Lines:
                     "is no sound and no list of lines",
                     remedy=f"Sounds are {', '.join(SOUNDS)}, lists are .csv or .tsv.",
                 )
-        except FileError as error:
-            notes.append(str(error))
+        except Exception as error:  # one bad file spoils no other
+            notes.append(str(unforeseen(path, error)))
     voices: dict[str, Any] = {}
     from metagraph.speech.lines import load_voices
 
     read, told = load_voices(Project(lines=lines), folder or Path())
     voices.update(read.voices)
+    sounds = [(folder or Path()) / line.audio for line in lines.values() if line.audio]
+    keep([s for s in sounds if any(is_inside(s, p.parent) for p in paths)])
     # A sound that cannot be read is no line; its text, if it has any, still is.
     for ident, line in list(lines.items()):
         if line.audio and ident not in voices:
@@ -70,25 +81,18 @@ def read_lines(paths: Iterable[Path], folder: Path | None) -> Lines:
     return Lines(lines, voices, (*notes, *told))
 
 
-def _place(path: Path, folder: Path | None) -> str:
-    return relative(path, folder) if folder is not None else path.resolve().as_posix()
-
-
 def _beside(path: Path, folder: Path | None) -> Line:
     """Return a sound's line, with the text and phones of files called like it."""
     text = path.with_suffix(".txt")
-    words = " ".join(_text(text).split())[:LONGEST] if text.is_file() else path.stem.replace("_", " ")
-    phones = next((p for s in PHONES if (p := path.with_suffix(s)).is_file()), None)
-    return Line(text=words, audio=_place(path, folder), phones=_place(phones, folder) if phones else None)
+    words = " ".join(_text(text).split())[:LONGEST] if is_file(text) else path.stem.replace("_", " ")
+    phones = next((p for s in PHONES if is_file(p := path.with_suffix(s))), None)
+    return Line(
+        text=words, audio=kept_path(path, folder), phones=kept_path(phones, folder) if phones else None
+    )
 
 
 def _text(path: Path) -> str:
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise FileError(
-            path, f"cannot be read ({error.strerror})", remedy="Check that it is there."
-        ) from None
+    data = read_file(path, LIST_FILE)
     for encoding in ("utf-8-sig", "utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8", "latin-1"):
         try:
             return data.decode(encoding)
@@ -106,7 +110,8 @@ def _listed(path: Path, folder: Path | None) -> list[tuple[str, Line]]:
     apart = "\t" if "\t" in first else ";" if first.count(";") > first.count(",") else ","
     out: list[tuple[str, Line]] = []
     try:
-        rows = list(csv.reader(io.StringIO(text.replace("\0", "")), delimiter=apart))
+        reader = csv.reader(io.StringIO(text.replace("\0", "")), delimiter=apart)
+        rows = list(islice(reader, MOST + 1))
     except csv.Error as error:
         raise FileError(
             path,
@@ -114,7 +119,7 @@ def _listed(path: Path, folder: Path | None) -> list[tuple[str, Line]]:
             remedy="Write one line a row: id, text, and perhaps a sound file.",
         ) from None
     if len(rows) > MOST:
-        raise FileError(path, f"has {len(rows):,} rows", remedy=f"A list has {MOST:,} lines at most.")
+        raise FileError(path, f"has more than {MOST:,} rows", remedy=f"A list has {MOST:,} lines at most.")
     for n, row in enumerate(rows):
         cells = [c.strip() for c in row]
         if not any(cells) or (n == 0 and cells[0].lower() in ("id", "line", "number", "nr", "no")):
@@ -127,7 +132,7 @@ def _listed(path: Path, folder: Path | None) -> list[tuple[str, Line]]:
                 "Write one line a row: id, text, and perhaps a sound file.",
             )
         audio = path.parent / cells[2] if len(cells) > 2 and cells[2] else None
-        if audio is not None and not audio.is_file():
+        if audio is not None and not is_file(audio):
             raise FileError(
                 path,
                 f"names a sound that is not there: {cells[2]}",
@@ -135,7 +140,7 @@ def _listed(path: Path, folder: Path | None) -> list[tuple[str, Line]]:
                 "Put it beside the list, or correct its name.",
             )
         out.append(
-            (cells[0][:200], Line(text=cells[1][:LONGEST], audio=_place(audio, folder) if audio else None))
+            (cells[0][:200], Line(text=cells[1][:LONGEST], audio=kept_path(audio, folder) if audio else None))
         )
     return out
 

@@ -23,6 +23,7 @@ from PySide6.QtWidgets import (
 from app.features.lines.line_files import LISTS, SOUNDS, Lines, add_lines, read_lines
 from app.look.plural import many
 from app.look.theme import Theme, theme
+from app.project.chosen import keep_chosen
 from app.project.document import Document, Edit
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
@@ -301,7 +302,7 @@ class LinesPanel(QWidget):
 
         self.jobs.start(
             "Reading lines",
-            lambda _: read_lines(paths, folder),
+            lambda _: read_lines(paths, folder, keep_chosen),
             done,
             lambda error: self.told.emit(str(error)),
         )

@@ -4,13 +4,13 @@ one step.
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.look.plural import clips_words
 from app.project.jobs import Job
+from metagraph.file_names import file_stem
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.gltf_writer import write_glb
 from metagraph.formats.imports import Loaded
@@ -85,7 +85,7 @@ def write_twin(twin: TwinClip, folder: Path) -> Loaded:
     """
     place = folder / FOLDER
     place.mkdir(exist_ok=True)
-    stem = re.sub(r'[<>:"/\\|?*\x00-\x1f]+', "_", twin.name).strip(" .")[:100] or "clip"
+    stem = file_stem(twin.name, "clip")
     path, n = place / f"{stem}.glb", 2
     while path.exists():
         path, n = place / f"{stem}_{n}.glb", n + 1

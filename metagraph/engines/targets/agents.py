@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from metagraph.engines.engine_machine import Machine, State, animations, machine
 from metagraph.engines.targets.losses import MACHINE
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
+from metagraph.file_names import file_stems
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
@@ -84,9 +85,8 @@ def _numbered(asks: tuple[a.AnyRequest, ...]) -> Iterator[a.AnyRequest]:
 
 
 def _file(name: str, taken: list[Path]) -> str:
-    stem = re.sub(r"[^\w-]+", "_", name).strip("_") or "block"
-    count = sum(1 for path in taken if path.stem == stem or path.stem.startswith(f"{stem}-"))
-    return stem if not count else f"{stem}-{count + 1}"
+    stem = re.sub(r"[^\w-]+", "_", name).strip("_")
+    return file_stems([*(path.stem for path in taken), stem], "block")[-1]
 
 
 # --- SmartBody
@@ -94,8 +94,10 @@ def _file(name: str, taken: list[Path]) -> str:
 HANDS = {"left": "LEFT_HAND", "right": "RIGHT_HAND", "both": "BOTH_HANDS"}
 
 
-def gesture_map(name: str, built: tuple[Machine, ...]) -> str:
-    """Return a Python script for SmartBody that maps lexeme, type, hand and posture to animations."""
+def gesture_map(name: str, built: tuple[Machine, ...], files: Mapping[str, str]) -> str:
+    """Return a Python script for SmartBody that maps lexeme, type, hand and posture to animations, which it
+    calls by their files. files: animation -> the stem of its file.
+    """
     rows = [
         '"""Gestures of '
         + json.dumps(name)
@@ -108,7 +110,14 @@ def gesture_map(name: str, built: tuple[Machine, ...]) -> str:
             if state.action.kind == "gesture":
                 lexeme, kind = _words(state)
                 posture = machine.rest(state.action.stance).name
-                words = (state.name, lexeme, kind, HANDS[state.action.limb], "", posture)
+                words = (
+                    files.get(state.name, state.name),
+                    lexeme,
+                    kind,
+                    HANDS[state.action.limb],
+                    "",
+                    posture,
+                )
                 rows.append(f"gestures.addGestureMapping({', '.join(json.dumps(w) for w in words)})")
     return "\n".join(rows) + "\n"
 
@@ -127,13 +136,14 @@ def write_smartbody(order: ExportOrder) -> Made:
 
     built = machines(order.project)
     script = order.folder / f"{order.stem}_gestures.py"
-    write_atomically(script, gesture_map(order.stem, built).encode())
     wanted = {s.name for m in built for s in m.states if s.action.kind in ("gesture", "stance")}
     clips = [clip for clip in animations(order.project, built) if clip.name in wanted]
+    names = dict(zip((clip.name for clip in clips), file_stems(clip.name for clip in clips), strict=True))
+    write_atomically(script, gesture_map(order.stem, built, names).encode())
     files = [script]
-    for n, clip in enumerate(clips):
+    for n, (clip, name) in enumerate(zip(clips, names.values(), strict=True)):
         order.tell(n, len(clips), clip.name)
-        files.append(order.folder / "motions" / f"{clip.name}.bvh")
+        files.append(order.folder / "motions" / f"{name}.bvh")
         write_bvh(clip, files[-1])
     return Made(tuple(files))
 

@@ -8,10 +8,11 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 
-from metagraph.engines.export import ExportError, sound, stem_of
+from metagraph.engines.export import Chosen, ExportError, nothing_chosen, sound, stem_of
 from metagraph.engines.targets.placing import Staging
 from metagraph.engines.targets.placing import place as move
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Report, Tell
+from metagraph.formats.store import writable
 from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import Character
 
@@ -66,30 +67,35 @@ def write(
     tell: Tell | None = None,
     base: Path | None = None,
     overwrite: bool = False,
+    chosen_by_hand: Chosen = nothing_chosen,
 ) -> Report:
     """Write a project for a target into a folder, which is made.
 
     character: the mesh or its file, None to leave it out. expanded: list the state machine in the JSON as
     well. base: the folder the lines' sounds are relative to, None to leave them where they are. overwrite:
-    also files that are not of an earlier export of the same project for the same target. Raises ExportError
+    also files that are not of an earlier export of the same project for the same target. chosen_by_hand:
+    which sounds outside `base` the user has chosen, not only the project; no others are copied. All of it is
+    written, or nothing. Raises ExportError
     while the project has errors, `ForeignFilesError`, an ExportError, where such files stand in the way,
     FileError when a file cannot be written.
     """
     chosen = target(name)
+    project = writable(project)
     warnings = sound(project)
     place = Path(folder)
     with Staging(place) as staged:
         order = ExportOrder(
             project,
-            staged,
+            staged.path,
             stem_of(project),
             character,
             expanded,
             tell or (lambda done, total, words: None),
             base,
+            chosen_by_hand,
         )
         made = chosen.write(order)
-        names = tuple(path.relative_to(staged).as_posix() for path in made.files)
+        names = tuple(path.relative_to(staged.path).as_posix() for path in made.files)
         move(staged, place, names, name, project.name, overwrite)
     clips = len(project.uses.keys() | {project.base.clip} - {None})
     return Report(

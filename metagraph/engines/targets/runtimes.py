@@ -17,7 +17,9 @@ BML = Loss("requests in Behaviour Markup Language are read by the desktop alone"
 
 def written(order: ExportOrder) -> Made:
     """Write JSON, GLB and the lines' sounds."""
-    made = write(order.project, order.folder, order.expanded, order.character, order.tell, order.base)
+    made = write(
+        order.project, order.folder, order.expanded, order.character, order.tell, order.base, order.chosen
+    )
     return Made((made.json, made.glb, *made.sounds), made.warnings)
 
 

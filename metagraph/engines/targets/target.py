@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from metagraph.engines.export import Chosen, nothing_chosen
 from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import Character
 
@@ -31,7 +32,7 @@ class Loss:
 class ExportOrder:
     """What is to be written: a sound project into a folder that is there. stem: what its files are called.
     character: the mesh, or None to leave it out. expanded: the state machine in the JSON, where there is one.
-    base: the folder the project's own paths are relative to.
+    base: the folder the project's own paths are relative to. chosen: which files outside it the user chose.
     """
 
     project: Project
@@ -41,6 +42,7 @@ class ExportOrder:
     expanded: bool = False
     tell: Tell = lambda done, total, words: None
     base: Path | None = None
+    chosen: Chosen = nothing_chosen
 
 
 @dataclass(frozen=True)

@@ -39,11 +39,12 @@ from metagraph.engines.targets.unity_yaml import (
     meta,
     to,
 )
+from metagraph.file_names import file_stems
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph import anatomy
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
-from metagraph.motion.skeleton import Skeleton, unique_names
+from metagraph.motion.skeleton import Skeleton
 
 BASE = "base"  # the layer at the bottom, its state and clip
 IF, EQUALS = 1, 6  # modes of conditions
@@ -284,7 +285,7 @@ def write(order: ExportOrder) -> Made:
     states = [state for machine in built for state in machine.states]
     clips = {clip.name: clip for clip in animations(project, built)}
     # Not all file systems tell "Wave" from "wave".
-    names = dict(zip((s.name for s in states), unique_names([s.name.lower() for s in states]), strict=True))
+    names = dict(zip((s.name for s in states), file_stems([s.name.lower() for s in states]), strict=True))
     base = anatomy.base_pose(project)
     off = np.abs(base.translations - skeleton.rest_translations).max(1) > 1e-6
     shifted = {*np.flatnonzero(off).tolist()}.union(*(clip.translated for clip in clips.values()))

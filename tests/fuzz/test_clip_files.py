@@ -55,7 +55,7 @@ def sample() -> tuple[Clip, Character]:
         np.zeros((3, 4), np.uint16),
         np.tile(np.float32([1, 0, 0, 0]), (3, 1)),
         np.array([[0, 1, 2]]),
-        (Material("m", image=b"\x89PNG\r\n\x1a\n"),),
+        (Material("m", image=b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1" + b"\0" * 9),),
         (Surface(0, 1, 0),),
         ("smile",),
         np.full((1, 3, 3), 0.1, np.float32),

@@ -1,0 +1,248 @@
+"""Exports appear whole or not at all, under names that every system takes, with nobody else's files in them."""
+
+from __future__ import annotations
+
+import os
+import struct
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+
+from metagraph.engines.export import export
+from metagraph.engines.targets import placing, registry
+from metagraph.engines.targets.placing import RECORD, Staging
+from metagraph.errors import FileError
+from metagraph.file_names import folded
+from metagraph.graph.model import Project
+from metagraph.graph.requests import Line
+
+TARGETS = tuple(registry.targets())
+
+
+@pytest.fixture
+def small(toy: Any) -> Project:
+    return toy.project()
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+
+
+def long_named(project: Project) -> Project:
+    graphs = {
+        layer: replace(
+            graph,
+            actions={i: replace(a, name="A" * 400 + i) for i, a in graph.actions.items()},
+            stances={i: replace(s, name="S" * 400 + i) for i, s in graph.stances.items()},
+        )
+        for layer, graph in project.graphs.items()
+    }
+    return replace(project, name="n" * 400, graphs=graphs)
+
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_names_of_any_length_are_exported_whole(small: Project, tmp_path: Path, name: str) -> None:
+    made = registry.write(long_named(small), name, tmp_path / "out")
+    assert all(path.is_file() for path in made.files)
+    assert all(len(part.encode()) <= 255 for f in files(tmp_path) for part in f.split("/"))
+
+
+@pytest.mark.parametrize("called", ["CON", "nul.txt", "a:b", "../../x", "x\ud800", "...", ""])
+def test_projects_of_any_name_are_exported(small: Project, tmp_path: Path, called: str) -> None:
+    project = replace(small, name=called)
+    made = registry.write(project, "metagraph", tmp_path / "out")
+    assert set(files(tmp_path / "out")) == {RECORD, *(p.name for p in made.files)}
+    assert not {p.stem.casefold() for p in made.files} & {"con", "nul", "nul.txt"}
+    assert made.files[0].read_bytes().decode("utf-8")
+
+
+def test_actions_that_differ_in_capitals_alone_have_files_of_their_own(
+    small: Project, tmp_path: Path
+) -> None:
+    arms = small.graphs["arms"]
+    actions = {
+        i: replace(a, name="wave" if n % 2 else "Wave") for n, (i, a) in enumerate(arms.actions.items())
+    }
+    project = replace(small, graphs={**small.graphs, "arms": replace(arms, actions=actions)})
+    for name in ("smartbody", "unity-controller"):
+        made = registry.write(project, name, tmp_path / name)
+        assert len({folded(str(p)) for p in made.files}) == len(made.files)
+
+
+def failing(real: Callable[..., Any], after: int) -> Callable[..., Any]:
+    """Return Path.replace that fails once, at its turn `after`, as a full disk or an open file makes it."""
+    turns = [0]
+
+    def replaced(self: Path, to: Path) -> Any:
+        turns[0] += 1
+        if turns[0] == after:
+            raise OSError(28, "No space left on device", str(to))
+        return real(self, to)
+
+    return replaced
+
+
+@pytest.mark.parametrize("stood", [False, True])
+def test_what_fails_half_way_leaves_everything_as_it_was(
+    small: Project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, stood: bool
+) -> None:
+    out = tmp_path / "deep" / "out"
+    if stood:
+        registry.write(small, "javascript", out)
+        (out / "mine.txt").write_text("mine")
+    before = files(tmp_path)
+    edited = replace(small, settings=replace(small.settings, seed=99))
+    real = Path.replace
+    moves = 0
+    for after in range(1, 200):
+        monkeypatch.setattr(Path, "replace", failing(real, after))
+        try:
+            registry.write(edited, "javascript", out)
+        except FileError as error:
+            moves += 1
+            assert error.remedy
+            monkeypatch.setattr(Path, "replace", real)
+            assert files(tmp_path) == before, after
+            assert stood or not (tmp_path / "deep").exists()
+            continue
+        break
+    monkeypatch.setattr(Path, "replace", real)
+    assert moves > 30 and files(tmp_path) != before
+    assert not stood or (out / "mine.txt").read_text() == "mine"
+
+
+def test_a_folder_in_the_way_is_not_taken_away(small: Project, tmp_path: Path) -> None:
+    made = registry.write(small, "metagraph", tmp_path)
+    made.files[0].unlink()
+    made.files[0].mkdir()
+    (made.files[0] / "precious").write_text("x")
+    with pytest.raises(FileError, match="folder"):
+        registry.write(small, "metagraph", tmp_path, overwrite=True)
+    assert (made.files[0] / "precious").read_text() == "x"
+
+
+def test_interrupted_staging_puts_back_what_stood_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "a").write_text("old")
+    real = Path.replace
+
+    def interrupted(self: Path, to: Path) -> Any:
+        if to.name == "b":
+            raise KeyboardInterrupt
+        return real(self, to)
+
+    with pytest.raises(KeyboardInterrupt), Staging(tmp_path) as staged:
+        for name in ("a", "b"):
+            (staged.path / name).write_text("new")
+        monkeypatch.setattr(Path, "replace", interrupted)
+        staged.move(["a", "b"])
+    assert files(tmp_path) == {"a": b"old"}
+
+
+def test_a_record_that_names_files_elsewhere_takes_none_away(small: Project, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    registry.write(small, "metagraph", out)
+    victim = tmp_path / "victim"
+    victim.write_text("x")
+    record = msgspec.json.decode((out / RECORD).read_bytes(), type=placing.Record)
+    spoilt = {**record.files, "../victim": placing._digest(victim)}
+    (out / RECORD).write_bytes(msgspec.json.encode(msgspec.structs.replace(record, files=spoilt)))
+    registry.write(small, "metagraph", out)
+    assert victim.read_text() == "x"
+
+
+# --- sounds
+
+
+def wav(path: Path) -> Path:
+    data = bytes(3200)
+    head = struct.pack("<IHHIIHH", 16, 1, 1, 16000, 32000, 2, 16)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(
+        b"RIFF"
+        + struct.pack("<I", 36 + len(data))
+        + b"WAVEfmt "
+        + head
+        + b"data"
+        + struct.pack("<I", len(data))
+        + data
+    )
+    return path
+
+
+def with_lines(project: Project, **sounds: str) -> Project:
+    return replace(project, lines={i: Line(text=i, audio=name) for i, name in sounds.items()})
+
+
+def test_what_is_no_sound_is_never_copied(small: Project, tmp_path: Path) -> None:
+    base = tmp_path / "project"
+    base.mkdir()
+    (base / "key.wav").write_text("-----BEGIN PRIVATE KEY-----")
+    (tmp_path / "passwd").write_text("root:x:0")
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(base / "pipe.wav")
+    names = {
+        "a": str(tmp_path / "passwd"),
+        "b": "../passwd",
+        "c": "key.wav",
+        "d": "pipe.wav",
+        "e": "x" * 5000,
+    }
+    project = with_lines(small, **names, f="a\0b", g=".")
+    made = registry.write(project, "metagraph", tmp_path / "out", base=base, chosen_by_hand=lambda path: True)
+    assert not (tmp_path / "out" / "lines").exists()
+    assert all(b"root:" not in data and b"PRIVATE" not in data for data in files(tmp_path / "out").values())
+    assert sum("is left out" in w for w in made.warnings) == 7
+    assert str(tmp_path).encode() not in made.files[0].read_bytes()  # nor is it told where it lies
+
+
+def test_a_sound_outside_the_project_s_folder_is_copied_where_the_user_chose_it(
+    small: Project, tmp_path: Path
+) -> None:
+    base, outside = tmp_path / "project", wav(tmp_path / "voice" / "hi.wav")
+    wav(base / "in" / "ho.wav")
+    project = with_lines(small, out="../voice/hi.wav", whole=outside.as_posix(), inner="in/ho.wav")
+    made = registry.write(project, "metagraph", tmp_path / "a", base=base)
+    assert set(files(tmp_path / "a")) - {RECORD} == {*(p.name for p in made.files[:2]), "lines/ho.wav"}
+    assert sum("outside the project's folder" in w for w in made.warnings) == 2
+    asked: list[Path] = []
+    registry.write(
+        project,
+        "metagraph",
+        tmp_path / "b",
+        base=base,
+        chosen_by_hand=lambda p: bool(asked.append(p) or True),
+    )
+    assert {f for f in files(tmp_path / "b") if f.startswith("lines/")} == {
+        "lines/hi.wav",
+        "lines/hi-2.wav",
+        "lines/ho.wav",
+    }
+    assert len(asked) == 2
+
+
+def test_a_link_out_of_the_project_s_folder_is_outside(small: Project, tmp_path: Path) -> None:
+    base = tmp_path / "project"
+    base.mkdir()
+    try:
+        (base / "hi.wav").symlink_to(wav(tmp_path / "hi.wav"))
+    except OSError:
+        pytest.skip("links are not to be had here")
+    made = registry.write(with_lines(small, a="hi.wav"), "metagraph", tmp_path / "out", base=base)
+    assert any("outside" in w for w in made.warnings)
+
+
+def test_the_plain_export_is_whole_as_well(
+    small: Project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    export(small, tmp_path)
+    before = files(tmp_path)
+    monkeypatch.setattr(Path, "replace", failing(Path.replace, 4))
+    with pytest.raises(FileError):
+        export(replace(small, settings=replace(small.settings, seed=3)), tmp_path)
+    assert files(tmp_path) == before

@@ -1,0 +1,411 @@
+"""Every reader, with sound files to begin from and the words that matter in them.
+
+python -m tests.fuzz.readers all|READER,READER... [COUNT] [SEED] reads COUNT (1,000,000) broken files a reader and says
+what went wrong with which; nights are meant for it. Each input that was found is kept among `KEPT`, or as a
+file in tests/fuzz/kept/READER.
+"""
+
+from __future__ import annotations
+
+import copy
+import hashlib
+import json
+import math
+import random
+import struct
+import sys
+import tempfile
+import time
+import traceback
+import warnings
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from metagraph import files
+from metagraph.errors import FileError
+
+ROOT = Path(__file__).resolve().parents[2]
+KEPT = Path(__file__).with_name("kept")
+SAMPLES = ROOT / "sample_clips"
+
+
+@dataclass(frozen=True)
+class Fuzzed:
+    """A reader. read: of a path. endings: of the files it is given. seeds: sound files' bytes by name. words:
+    what is put into their midst. structured: makes a broken file by knowing what it is made of.
+    """
+
+    read: Callable[[Path], object]
+    seeds: Callable[[], dict[str, bytes]]
+    words: tuple[bytes, ...] = ()
+    structured: Callable[[random.Random, bytes], bytes] | None = None
+
+
+NUMBERS = (b"-1", b"0", b"1e309", b"-1e30", b"nan", b"inf", b"9" * 40, b"1e-300", b"4294967296", b"0.5")
+JSON = (b"{", b"}", b"[", b"]", b"null", b"true", b'""', b'"\\ud800"', b"[" * 200, b'{"a":' * 200, b",", b":")
+XML = (b"<", b">", b"</", b"/>", b"&a;", b"<!DOCTYPE x [<!ENTITY a 'b'>]>", b"<![CDATA[", b"'", b'"')
+
+HOSTILE: tuple[Any, ...] = (
+    -1, 0, 1, 3, 255, 1 << 31, (1 << 63) - 1, 1 << 70, 1e308, -1e30, 0.5, None, "", "VEC4", "x" * 300, [], {},
+    [0] * 5, [[]], True, "\ud800", "../../etc/passwd", "/dev/zero", {"x": []}, [None], 1e-300,
+)  # fmt: skip
+
+
+def places(value: Any) -> Iterator[tuple[Any, Any]]:
+    """Yield every value of a document by what holds it."""
+    stack = [value]
+    while stack:
+        holder = stack.pop()
+        some = (
+            holder.items()
+            if isinstance(holder, dict)
+            else enumerate(holder)
+            if isinstance(holder, list)
+            else ()
+        )
+        for key, inner in list(some):
+            yield holder, key
+            stack.append(inner)
+
+
+def spoilt(chance: random.Random, document: Any) -> Any:
+    """Return a document with some values replaced, taken away, doubled or swapped."""
+    document = json.loads(json.dumps(document))
+    for _ in range(chance.choice((1, 1, 1, 2, 4))):
+        spots = list(places(document))
+        if not spots:
+            break
+        holder, key = chance.choice(spots)
+        match chance.randrange(5):
+            case 0 if isinstance(holder, dict):
+                holder.pop(key, None)
+            case 1 if isinstance(holder, list):
+                holder += [copy.deepcopy(holder[key]) for _ in range(chance.choice((1, 7)))]
+            case 2:
+                other, at = chance.choice(spots)
+                holder[key] = copy.deepcopy(other[at])
+            case _:
+                holder[key] = copy.deepcopy(chance.choice(HOSTILE))
+    return document
+
+
+def spoilt_json(chance: random.Random, data: bytes) -> bytes:
+    return json.dumps(spoilt(chance, json.loads(data))).encode()
+
+
+def packed(document: Any, body: bytes) -> bytes:
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    head = struct.pack("<4sIIII", b"glTF", 2, 28 + len(text) + len(body), len(text), 0x4E4F534A)
+    return head + text + struct.pack("<II", len(body), 0x004E4942) + body
+
+
+def spoilt_glb(chance: random.Random, data: bytes) -> bytes:
+    size = struct.unpack_from("<I", data, 12)[0]
+    document, body = json.loads(data[20 : 20 + size]), bytearray(data[28 + size :])
+    if chance.random() < 0.75:
+        document = spoilt(chance, document)
+    if chance.random() < 0.5:
+        special = struct.pack("<f", chance.choice((math.nan, math.inf, 3e38, 1e-45, -1.0, 0.0)))
+        for _ in range(chance.choice((1, 4, 64))):
+            at = 4 * chance.randrange(max(1, len(body) // 4))
+            body[at : at + 4] = special if chance.random() < 0.5 else chance.randbytes(4)
+    return packed(document, bytes(body))
+
+
+def spoilt_words(chance: random.Random, data: bytes) -> bytes:
+    """Return a text with words replaced, lines doubled, dropped or swapped."""
+    lines = data.split(b"\n")
+    for _ in range(chance.choice((1, 1, 2, 5))):
+        n = chance.randrange(len(lines))
+        match chance.randrange(4):
+            case 0:
+                lines[n:n] = [lines[chance.randrange(len(lines))]] * chance.choice((1, 20))
+            case 1:
+                del lines[n : n + chance.choice((1, 3))]
+                lines = lines or [b""]
+            case _:
+                words = lines[n].split(b" ")
+                words[chance.randrange(len(words))] = chance.choice(NUMBERS)
+                lines[n] = b" ".join(words)
+    return b"\n".join(lines)
+
+
+def mutated(chance: random.Random, seeds: list[bytes], one: Fuzzed) -> bytes:
+    """Return a broken file."""
+    data = chance.choice(seeds)
+    if one.structured is not None and chance.random() < 0.6:
+        data = one.structured(chance, data)
+        if chance.random() < 0.7:
+            return data
+    out = bytearray(data)
+    for _ in range(chance.choice((1, 1, 2, 8))):
+        at = chance.randrange(len(out) + 1)
+        match chance.randrange(6):
+            case 0:
+                out[at : at + 1] = chance.randbytes(1)
+            case 1:
+                del out[at : at + chance.choice((1, 4, 30, 400))]
+            case 2:
+                out[at:at] = chance.choice((*one.words, *NUMBERS))
+            case 3:
+                out[at:at] = out[chance.randrange(len(out) + 1) :][: chance.choice((4, 60, 500))]
+            case 4:
+                out = out[: max(1, at)]
+            case _:
+                out[at : at + 4] = struct.pack("<I", chance.choice((0, 1, 0xFFFFFFFF, 0x7FFFFFFF, 1 << 24)))
+    return bytes(out)
+
+
+# --- the readers
+
+
+def _clip_seeds(ending: str) -> Callable[[], dict[str, bytes]]:
+    def make() -> dict[str, bytes]:
+        from metagraph.formats.bvh import write_bvh
+        from metagraph.formats.gltf import write_glb
+        from tests.fuzz.test_clip_files import sample
+
+        clip, character = sample()
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / f"a{ending}"
+            if ending == ".bvh":
+                write_bvh(clip, path)
+            else:
+                write_glb(path, [clip], character)
+            return {path.name: path.read_bytes()}
+
+    return make
+
+
+def _fixed(**seeds: bytes) -> Callable[[], dict[str, bytes]]:
+    return lambda: {name.replace("_", "."): data for name, data in seeds.items()}
+
+
+def _talks() -> dict[str, bytes]:
+    from metagraph.formats.conversation_writers import write_elan, write_json, write_textgrid
+    from tests.fuzz import test_transcripts as talks
+
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        write_elan(talks.TALK, folder / "a.eaf")
+        write_textgrid(talks.TALK, folder / "a.TextGrid")
+        write_json(talks.TALK, folder / "a.json")
+        made = {p.name: p.read_bytes() for p in folder.iterdir()}
+    return {**{f"a{k}": v.encode() for k, v in talks.SEEDS.items()}, **made}
+
+
+def _only(*endings: str) -> Callable[[], dict[str, bytes]]:
+    return lambda: {n: d for n, d in _talks().items() if Path(n).suffix in endings}
+
+
+def _wav() -> dict[str, bytes]:
+    import io
+
+    import numpy as np
+    import soundfile
+
+    sound = 0.3 * np.sin(np.arange(1600) * 0.2) * np.hanning(1600)
+    out = {}
+    for name, kind, subtype in (
+        ("a.wav", "WAV", "PCM_16"),
+        ("f.wav", "WAV", "FLOAT"),
+        ("a.flac", "FLAC", "PCM_16"),
+        ("a.ogg", "OGG", "VORBIS"),
+    ):
+        content = io.BytesIO()
+        soundfile.write(content, np.stack([sound, 0.5 * sound], 1), 16000, format=kind, subtype=subtype)
+        out[name] = content.getvalue()
+    return out
+
+
+def _project() -> dict[str, bytes]:
+    from metagraph.formats.data import to_data
+    from metagraph.formats.text import to_text
+    from tests.conftest import Toy
+
+    return {"a.metagraph.yaml": to_text(to_data(Toy().project())).encode()}
+
+
+def _export() -> dict[str, bytes]:
+    from metagraph.engines.export import export
+    from tests.conftest import Toy
+
+    with tempfile.TemporaryDirectory() as name:
+        return {"a.json": export(Toy().project(), name).json.read_bytes()}
+
+
+def _journal() -> dict[str, bytes]:
+    from dataclasses import replace
+
+    from metagraph.formats.journal import Journal
+    from tests.conftest import Toy
+
+    with tempfile.TemporaryDirectory() as name:
+        path = Path(name) / "j"
+        journal, project = Journal(path, None), Toy().project()
+        journal.begin(project, 1)
+        journal.edit(project, replace(project, name="other"), "Rename")
+        journal.close()
+        return {"a.journal": path.read_bytes()}
+
+
+def _log() -> dict[str, bytes]:
+    from metagraph.study.log import Writer
+
+    with tempfile.TemporaryDirectory() as name:
+        log = Writer(Path(name) / "log.jsonl")
+        log.begin(participant="p1")
+        log.add("edit", what="x")
+        log.close()
+        return {"log.jsonl": log.path.read_bytes()}
+
+
+def _keypoints() -> dict[str, bytes]:
+    rows = [{"t": n / 30, "keypoints": [[100 + k, 50 + 9 * k + n, 0.9] for k in range(17)]} for n in range(3)]
+    people = {"frames": [{"people": [{"pose_keypoints_2d": [1.0, 2.0, 0.5] * 25}]}] * 2, "fps": 30}
+    return {"a.json": json.dumps(rows).encode(), "b.json": json.dumps(people).encode()}
+
+
+def _readers() -> dict[str, Fuzzed]:
+    from app.features.lines.line_files import read_lines
+    from app.project.pattern_files import read_patterns
+    from metagraph.engines.reading import read_export
+    from metagraph.formats.clips import read_clips
+    from metagraph.formats.elan import read_elan
+    from metagraph.formats.gltf import has_skinned_mesh, morph_targets, read_character, vrm_roles
+    from metagraph.formats.keypoints import read_keypoints
+    from metagraph.formats.recovery import read_journal
+    from metagraph.formats.store import read_project
+    from metagraph.formats.transcripts import read_transcript
+    from metagraph.live.osc_bytes import OscError, messages_of, padded
+    from metagraph.pictures import picture_size
+    from metagraph.speech.lines import read_voice, voice_from_phones
+    from metagraph.study.log import read as read_log
+    from metagraph.study.study_plan import read_study
+
+    def drawn(path: Path) -> None:
+        for read in (read_character, vrm_roles, morph_targets, has_skinned_mesh):
+            survives(read, path)
+
+    def listed(path: Path) -> None:
+        read_lines([path], path.parent)
+
+    def osc(path: Path) -> None:
+        try:
+            list(messages_of(path.read_bytes()))
+        except OscError as error:
+            assert str(error).isascii() and str(error).isprintable()
+
+    def picture(path: Path) -> None:
+        size = picture_size(path.read_bytes())
+        assert size is None or min(size) > 0
+
+    def message(path: Path) -> None:
+        from metagraph.graph.requests import RequestError
+        from metagraph.live.messages import read, split
+
+        try:
+            for request in split(path.read_bytes())[0]:
+                read(request)
+        except RequestError:
+            pass
+
+    bvh = (
+        b"{",
+        b"}",
+        b"ROOT",
+        b"JOINT",
+        b"End Site",
+        b"OFFSET",
+        b"CHANNELS",
+        b"MOTION",
+        b"Frames:",
+        b"Xrotation",
+    )
+    study = SAMPLES / "study" / "study.yaml"
+    note = (
+        padded("/metagraph/gesture")
+        + padded(",sfb")
+        + padded("beat")
+        + struct.pack(">f", 1)
+        + b"\0\0\0\4abcd"
+    )
+    bundle = b"#bundle\0" + bytes(8) + struct.pack(">I", len(note)) + note
+    return {
+        "bvh": Fuzzed(read_clips, _clip_seeds(".bvh"), bvh, spoilt_words),
+        "gltf": Fuzzed(read_clips, _clip_seeds(".glb"), JSON, spoilt_glb),
+        "character": Fuzzed(drawn, _clip_seeds(".glb"), JSON, spoilt_glb),
+        "textgrid": Fuzzed(voice_from_phones, _only(".TextGrid"), (b'"', b"<exists>", b"IntervalTier"), spoilt_words),
+        "elan": Fuzzed(read_elan, _only(".eaf"), XML, spoilt_words),
+        "subtitles": Fuzzed(read_transcript, _only(".vtt", ".srt", ".ctm"), (b" --> ", b"<v Ann>", b"WEBVTT"), spoilt_words),
+        "transcript": Fuzzed(read_transcript, _only(".json", ".whisper", ".ibm"), JSON, spoilt_json),
+        "sound": Fuzzed(read_voice, _wav, (b"RIFF", b"fmt ", b"data", b"OggS", b"fLaC"), None),
+        "keypoints": Fuzzed(read_keypoints, _keypoints, JSON, spoilt_json),
+        "project": Fuzzed(read_project, _project, (b"&a", b"*a", b"!!x", b"{", b"[", b"- ", b"? "), spoilt_words),
+        "journal": Fuzzed(lambda path: read_journal(path, None), _journal, JSON, None),
+        "export": Fuzzed(lambda path: read_export(path, motions=False), _export, JSON, spoilt_json),
+        "log": Fuzzed(read_log, _log, JSON, None),
+        "study": Fuzzed(read_study, lambda: {"study.yaml": study.read_bytes()} if study.is_file() else {"study.yaml": b"study: 1\n"}, (b"&a", b"{", b"- "), spoilt_words),
+        "lines": Fuzzed(listed, _fixed(a_csv=b"id,text\nl1,Hello\nl2,\"Well, no\"\n"), (b'"', b",", b"\0", b";", b"\t"), spoilt_words),
+        "patterns": Fuzzed(read_patterns, _fixed(a_json=b'{"words":{"beat":["x"]},"patterns":[]}'), JSON, None),
+        "osc": Fuzzed(osc, _fixed(a_osc=note, b_osc=bundle), (b",", b"[", b"]", b"#bundle\0"), None),
+        "message": Fuzzed(message, _fixed(a_json=b'[{"do":"gesture","tags":["beat"],"in":1.5},{"do":"look","to":[0,1,2]}]'), JSON, spoilt_json),
+        "picture": Fuzzed(picture, _fixed(a_png=b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1" + bytes(9), b_jpg=b"\xff\xd8\xff\xe0\0\4ab\xff\xc0\0\x0b\x08\0\1\0\1\1\1\x11\0" + bytes(9)), (b"\xff\xc0", b"IHDR"), None),
+    }  # fmt: skip
+
+
+def survives(read: Callable[[Path], object], path: Path) -> None:
+    """Run a reader; it may only succeed or raise a FileError that helps."""
+    try:
+        read(path)
+    except FileError as error:
+        assert error.cause and error.remedy, repr(error)
+        assert str(error).isprintable() and len(str(error)) < 2000, repr(str(error))
+
+
+def fuzz(name: str, count: int, seed: int, folder: Path) -> Iterator[tuple[bytes, str]]:
+    """Yield each of `count` broken files that a reader tripped over, and how."""
+    one = _readers()[name]
+    seeds = one.seeds()
+    chance = random.Random(f"{name} {seed}")
+    for n in range(count):
+        ending = chance.choice(list(seeds))
+        data = mutated(chance, [seeds[ending]], one)
+        path = folder / f"fuzz{''.join(Path(ending).suffixes[-2:])}"
+        path.write_bytes(data)
+        begin = time.perf_counter()
+        try:
+            survives(one.read, path)
+        except Exception:
+            yield data, traceback.format_exc(limit=-4)
+        if time.perf_counter() - begin > 10:
+            yield data, f"it took {time.perf_counter() - begin:.0f} s (input {n})"
+
+
+def main(names: str, count: int = 1_000_000, seed: int = 0) -> int:
+    """Fuzz a reader, or all; keep what is found. Returns how many inputs were."""
+    files.strict = True
+    warnings.simplefilter("error")
+    found = 0
+    for name in _readers() if names == "all" else names.split(","):
+        begin, own, seen = time.perf_counter(), 0, set[str]()
+        with tempfile.TemporaryDirectory() as folder:
+            for data, why in fuzz(name, count, seed, Path(folder)):
+                own += 1
+                key = why.strip().splitlines()[-1][:80] + "".join(why.splitlines()[-3:-1])
+                if key not in seen:
+                    seen.add(key)
+                    place = KEPT / name / hashlib.sha256(data).hexdigest()[:12]
+                    place.parent.mkdir(parents=True, exist_ok=True)
+                    place.write_bytes(data)
+                    print(f"{name}: kept as {place.relative_to(ROOT)}\n{why}", flush=True)
+        found += own
+        print(f"{name}: {count:,} inputs, {own} found, {time.perf_counter() - begin:.0f} s", flush=True)
+    return found
+
+
+if __name__ == "__main__":
+    sys.exit(bool(main(sys.argv[1], *map(int, sys.argv[2:4]))))
