@@ -18,8 +18,10 @@ from app.project.writing import Writing, project_name
 from metagraph.errors import FileError
 from metagraph.formats.history import Step
 from metagraph.formats.journal import How, Journal, journal_path
+from metagraph.formats.limits import refusal
 from metagraph.formats.locking import Lock, new_owner
 from metagraph.formats.store import file_digest, moved
+from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
 
 Edit = Callable[[Project], Project]
@@ -108,10 +110,14 @@ class Document(QObject):
         """Change the project by a pure function; one undo step named `text`. Edits with the same `merge` in a
         row are one step.
 
-        Raises EditError, from the function; the project is then as it was.
+        Raises EditError, from the function or where no project file could hold what comes of it; the project
+        is then as it was.
         """
         after = function(self.project)
         if after is not self.project and after != self.project:
+            why = refusal(self.project, after)
+            if why is not None:
+                raise EditError(why)
             self.undo_stack.push(_Change(self, text, self.project, after, merge))
 
     def finish_merging(self) -> None:
