@@ -16,7 +16,7 @@ from metagraph.errors import FileError
 from metagraph.formats.locking import mark_is_gone, process_mark
 
 FORSAKEN = 86_400.0  # seconds after which an unfinished file of a computer that cannot be asked is nobody's
-# Unfinished files: those being written say by whom; the others are of before they did, or lie there for a moment.
+# Unfinished files. Those being written say by whom; the others are of before they did, or stay a moment.
 _UNFINISHED = re.compile(
     r"\.saving-(?P<mark>[0-9a-f]{8}-\d{1,10}-[0-9A-Za-z]*)-[0-9a-f]{12}|\.saving-[0-9a-f]{32}"
     r"|\.clock-\w{8}|\..+\.lock\.[0-9a-f]{12}|\..+\.[0-9a-f]{12}\.journal\.new"

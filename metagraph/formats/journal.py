@@ -255,7 +255,7 @@ class Journal:
             self.secure()
 
     def secure(self) -> bool:
-        """Let what was written survive a power cut, too; on any thread. Return whether every edit is there."""
+        """Let what was written survive a power cut, too; on any thread. Return whether no edit is missing."""
         with self._turn, suppress(OSError):
             if self._file is not None:
                 os.fsync(self._file)

@@ -1,4 +1,4 @@
-"""Edits held to what the readers of project files take: what is refused on opening is refused on making it."""
+"""Edits held to what the readers of project files take: what cannot be opened cannot be made."""
 
 from __future__ import annotations
 

@@ -19,7 +19,17 @@ _GONE: Any = object()
 _MADE = re.compile(r"[a-z]+\d+")  # ids that the program makes
 # What is one thing however many fields it has: its parts would not fit those of another.
 _WHOLE = ("skeleton", "markov", "joint_maps", "performances", "conversations", "points")
-_THINGS = ("lines", "performances", "conversations", "points", "notes", "tiers", "labels", "joint_maps", "manual")
+_THINGS = (
+    "lines",
+    "performances",
+    "conversations",
+    "points",
+    "notes",
+    "tiers",
+    "labels",
+    "joint_maps",
+    "manual",
+)
 _TIMES = frozenset(f.name for f in fields(Timing))
 _TEXTS = ("name", "text", "path", "sha256", "notes", "made_by")  # what may look like an id and is none
 
@@ -96,7 +106,9 @@ def _renamed(data: Any, names: Mapping[str, str]) -> Any:
 
 
 def _is_keyed(data: Any) -> bool:
-    return isinstance(data, list) and all(isinstance(x, Mapping) and isinstance(x.get("id"), str) for x in data)
+    return isinstance(data, list) and all(
+        isinstance(x, Mapping) and isinstance(x.get("id"), str) for x in data
+    )
 
 
 def _merged(
@@ -109,7 +121,9 @@ def _merged(
         return theirs
     if thing and (mine is _GONE or theirs is _GONE):
         left = theirs if mine is _GONE else mine
-        kept.append(f"{where}: removed {'here' if mine is _GONE else 'on disk'}, and kept since it was changed")
+        kept.append(
+            f"{where}: removed {'here' if mine is _GONE else 'on disk'}, and kept since it was changed"
+        )
         return left
     lists = [x for x in (base, mine, theirs) if x is not _GONE]
     if where != "skeleton" and all(map(_is_keyed, lists)) and any(lists):
@@ -158,7 +172,9 @@ def _timed(base: Data, mine: Data, theirs: Data, where: str, kept: list[str]) ->
 
 def _of_lists(base: Any, mine: Any, theirs: Any, where: str, kept: list[str], depth: int) -> list[Any]:
     """Merge things with ids; in the order of theirs, each new one of mine behind what it stands behind."""
-    old, ours, others = ({x["id"]: x for x in (side if side is not _GONE else [])} for side in (base, mine, theirs))
+    old, ours, others = (
+        {x["id"]: x for x in (side if side is not _GONE else [])} for side in (base, mine, theirs)
+    )
     names = {i: x.get("name") or i for i, x in [*old.items(), *others.items(), *ours.items()]}
     what = where.rpartition(".")[2].removesuffix("s")
     merged = _of_fields(old, ours, others, lambda i: f"{what} '{names[i]}'", kept, depth, True)

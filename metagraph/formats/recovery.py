@@ -216,9 +216,7 @@ def read_journal(journal: Path, saved: Path | None) -> Left | None:
             bad = count
         count = (good + bad) // 2
     if found is None:
-        raise FileError(
-            journal, _ANOTHER if changed and not behind else "is damaged", "line 2", _KEPT
-        )
+        raise FileError(journal, _ANOTHER if changed and not behind else "is damaged", "line 2", _KEPT)
     return Left(
         journal,
         found,

@@ -298,7 +298,8 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
             "Move its end behind its start.",
         )
     elif (
-        action.kind != "stance" and _sound(timing.blend_in + timing.blend_out)
+        action.kind != "stance"
+        and _sound(timing.blend_in + timing.blend_out)
         and timing.blend_in + timing.blend_out > end - timing.start + tolerance
     ):
         yield at(
@@ -309,7 +310,9 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
         )
     for name, blend in (("in", timing.blend_in), ("out", timing.blend_out)):
         if not _sound(blend):
-            yield at("error", "blend", f"blends {name} for {blend:g} s", f"Set its blend {name} to 0 s or more.")
+            yield at(
+                "error", "blend", f"blends {name} for {blend:g} s", f"Set its blend {name} to 0 s or more."
+            )
     if timing.earliest_exit is not None and not timing.start <= timing.earliest_exit <= end:
         yield at(
             "warning",

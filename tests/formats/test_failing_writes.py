@@ -4,6 +4,7 @@ state or the new, never neither.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -105,7 +106,7 @@ def sitting(path: Path, journal: Path, made: list[Project], done: list[int]) -> 
     kept = Journal(journal, path)
     mark = None
     try:
-        for n, (before, after) in enumerate(zip(made, made[1:], strict=False)):
+        for n, (before, after) in enumerate(itertools.pairwise(made)):
             with suppress(FileError):
                 kept.edit(before, after)
                 done[0] = n + 1
@@ -151,7 +152,7 @@ def test_beginning_a_journal_anew_leaves_what_was_in_it_or_what_it_begins_with(
         folder = tmp_path / str(n)
         journal = Journal(folder / "journal", None)
         journal.begin(made[0])
-        for before, after in zip(made[:2], made[1:], strict=False):
+        for before, after in itertools.pairwise(made):
             journal.edit(before, after)
         with failing(folder, n, how, ever) as system, suppress(FileError, Killed):
             journal.begin(made[3], 3)
@@ -168,7 +169,7 @@ def test_what_found_no_room_at_first_is_written_when_there_is_room_again(tmp_pat
     journal = Journal(tmp_path / "journal", None)
     with failing(tmp_path, 0, "error", True), pytest.raises(FileError, match="No space left"):
         journal.begin(made[0])
-    for before, after in zip(made, made[1:], strict=False):
+    for before, after in itertools.pairwise(made):
         journal.edit(before, after)
     journal.close()
     left = read_journal(tmp_path / "journal", None)

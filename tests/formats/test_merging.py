@@ -33,7 +33,9 @@ def test_a_project_merged_with_itself_is_itself() -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(histories(6), st.data())
-def test_where_one_side_did_nothing_the_other_is_the_whole(states: list[Project], data: st.DataObject) -> None:
+def test_where_one_side_did_nothing_the_other_is_the_whole(
+    states: list[Project], data: st.DataObject
+) -> None:
     a, b = data.draw(st.sampled_from(states)), data.draw(st.sampled_from(states))
     for mine, theirs in ((b, a), (a, b)):
         found = merge(a, mine, theirs)
@@ -99,7 +101,10 @@ def test_what_one_removed_and_the_other_changed_stays_and_is_told(here: bool) ->
 
 def test_what_both_made_under_one_id_is_two_things_and_what_names_them_follows() -> None:
     base = first()
-    one, two = edits.add_stance(base, "arms", "mine", ["c4"]), edits.add_stance(base, "arms", "theirs", ["c5"])
+    one, two = (
+        edits.add_stance(base, "arms", "mine", ["c4"]),
+        edits.add_stance(base, "arms", "theirs", ["c5"]),
+    )
     new = [i for i in one.graphs["arms"].stances if i not in base.graphs["arms"].stances]
     assert new == [i for i in two.graphs["arms"].stances if i not in base.graphs["arms"].stances]
     mine = edits.place(one, ["c5"], "arms", "gesture", new[0])
