@@ -1,4 +1,4 @@
-"""Files that were being written when their writer was killed: swept, but only ours, and only when it is gone."""
+"""Files that a killed writer left: swept, but only ours, and only when it is gone."""
 
 from __future__ import annotations
 
