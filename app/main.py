@@ -55,6 +55,7 @@ def open_window(path: Path | None, sample: bool = False, clip: str | None = None
         files.opened.connect(lambda: _select(window, clip), Qt.ConnectionType.SingleShotConnection)
     if path is not None:
         files.open(path)
+        files.unsaved.tell()
     else:
         files.recover_untitled(lambda: files.open(SAMPLE, template=True) if sample else None)
     window.load_late_panels_soon()

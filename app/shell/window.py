@@ -149,7 +149,7 @@ class Window(QMainWindow):
         d.state_changed.connect(self.refresh)
         d.loaded.connect(shell.notice.clear)
         shell.watcher.file_touched.connect(shell.files.look_at_file)
-        shell.files.changed_outside.connect(shell.notice.tell)
+        shell.files.noticed.connect(shell.notice.tell)
         d.saved.connect(lambda: shell.learned.keep(d, shell.jobs))
         for signal in (
             s.place.layer_changed,
@@ -240,6 +240,8 @@ class Window(QMainWindow):
     # --- the window itself
 
     def event(self, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.WindowActivate:  # whoever comes back may have written the file
+            self.shell.files.look_at_file()
         # Asked last, when what has the keyboard does not want a key for itself: the space bar presses a
         # focused button.
         if (

@@ -304,10 +304,13 @@ class Journal:
                     os.close(handle)
 
     def remove(self) -> None:
-        """Forget the journal: everything in it has been saved, or was declined."""
+        """Forget the journal: everything in it has been saved, or was declined. Where that is not allowed it
+        is offered again.
+        """
         self.close()
         self._begun = False
-        self.path.unlink(missing_ok=True)
+        with suppress(OSError):
+            self.path.unlink()
 
 
 def _encoded(record: Data) -> bytes:

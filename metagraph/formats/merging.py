@@ -151,23 +151,22 @@ def _of_fields(
 ) -> Data:
     out: Data = {}
     for key in [*theirs, *(k for k in mine if k not in theirs)]:
-        three = [side.get(key, _GONE) for side in (base, mine, theirs)]
-        if things and all(isinstance(x, Mapping) for x in three):
-            three = _timed(*three, place(key), kept)
-        value = _merged(*three, place(key), kept, depth + 1, things)
+        old, ours, others = (side.get(key, _GONE) for side in (base, mine, theirs))
+        if things and all(isinstance(x, Mapping) for x in (old, ours, others)):
+            others = _timed(old, ours, others, place(key), kept)
+        value = _merged(old, ours, others, place(key), kept, depth + 1, things)
         if value is not _GONE:
             out[key] = value
     return out
 
 
-def _timed(base: Data, mine: Data, theirs: Data, where: str, kept: list[str]) -> list[Data]:
-    """Return them with one timing where both have changed it: moments of two would not be in order."""
+def _timed(base: Data, mine: Data, theirs: Data, where: str, kept: list[str]) -> Data:
+    """Return theirs with my timing where both have changed it: moments of two would not be in order."""
     old, ours, others = ({k: x[k] for k in x if k in _TIMES} for x in (base, mine, theirs))
     if old in (ours, others) or ours == others:
-        return [base, mine, theirs]
+        return theirs
     kept.append(f"{where}, its timing: changed on both sides")
-    rest = {k: v for k, v in theirs.items() if k not in _TIMES}
-    return [base, mine, {**rest, **ours}]
+    return {**{k: v for k, v in theirs.items() if k not in _TIMES}, **ours}
 
 
 def _of_lists(base: Any, mine: Any, theirs: Any, where: str, kept: list[str], depth: int) -> list[Any]:
