@@ -12,8 +12,9 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
+from app.faults import is_foreseen
 from app.project.document import Document, state_folder
-from app.project.jobs import Job, Jobs
+from app.project.jobs import WORDS, Job, Jobs
 from app.project.keeper import Keeper
 from app.project.leftovers import FoundJournal, forget, keep_as_copy, look_beside
 from app.project.opening import load_recovered, open_whole
@@ -193,9 +194,8 @@ class Files(QObject):
 
     def show_failure(self, error: Exception) -> None:
         """Say what went wrong with a job."""
-        if not isinstance(error, FileError):
-            for note in getattr(error, "__notes__", ()):
-                print(note)
+        if not (is_foreseen(error) or isinstance(error, WORDS)):
+            return  # told already, with a report
         QMessageBox.warning(self.window, "Metagraph", str(error))
 
     # --- save

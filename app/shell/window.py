@@ -21,6 +21,7 @@ from app.project.learned import Learned
 from app.project.watching import Watcher
 from app.shell.actions import Actions, Command, Standard
 from app.shell.context import Contribute, Contribution, HeaderItem, Services
+from app.shell.fault_dialog import FaultTeller
 from app.shell.header import Header
 from app.shell.job_line import JobLine
 from app.shell.keyboard import Keyboard
@@ -63,6 +64,7 @@ class WindowShell:
         )
         self.notice = services.add(Notice(window))
         services.add(Verbs())
+        self.faults = FaultTeller(self.document, window, self.tell)
 
     def tell(self, words: str) -> None:
         self.widget.statusBar().showMessage(words.replace("*", ""), 8000)
@@ -273,6 +275,7 @@ class Window(QMainWindow):
         if not self.shell.files.may_leave():
             event.ignore()
             return
+        self.shell.faults.stop()
         self.workspaces.save()
         self.shell.learned.keep(self.shell.document)
         self.shell.stage.stop()

@@ -115,7 +115,9 @@ def _figure(skeleton: Skeleton, character: Path | None, hidden: tuple[str, ...])
 
 
 if __name__ == "__main__":
+    from app.faults import install_in_child
     from app.stage import picture_process  # orders name their class by its module
 
+    install_in_child()
     with sys.stdout.buffer as out:
         picture_process.serve(sys.stdin.buffer, out)
