@@ -56,6 +56,7 @@ class FaultTeller(QObject):
 
     def stop(self) -> None:
         self._timer.stop()
+        self.document.undo_stack.indexChanged.disconnect(self._note_step)  # it tells of its end, too
         if self._listener in faults.listeners:
             faults.listeners.remove(self._listener)
 
