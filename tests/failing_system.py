@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 BY_PATH = ("open", "replace", "unlink", "chmod", "mkdir")
-BY_HANDLE = ("write", "fsync", "ftruncate", "fstat", "close")
+BY_HANDLE = ("write", "fsync", "ftruncate", "fstat", "dup", "close")
 
 
 class Killed(BaseException):
@@ -52,7 +52,7 @@ class System:
 
     def _done(self, name: str, real: Callable[..., Any], args: Any, kwargs: Any) -> Any:
         out = real(*args, **kwargs)
-        if name == "open":
+        if name in ("open", "dup"):
             self._handles.add(out)
         if name == "close":
             self._handles.discard(args[0])

@@ -48,8 +48,11 @@ def write_atomically(path: Path, content: bytes) -> None:
         ) from None
 
 
-def replace_file(path: Path, content: bytes) -> None:
-    """Put a file in the place of what is there, or leave that as it was. Raises OSError."""
+def replace_file(path: Path, content: bytes, sync: bool = True) -> None:
+    """Put a file in the place of what is there, or leave that as it was. Raises OSError.
+
+    sync: wait until it is safely on the disk; before what is there goes.
+    """
     temporary: Path | None = path.with_name(_unfinished())
     assert temporary is not None
     try:
@@ -57,7 +60,8 @@ def replace_file(path: Path, content: bytes) -> None:
         handle = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0), 0o666)
         try:
             write_all(handle, content)
-            os.fsync(handle)
+            if sync:
+                os.fsync(handle)
         finally:
             os.close(handle)
         with suppress(FileNotFoundError):
@@ -68,7 +72,8 @@ def replace_file(path: Path, content: bytes) -> None:
         if temporary is not None:
             with suppress(OSError):  # swept another time; why it was not written is to be told
                 temporary.unlink(missing_ok=True)
-    sync_folder(path.parent)
+    if sync:
+        sync_folder(path.parent)
 
 
 def write_all(handle: int, content: bytes) -> None:

@@ -175,7 +175,10 @@ class Journal:
             self.close()
             try:
                 self.path.parent.mkdir(parents=True, exist_ok=True)
-                replace_file(self.path, _encoded(head) + b"\n")  # until then the old one stands
+                # Until then the old one stands. Where none does, and a file holds all but the first edit, there
+                # is no need to wait for the disk.
+                sync = self._base is not None or self.path.exists()
+                replace_file(self.path, _encoded(head) + b"\n", sync)
                 self._begun, self._torn = True, False
                 with suppress(OSError):  # tried again with the next edit
                     self._open()
@@ -256,10 +259,16 @@ class Journal:
 
     def secure(self) -> bool:
         """Let what was written survive a power cut, too; on any thread. Return whether no edit is missing."""
-        with self._turn, suppress(OSError):
-            if self._file is not None:
-                os.fsync(self._file)
-                return self._behind is None and not self._torn
+        with suppress(OSError):
+            with self._turn:
+                if self._file is None:
+                    return False
+                handle, whole = os.dup(self._file), self._behind is None and not self._torn
+            try:
+                os.fsync(handle)  # which may take its time; edits need not wait for it
+                return whole
+            finally:
+                os.close(handle)
         return False
 
     def _write(self, record: Data) -> None:

@@ -48,20 +48,15 @@ PATIENCE = 60.0  # seconds for a process to say its first word
 def begin(folder: Path) -> None:
     """Lay down a project with a few clips, and more to be imported."""
     toy = Toy()
-    project = toy.project()
-    for number, entry in enumerate(project.clips.values()):
-        write_bvh(entry.motion, folder / entry.path.replace(".glb", ".bvh"))
-        if number < 3:
-            write_bvh(entry.motion.renamed(f"more {number}"), folder / "more" / f"more {number}.bvh")
-    found = import_files(Project("show"), folder, sorted(folder.glob("*.bvh")))
-    project = found.into(Project("show"))
-    ids = {entry.name: ident for ident, entry in project.clips.items()}
-    loop = next(i for name, i in ids.items() if name.endswith("rest loop"))
+    for name, seconds in (("rest loop", 0.5), ("rest beat", 0.3), ("rest nod", 0.3)):
+        write_bvh(toy.clip(name, seconds), folder / f"{name}.bvh")
+    for number in range(2):
+        write_bvh(toy.clip(f"more {number}", 0.3), folder / "more" / f"more {number}.bvh")
+    project = import_files(Project("show"), folder, sorted(folder.glob("*.bvh"))).into(Project("show"))
+    loop, *others = sorted(project.clips, key=lambda i: "loop" not in project.clips[i].name)
     project = edits.add_stance(project, "arms", "rest", [loop])
     stance = next(iter(project.graphs["arms"].stances))
-    project = edits.place(
-        project, [i for n, i in ids.items() if n.startswith("rest ") and i != loop], "arms", "gesture", stance
-    )
+    project = edits.place(project, others, "arms", "gesture", stance)
     save_project(project, folder / f"show{SUFFIX}")
 
 
