@@ -107,8 +107,12 @@ class Sitting:
         say("at", number)
 
     def there_and_back(self) -> None:
-        self.document.undo()
-        self.document.redo()
+        number = self.document.project.settings.seed
+        if self.document.undo_stack.canUndo():
+            say("at", number - 1)  # undone is finished, too
+            self.document.undo()
+            self.document.redo()
+            say("at", number)
 
     def save(self) -> None:
         if self.path is not None:
