@@ -175,8 +175,8 @@ class Journal:
             self.close()
             try:
                 self.path.parent.mkdir(parents=True, exist_ok=True)
-                # Until then the old one stands. Where none does, and a file holds all but the first edit, there
-                # is no need to wait.
+                # Until then the old one stands; where none does, and a file holds all but the first edit,
+                # nobody need wait.
                 sync = self._base is not None or self.path.exists()
                 replace_file(self.path, _encoded(head) + b"\n", sync)
                 self._begun, self._torn = True, False
