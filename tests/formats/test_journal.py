@@ -524,3 +524,10 @@ def test_edits_of_a_conversation_are_recovered_and_do_not_touch_its_words_again(
     found = recover(tmp_path / "journal", None)
     assert found is not None and found[1] == 4
     assert found[0].conversations == from_data(to_data(states[-1])).conversations
+
+
+def test_a_skeleton_that_was_read_twice_is_no_change_and_another_is(tmp_path: Path) -> None:
+    project = large(2)
+    again = from_data(to_data(project))
+    assert project.skeleton is not again.skeleton and "skeleton" not in changes(project, again)
+    assert changes(project, replace(again, skeleton=None))["skeleton"] == []
