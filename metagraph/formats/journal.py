@@ -61,9 +61,9 @@ def changes(before: Project, after: Project) -> Data:
     if before.markov is not after.markov and before.markov != after.markov:
         out["markov"] = {layer: markov_data(m) for layer, m in after.markov.items()}
     if before.skeleton is not after.skeleton:
-        old, new = (skeleton_data(x) if x is not None else [] for x in (before.skeleton, after.skeleton))
-        if old != new:  # to the last digit; it may have been read twice
-            out["skeleton"] = new
+        bones = [skeleton_data(x) if x is not None else [] for x in (before.skeleton, after.skeleton)]
+        if bones[0] != bones[1]:  # to the last digit; it may have been read twice
+            out["skeleton"] = bones[1]
     _keyed(out, "clips", before.clips, after.clips, clip_data)
     layers: Data = {}
     for layer in LAYERS:
