@@ -4,6 +4,7 @@ window's thread.
 
 from __future__ import annotations
 
+import contextlib
 import math
 import pickle
 import queue
@@ -119,5 +120,6 @@ if __name__ == "__main__":
     from app.stage import picture_process  # orders name their class by its module
 
     install_in_child()
-    with sys.stdout.buffer as out:
+    # Whoever wanted pictures may be gone in the middle of one.
+    with contextlib.suppress(BrokenPipeError), sys.stdout.buffer as out:
         picture_process.serve(sys.stdin.buffer, out)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication, QDialog
 
 from metagraph.formats.bvh import write_bvh
@@ -131,7 +132,10 @@ def _recover(w: Handles, _: Path) -> None:
 
     p = w.document.project
     left = [Left(Path(str(n)), p, n, None, 1e9 * n, "", n == 1, {}, 0, (), n == 2) for n in (1, 2, 3)]
-    RecoverDialog(FoundJournal(None, None, tuple(left), ("a journal: is damaged",)), None, w.window).open()
+    found = FoundJournal(None, None, tuple(left), ("a journal: is damaged",))
+    dialog = RecoverDialog(found, None, w.window)
+    dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)  # as whoever asks does
+    dialog.open()
 
 
 def _fault(w: Handles, _: Path) -> None:
@@ -139,6 +143,7 @@ def _fault(w: Handles, _: Path) -> None:
 
     dialog = FaultDialog(w.window)
     dialog.say("Something went wrong", "A part of the window could not do its work.", "Metagraph 0.1.0")
+    dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
     dialog.open()
 
 

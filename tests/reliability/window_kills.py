@@ -61,8 +61,10 @@ def work():
     if what < 0.2:
         window.shell.actions["save"].trigger()
     elif what < 0.3:
+        print("at", number - 1, flush=True)  # undone is finished, too
         window.shell.actions["undo"].trigger()
         window.shell.actions["redo"].trigger()
+        print("at", number, flush=True)
 
 window = open_window(Path(sys.argv[1]))
 
