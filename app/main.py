@@ -55,6 +55,7 @@ def open_window(path: Path | None, sample: bool = False, clip: str | None = None
         files.opened.connect(lambda: _select(window, clip), Qt.ConnectionType.SingleShotConnection)
     if path is not None:
         files.open(path)
+        files.unsaved.tell()
     else:
         files.recover_untitled(lambda: files.open(SAMPLE, template=True) if sample else None)
     window.load_late_panels_soon()
@@ -75,6 +76,11 @@ def _select(window: Window, clip: str) -> None:
 
 def run_window(path: Path | None, sample: bool = False, clip: str | None = None) -> int:
     """Open the window and stay until it is closed; return the exit status."""
+    from app import faults
+    from app.shell.fault_dialog import folder
+
     app = prepare()
-    window = open_window(path, sample, clip)  # noqa: F841 - lives as long as the program
+    faults.install(folder())
+    window = open_window(path, sample, clip)  # lives as long as the program
+    window.shell.faults.offer_left()
     return app.exec()

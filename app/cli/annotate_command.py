@@ -10,6 +10,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
+from app.cli.kept_options import kept_name
 from app.project.annotation_reading import Reading, begin, into, told
 from app.project.opening import open_whole
 from metagraph.errors import FileError
@@ -51,7 +52,7 @@ def arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--learn", action="store_true", help="learn the models of all layers that were annotated"
     )
-    parser.add_argument("--perform", metavar="NAME", help="keep it as a performance")
+    parser.add_argument("--perform", metavar="NAME", type=kept_name, help="keep it as a performance")
 
 
 def run(options: Namespace) -> int:

@@ -10,6 +10,7 @@ import time
 from argparse import ArgumentParser, Namespace
 from typing import TYPE_CHECKING
 
+from app.cli.kept_options import kept_name, kept_seed
 from metagraph.live import OSC_PORT, PORT
 
 if TYPE_CHECKING:
@@ -36,11 +37,14 @@ def arguments(parser: ArgumentParser) -> None:
         "--origin", action="append", default=[], help='let web pages of this origin connect; "null" for files'
     )
     parser.add_argument(
-        "--seed", type=int, help="another performance of the same project (default: the project's seed)"
+        "--seed", type=kept_seed, help="another performance of the same project (default: the project's seed)"
     )
     parser.add_argument("--no-idle", action="store_true", help="do nothing that is not asked for")
     parser.add_argument(
-        "--keep", metavar="NAME", help="keep what was asked in the project at the end, as a performance"
+        "--keep",
+        metavar="NAME",
+        type=kept_name,
+        help="keep what was asked in the project at the end, as a performance",
     )
 
 

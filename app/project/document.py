@@ -14,12 +14,15 @@ from pathlib import Path
 from PySide6.QtCore import QObject, QStandardPaths, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
+from app.project.opening import with_motion_of
 from app.project.writing import Writing, project_name
 from metagraph.errors import FileError
 from metagraph.formats.history import Step
 from metagraph.formats.journal import How, Journal, journal_path
+from metagraph.formats.limits import refusal
 from metagraph.formats.locking import Lock, new_owner
 from metagraph.formats.store import file_digest, moved
+from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
 
 Edit = Callable[[Project], Project]
@@ -98,7 +101,6 @@ class Document(QObject):
         self.common: Project | None = None
         self.digest: str | None = None
         self._journal: Journal | None = None
-        self._unsafe = False  # no journal can be written; that was told
         self._returned = False  # motion came back that earlier steps do not have
         self._restored: Project | None = None  # while steps are: what the next one begins with
 
@@ -108,10 +110,14 @@ class Document(QObject):
         """Change the project by a pure function; one undo step named `text`. Edits with the same `merge` in a
         row are one step.
 
-        Raises EditError, from the function; the project is then as it was.
+        Raises EditError, from the function or where no project file could hold what comes of it; the project
+        is then as it was.
         """
         after = function(self.project)
         if after is not self.project and after != self.project:
+            why = refusal(self.project, after)
+            if why is not None:
+                raise EditError(why)
             self.undo_stack.push(_Change(self, text, self.project, after, merge))
 
     def finish_merging(self) -> None:
@@ -147,9 +153,9 @@ class Document(QObject):
             self._write_edit(self._restored, project, text, how)
             return
         if self._returned:
-            project = _with_motion(project, self.project)
+            project = with_motion_of(project, self.project)
         before, self.project = self.project, project
-        if self._journal is None and not self._unsafe:  # the first edit of a window that opened nothing
+        if self._journal is None:  # the first edit of a window that opened nothing
             self._begin_journal(before if self.path is None or self.read_only else None)
         self._write_edit(before, project, text, how)
         self.changed.emit(before, project)
@@ -234,6 +240,16 @@ class Document(QObject):
         self._begin_journal(None)
         self.state_changed.emit()
 
+    def merge(self, project: Project, theirs: Project, digest: str) -> None:
+        """Take over what was made of this project and of what another program has made of the file: one step,
+        to be saved. theirs, digest: what the file holds, and that file's.
+        """
+        self.undo_stack.push(_Change(self, "Merge with the file", self.project, project, None))
+        self.common, self.digest = theirs, digest
+        self.undo_stack.resetClean()
+        self.keep_all()
+        self.state_changed.emit()
+
     def save(self, path: Path | None = None) -> None:
         """Write the project at once, whatever its file has become; see `begin_saving`. Raises FileError."""
         writing = self.begin_saving(path)
@@ -313,15 +329,15 @@ class Document(QObject):
         """base: what the journal has to hold itself, since no file does; unsaved: how many edits that has
         which no file has.
         """
-        old, self._journal, self._unsafe = self._journal, None, False
+        old, self._journal = self._journal, None
         if old is not None:
             old.close()
         journal = Journal(self.journal_place, self.path, self.owner, self.digest)
         if base is not None:
             try:
                 journal.begin(base, unsaved)
-            except (FileError, OSError) as error:
-                self._unsafe = True  # what was in the old one stays there
+            except (FileError, OSError) as error:  # what was in the old one stays there
+                self._journal = journal  # which tries again with each edit
                 self.failed.emit(f"Autosave is off: {error}")
                 return
         if (
@@ -346,6 +362,10 @@ class Document(QObject):
         for step in steps:
             self._write_edit(step.before, step.after, step.text(), "done")
 
+    def secured(self) -> bool:
+        """Return whether the journal is safely on the disk with every edit that is in no file."""
+        return self._journal is not None and self._journal.secure()
+
     def touch_journal(self) -> None:
         """See `Journal.touch`."""
         if self._journal is not None:
@@ -368,14 +388,6 @@ class Document(QObject):
             return file_digest(self.path)
         except OSError:
             return None
-
-
-def _with_motion(project: Project, other: Project) -> Project:
-    """Return the project, its clips without motion as `other` has them."""
-    found = {
-        i: other.clips[i] for i, e in project.clips.items() if e.motion is None and other.clips.get(i) == e
-    }
-    return replace(project, clips={**project.clips, **found}) if found else project
 
 
 def state_folder() -> Path:

@@ -12,21 +12,17 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
+from app.faults import is_foreseen
 from app.project.document import Document, state_folder
-from app.project.jobs import Job, Jobs
+from app.project.jobs import WORDS, Job, Jobs
 from app.project.keeper import Keeper
-from app.project.leftovers import (
-    FoundJournal,
-    forget,
-    keep_as_copy,
-    look_beside,
-    read_untitled,
-    untitled_journals,
-)
-from app.project.opening import load_recovered, load_whole, open_whole
-from app.project.questions import ask_changed, ask_held, ask_keep, ask_recover, holder_words
+from app.project.leftovers import FoundJournal, forget, keep_as_copy, look_beside
+from app.project.opening import load_recovered, open_whole
+from app.project.outside import Outside
+from app.project.questions import ask_held, holder_words
+from app.project.recovering import Choice, ask_recover
 from app.project.saver import Saver
-from app.project.writing import FileChangedError, file_changed
+from app.project.unsaved import Unsaved, not_steps
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.history import Step
@@ -43,12 +39,12 @@ PRACTICE = Path(__file__).resolve().parents[2] / "sample_clips" / f"practice{SUF
 
 class Files(QObject):
     """told: words for the status bar. report: (title, lines) to read. opened: a project is shown.
-    changed_outside: (words, tip, what shows more), when another program has written the project file."""
+    noticed: (words, tip, what shows more), to be read when there is time."""
 
     told = Signal(str)
     report = Signal(str, object)
     opened = Signal()
-    changed_outside = Signal(str, str, object)
+    noticed = Signal(str, str, object)
 
     def __init__(self, document: Document, jobs: Jobs, window: QWidget) -> None:
         super().__init__(window)
@@ -56,18 +52,12 @@ class Files(QObject):
         self.saver = Saver(document, jobs, self)
         self.saver.saved.connect(self._saved)
         self.saver.failed.connect(self._not_saved)
-        self.saver.changed.connect(self._changed)
+        self.unsaved = Unsaved(self)
+        self.outside = Outside(self)
         self.keeper = Keeper(document, jobs, self)
         self.keeper.told.connect(self.told)
         self._asked_for: Lock | None = None  # of the place that is being saved to
-        self._told_of: str | None = None  # the digest of a changed file that was told of
-        self._era = 0  # counts the projects that were shown
-        document.loaded.connect(self._next_era)
         self.closed = ""  # why no other project or clip may be brought in now, in words
-
-    def _next_era(self) -> None:
-        self._era += 1
-        self._told_of = None
 
     def refuse(self) -> bool:
         """Return whether nothing may be brought in now, and say why."""
@@ -129,48 +119,43 @@ class Files(QObject):
             read_only = answer == "read only"
             if answer == "take over" and found.lock is not None:
                 holder = found.lock.acquire(take_over=True)
-        for note in found.notes:
-            self.told.emit(note)
-        chosen: Left | None = None
-        copies: list[Left] = []
-        for n, left in enumerate(found.left):
-            if chosen is None:
-                chosen = left if ask_recover(self.window, left, path, len(found.left) - n - 1) else None
-            elif ask_keep(self.window, left, path):
-                copies.append(left)
-        self._open(path, before, found, chosen, copies, read_only=read_only)
+        choices = ask_recover(self.window, found, path) if found.left else ()
+        if choices is None:
+            _release(found.lock, self.document)
+            return
+        if found.notes and not found.left:
+            self.report.emit("Edits that cannot be recovered are kept", list(found.notes))
+        self._open(path, before, found, tuple(zip(found.left, choices, strict=True)), read_only=read_only)
 
     def _open(
         self,
         path: Path,
         before: Project,
         found: FoundJournal | None = None,
-        chosen: Left | None = None,
-        copies: Sequence[Left] = (),
+        choices: Sequence[tuple[Left, Choice]] = (),
         template: bool = False,
         read_only: bool = False,
     ) -> None:
-        """Load a project and its clips, and show it in place of `before`. chosen: a journal's edits, taken
-        over; copies: those saved beside it.
+        """Load a project and its clips, and show it in place of `before`. choices: what becomes of journals'
+        edits.
         """
+        chosen = next((left for left, choice in choices if choice == "recover"), None)
+        copies = [left for left, choice in choices if choice == "copy"]
+        dropped = [left for left, choice in choices if choice == "discard"]
         lock = found.lock if found is not None and found.lock is not None and found.lock.held else None
 
         def work(job: Job) -> tuple[Opened, Project | None, list[Path], tuple[Step, ...]]:
             kept = [keep_as_copy(other, path) for other in copies]
             if chosen is None:
                 return open_whole(path, job.tell), None, kept, ()
-            common = None if chosen.behind else read_project(path)
+            common = chosen.common if chosen.behind else read_project(path)
             opened, steps = load_recovered(chosen, path.parent, job.tell)
             return replace(opened, digest=chosen.digest), common, kept, steps
-
-        def release() -> None:
-            if lock is not None and (self.document.lock is None or self.document.lock.path != lock.path):
-                lock.release()
 
         def done(result: tuple[Opened, Project | None, list[Path], tuple[Step, ...]]) -> None:
             opened, common, kept, steps = result
             if self.document.project is not before and not self.may_leave():
-                release()
+                _release(lock, self.document)
                 return  # it was edited meanwhile
             if template:
                 self.document.load(absolute(opened.project, path.parent), None)
@@ -178,7 +163,7 @@ class Files(QObject):
                 self.document.load(
                     opened.project,
                     path,
-                    _not_steps(chosen, steps) if chosen is not None else 0,
+                    not_steps(chosen, steps) if chosen is not None else 0,
                     steps=steps,
                     common=common,
                     digest=opened.digest,
@@ -186,65 +171,31 @@ class Files(QObject):
                     read_only=read_only,
                 )
                 self._remember(path)
-            for other in found.left if found is not None else ():
+            over = chosen is not None and self.document.secured()  # else it stays, and is offered again
+            for other in [*dropped, *copies, *([chosen] if chosen is not None and over else [])]:
                 forget(other.path)
             self.opened.emit()
+            if chosen is not None and chosen.behind:
+                self.look_at_file()
             if kept:
                 self.told.emit(f"Saved beside it: {', '.join(place.name for place in kept)}")
             if opened.notes:
                 self.report.emit(f"{path.name} was opened, but", list(opened.notes))
 
         def failed(error: Exception) -> None:
-            release()
+            _release(lock, self.document)
             self.show_failure(error)
 
         self.jobs.start(f"Opening {path.name}", work, done, failed)
 
-    def recover_untitled(self, otherwise: Callable[[], object] = lambda: None) -> None:
+    def recover_untitled(self, otherwise: Callable[[], object] | None = None) -> None:
         """Offer what was never saved before a crash; where nothing is, or is wanted, do `otherwise`."""
-        journals = untitled_journals()
-        if journals:
-            self.jobs.start(
-                "Recovering",
-                lambda _: read_untitled(journals),
-                lambda found: self._offer(found, otherwise),
-                self.show_failure,
-            )
-        else:
-            otherwise()
-
-    def _offer(self, found: FoundJournal, otherwise: Callable[[], object]) -> None:
-        for note in found.notes:
-            self.told.emit(note)
-        for n, left in enumerate(found.left):
-            if ask_recover(self.window, left, None, len(found.left) - n - 1):
-                break
-            forget(left.path)
-        else:
-            otherwise()
-            return
-        era = self._era
-
-        def done(result: tuple[Opened, tuple[Step, ...]]) -> None:
-            if era != self._era or self.document.dirty:
-                return  # it is offered again another time
-            opened, steps = result
-            self.document.load(opened.project, None, _not_steps(left, steps), steps=steps)
-            forget(left.path)
-            self.opened.emit()
-            rest = len(found.left) - n - 1
-            if rest:
-                self.told.emit(f"{rest} more will be offered when Metagraph is started again.")
-
-        self.jobs.start(
-            "Recovering", lambda job: load_recovered(left, Path("/"), job.tell), done, self.show_failure
-        )
+        self.unsaved.offer(otherwise)
 
     def show_failure(self, error: Exception) -> None:
         """Say what went wrong with a job."""
-        if not isinstance(error, FileError):
-            for note in getattr(error, "__notes__", ()):
-                print(note)
+        if not (is_foreseen(error) or isinstance(error, WORDS)):
+            return  # told already, with a report
         QMessageBox.warning(self.window, "Metagraph", str(error))
 
     # --- save
@@ -293,56 +244,9 @@ class Files(QObject):
             self._asked_for = None
         QMessageBox.warning(self.window, "Not saved", str(error))
 
-    def _changed(self, changed: FileChangedError) -> None:
-        """The project file is another one than was read: ask what to do with both."""
-        document = self.document
-        era, dirty = self._era, document.dirty
-        answer = ask_changed(self.window, changed, document.common, document.project, dirty)
-        if era != self._era:
-            return
-        if answer == "save as":
-            self.save_as()
-        elif answer == "anyway":
-            self.saver.save(anyway=True)
-        elif answer == "reload" and changed.theirs is not None and changed.digest is not None:
-            theirs, digest, folder = changed.theirs, changed.digest, changed.path.parent
-
-            def done(opened: Opened) -> None:
-                if era == self._era:
-                    document.reload(opened.project, digest)
-                    self.told.emit(f"Read {changed.path.name} again")
-
-            self.jobs.start(
-                f"Reading {changed.path.name} again",
-                lambda job: load_whole(theirs, folder, job.tell),
-                done,
-                self.show_failure,
-            )
-
     def look_at_file(self) -> None:
         """Look whether the project file has changed on disk, and say so."""
-        document = self.document
-        path, digest = document.path, document.digest
-        if path is None or digest is None or self.saver.busy:
-            return
-
-        def done(changed: FileChangedError | None) -> None:
-            if (
-                changed is None
-                or self.saver.busy
-                or (document.path, document.digest) != (path, digest)
-                or changed.digest == self._told_of
-            ):
-                return
-            self._told_of = changed.digest
-            document.keep_all()
-            what = "look…" if document.dirty else "reload…"
-            tip = "Another program, another window or a version control update has written it"
-            self.changed_outside.emit(
-                f"{path.name} changed on disk: {what}", tip, lambda: self._changed(changed)
-            )
-
-        self.jobs.start("project file", lambda _: file_changed(path, digest), done, quick=True)
+        self.outside.look()
 
     def may_leave(self) -> bool:
         """Return whether the project may be left: nothing unsaved, or saved or discarded when asked."""
@@ -376,6 +280,7 @@ class Files(QObject):
             self.told.emit("The list of recent projects could not be written.")
 
 
-def _not_steps(left: Left, steps: Sequence[Step]) -> int:
-    """Return how many of a journal's edits are in no file and can no longer be undone one by one."""
-    return left.unsaved if steps else left.edits
+def _release(lock: Lock | None, document: Document) -> None:
+    """Give a lock back that was taken for a project that is not shown."""
+    if lock is not None and (document.lock is None or document.lock.path != lock.path):
+        lock.release()

@@ -9,6 +9,10 @@ from typing import Any
 
 from PySide6.QtCore import QObject, QRunnable, Qt, QThreadPool, Signal
 
+from app import faults
+
+WORDS = (OSError, MemoryError, ValueError, RuntimeError)  # what work says in words, beside errors of ours
+
 
 class Job(QObject):
     """A running job. `done` carries its result, `failed` the exception, `progress` (done, total, words).
@@ -29,6 +33,7 @@ class Job(QObject):
         self.title = title
         self._work = work
         self.cancelled = False
+        self.heard = False  # somebody waits for what it fails with
         self._over.connect(self._deliver, Qt.ConnectionType.QueuedConnection)
 
     def cancel(self) -> None:
@@ -40,9 +45,15 @@ class Job(QObject):
             if error is None:
                 self.done.emit(result)
             else:
-                self.failed.emit(error)
+                self._failed(error)
         self.ended.emit()
         self.forget()
+
+    def _failed(self, error: Exception) -> None:
+        """Tell whoever waits for it, and whoever takes what nobody foresaw or waits for."""
+        if not self.heard or not (faults.is_foreseen(error) or isinstance(error, WORDS)):
+            faults.tell(error, f"job: {self.title.split()[0] if self.title else ''}")
+        self.failed.emit(error)
 
     def forget(self) -> None:
         """Free it, and what its work and what is connected hold."""
@@ -108,6 +119,7 @@ class Jobs(QObject):
             job.done.connect(done)
         if failed is not None:
             job.failed.connect(failed)
+            job.heard = True
         if not quick:
             self.running.append(job)
             job.ended.connect(lambda: self._ended(job))

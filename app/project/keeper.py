@@ -28,7 +28,7 @@ class Keeper(QObject):
 
     def refresh(self) -> None:
         """Touch them once."""
-        if self._busy or self.document.path is None:
+        if self._busy:
             return
         self._busy = True
         document, lock = self.document, self.document.lock

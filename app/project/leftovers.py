@@ -4,38 +4,45 @@ ended in a crash.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from app.project.document import state_folder
 from metagraph.errors import FileError
+from metagraph.formats.atomic import sweep
 from metagraph.formats.locking import Holder, Lock, Owner
 from metagraph.formats.recovery import Left, journals_in, left_journals, read_journal
-from metagraph.formats.store import SUFFIX, save_project
+from metagraph.formats.store import SUFFIX, load_returned, save_project
+from metagraph.graph.model import Project
+from metagraph.motion.clip import Clip
 
-UNTITLED = (
-    r"\.untitled\.[0-9a-f]+\.journal|untitled(-\d+)?\.journal"  # the second as they were called at first
-)
+# The second as they were called at first, `.old` as those were that could not be read.
+UNTITLED = r"\.untitled\.[0-9a-f]+\.(journal|old)|untitled(-\d+)?\.(journal|old)"
+PICTURES = 8  # journals that are shown with one, the latest first
 
 
 @dataclass(frozen=True)
 class FoundJournal:
     """lock: ours, unless there is a holder. left: journals with edits, the latest first. notes: what cannot
-    be recovered, in words.
+    be recovered, in words. poses: for a journal's picture, a clip of its project where one could be read.
     """
 
     lock: Lock | None
     holder: Holder | None
     left: tuple[Left, ...]
     notes: tuple[str, ...]
+    poses: Mapping[Path, Clip] = field(default_factory=dict)
 
 
 def look_beside(path: Path, owner: Owner) -> FoundJournal:
-    """Take the lock of a project file, and read the journals that were left beside it."""
+    """Take the lock of a project file, and read the journals that were left beside it; what was left
+    half-written there goes.
+    """
     if not path.is_file():
         return FoundJournal(None, None, (), ())
+    sweep(path.resolve().parent)
     lock = Lock(path, owner)
     return FoundJournal(lock, lock.acquire(), *_read(left_journals(path), path))
 
@@ -46,26 +53,43 @@ def untitled_journals() -> list[Path]:
 
 
 def read_untitled(journals: Sequence[Path]) -> FoundJournal:
+    sweep(state_folder())
     return FoundJournal(None, None, *_read(journals, None))
 
 
-def _read(journals: Sequence[Path], saved: Path | None) -> tuple[tuple[Left, ...], tuple[str, ...]]:
+def _read(
+    journals: Sequence[Path], saved: Path | None
+) -> tuple[tuple[Left, ...], tuple[str, ...], dict[Path, Clip]]:
     left: list[Left] = []
     notes: list[str] = []
     for journal in journals:
         try:
             found = read_journal(journal, saved)
         except FileError as error:
-            kept = journal.with_suffix(".old")
-            with suppress(OSError):
-                journal.replace(kept)
-            notes.append(f"{error} ({kept.name})")
+            notes.append(f"{error} ({journal})")
             continue
-        if found is not None:
-            left.insert(0, found)
-        else:
+        if found is None:
             forget(journal)  # all of it was saved, or nothing edited
-    return tuple(left), tuple(notes)
+            continue
+        left.insert(0, found)
+    folder = saved.parent if saved is not None else None
+    poses = {found.path: _pose(found.project, folder) for found in left[:PICTURES]}
+    return tuple(left), tuple(notes), {path: clip for path, clip in poses.items() if clip is not None}
+
+
+def _pose(project: Project, folder: Path | None) -> Clip | None:
+    """Return a clip that shows what a project is about: of its base pose, else its first stance, else its
+    first.
+    """
+    loops = [a.clip for a in project.actions() if a.kind == "stance"]
+    for ident in dict.fromkeys(i for i in (project.base.clip, *loops[:1], *list(project.clips)[:1]) if i):
+        entry = project.clips.get(ident)
+        if entry is not None:
+            with suppress(FileError, OSError, ValueError):
+                loaded = load_returned(replace(project, clips={ident: entry}), folder).project
+                if loaded.clips[ident].motion is not None:
+                    return loaded.clips[ident].motion
+    return None
 
 
 def forget(journal: Path) -> None:

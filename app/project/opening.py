@@ -47,6 +47,14 @@ def take_over(project: Project, found: Project) -> Project:
     return replace(project, clips=clips, skeleton=project.skeleton or found.skeleton)
 
 
+def with_motion_of(project: Project, other: Project) -> Project:
+    """Return the project, its clips without motion as `other` has them."""
+    found = {
+        i: other.clips[i] for i, e in project.clips.items() if e.motion is None and other.clips.get(i) == e
+    }
+    return replace(project, clips={**project.clips, **found}) if found else project
+
+
 def _faced(project: Project, folder: Path) -> Project:
     """Return the project knowing its character's morph targets; what is wrong with the file, whoever draws it
     says.

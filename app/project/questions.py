@@ -1,6 +1,4 @@
-"""What is asked about a project file: who has it open, what a crash left, what to do when another program has
-written it.
-"""
+"""What is asked about a project file: who has it open, what to do when another program has written it."""
 
 from __future__ import annotations
 
@@ -16,6 +14,7 @@ from PySide6.QtWidgets import (
     QLabel,
     QListWidget,
     QMessageBox,
+    QPushButton,
     QVBoxLayout,
     QWidget,
 )
@@ -23,13 +22,12 @@ from PySide6.QtWidgets import (
 from app.look.theme import strengthen
 from app.project.writing import FileChangedError
 from metagraph.formats.locking import Holder
-from metagraph.formats.recovery import Left
 from metagraph.graph.differences import differences
 from metagraph.graph.model import Project
 
 Role = QMessageBox.ButtonRole
 Held = Literal["read only", "copy", "take over"]
-Changed = Literal["save as", "reload", "anyway"]
+Changed = Literal["merge", "save as", "reload", "anyway"]
 
 
 def moment_words(seconds: float) -> str:
@@ -71,39 +69,6 @@ def ask_held(window: QWidget, path: Path, holder: Holder) -> Held | None:
     return answers.get(box.clickedButton())
 
 
-def ask_recover(window: QWidget, left: Left, saved: Path | None, more: int = 0) -> bool:
-    """Ask whether to take over a journal's edits. more: how many other journals there are."""
-    name = saved.name if saved is not None else "A project that was never saved"
-    edits = f"{left.edits} edit{'s' if left.edits != 1 else ''}"
-    words = (
-        f"{name} was not closed properly. {edits.capitalize()} since the last save can be recovered; "
-        "the "
-        "last is of"
-    )
-    words += f" {moment_words(left.written)}."
-    if left.behind:
-        words += "\n\nThe file has been saved by somebody else since. Saving will show what differs."
-    if more:
-        words += f"\n\nEdits of {more} more window{'s' if more > 1 else ''} are offered next."
-    return _yes(window, words)
-
-
-def ask_keep(window: QWidget, left: Left, saved: Path) -> bool:
-    """Ask whether to save another window's edits as a copy, since those of one are taken over already."""
-    edits = f"{left.edits} edit{'s' if left.edits != 1 else ''}"
-    words = (
-        f"Another window on {saved.name} was not closed properly either. {edits.capitalize()} of it, "
-        "the "
-        "last of"
-    )
-    return _yes(window, f"{words} {moment_words(left.written)}, can be saved as a copy beside it.")
-
-
-def _yes(window: QWidget, words: str) -> bool:
-    box = QMessageBox.StandardButton
-    return QMessageBox.question(window, "Recover edits?", words, box.Yes | box.Discard, box.Yes) == box.Yes
-
-
 def ask_changed(
     window: QWidget, changed: FileChangedError, common: Project | None, mine: Project, dirty: bool
 ) -> Changed | None:
@@ -122,23 +87,23 @@ def ask_changed(
         words += f"\n\nIt cannot be read: {changed.why}"
     if dirty:
         words += (
-            "\n\nSaving anyway replaces what is there. Reloading is a step that can be undone; your "
-            "edits are kept in it."
+            "\n\nMerging takes what was done on both sides. Saving anyway replaces what is there. "
+            "Merging and reloading are steps that can be undone; your edits are kept in them."
         )
     box.setInformativeText(words)
-    answers: dict[object, Changed] = {}
+    ways: list[tuple[QPushButton, Changed]] = []
+    if dirty and changed.theirs is not None and common is not None:
+        ways.append((box.addButton("Merge", Role.AcceptRole), "merge"))
     if dirty:
-        first = box.addButton("Save as…", Role.AcceptRole)
-        answers[first] = "save as"
+        ways.append((box.addButton("Save as…", Role.AcceptRole), "save as"))
     if changed.theirs is not None:
-        reload = box.addButton("Reload", Role.AcceptRole)
-        answers[reload] = "reload"
-        first = first if dirty else reload
+        ways.append((box.addButton("Reload", Role.AcceptRole), "reload"))
     show = box.addButton("Show differences", Role.ActionRole)
-    if dirty:
-        answers[box.addButton("Save anyway", Role.DestructiveRole)] = "anyway"
     cancel = box.addButton(QMessageBox.StandardButton.Cancel)
-    box.setDefaultButton(first if answers else cancel)
+    box.setDefaultButton(ways[0][0] if ways else cancel)
+    if dirty:
+        ways.append((box.addButton("Save anyway", Role.DestructiveRole), "anyway"))
+    answers: dict[object, Changed] = dict(ways)
     while True:
         box.exec()
         if box.clickedButton() is not show:

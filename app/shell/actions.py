@@ -11,6 +11,8 @@ from typing import Literal
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QMenu, QMenuBar, QWidget
 
+from app import faults
+
 Standard = QKeySequence.StandardKey
 Words = str | Callable[[], str]
 
@@ -67,6 +69,11 @@ class Command:
         return self.words.replace("&", "").rstrip("…")
 
 
+def _run(command: Command) -> None:
+    faults.note(command.id)
+    command.run()
+
+
 class Actions:
     """The window's QActions by command id. `refresh` enables and checks them as things are now.
 
@@ -97,7 +104,7 @@ class Actions:
                 menu = QMenu(parent)
                 menu.aboutToShow.connect(lambda m=menu, fill=command.fill: (m.clear(), fill(m)))
                 action.setMenu(menu)
-            action.triggered.connect(lambda _=False, run=command.run: run())
+            action.triggered.connect(lambda _=False, c=command: _run(c))
             parent.addAction(action)
             self.by_id[command.id] = action
 

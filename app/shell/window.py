@@ -21,6 +21,7 @@ from app.project.learned import Learned
 from app.project.watching import Watcher
 from app.shell.actions import Actions, Command, Standard
 from app.shell.context import Contribute, Contribution, HeaderItem, Services
+from app.shell.fault_dialog import FaultTeller
 from app.shell.header import Header
 from app.shell.job_line import JobLine
 from app.shell.keyboard import Keyboard
@@ -63,6 +64,7 @@ class WindowShell:
         )
         self.notice = services.add(Notice(window))
         services.add(Verbs())
+        self.faults = FaultTeller(self.document, window, self.tell)
 
     def tell(self, words: str) -> None:
         self.widget.statusBar().showMessage(words.replace("*", ""), 8000)
@@ -149,7 +151,7 @@ class Window(QMainWindow):
         d.state_changed.connect(self.refresh)
         d.loaded.connect(shell.notice.clear)
         shell.watcher.file_touched.connect(shell.files.look_at_file)
-        shell.files.changed_outside.connect(shell.notice.tell)
+        shell.files.noticed.connect(shell.notice.tell)
         d.saved.connect(lambda: shell.learned.keep(d, shell.jobs))
         for signal in (
             s.place.layer_changed,
@@ -240,6 +242,8 @@ class Window(QMainWindow):
     # --- the window itself
 
     def event(self, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.WindowActivate:  # whoever comes back may have written the file
+            self.shell.files.look_at_file()
         # Asked last, when what has the keyboard does not want a key for itself: the space bar presses a
         # focused button.
         if (
@@ -271,6 +275,7 @@ class Window(QMainWindow):
         if not self.shell.files.may_leave():
             event.ignore()
             return
+        self.shell.faults.stop()
         self.workspaces.save()
         self.shell.learned.keep(self.shell.document)
         self.shell.stage.stop()

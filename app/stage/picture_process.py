@@ -4,6 +4,7 @@ window's thread.
 
 from __future__ import annotations
 
+import contextlib
 import math
 import pickle
 import queue
@@ -115,7 +116,10 @@ def _figure(skeleton: Skeleton, character: Path | None, hidden: tuple[str, ...])
 
 
 if __name__ == "__main__":
+    from app.faults import install_in_child
     from app.stage import picture_process  # orders name their class by its module
 
-    with sys.stdout.buffer as out:
+    install_in_child()
+    # Whoever wanted pictures may be gone in the middle of one.
+    with contextlib.suppress(BrokenPipeError), sys.stdout.buffer as out:
         picture_process.serve(sys.stdin.buffer, out)

@@ -1,35 +1,44 @@
-"""Writing files whole or not at all."""
+"""Writing files whole or not at all: what stands there is replaced once what comes in its place is safely on
+the disk.
+"""
 
 from __future__ import annotations
 
 import errno
 import os
+import re
+import time
 import uuid
+from contextlib import suppress
 from pathlib import Path
 
 from metagraph.errors import FileError
+from metagraph.formats.locking import mark_is_gone, process_mark
+
+FORSAKEN = 86_400.0  # seconds after which an unfinished file of a computer that cannot be asked is nobody's
+# Unfinished files. Those being written say by whom; the others are of before they did, or stay a moment.
+_UNFINISHED = re.compile(
+    r"\.saving-(?P<mark>[0-9a-f]{8}-\d{1,10}-[0-9A-Za-z]*)-[0-9a-f]{12}|\.saving-[0-9a-f]{32}"
+    r"|\.clock-\w{8}|\..+\.lock\.[0-9a-f]{12}|\..+\.[0-9a-f]{12}\.journal\.new"
+)
+_SWEPT: set[str] = set()  # folders this process has looked through
 
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write a file whole or not at all; a link is kept, its target written. Raises FileError."""
-    temporary = None
+    """Write a file whole or not at all; a link is kept, its target written. Raises FileError.
+
+    When it returns, the file survives a power cut, as far as the system keeps its word. What processes that
+    are gone have left half-written in that folder is swept, once a process.
+    """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        if str(path.parent) not in _SWEPT:
+            _SWEPT.add(str(path.parent))
+            sweep(path.parent)
         path = path.resolve()
-        exists = path.exists()
-        if exists and not os.access(path, os.W_OK):
+        if path.exists() and not os.access(path, os.W_OK):
             raise PermissionError(errno.EACCES, "it is read-only")
-        temporary = path.with_name(f".saving-{uuid.uuid4().hex}")
-        # The system takes the umask off; asking for it would mean to set it, for every thread of the process.
-        handle = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0), 0o666)
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        if exists:
-            temporary.chmod(path.stat().st_mode & 0o777)
-        temporary.replace(path)
-        temporary = None
+        replace_file(path, content)
     except OSError as error:
         raise FileError(
             path,
@@ -37,6 +46,88 @@ def write_atomically(path: Path, content: bytes) -> None:
             "on saving it",
             "Choose a place you may write to, with space left.",
         ) from None
+
+
+def replace_file(path: Path, content: bytes, sync: bool = True) -> None:
+    """Put a file in the place of what is there, or leave that as it was. Raises OSError.
+
+    sync: wait until it is safely on the disk; before what is there goes.
+    """
+    temporary: Path | None = path.with_name(_unfinished())
+    assert temporary is not None
+    try:
+        # The system takes the umask off; asking for it would mean to set it, for every thread of the process.
+        handle = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0), 0o666)
+        try:
+            write_all(handle, content)
+            if sync:
+                os.fsync(handle)
+        finally:
+            os.close(handle)
+        with suppress(FileNotFoundError):
+            temporary.chmod(path.stat().st_mode & 0o777)
+        temporary.replace(path)
+        temporary = None
     finally:
         if temporary is not None:
-            temporary.unlink(missing_ok=True)
+            with suppress(OSError):  # swept another time; why it was not written is to be told
+                temporary.unlink(missing_ok=True)
+    if sync:
+        sync_folder(path.parent)
+
+
+def write_all(handle: int, content: bytes) -> None:
+    """Write all of it, however little the system takes at once. Raises OSError."""
+    rest = memoryview(content)
+    while rest:
+        count = os.write(handle, rest)
+        if count <= 0:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        rest = rest[count:]
+
+
+def sync_folder(folder: Path) -> None:
+    """Let the names in a folder survive a power cut, where the system can do that; the files are there
+    already.
+    """
+    if os.name == "nt":  # it has no handles of folders
+        return
+    with suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+
+
+# --- what was left half-written
+
+
+def _unfinished() -> str:
+    """Return a name for a file that is being written by this process."""
+    return f".saving-{process_mark()}-{uuid.uuid4().hex[:12]}"
+
+
+def sweep(folder: Path) -> list[Path]:
+    """Remove what writers that are gone have left half-written in a folder; return what was removed.
+
+    Only what this program calls so, and only when its writer is gone: certainly on this computer, elsewhere
+    when it was not touched for a day.
+    """
+    swept: list[Path] = []
+    with suppress(OSError), os.scandir(folder) as found:
+        for entry in found:
+            match = _UNFINISHED.fullmatch(entry.name)
+            if match and entry.is_file(follow_symlinks=False) and _is_forsaken(match["mark"], entry):
+                with suppress(OSError):
+                    Path(entry.path).unlink()
+                    swept.append(Path(entry.path))
+    return swept
+
+
+def _is_forsaken(mark: str | None, entry: os.DirEntry[str]) -> bool:
+    gone = mark_is_gone(mark) if mark is not None else None
+    if gone is None:
+        with suppress(OSError):
+            return time.time() - entry.stat().st_mtime > FORSAKEN
+    return bool(gone)

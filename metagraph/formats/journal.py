@@ -15,11 +15,12 @@ import threading
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, BinaryIO, Literal
+from typing import Any, Literal
 
 import msgspec
 
 from metagraph.errors import FileError
+from metagraph.formats.atomic import replace_file, write_all
 from metagraph.formats.data import (
     STRUCTS,
     action_data,
@@ -34,7 +35,7 @@ from metagraph.formats.data import (
 from metagraph.formats.fields import Data, DataError
 from metagraph.formats.locking import Owner
 from metagraph.formats.manual_data import link_data, manual_data, state_data
-from metagraph.formats.store import file_digest
+from metagraph.formats.store import content_digest, file_digest
 from metagraph.graph.manual import Manual
 from metagraph.graph.model import LAYERS, Layer, MetaGraph, Project
 
@@ -60,7 +61,9 @@ def changes(before: Project, after: Project) -> Data:
     if before.markov is not after.markov and before.markov != after.markov:
         out["markov"] = {layer: markov_data(m) for layer, m in after.markov.items()}
     if before.skeleton is not after.skeleton:
-        out["skeleton"] = skeleton_data(after.skeleton) if after.skeleton is not None else []
+        bones = [skeleton_data(x) if x is not None else [] for x in (before.skeleton, after.skeleton)]
+        if bones[0] != bones[1]:  # to the last digit; it may have been read twice
+            out["skeleton"] = bones[1]
     _keyed(out, "clips", before.clips, after.clips, clip_data)
     layers: Data = {}
     for layer in LAYERS:
@@ -141,7 +144,7 @@ def _keyed(
 
 class Journal:
     """Appends edits to a file, begun with the first. Beginning replaces what was in it: whoever does has
-    taken that over, or declined it.
+    taken that over, or declined it. What cannot be written is tried again with the next edit.
 
     saved: the project file that the edits build on; digest: its SHA-256, where it was another one than it is
     now. owner: whose sitting it is, so that others leave it alone while that goes on.
@@ -151,7 +154,10 @@ class Journal:
         self, path: Path, saved: Path | None, owner: Owner | None = None, digest: str | None = None
     ) -> None:
         self.path = path
-        self._file: BinaryIO | None = None
+        self._file: int | None = None
+        self._begun, self._torn, self._size = False, False, 0  # torn: half a record stands behind `size`
+        self._saved = saved
+        self._base: tuple[Project, int] | None = None
         self._head: Data = {"saved": digest or file_digest(saved), "file": str(saved) if saved else None}
         if owner is not None:
             self._head["owner"] = msgspec.to_builtins(owner)
@@ -160,35 +166,46 @@ class Journal:
         self._turn = threading.RLock()  # a thread that saves writes, too
 
     def begin(self, base: Project | None = None, unsaved: int = 0) -> None:
-        """Start anew from the saved file, or from `base` written into the journal when there is none. Raises
+        """Start anew from the saved file, whose text is kept, or from `base` when there is none. Raises
         FileError.
 
         unsaved: how many edits of `base` are in no file.
         """
+        self._base = (base, unsaved) if base is not None else None
+        head = {**self._head, **self._foundation()}
+        with self._turn:
+            self.close()
+            try:
+                self.path.parent.mkdir(parents=True, exist_ok=True)
+                # Until then the old one stands; where none does, and a file holds all but the first edit,
+                # nobody need wait.
+                sync = self._base is not None or self.path.exists()
+                replace_file(self.path, _encoded(head) + b"\n", sync)
+                self._begun, self._torn = True, False
+                with suppress(OSError):  # tried again with the next edit
+                    self._open()
+            except OSError as error:
+                raise FileError(
+                    self.path,
+                    f"cannot be written ({error.strerror or error})",
+                    "on beginning it",
+                    "Save the project now and then.",
+                ) from None
+
+    def _foundation(self) -> Data:
+        """Return what the edits build on, so that they can be read whatever becomes of the project file."""
+        if self._base is None:
+            with suppress(OSError, UnicodeDecodeError):
+                content = self._saved.read_bytes() if self._saved is not None else b""
+                if content_digest(content) == self._head["saved"]:
+                    return {"text": content.decode("utf-8-sig")}
+            return {}
         try:
-            head = self._head if base is None else {**self._head, "unsaved": unsaved, "base": to_data(base)}
+            return {"unsaved": self._base[1], "base": to_data(self._base[0])}
         except DataError as error:
             raise FileError(
                 self.path, f"cannot be written ({error})", error.where, "Correct that value."
             ) from None
-        with self._turn:
-            self.close()
-            part = self.path.with_name(f"{self.path.name}.new")
-            try:
-                self.path.parent.mkdir(parents=True, exist_ok=True)
-                part.write_bytes(_encoded(head) + b"\n")
-                part.replace(self.path)  # until then the old one stands
-                self._file = self.path.open("r+b")
-                self._file.seek(0, os.SEEK_END)
-            except OSError as error:
-                with suppress(OSError):
-                    part.unlink(missing_ok=True)
-                raise FileError(
-                    self.path,
-                    f"cannot be written ({error.strerror})",
-                    "on beginning it",
-                    "Save the project now and then.",
-                ) from None
 
     def edit(self, before: Project, after: Project, step: str = "", how: How = "done") -> None:
         """Append one finished edit. Raises FileError when it cannot be written; the edit itself stands, and
@@ -206,16 +223,25 @@ class Journal:
                 self.path, f"cannot be written ({error})", error.where, "Correct that value."
             ) from None
         if change:
-            if self._file is None:
-                self.begin()
+            if not self._begun:
+                self._begin_with(before)
             self._write(change | ({"step": step} if step else {}) | ({"how": how} if how != "done" else {}))
         self._behind = None
+
+    def _begin_with(self, before: Project) -> None:
+        """Begin with the first edit, or when what it had to begin with could not be written."""
+        if self._base is not None:
+            self.begin(*self._base)
+        elif "text" in self._foundation():
+            self.begin()
+        else:  # the file is another one by now
+            self.begin(before)
 
     def mark(self) -> int | None:
         """Write that the project as it is now is being saved; return the mark's number, None without an edit.
         Raises FileError.
         """
-        if self._file is None or self._behind is not None:
+        if not self._begun or self._behind is not None:
             return None
         self._marks += 1
         self._write({"mark": self._marks})
@@ -223,53 +249,79 @@ class Journal:
 
     def settle(self, mark: int, digest: str) -> None:
         """Write what file a mark is about to become, before it does; on any thread. Raises FileError."""
-        if self._file is not None:
+        if self._begun:
             self._write({"mark": mark, "saved": digest})
+            self.secure()  # before the file is
 
     def touch(self) -> None:
         """Show computers that share the drive that this sitting goes on. Raises OSError."""
-        if self._file is not None:
+        if self._begun:
             os.utime(self.path)
+            self.secure()
+
+    def secure(self) -> bool:
+        """Let what was written survive a power cut, too; on any thread. Return whether no edit is missing."""
+        with suppress(OSError):
+            with self._turn:
+                if self._file is None:
+                    return False
+                handle, whole = os.dup(self._file), self._behind is None and not self._torn
+            try:
+                os.fsync(handle)  # which may take its time; edits need not wait for it
+                return whole
+            finally:
+                os.close(handle)
+        return False
 
     def _write(self, record: Data) -> None:
         with self._turn:
             self._add(record)
 
-    def _add(self, record: Data) -> None:
-        assert self._file is not None
-        start = self._file.tell()
+    def _open(self) -> None:
+        handle = os.open(self.path, os.O_RDWR | os.O_APPEND | getattr(os, "O_BINARY", 0))
         try:
-            self._file.write(_encoded(record) + b"\n")
-            self._file.flush()
+            if not self._torn:
+                self._size = os.fstat(handle).st_size
+        except OSError:
+            os.close(handle)
+            raise
+        self._file = handle
+
+    def _add(self, record: Data) -> None:
+        line = _encoded(record) + b"\n"
+        try:
+            if self._file is None:  # it could not be opened again
+                self._open()
+            assert self._file is not None
+            if self._torn:
+                os.ftruncate(self._file, self._size)
+            self._torn = True
+            write_all(self._file, line)
+            self._size += len(line)
+            self._torn = False
         except OSError as error:
-            self._cut(start)
             raise FileError(
                 self.path,
-                f"cannot be written ({error.strerror})",
+                f"cannot be written ({error.strerror or error})",
                 "on adding to it",
                 "Make room on the disk and save the project.",
             ) from None
 
-    def _cut(self, size: int) -> None:
-        """Forget half a record: what is written later must not stand behind it."""
-        try:
-            if self._file is not None:
-                self._file.close()
-            self._file = self.path.open("r+b")
-            self._file.truncate(size)
-            self._file.seek(size)
-        except OSError:
-            self._file = None
-
     def close(self) -> None:
-        if self._file is not None:
-            self._file.close()
-            self._file = None
+        with self._turn:
+            if self._file is not None:
+                handle, self._file = self._file, None
+                with suppress(OSError):  # a network drive that is away
+                    os.close(handle)
 
     def remove(self) -> None:
-        """Forget the journal: everything in it has been saved, or was declined."""
+        """Forget the journal: everything in it has been saved, or was declined. Where that is not allowed it
+        is offered again.
+        """
         self.close()
-        self.path.unlink(missing_ok=True)
+        self._begun = False
+        with suppress(OSError):
+            self.path.unlink()
 
 
 def _encoded(record: Data) -> bytes:

@@ -12,6 +12,7 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import getpass
+import hashlib
 import os
 import socket
 import subprocess
@@ -139,6 +140,36 @@ def is_gone(owner: Owner | None, file: Path) -> bool:
             return True
         return bool(started and owner.started) and started != owner.started
     return _untouched(file) > STALE
+
+
+def process_mark() -> str:
+    """Return what tells this process from all others of all computers, in letters that file names take."""
+    return _mark(os.getpid())
+
+
+@cache
+def _mark(pid: int) -> str:
+    return f"{_place()}-{pid}-{_plain(_started(pid))}"
+
+
+def _place() -> str:
+    return hashlib.sha256(f"{socket.gethostname()}\n{_machine()}".encode()).hexdigest()[:8]
+
+
+def _plain(started: str) -> str:
+    return "".join(c for c in started if c.isascii() and c.isalnum())
+
+
+def mark_is_gone(mark: str) -> bool | None:
+    """Return whether the process of a mark is gone; None where it is or was on another computer."""
+    place, pid, started = mark.split("-")
+    if place != _place():
+        return None
+    try:
+        now = _plain(_started(int(pid)))
+    except ProcessLookupError:
+        return True
+    return bool(started and now) and started != now
 
 
 def _untouched(file: Path) -> float:

@@ -7,6 +7,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,10 +18,10 @@ from metagraph.formats.data import from_data, to_data
 from metagraph.formats.fields import Data, DataError
 from metagraph.formats.journal import ABOUT, KEYED
 from metagraph.formats.locking import Owner, is_gone
-from metagraph.formats.store import file_digest, read_project
+from metagraph.formats.store import file_digest, from_text, read_project
 from metagraph.graph.model import LAYERS, Project
 
-_KEPT = "It is kept; rename it to look into it."
+_KEPT = "It is kept."
 _ANOTHER = "belongs to another state of the project file"
 
 
@@ -127,8 +128,9 @@ def apply(data: Data, change: Data) -> Data:
 class Left:
     """A journal somebody left. project: with its edits worked in, without motion; edits: how many. written:
     when the last one was, in seconds since 1970. digest: of the file the edits build on. behind: the project
-    file has changed since; the edits are whole, but not in step with it. base: what the edits begin with, as
-    plain data, of which `unsaved` edits are in no file; records: the edits after it.
+    file has changed since; the edits are whole, but not in step with it. worked_in: as it has, and the
+    journal does not tell what it was: they are worked into what it is now. base: what the edits begin with,
+    as plain data, of which `unsaved` edits are in no file; records: the edits after it.
     """
 
     path: Path
@@ -141,6 +143,12 @@ class Left:
     base: Data
     unsaved: int
     records: tuple[Data, ...]
+    worked_in: bool = False
+
+    @property
+    def common(self) -> Project | None:
+        """What the file held that the edits build on, without motion; None where nobody knows."""
+        return from_data(self.base, []) if self.digest is not None and not self.unsaved else None
 
 
 def recover(journal: Path, saved: Path | None) -> tuple[Project, int] | None:
@@ -150,7 +158,7 @@ def recover(journal: Path, saved: Path | None) -> tuple[Project, int] | None:
     Raises FileError when the journal belongs to another state of the file, or nothing in it can be used.
     """
     found = read_journal(journal, saved)
-    if found is not None and found.behind:
+    if found is not None and (found.behind or found.worked_in):
         raise FileError(journal, _ANOTHER, "line 1", _KEPT)
     return (found.project, found.edits) if found is not None else None
 
@@ -158,13 +166,17 @@ def recover(journal: Path, saved: Path | None) -> tuple[Project, int] | None:
 def read_journal(journal: Path, saved: Path | None) -> Left | None:
     """Return what a journal holds, None if that is no edit.
 
-    Raises FileError as `recover` does, but not for a journal that holds all it builds on.
+    Raises FileError when nothing in it can be used.
     """
     try:
         content = journal.read_bytes()
         written = journal.stat().st_mtime
-    except OSError:
+    except FileNotFoundError:
         return None
+    except OSError as error:
+        if journal.is_dir():
+            return None
+        raise FileError(journal, f"cannot be read ({error.strerror or error})", "", _KEPT) from None
     lines = content.split(b"\n")[:-1]  # what follows the last newline was torn
     if len(lines) < 2 and b'"unsaved":' not in content:
         return None
@@ -182,13 +194,14 @@ def read_journal(journal: Path, saved: Path | None) -> Left | None:
     head, now = records[0], file_digest(saved)
     begin = _settled(records, now)
     base = head.get("base") if begin == 1 else None
-    behind = begin == 1 and head["saved"] != now
-    if behind and not isinstance(base, dict):
-        raise FileError(journal, _ANOTHER, "line 1", _KEPT)
-    edits = [record for record in records[begin:] if "mark" not in record]
     before = head.get("unsaved", 0) if isinstance(base, dict) else 0
+    edits = [record for record in records[begin:] if "mark" not in record]
     if not edits and not before and (len(records) > 1 or len(lines) < 2):
         return None
+    changed = begin == 1 and head["saved"] != now
+    if not isinstance(base, dict) and (changed or saved is None):
+        base = _of_text(head.get("text"), journal)
+    behind = changed and isinstance(base, dict)
     if not isinstance(base, dict):
         base = to_data(read_project(saved, []) if saved is not None and saved.is_file() else Project())
     # Usually all are good; else the longest beginning that is.
@@ -203,7 +216,7 @@ def read_journal(journal: Path, saved: Path | None) -> Left | None:
             bad = count
         count = (good + bad) // 2
     if found is None:
-        raise FileError(journal, "is damaged", "line 2", _KEPT)
+        raise FileError(journal, _ANOTHER if changed and not behind else "is damaged", "line 2", _KEPT)
     return Left(
         journal,
         found,
@@ -215,7 +228,15 @@ def read_journal(journal: Path, saved: Path | None) -> Left | None:
         base,
         before,
         tuple(edits[:good]),
+        changed and not behind,
     )
+
+
+def _of_text(text: object, journal: Path) -> Data | None:
+    """Return what a project file held whose text is in a journal."""
+    with suppress(FileError):
+        return to_data(from_text(text, journal, [])) if isinstance(text, str) else None
+    return None
 
 
 def _settled(records: Sequence[Data], digest: str | None) -> int:
@@ -253,8 +274,10 @@ def _replayed(base: Data, records: Sequence[Data]) -> Project | None:
 
 
 def left_journals(saved: Path) -> list[Path]:
-    """Return the journals of a project file whose sittings are over, the latest last."""
-    return journals_in(saved.parent, rf"{re.escape(f'.{saved.name}')}(\.[0-9a-f]+)?\.journal")
+    """Return the journals of a project file whose sittings are over, the latest last; those that were put
+    aside at first, when the file had changed, among them.
+    """
+    return journals_in(saved.parent, rf"{re.escape(f'.{saved.name}')}(\.[0-9a-f]+)?\.(journal|old)")
 
 
 def journals_in(folder: Path, names: str) -> list[Path]:

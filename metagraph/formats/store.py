@@ -117,11 +117,29 @@ def save_project(project: Project, path: str | Path, was_at: Path | None = None)
 
 
 def encoded(project: Project, path: Path) -> bytes:
-    """Return what a project's file at `path` holds. Raises FileError."""
+    """Return what a project's file at `path` holds; it has been read back. Raises FileError."""
     try:
-        return to_text(to_data(project)).encode()
+        text = to_text(to_data(project))
     except DataError as error:
         raise FileError(path, f"cannot be saved: {error}", error.where, "Correct that value.") from None
+    try:
+        from_data(_parsed(text, path))
+    except DataError as error:
+        raise FileError(
+            path,
+            f"cannot be saved, since it could not be opened again: {error.where} {error}",
+            error.where,
+            "Correct that value; the file is as it was.",
+        ) from None
+    return text.encode()
+
+
+def _parsed(text: str, path: Path) -> Data:
+    try:
+        data: Data = parse(text)[0]
+    except TextError as error:
+        raise FileError(path, f"cannot be saved: {error}", f"line {error.line}", "Correct it.") from None
+    return data
 
 
 def writable(project: Project) -> Project:

@@ -297,8 +297,10 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
             f"ends at {end:.2f} s, not after its start at {timing.start:.2f} s",
             "Move its end behind its start.",
         )
-    elif not (timing.blend_in >= 0 and timing.blend_out >= 0) or (
-        action.kind != "stance" and timing.blend_in + timing.blend_out > end - timing.start + tolerance
+    elif (
+        action.kind != "stance"
+        and _sound(timing.blend_in + timing.blend_out)
+        and timing.blend_in + timing.blend_out > end - timing.start + tolerance
     ):
         yield at(
             "warning",
@@ -306,6 +308,11 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
             f"blends for {timing.blend_in + timing.blend_out:.2f} s of its {end - timing.start:.2f} s",
             "Shorten its blends.",
         )
+    for name, blend in (("in", timing.blend_in), ("out", timing.blend_out)):
+        if not _sound(blend):
+            yield at(
+                "error", "blend", f"blends {name} for {blend:g} s", f"Set its blend {name} to 0 s or more."
+            )
     if timing.earliest_exit is not None and not timing.start <= timing.earliest_exit <= end:
         yield at(
             "warning",
@@ -314,6 +321,10 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
             "Bring the earliest exit inside.",
         )
     yield from _ends(project, graph, action, at)
+
+
+def _sound(seconds: float) -> bool:
+    return bool(np.isfinite(seconds) and seconds >= 0)
 
 
 def _ends(

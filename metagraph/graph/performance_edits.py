@@ -12,7 +12,7 @@ import msgspec
 
 from metagraph.graph.edits import EditError, free_name
 from metagraph.graph.model import Project
-from metagraph.graph.requests import AnyRequest, Line, Performance, Point, RequestError
+from metagraph.graph.requests import LONGEST_NAME, AnyRequest, Line, Performance, Point, RequestError
 
 
 def add_performance(project: Project, performance: Performance) -> tuple[Project, str]:
@@ -20,11 +20,17 @@ def add_performance(project: Project, performance: Performance) -> tuple[Project
     ident = f"p{project.next_id}"
     named = msgspec.structs.replace(
         performance,
-        name=free_name(performance.name or "Performance", {p.name for p in project.performances.values()}),
+        name=_own_name(performance.name or "Performance", {p.name for p in project.performances.values()}),
         asks=_numbered(performance.asks),
     )
     kept = {**project.performances, ident: named}
     return replace(project, performances=kept, next_id=project.next_id + 1), ident
+
+
+def _own_name(name: str, taken: Collection[str]) -> str:
+    """Return a name nobody has, no longer than one may be with a number behind it."""
+    found = free_name(name, taken)
+    return found if len(found) <= LONGEST_NAME else free_name(name[: LONGEST_NAME - 12].rstrip(), taken)
 
 
 def _numbered(asks: Collection[AnyRequest]) -> tuple[AnyRequest, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication, QDialog
 
 from metagraph.formats.bvh import write_bvh
@@ -124,6 +125,28 @@ def _report(w: Handles, _: Path) -> None:
     w.importing.report.emit("Two files were not read", ("one.bvh: empty", "two.bvh: empty"))
 
 
+def _recover(w: Handles, _: Path) -> None:
+    from app.project.leftovers import FoundJournal
+    from app.project.recovering import RecoverDialog
+    from metagraph.formats.recovery import Left
+
+    p = w.document.project
+    left = [Left(Path(str(n)), p, n, None, 1e9 * n, "", n == 1, {}, 0, (), n == 2) for n in (1, 2, 3)]
+    found = FoundJournal(None, None, tuple(left), ("a journal: is damaged",))
+    dialog = RecoverDialog(found, None, w.window)
+    dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)  # as whoever asks does
+    dialog.open()
+
+
+def _fault(w: Handles, _: Path) -> None:
+    from app.shell.fault_dialog import FaultDialog
+
+    dialog = FaultDialog(w.window)
+    dialog.say("Something went wrong", "A part of the window could not do its work.", "Metagraph 0.1.0")
+    dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+    dialog.open()
+
+
 # By name; those that read something first open a little later.
 DIALOGS: dict[str, Open] = {
     "export": _command("export"),
@@ -154,6 +177,8 @@ DIALOGS: dict[str, Open] = {
     "note": _note,
     "joint map": _joint_map,
     "report": _report,
+    "recover": _recover,
+    "fault": _fault,
 }
 
 

@@ -18,7 +18,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from metagraph.engines.export import export, read_export  # noqa: E402
+from metagraph.engines.export import export  # noqa: E402
+from metagraph.engines.reading import read_export  # noqa: E402
 from metagraph.formats.data import from_data, to_data  # noqa: E402
 from metagraph.formats.journal import Journal, journal_path  # noqa: E402
 from metagraph.formats.recovery import recover  # noqa: E402

@@ -415,44 +415,6 @@ def test_beginning_anew_never_leaves_less_than_before(
     assert found is not None and same(found[0], after)
 
 
-class Full:
-    """A disk with room for so many bytes."""
-
-    def __init__(self, file: Any, room: int) -> None:
-        self.file, self.room = file, room
-
-    def write(self, data: bytes) -> None:
-        self.file.write(data[: self.room])
-        self.room -= len(data)
-        if self.room < 0:
-            self.file.flush()
-            raise OSError(28, "No space left on device")
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.file, name)
-
-
-def test_an_edit_that_found_no_room_is_written_with_the_next(saved: Path) -> None:
-    path = journal_path(saved)
-    states = [large(5)]
-    for n in range(4):
-        states.append(edits.rename_clip(states[-1], f"c{n + 1}", f"name {n}"))
-    journal = Journal(path, saved)
-    journal.edit(states[0], states[1])
-    journal._file = Full(journal._file, 10)  # type: ignore[assignment]
-    with pytest.raises(FileError, match="No space left"):
-        journal.edit(states[1], states[2])
-    found = recover(path, saved)
-    assert found is not None
-    assert same(found[0], states[1])
-    journal.edit(states[2], states[3])  # there is room again
-    journal.edit(states[3], states[4])
-    journal.close()
-    found = recover(path, saved)
-    assert found is not None
-    assert same(found[0], states[4])
-
-
 def test_a_folder_that_cannot_be_written_is_told_in_words(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     journal = Journal(tmp_path / "file" / "j", None)
@@ -562,3 +524,10 @@ def test_edits_of_a_conversation_are_recovered_and_do_not_touch_its_words_again(
     found = recover(tmp_path / "journal", None)
     assert found is not None and found[1] == 4
     assert found[0].conversations == from_data(to_data(states[-1])).conversations
+
+
+def test_a_skeleton_that_was_read_twice_is_no_change_and_another_is(tmp_path: Path) -> None:
+    project = large(2)
+    again = from_data(to_data(project))
+    assert project.skeleton is not again.skeleton and "skeleton" not in changes(project, again)
+    assert changes(project, replace(again, skeleton=None))["skeleton"] == []

@@ -266,6 +266,19 @@ def test_trim_empty_blend_and_exit(healthy: Project, toy: Any, timing: dict[str,
     assert [(p.code, p.action) for p in found] == [(code, ident)]
 
 
+@pytest.mark.parametrize("blend", [-0.5, float("inf"), float("nan")])
+@pytest.mark.parametrize("side", ["blend_in", "blend_out"])
+def test_a_blend_of_a_loop_or_beside_another_fault_that_cannot_be_is_an_error(
+    healthy: Project, toy: Any, side: str, blend: float
+) -> None:
+    loop = next(a.id for a in healthy.actions() if a.kind == "stance")
+    found = only(edits.update_actions(healthy, [loop], timing={side: blend}), "blend")
+    assert found.action == loop and found.severity == "error" and side[6:] in found.message
+    ident = toy.id(healthy, "far beat")
+    both = check(edits.update_actions(healthy, [ident], timing={side: blend, "start": -1.0}))
+    assert {"trim", "blend"} <= {p.code for p in both}
+
+
 def test_half_a_frame_beyond_the_end_is_rounding(healthy: Project, toy: Any) -> None:
     assert codes(edits.update_actions(healthy, [toy.id(healthy, "far beat")], timing={"end": 1.01})) == []
 

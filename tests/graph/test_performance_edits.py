@@ -29,6 +29,16 @@ def test_two_performances_of_one_name_are_told_apart() -> None:
     assert len(project.performances) == 2
 
 
+def test_a_name_with_a_number_behind_it_is_no_longer_than_can_be_kept() -> None:
+    project, _ = performance_edits.add_performance(Project(), a.Performance(name="x" * a.LONGEST_NAME))
+    for _ in range(3):
+        project, _ = performance_edits.add_performance(project, a.Performance(name="x" * a.LONGEST_NAME))
+    names = {p.name for p in project.performances.values()}
+    assert len(names) == 4 and max(map(len, names)) <= a.LONGEST_NAME
+    project, ident = performance_edits.add_performance(project, a.Performance(name="y" * 5000))
+    assert len(project.performances[ident].name) <= a.LONGEST_NAME
+
+
 def test_an_ask_is_added_changed_and_taken_back() -> None:
     project, ident = staged()
     project = performance_edits.add_request(project, ident, a.Gesture(at=2.0, tags=("beat",)))

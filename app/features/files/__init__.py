@@ -74,6 +74,14 @@ def contribute(shell: Shell) -> Contribution:
                 lambda: files.open(PRACTICE, template=True),
                 tip="152 clips to label",
             ),
+            Command(
+                "recover",
+                menu,
+                "project",
+                "Recover &unsaved work…",
+                files.recover_untitled,
+                tip="Projects that were never saved, of windows that were not closed properly",
+            ),
             Command("save", menu, "save", "&Save", files.save, (Standard.Save,)),
             Command("save_as", menu, "save", "Save &as…", files.save_as, (Standard.SaveAs,)),
             Command(

@@ -11,15 +11,20 @@ from pathlib import Path
 import pytest
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
+from app.project import outside
 from app.project.document import Document, state_folder
 from app.project.files import Files
 from app.project.importing import Importing
 from app.project.jobs import Jobs
+from app.project.leftovers import untitled_journals
 from metagraph.formats.bvh import write_bvh
-from metagraph.formats.locking import new_owner
-from metagraph.formats.store import open_project, save_project
+from metagraph.formats.locking import lock_path, new_owner
+from metagraph.formats.recovery import read_journal
+from metagraph.formats.store import open_project, read_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
+from tests.app import recovering
+from tests.failing_system import failing
 from tests.sittings import kill_sittings
 
 BUTTON = QMessageBox.StandardButton
@@ -35,6 +40,7 @@ class Answers:
         )
         monkeypatch.setattr(QMessageBox, "warning", lambda *a, **k: self.warned.append(a[2]))
         self.patch = monkeypatch
+        recovering.answers(monkeypatch, self)
 
     def save_as(self, path) -> None:
         self.patch.setattr(QFileDialog, "getSaveFileName", lambda *a, **k: (str(path) if path else "", ""))
@@ -226,17 +232,17 @@ def crash(desk) -> None:
     document.undo_stack.setClean()
 
 
-@pytest.mark.parametrize("answer", [BUTTON.Yes, BUTTON.Discard])
+@pytest.mark.parametrize("answer", ["recover", "discard"])
 def test_edits_since_the_last_save_are_offered(desk, person, saved, qtbot, answer):
     change_seed(desk, 7)
     change_seed(desk, 8)
     crash(desk)
-    person.next = [answer]
+    person.next = [(answer,)]
     desk.document.load(Project(), None)
     desk.open(saved)
     qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
     assert "2 edits" in person.asked[0]
-    taken = answer == BUTTON.Yes
+    taken = answer == "recover"
     assert desk.document.project.settings.seed == (8 if taken else 1)
     assert desk.document.dirty is taken
     assert desk.document.undo_stack.count() == (2 if taken else 0)
@@ -255,20 +261,24 @@ def test_edits_since_the_last_save_are_offered(desk, person, saved, qtbot, answe
     )
 
 
-@pytest.mark.parametrize("answer", [BUTTON.Yes, BUTTON.Discard])
+@pytest.mark.parametrize("answer", ["recover", "discard", "later", None])
 def test_a_project_never_saved_is_offered_too(desk, person, clips, qtbot, answer):
     desk.importing.import_paths([str(clips)])
     qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
     assert desk.document.dirty
     crash(desk)
-    person.next, otherwise = [answer], []
+    person.next, otherwise = [answer and (answer,)], []
     desk.document.project = Project()
     desk.recover_untitled(lambda: otherwise.append(1))
     qtbot.waitUntil(desk.idle)
-    assert bool(otherwise) is (answer == BUTTON.Discard)
-    assert "never saved" in person.asked[0]
-    assert len(desk.document.project.clips) == (3 if answer == BUTTON.Yes else 0)
-    if answer == BUTTON.Yes:
+    assert bool(otherwise) is (answer != "recover")
+    assert "never saved" in person.asked[0] and "3 clips" in person.asked[0]
+    assert len(desk.document.project.clips) == (3 if answer == "recover" else 0)
+    kept = [path for path in untitled_journals() if path != desk.document.journal_place]
+    assert len(kept) == (1 if answer in ("later", None) else 0), (
+        "what is not wanted now is there another time"
+    )
+    if answer == "recover":
         assert desk.document.dirty
         assert desk.document.path is None
         assert all(e.motion is not None for e in desk.document.project.clips.values())
@@ -280,16 +290,177 @@ def test_without_a_crash_nothing_is_offered(desk, person):
     assert otherwise and not person.asked
 
 
-def test_a_journal_of_another_state_of_the_file_is_kept_aside(desk, person, saved, qtbot):
+def test_edits_of_another_state_of_the_file_are_offered_and_can_be_merged(
+    desk, person, saved, qtbot, monkeypatch
+):
+    change_seed(desk, 7)
+    crash(desk)
+    theirs = edits.rename_project(read_project(saved), "renamed by git")
+    save_project(theirs, saved)
+    noticed = []
+    desk.noticed.connect(lambda *a: noticed.append(a))
+    person.next = [("recover",)]
+    desk.document.load(Project(), None)
+    desk.open(saved)
+    qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3 and bool(noticed))
+    assert "saved by somebody else" in person.asked[0]
+    assert desk.document.project.settings.seed == 7 and desk.document.project.name == "mine"
+    monkeypatch.setattr(outside, "ask_changed", lambda *a: "merge")
+    noticed[0][2]()
+    qtbot.waitUntil(lambda: desk.document.project.name == "renamed by git")
+    assert desk.document.project.settings.seed == 7 and desk.document.dirty
+    assert all(e.motion is not None for e in desk.document.project.clips.values())
+    desk.save()
+    qtbot.waitUntil(lambda: not desk.document.dirty)
+    both = read_project(saved)
+    assert (both.name, both.settings.seed) == ("renamed by git", 7)
+    desk.document.undo()
+    assert desk.document.project.name == "mine", "merging is one step"
+
+
+def test_edits_of_another_state_can_be_saved_beside_the_file(desk, person, saved, qtbot):
     change_seed(desk, 7)
     crash(desk)
     saved.write_text(saved.read_text() + "# edited by hand, or by git\n")
+    person.next = [("copy",)]
     desk.document.load(Project(), None)
     desk.open(saved)
     qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
-    assert not person.asked
-    assert any("another state" in words for words in desk.words)
-    assert list(saved.parent.glob(".*.old")) or list(saved.parent.glob("*.old"))
+    assert desk.document.project.settings.seed == 1
+    copy = saved.with_name("mine recovered.metagraph.yaml")
+    assert read_project(copy).settings.seed == 7
+    assert not list(saved.parent.glob(".*.old")) and not list(saved.parent.glob(".*.journal"))
+
+
+def test_a_journal_of_before_journals_held_what_they_build_on_is_worked_into_the_file_as_it_is(
+    desk, person, saved, qtbot
+):
+    change_seed(desk, 7)
+    place = desk.document.journal_place
+    crash(desk)
+    head, _, rest = place.read_bytes().partition(b"\n")
+    place.write_bytes(
+        json.dumps({k: v for k, v in json.loads(head).items() if k != "text"}).encode() + b"\n" + rest
+    )
+    save_project(edits.rename_project(read_project(saved), "renamed"), saved)
+    person.next = [("recover",)]
+    desk.document.load(Project(), None)
+    desk.open(saved)
+    qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
+    assert "worked into what it is now" in person.asked[0]
+    assert (desk.document.project.name, desk.document.project.settings.seed) == ("renamed", 7)
+
+
+def test_what_nobody_can_read_is_told_and_stays(desk, person, saved, qtbot):
+    change_seed(desk, 7)
+    place = desk.document.journal_place
+    crash(desk)
+    place.write_bytes(b"\x00\n\x00\n")
+    desk.document.load(Project(), None)
+    desk.open(saved)
+    qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
+    assert "cannot be recovered are kept" in desk.reports[0][0] and place.name in desk.reports[0][1][0]
+    assert place.read_bytes() == b"\x00\n\x00\n"
+
+
+def test_putting_it_off_opens_nothing_and_keeps_everything(desk, person, saved, qtbot):
+    change_seed(desk, 7)
+    place = desk.document.journal_place
+    crash(desk)
+    before = place.read_bytes()
+    desk.document.load(Project(), None)
+    person.next = [None]
+    desk.open(saved)
+    qtbot.waitUntil(lambda: not person.next and desk.idle())
+    assert desk.document.path is None and place.read_bytes() == before
+    assert not lock_path(saved).exists(), "others may open it"
+
+
+def test_what_is_kept_for_later_is_offered_again(desk, person, saved, qtbot):
+    change_seed(desk, 7)
+    crash(desk)
+    for choice in ("later", "later", "recover"):
+        desk.document.load(Project(), None)
+        person.next = [(choice,)]
+        desk.open(saved)
+        qtbot.waitUntil(lambda: not person.next and desk.idle() and len(desk.document.project.clips) == 3)
+        assert desk.document.project.settings.seed == (7 if choice == "recover" else 1)
+
+
+def test_what_could_not_be_taken_over_safely_is_not_forgotten(desk, person, saved, qtbot, tmp_path):
+    change_seed(desk, 7)
+    left = desk.document.journal_place
+    crash(desk)
+    desk.document.load(Project(), None)
+    person.next = [("recover",)]
+    with failing(saved.parent, 0, "error", for_ever=True):  # the disk is full
+        desk.open(saved)
+        qtbot.waitUntil(lambda: not person.next and desk.idle() and len(desk.document.project.clips) == 3)
+    assert desk.document.project.settings.seed == 7 and left.exists()
+    change_seed(desk, 8)  # there is room again
+    again = read_journal(desk.document.journal_place, saved)
+    assert again is not None and again.project.settings.seed == 8
+
+
+CHAIN = ["crash", "edit and crash"]
+
+
+@pytest.mark.parametrize("chain", [(a, b, c) for a in CHAIN for b in CHAIN for c in CHAIN])
+@pytest.mark.parametrize("named", [True, False])
+def test_nothing_is_lost_however_often_it_crashes(desk, person, saved, clips, qtbot, chain, named):
+    if not named:
+        desk.document.load(Project(), None)
+        desk.importing.import_paths([str(clips)])
+        qtbot.waitUntil(lambda: len(desk.document.project.clips) == 3)
+    change_seed(desk, 7)
+    wanted, steps = 7, desk.document.undo_stack.count()
+    crash(desk)
+    for n, link in enumerate(chain):
+        person.next = [("recover",)]
+        desk.document.project = Project()
+        desk.open(saved) if named else desk.recover_untitled()
+        qtbot.waitUntil(lambda: not person.next and desk.idle() and len(desk.document.project.clips) == 3)
+        assert desk.document.project.settings.seed == wanted and desk.document.dirty
+        assert desk.document.undo_stack.count() == steps, "each can be undone"
+        if link != "crash":
+            wanted, steps = 20 + n, steps + 1
+            change_seed(desk, wanted)
+        crash(desk)
+    person.next = [("recover",)]
+    desk.document.project = Project()
+    desk.open(saved) if named else desk.recover_untitled()
+    qtbot.waitUntil(lambda: not person.next and desk.idle() and len(desk.document.project.clips) == 3)
+    assert desk.document.project.settings.seed == wanted
+
+
+def test_a_new_project_after_a_crash_writes_over_nothing(desk, person, qtbot):
+    change_seed(desk, 7)
+    place = desk.document.journal_place
+    before = place.read_bytes()
+    crash(desk)
+    killed = place.read_bytes()
+    desk.new()
+    change_seed(desk, 8)
+    assert place.read_bytes() == killed != before and desk.document.journal_place != place
+
+
+def test_a_project_opened_by_name_tells_of_what_was_never_saved(desk, person, saved, qtbot):
+    desk.document.load(Project(), None)
+    change_seed(desk, 7)
+    crash(desk)
+    noticed = []
+    desk.noticed.connect(lambda *a: noticed.append(a))
+    desk.document.load(Project(), None)
+    desk.unsaved.tell()
+    assert "1 unsaved project can be recovered" in noticed[0][0]
+    person.next = [("recover",)]
+    noticed[0][2]()
+    qtbot.waitUntil(lambda: desk.document.project.settings.seed == 7)
+
+
+def test_with_nothing_to_recover_the_command_says_so(desk, person):
+    desk.recover_untitled()
+    assert desk.words[-1] == "There is nothing to recover." and not person.asked
 
 
 # --- importing

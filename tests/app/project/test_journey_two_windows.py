@@ -31,8 +31,9 @@ WINDOW = """
 import sys, threading
 from pathlib import Path
 from PySide6.QtCore import QObject, QTimer, Signal
-from PySide6.QtWidgets import QApplication, QMessageBox
+from PySide6.QtWidgets import QApplication, QLabel, QMessageBox
 from app.main import open_window, prepare
+from app.project.recovering import RecoverDialog
 from metagraph.graph import edits
 
 app = prepare()
@@ -46,6 +47,10 @@ def hear(line):
     box = QApplication.activeModalWidget()
     if word == "click":
         next(b for b in box.buttons() if b.text().replace("&", "") == rest).click()
+    elif word == "choose":
+        for field, choice in zip(box.fields, rest.split(), strict=True):
+            field.setCurrentIndex(field.findData(choice))
+        box.accept()
     elif word == "edit":
         shell.document.edit("Change seed", lambda p: edits.set_settings(p, seed=int(rest)))
         print("edited", shell.document.project.settings.seed, flush=True)
@@ -63,6 +68,10 @@ def look():
     if isinstance(box, QMessageBox) and box not in asked:
         asked.add(box)
         print("asks", (box.text() + " " + box.informativeText()).replace("\\n", " "), flush=True)
+    elif isinstance(box, RecoverDialog) and box not in asked:
+        asked.add(box)
+        words = " ".join(label.text() for label in box.findChildren(QLabel))
+        print("asks", words.replace("<br>", " "), flush=True)
 
 ears = Ears()
 ears.heard.connect(hear)
@@ -167,12 +176,9 @@ def test_the_second_window_says_who_has_it_and_takes_over_what_a_killed_one_left
 
         third = start()
         question = third.tells("asks")
-        offered = {"2 edits": 8, "1 edit": 6}
-        seed = next(seed for words, seed in offered.items() if words in question.lower())
-        third.do("click Yes")
-        other = third.tells("asks")
-        assert "can be saved as a copy" in other
-        third.do("click Yes")
+        latest = {"2 edits": 8, "1 edit ": 6}[min(("2 edits", "1 edit "), key=question.index)]
+        third.do("choose recover copy")
+        seed = latest
         assert third.tells("opened") == f"show[*] - Metagraph {seed}"
         copy = read_project(saved.with_name("show recovered.metagraph.yaml"))
         assert {seed, copy.settings.seed} == {6, 8}, "nothing is lost"

@@ -17,10 +17,11 @@ from app.project.files import Files
 from app.project.jobs import Jobs
 from metagraph.formats.journal import Journal, journal_path
 from metagraph.formats.locking import STALE, lock_path, new_owner
-from metagraph.formats.recovery import left_journals
+from metagraph.formats.recovery import left_journals, read_journal
 from metagraph.formats.store import read_project, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import Project
+from tests.app import recovering
 from tests.sittings import ended, kill_sittings
 
 BUTTON = QMessageBox.StandardButton
@@ -38,6 +39,7 @@ class Answers:
             QMessageBox, "question", lambda *a, **k: (self.asked.append(a[2]), self.next.pop(0))[1]
         )
         monkeypatch.setattr(QMessageBox, "warning", lambda *a, **k: self.warned.append(a[2]))
+        recovering.answers(monkeypatch, self)
 
     def _answer(self, box):
         self.asked.append(f"{box.text()} {box.informativeText()}")
@@ -237,10 +239,9 @@ def crashed(saved, number, count=1, base=None):
 def test_each_of_two_sittings_that_crashed_is_offered_and_none_is_lost(windows, person, saved, qtbot):
     crashed(saved, 10)
     crashed(saved, 20, 2)
-    person.next = [BUTTON.Yes, BUTTON.Yes]
+    person.next = [("recover", "copy")]
     one = opened(qtbot, windows(), saved)
-    assert "2 edits" in person.asked[0] and "1 more window" in person.asked[0]
-    assert "1 edit of it" in person.asked[1].lower() and "copy" in person.asked[1]
+    assert person.asked[0].index("2 edits") < person.asked[0].index("1 edit "), "the latest first"
     assert one.document.project.settings.seed == 21 and one.document.dirty
     copy = saved.with_name("show recovered.metagraph.yaml")
     assert on_disk(copy) == 10
@@ -250,7 +251,7 @@ def test_each_of_two_sittings_that_crashed_is_offered_and_none_is_lost(windows, 
 def test_the_older_sitting_is_offered_when_the_newer_is_declined(windows, person, saved, qtbot):
     crashed(saved, 10)
     crashed(saved, 20)
-    person.next = [BUTTON.Discard, BUTTON.Yes]
+    person.next = [("discard", "recover")]
     one = opened(qtbot, windows(), saved)
     assert one.document.project.settings.seed == 10
     assert [p.name for p in saved.parent.glob(".*.journal")] == [one.document.journal_place.name]
@@ -260,11 +261,11 @@ def test_what_was_recovered_is_there_still_after_a_second_crash_without_an_edit(
     windows, person, saved, qtbot
 ):
     crashed(saved, 10, 3)
-    person.next = [BUTTON.Yes]
+    person.next = [("recover",)]
     one = opened(qtbot, windows(), saved)
     one.document._journal.close()
     kill_sittings(saved.parent)
-    person.next = [BUTTON.Yes]
+    person.next = [("recover",)]
     two = opened(qtbot, windows(), saved)
     assert "3 edits" in person.asked[-1]
     assert two.document.project.settings.seed == 12
@@ -283,7 +284,7 @@ def test_a_read_only_windows_edits_survive_its_crash_though_the_file_went_on(win
     two.document._journal.close()
     two.document._journal = None
     kill_sittings(saved.parent)
-    person.next = [BUTTON.Yes]
+    person.next = [("recover",)]
     three = opened(qtbot, windows(), saved)
     assert "saved by somebody else" in person.asked[-1]
     assert three.document.project.settings.seed == 6
@@ -306,12 +307,12 @@ def test_a_project_never_saved_in_each_of_two_windows_is_kept_apart(windows, per
         files.document._journal.close()
         files.document._journal = None
     kill_sittings(one.document.journal_place.parent)
-    person.next = [BUTTON.Yes]
+    person.next = [("recover", "later")]
     three.recover_untitled()
     qtbot.waitUntil(lambda: three.document.dirty)
-    assert "1 more" in three.words[-1]
+    assert "1 kept" in three.words[-1]
     four = windows()
-    person.next = [BUTTON.Yes]
+    person.next = [("recover",)]
     four.recover_untitled()
     qtbot.waitUntil(lambda: four.document.dirty)
     assert {three.document.project.settings.seed, four.document.project.settings.seed} == {5, 6}
@@ -326,7 +327,13 @@ def rewrite(saved, value):
 
 @pytest.mark.parametrize(
     ("answer", "disk", "here"),
-    [("Cancel", 99, 7), ("Save anyway", 7, 7), ("Reload", 99, 99), ("Save as…", 99, 7)],
+    [
+        ("Cancel", 99, 7),
+        ("Save anyway", 7, 7),
+        ("Reload", 99, 99),
+        ("Save as…", 99, 7),
+        ("Merge", 99, 7),
+    ],
 )
 def test_saving_over_what_another_program_wrote_asks(
     windows, person, saved, qtbot, tmp_path, answer, disk, here
@@ -340,11 +347,31 @@ def test_saving_over_what_another_program_wrote_asks(
     qtbot.waitUntil(lambda: not person.next)
     qtbot.waitUntil(lambda: not one.saver.busy and not one.jobs.running)
     assert (on_disk(saved), one.document.project.settings.seed) == (disk, here)
-    assert one.document.dirty is (answer == "Cancel")
-    assert set(person.buttons) == {"Save as…", "Reload", "Show differences", "Save anyway", "Cancel"}
+    assert one.document.dirty is (answer in ("Cancel", "Merge"))
+    assert set(person.buttons) == {
+        "Merge", "Save as…", "Reload", "Show differences", "Save anyway", "Cancel"
+    }  # fmt: skip
     if answer == "Reload":
         one.document.undo()
         assert one.document.project.settings.seed == 7, "the edits are one step back"
+
+
+def test_what_was_done_on_both_sides_is_merged_and_saved(windows, person, saved, qtbot):
+    one = opened(qtbot, windows(), saved)
+    seed(one, 7)
+    save_project(edits.rename_project(read_project(saved), "theirs"), saved)
+    person.next = ["Merge"]
+    one.save()
+    qtbot.waitUntil(lambda: one.document.project.name == "theirs")
+    assert one.document.project.settings.seed == 7 and on_disk(saved) != 7
+    kill = read_journal(one.document.journal_place, saved)
+    assert kill is not None and kill.project.name == "theirs" and not kill.behind, "a crash now loses nothing"
+    one.save()
+    qtbot.waitUntil(lambda: not one.document.dirty)
+    both = read_project(saved)
+    assert (both.name, both.settings.seed) == ("theirs", 7)
+    one.document.undo()
+    assert one.document.project.name == "toy" and one.document.dirty
 
 
 def test_the_differences_are_listed_side_by_side_before_choosing(windows, person, saved, qtbot, monkeypatch):
@@ -371,7 +398,7 @@ def test_the_differences_are_listed_side_by_side_before_choosing(windows, person
 def test_a_file_that_changes_while_it_is_open_is_told_of_once(windows, person, saved, qtbot, dirty):
     one = opened(qtbot, windows(), saved)
     notices = []
-    one.changed_outside.connect(lambda *a: notices.append(a))
+    one.noticed.connect(lambda *a: notices.append(a))
     if dirty:
         seed(one, 7)
     one.look_at_file()

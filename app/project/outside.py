@@ -1,0 +1,123 @@
+"""The project file written by somebody else while it is open here: noticed, shown, and merged, reloaded or
+replaced.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+from PySide6.QtWidgets import QMessageBox
+
+from app.project.jobs import Job
+from app.project.opening import load_whole, with_motion_of
+from app.project.questions import ask_changed
+from app.project.writing import FileChangedError, file_changed
+from metagraph.formats.merging import MergeError, merge
+from metagraph.formats.store import Opened
+from metagraph.graph.model import Project
+
+if TYPE_CHECKING:
+    from app.project.files import Files
+
+Merging = tuple[Opened, tuple[str, ...]]
+
+
+class Outside(QObject):
+    """The part of a window's files that others write."""
+
+    def __init__(self, files: Files) -> None:
+        super().__init__(files)
+        self.files, self.document = files, files.document
+        self._told_of: str | None = None  # the digest of a changed file that was told of
+        self._era = 0  # counts the projects that were shown
+        self.document.loaded.connect(self._next_era)
+        files.saver.changed.connect(self.ask)
+
+    def _next_era(self) -> None:
+        self._era += 1
+        self._told_of = None
+
+    def look(self) -> None:
+        """Look whether the project file has changed on disk, and say so."""
+        document, files = self.document, self.files
+        path, digest = document.path, document.digest
+        if path is None or digest is None or files.saver.busy:
+            return
+
+        def done(changed: FileChangedError | None) -> None:
+            if (
+                changed is None
+                or files.saver.busy
+                or (document.path, document.digest) != (path, digest)
+                or changed.digest == self._told_of
+            ):
+                return
+            self._told_of = changed.digest
+            document.keep_all()
+            what = "look…" if document.dirty else "reload…"
+            tip = "Another program, another window or a version control update has written it"
+            files.noticed.emit(f"{path.name} changed on disk: {what}", tip, lambda: self.ask(changed))
+
+        files.jobs.start("project file", lambda _: file_changed(path, digest), done, quick=True)
+
+    def ask(self, changed: FileChangedError) -> None:
+        """The project file is another one than was read: ask what to do with both."""
+        document, files = self.document, self.files
+        era, dirty = self._era, document.dirty
+        answer = ask_changed(files.window, changed, document.common, document.project, dirty)
+        theirs, digest = changed.theirs, changed.digest
+        if era != self._era:
+            return
+        if answer == "save as":
+            files.save_as()
+        elif answer == "anyway":
+            files.saver.save(anyway=True)
+        elif theirs is not None and digest is not None:
+            if answer == "reload":
+                self._reload(changed, theirs, digest)
+            elif answer == "merge" and document.common is not None:
+                self._merge(changed, document.common, theirs, digest)
+
+    def _start(self, changed: FileChangedError, work: Callable[[Job], object], done: Callable) -> None:
+        title = f"Reading {changed.path.name} again"
+        self.files.jobs.start(title, work, done, self.files.show_failure)
+
+    def _reload(self, changed: FileChangedError, theirs: Project, digest: str) -> None:
+        era = self._era
+
+        def done(opened: Opened) -> None:
+            if era == self._era:
+                self.document.reload(opened.project, digest)
+                self.files.told.emit(f"Read {changed.path.name} again")
+
+        self._start(changed, lambda job: load_whole(theirs, changed.path.parent, job.tell), done)
+
+    def _merge(self, changed: FileChangedError, common: Project, theirs: Project, digest: str) -> None:
+        era, mine = self._era, self.document.project
+
+        def work(job: Job) -> Merging | MergeError:
+            try:
+                merged = merge(common, mine, theirs)
+            except MergeError as error:
+                return error
+            project = with_motion_of(merged.project, mine)
+            return load_whole(project, changed.path.parent, job.tell), merged.kept
+
+        def done(found: Merging | MergeError) -> None:
+            if era != self._era:
+                return
+            if isinstance(found, MergeError):
+                words = f"The two do not go together: {found}. Save yours under another name instead."
+                QMessageBox.warning(self.files.window, "Not merged", words)
+            elif self.document.project is not mine:
+                self.ask(changed)  # it was edited meanwhile
+            else:
+                opened, kept = found
+                self.document.merge(opened.project, theirs, digest)
+                self.files.told.emit(f"Merged with {changed.path.name}; saving writes both")
+                if kept:
+                    self.files.report.emit("Merged; what both had changed is as it was here", list(kept))
+
+        self._start(changed, work, done)

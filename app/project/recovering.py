@@ -1,0 +1,216 @@
+"""What crashes left, each with a name, a time and a picture: gone on with, copied, kept or discarded."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import (
+    QComboBox,
+    QDialog,
+    QDialogButtonBox,
+    QGridLayout,
+    QLabel,
+    QScrollArea,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.look.theme import strengthen, theme
+from app.project.leftovers import FoundJournal
+from app.project.questions import moment_words
+from metagraph.formats.recovery import Left
+from metagraph.graph.model import KINDS, LAYERS, Project
+from metagraph.motion.clip import Clip
+
+Choice = Literal["recover", "copy", "later", "discard"]
+WORDS: dict[Choice, str] = {
+    "recover": "Go on with it",
+    "copy": "Save as a copy beside it",
+    "later": "Keep for later",
+    "discard": "Discard",
+}
+PICTURE = QSize(132, 76)  # pixels
+SHOWN = 4  # sittings that are seen at once
+
+
+def left_words(left: Left, saved: Path | None) -> tuple[str, str]:
+    """Return what a sitting is called, and what is to be known of it."""
+    name = saved.name if saved is not None else left.project.name or "untitled"
+    edits = f"{left.edits} edit{'s' if left.edits != 1 else ''}"
+    clips = len(left.project.clips)
+    words = [
+        f"{edits} in no file, the last of {moment_words(left.written)}",
+        f"{clips} clip{'s' if clips != 1 else ''}, {sum(1 for _ in left.project.actions())} actions",
+    ]
+    if left.behind:
+        words.append("The file has been saved by somebody else since: both can be merged.")
+    if left.worked_in:
+        words.append("The file has changed since: the edits are worked into what it is now.")
+    return name if saved is not None else f"{name}, never saved", "\n".join(words)
+
+
+def ask_recover(window: QWidget, found: FoundJournal, saved: Path | None) -> tuple[Choice, ...] | None:
+    """Ask what becomes of each sitting; None when that is put off. At most one is gone on with."""
+    dialog = RecoverDialog(found, saved, window)
+    taken = dialog.exec() == QDialog.DialogCode.Accepted
+    choices = dialog.choices()
+    dialog.deleteLater()
+    return choices if taken else None
+
+
+class RecoverDialog(QDialog):
+    """A row for each sitting that a crash ended, the latest first."""
+
+    def __init__(self, found: FoundJournal, saved: Path | None, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setWindowTitle("Recover edits?")
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(16, 14, 16, 14)
+        layout.setSpacing(10)
+        title = f"{saved.name} was not closed properly" if saved is not None else "Work that was never saved"
+        heading = QLabel(title, self)
+        heading.setProperty("heading", True)
+        layout.addWidget(heading)
+        rows = QWidget(self)
+        grid = QGridLayout(rows)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setHorizontalSpacing(14)
+        grid.setVerticalSpacing(10)
+        grid.setColumnStretch(1, 1)
+        self.fields: list[QComboBox] = []
+        offered: list[Choice] = ["recover", "copy", "later", "discard"]
+        if saved is None:
+            offered.remove("copy")  # there is nothing to lie beside
+        for n, left in enumerate(found.left):
+            name, words = left_words(left, saved)
+            grid.addWidget(SittingPicture(left.project, found.poses.get(left.path), rows), n, 0)
+            told = QLabel(f"<b>{_escaped(name)}</b><br>{_escaped(words)}", rows)
+            told.setTextFormat(Qt.TextFormat.RichText)
+            told.setWordWrap(True)
+            told.setMinimumWidth(300)
+            grid.addWidget(told, n, 1)
+            field = QComboBox(rows)
+            for choice in offered:
+                field.addItem(WORDS[choice], choice)
+            field.setCurrentIndex(0 if n == 0 else offered.index("later"))
+            field.setAccessibleName(f"What becomes of {name}")
+            field.activated.connect(lambda _, chosen=field: self._only(chosen))
+            grid.addWidget(field, n, 2)
+            self.fields.append(field)
+        layout.addWidget(_scrolled(rows, len(found.left), self), 1)
+        if found.notes:
+            notes = QLabel("\n".join(found.notes), self)
+            notes.setWordWrap(True)
+            notes.setProperty("dim", True)
+            layout.addWidget(notes)
+        buttons = QDialogButtonBox(self)
+        go = buttons.addButton("Continue", QDialogButtonBox.ButtonRole.AcceptRole)
+        put_off = "Cancel" if saved is not None else "Not now"
+        buttons.addButton(put_off, QDialogButtonBox.ButtonRole.RejectRole).setToolTip("All is kept as it is")
+        strengthen(go)
+        go.setDefault(True)
+        buttons.accepted.connect(self.accept)
+        buttons.rejected.connect(self.reject)
+        layout.addWidget(buttons)
+
+    def choices(self) -> tuple[Choice, ...]:
+        """Return what is chosen for each sitting, in the order they were given."""
+        return tuple(field.currentData() for field in self.fields)
+
+    def _only(self, chosen: QComboBox) -> None:
+        """A window goes on with one of them."""
+        if chosen.currentData() == "recover":
+            for field in self.fields:
+                if field is not chosen and field.currentData() == "recover":
+                    field.setCurrentIndex(field.findData("later"))
+
+
+def _scrolled(rows: QWidget, count: int, parent: QWidget) -> QWidget:
+    if count <= SHOWN:
+        return rows
+    area = QScrollArea(parent)
+    area.setWidget(rows)
+    area.setWidgetResizable(True)
+    area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+    area.setMinimumSize(rows.sizeHint().width() + 24, SHOWN * (PICTURE.height() + 12))
+    return area
+
+
+def _escaped(text: str) -> str:
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace("\n", "<br>")
+
+
+class SittingPicture(QWidget):
+    """The figure as it stands first, beside what is on the layers: told apart at a glance."""
+
+    def __init__(self, project: Project, clip: Clip | None, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.project = project
+        self._figure = _figure(clip) if clip is not None else None
+        self.setFixedSize(PICTURE)
+        self.setAccessibleName("What was in it")
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        box = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
+        painter.setPen(QPen(self.palette().mid().color(), 1))
+        painter.setBrush(self.palette().base())
+        painter.drawRoundedRect(box, 5, 5)
+        if self._figure is not None:
+            self._paint_figure(painter, QRectF(8, 8, 44, box.height() - 16))
+        left = 62.0 if self._figure is not None else 10.0
+        self._paint_layers(painter, QRectF(left, 10, box.width() - left - 9, box.height() - 20))
+        painter.end()
+
+    def _paint_figure(self, painter: QPainter, room: QRectF) -> None:
+        assert self._figure is not None
+        points, bones = self._figure
+        scale = min(
+            room.width() / max(np.ptp(points[:, 0]), 1e-6), room.height() / max(np.ptp(points[:, 1]), 1e-6)
+        )
+        x, y = room.center().x(), room.bottom()
+        middle, low = (points[:, 0].min() + points[:, 0].max()) / 2, points[:, 1].min()
+        at = [QPointF(x + scale * (a - middle), y - scale * (b - low)) for a, b in points.tolist()]
+        painter.setPen(
+            QPen(self.palette().text().color(), 1.6, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap)
+        )
+        for joint, parent in bones:
+            painter.drawLine(at[parent], at[joint])
+
+    def _paint_layers(self, painter: QPainter, room: QRectF) -> None:
+        """A bar for each layer, in the colours of what is on it."""
+        look = theme("dark" if self.palette().window().color().lightness() < 128 else "light")
+        high = room.height() / len(LAYERS)
+        counts = {
+            layer: {k: sum(a.kind == k for a in self.project.graphs[layer].actions.values()) for k in KINDS}
+            for layer in LAYERS
+        }
+        most = max(max(sum(some.values()) for some in counts.values()), 1)
+        painter.setPen(Qt.PenStyle.NoPen)
+        for n, layer in enumerate(LAYERS):
+            bar = QRectF(room.left(), room.top() + n * high + 3, room.width(), high - 6)
+            painter.setBrush(QColor(look.hover))
+            painter.drawRoundedRect(bar, 2, 2)
+            for kind in KINDS:
+                bar.setWidth(room.width() * counts[layer][kind] / most)
+                painter.setBrush(look.fill(kind))
+                painter.drawRect(bar)
+                bar.moveLeft(bar.right())
+
+
+def _figure(clip: Clip) -> tuple[np.ndarray, Sequence[tuple[int, int]]] | None:
+    """Return where a clip's joints are at first, across and up `[J, 2]`, and which are joined."""
+    skeleton = clip.skeleton
+    if len(skeleton) < 2 or not clip.frames:
+        return None
+    places = skeleton.globals(clip.poses()[:1])[1][0]
+    if not np.isfinite(places).all():
+        return None
+    turned = np.stack([0.88 * places[:, 0] + 0.47 * places[:, 2], places[:, 1]], -1)
+    return turned, [(j, int(p)) for j, p in enumerate(skeleton.parents) if p >= 0]

@@ -1,0 +1,104 @@
+"""Projects that were never saved before a crash: each offered, one gone on with, the others kept or
+discarded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject
+
+from app.project.leftovers import FoundJournal, forget, read_untitled, untitled_journals
+from app.project.opening import load_recovered
+from app.project.recovering import ask_recover
+from metagraph.formats.history import Step
+from metagraph.formats.recovery import Left
+from metagraph.formats.store import Opened
+
+if TYPE_CHECKING:
+    from app.project.files import Files
+
+
+class Unsaved(QObject):
+    """The part of a window's files that has none yet."""
+
+    def __init__(self, files: Files) -> None:
+        super().__init__(files)
+        self.files = files
+
+    def offer(self, otherwise: Callable[[], object] | None = None) -> None:
+        """Offer every one; where nothing is, or is gone on with, do `otherwise`, or say so."""
+        journals = untitled_journals()
+        if not journals:
+            self._nothing(otherwise)
+            return
+        files = self.files
+        files.jobs.start(
+            "Recovering",
+            lambda _: read_untitled(journals),
+            lambda found: self._offer(found, otherwise),
+            files.show_failure,
+        )
+
+    def tell(self) -> None:
+        """Say in the status bar that there are some, when a project is opened by its name."""
+        count = len(untitled_journals())
+        if count:
+            words = f"{count} unsaved project{'s' if count != 1 else ''} can be recovered: look…"
+            tip = "Work that was never saved, of windows that were not closed properly"
+            self.files.noticed.emit(words, tip, self.offer)
+
+    def _nothing(self, otherwise: Callable[[], object] | None) -> None:
+        if otherwise is not None:
+            otherwise()
+        else:
+            self.files.told.emit("There is nothing to recover.")
+
+    def _offer(self, found: FoundJournal, otherwise: Callable[[], object] | None) -> None:
+        files = self.files
+        if found.notes and not found.left:
+            files.report.emit("Edits that cannot be recovered are kept", list(found.notes))
+        if not found.left:
+            self._nothing(otherwise)
+            return
+        choices = ask_recover(files.window, found, None) or ("later",) * len(found.left)
+        chosen: Left | None = None
+        for left, choice in zip(found.left, choices, strict=True):
+            if choice == "recover":
+                chosen = left
+            elif choice == "discard":
+                forget(left.path)
+        kept = sum(choice == "later" for choice in choices)
+        if kept:
+            files.told.emit(f"{kept} kept: File > Recover unsaved work offers what is kept again.")
+        if chosen is None:
+            if otherwise is not None:
+                otherwise()
+        elif files.may_leave():
+            self._take_over(chosen)
+
+    def _take_over(self, left: Left) -> None:
+        files = self.files
+        document, before = files.document, files.document.project
+
+        def done(result: tuple[Opened, tuple[Step, ...]]) -> None:
+            if document.project is not before and not files.may_leave():
+                return  # it is offered again another time
+            opened, steps = result
+            document.load(opened.project, None, not_steps(left, steps), steps=steps)
+            if document.secured():
+                forget(left.path)
+            files.opened.emit()
+            if opened.notes:
+                files.report.emit("It was recovered, but", list(opened.notes))
+
+        files.jobs.start(
+            "Recovering", lambda job: load_recovered(left, Path("/"), job.tell), done, files.show_failure
+        )
+
+
+def not_steps(left: Left, steps: Sequence[Step]) -> int:
+    """Return how many of a journal's edits are in no file and can no longer be undone one by one."""
+    return left.unsaved if steps else left.edits

@@ -1,0 +1,140 @@
+"""What is said when something went wrong that nobody foresaw: a plain sentence, and a report to be kept."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Qt, QTimer, Signal
+from PySide6.QtWidgets import (
+    QDialog,
+    QDialogButtonBox,
+    QFileDialog,
+    QLabel,
+    QPlainTextEdit,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app import faults
+from app.look.theme import strengthen
+from app.project.document import Document, state_folder
+from metagraph.errors import FileError
+from metagraph.formats.atomic import write_atomically
+
+CHILDREN = 5000  # ms between two looks for what processes have written down
+
+
+def folder() -> Path:
+    """Return where what ended the program is written."""
+    return state_folder() / "faults"
+
+
+class FaultTeller(QObject):
+    """Tells of errors in the window, on its thread; first sees that the journal is on the disk."""
+
+    _arrived = Signal(object)
+
+    def __init__(self, document: Document, window: QWidget, tell: Callable[[str], None]) -> None:
+        super().__init__(window)
+        self.document, self.window, self.words = document, window, tell
+        self._arrived.connect(self._show, Qt.ConnectionType.QueuedConnection)
+        self._listener = self._arrived.emit
+        faults.listeners.append(self._listener)
+        document.loaded.connect(lambda: faults.note("a project was opened"))
+        document.saved.connect(lambda: faults.note("saved"))
+        document.undo_stack.indexChanged.connect(self._note_step)
+        self._timer = QTimer(self, interval=CHILDREN)
+        self._timer.timeout.connect(lambda: faults.of_children(folder()))
+        self._timer.start()
+
+    def _note_step(self, index: int) -> None:
+        """Remember the first word of what was done: what comes after it may name something of the project."""
+        words = self.document.undo_stack.undoText().split()
+        faults.note(f"step {index}: {words[0] if words else 'none'}")
+
+    def stop(self) -> None:
+        self._timer.stop()
+        self.document.undo_stack.indexChanged.disconnect(self._note_step)  # it tells of its end, too
+        if self._listener in faults.listeners:
+            faults.listeners.remove(self._listener)
+
+    def _show(self, told: faults.Fault | Exception) -> None:
+        if isinstance(told, Exception):  # it says itself what can be done
+            self.words(str(told))
+            return
+        safe = self.document.secured() or not self.document.dirty
+        dialog = self.window.findChild(FaultDialog)
+        if dialog is None:
+            dialog = FaultDialog(self.window)
+        dialog.say("Something went wrong", _sentence(safe), faults.report())
+        dialog.show()
+
+    def offer_left(self) -> None:
+        """Offer what ended the program the last time."""
+        left = faults.left_behind(folder())
+        if left:
+            faults.note("started after it had ended by itself")
+            dialog = FaultDialog(self.window)
+            words = (
+                "Metagraph ended by itself the last time. Edits that were finished are offered for recovery. "
+                "A report of where it ended helps to mend it; it holds nothing of your projects."
+            )
+            dialog.say("Metagraph ended by itself", words, f"{faults.report()}\n{left}")
+            dialog.show()
+
+
+def _sentence(safe: bool) -> str:
+    what = (
+        "A part of the window could not do its work. The rest goes on, and every finished edit is in the "
+        "journal."
+        if safe
+        else "A part of the window could not do its work, and your last edits are in no file: save the "
+        "project now, elsewhere if need be."
+    )
+    return f"{what} If it stays wrong, save and start again. The report below holds nothing of your project."
+
+
+class FaultDialog(QDialog):
+    """Lies beside the window, which can be worked in. There is one; more faults are added to it."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.resize(620, 400)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(16, 14, 16, 14)
+        layout.setSpacing(10)
+        self.heading = QLabel(self)
+        self.heading.setProperty("heading", True)
+        self.sentence = QLabel(self)
+        self.sentence.setWordWrap(True)
+        self.text = QPlainTextEdit(self)
+        self.text.setReadOnly(True)
+        self.text.setAccessibleName("What the report holds")
+        for widget in (self.heading, self.sentence):
+            layout.addWidget(widget)
+        layout.addWidget(self.text, 1)
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
+        self.save = buttons.addButton("Save report…", QDialogButtonBox.ButtonRole.ActionRole)
+        strengthen(buttons.button(QDialogButtonBox.StandardButton.Close))
+        self.save.clicked.connect(self._save)
+        buttons.rejected.connect(self.hide)
+        layout.addWidget(buttons)
+
+    def say(self, heading: str, sentence: str, report: str) -> None:
+        self.setWindowTitle(heading)
+        self.heading.setText(heading)
+        self.sentence.setText(sentence)
+        self.text.setPlainText(report)
+
+    def _save(self) -> None:
+        name = f"metagraph report {time.strftime('%Y-%m-%d %H.%M')}.txt"
+        place, _ = QFileDialog.getSaveFileName(self, "Save report", str(Path.home() / name), "Text (*.txt)")
+        if not place:
+            return
+        try:
+            write_atomically(Path(place), self.text.toPlainText().encode())
+            self.sentence.setText(f"Saved {Path(place).name}. Send it to whoever gave you Metagraph.")
+        except FileError as error:
+            self.sentence.setText(str(error))
