@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.features.timing_editor.kept_rows import seconds_of, set_number
 from app.features.timing_editor.subject import Subject
 from app.features.timing_editor.view import TimingView
 from app.look import icons
@@ -65,7 +66,6 @@ class TimingPanel(QWidget):
         self.menu.setToolTipsVisible(True)
         self.menu.aboutToShow.connect(self._fill)
         self.more.setMenu(self.menu)
-        self.more.setStyleSheet("QToolButton::menu-indicator { image: none; }")
         self.view = TimingView(document, session, subject, self)
         self.view.typed.connect(self._type)
         self.area = QScrollArea(self)
@@ -205,10 +205,11 @@ class TimingPanel(QWidget):
         """Let a number be typed where it stands."""
         facts = self.subject.facts().get(ident)
         found = facts.handle(handle) if facts is not None else None
-        if found is None:
+        kept = seconds_of(facts, handle) if facts is not None else None
+        if found is None and kept is None:
             return
         self._typing = (ident, handle)
-        self.number.show_value(found.number)
+        self.number.show_value(found.number if found is not None else kept)
         wide = max(86, round(box.width()))
         left = min(max(0, round(box.center().x() - wide / 2)), self.view.width() - wide)
         self.number.setGeometry(left, round(box.top()) - 4, wide, 26)
@@ -224,6 +225,9 @@ class TimingPanel(QWidget):
         ident, handle = self._typing
         facts = self.subject.facts().get(ident)
         if facts is None or value < 0:
+            return
+        if seconds_of(facts, handle) is not None:
+            self._try(lambda: set_number(self.view, facts, handle, value))
             return
         start, end = facts.span
         at = {"in": start + value, "out": end - value}.get(handle, value)
