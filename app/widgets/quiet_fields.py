@@ -127,5 +127,10 @@ class ComboBox(QComboBox):
         super().__init__(*arguments, **properties)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
 
+    def choose(self, data: object) -> None:
+        """Choose the row of some data, else the first. Qt knows a path or a pair only as the same object."""
+        rows = [self.itemData(n) for n in range(self.count())]
+        self.setCurrentIndex(rows.index(data) if data in rows else 0 if rows else -1)
+
     def wheelEvent(self, event: QWheelEvent) -> None:
         event.ignore()
