@@ -139,7 +139,7 @@ def style_sheet(look: Theme) -> str:
     QMainWindow::separator:hover {{ background: {t.line}; }}
     QToolTip {{ background: {t.card}; color: {t.text}; border: 1px solid {t.line}; padding: 4px 6px; }}
     QDockWidget {{ color: {t.dim}; font-weight: 600; }}
-    QDockWidget::title {{ background: {t.panel}; padding: 7px 10px; border-bottom: 1px solid {t.line}; }}
+    QDockWidget::title {{ background: {t.panel}; padding: 8px 10px 4px 10px; border-bottom: 1px solid {t.line}; }}
     QDockWidget > QWidget {{ background: {t.panel}; }}
     QToolBar {{ background: {t.panel}; border: none; border-bottom: 1px solid {t.line}; padding: 5px 8px; spacing: 4px; }}
     QToolBar QToolButton {{ padding: 5px 9px; }}
@@ -158,6 +158,7 @@ def style_sheet(look: Theme) -> str:
     QPushButton {{ background: {t.card}; border-color: {t.line}; }}
     QToolButton:hover, QPushButton:hover {{ background: {t.hover}; }}
     QToolButton::menu-indicator {{ image: none; }}
+    QToolButton[tight="true"] {{ padding: 5px 4px; }}
     QToolButton:checked {{ background: {t.hover}; border-color: {t.line}; }}
     QToolButton:disabled, QPushButton:disabled {{ color: {t.dim}; }}
     QToolButton:focus, QPushButton:focus {{ border-color: {t.dim}; }}

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
-from app.look.chip_words import chipped
-from app.look.names import fitted, node_names, plain
+from app.look.names import node_names, plain
+from app.look.shortening import chipped, fitted
 from app.look.theme import KIND_MARKS, Theme
 from app.stage.playback_source import Shown
 from app.widgets.lane_geometry import LEFT, RULER, TITLES, Mark, Scale, elided, lanes, rows

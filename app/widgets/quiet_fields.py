@@ -72,6 +72,10 @@ class Stepped(OneStep):
 
     KEYS = (Qt.Key.Key_Up, Qt.Key.Key_Down, Qt.Key.Key_PageUp, Qt.Key.Key_PageDown)
 
+    def __init__(self, *arguments: Any, **properties: Any) -> None:
+        super().__init__(*arguments, **properties)
+        self.lineEdit().setTextMargins(6, 0, 0, 0)  # a style sheet's padding does not reach it
+
     def stepBy(self, steps: int) -> None:
         if self._held:
             self.quietly(super().stepBy, steps)

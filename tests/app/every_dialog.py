@@ -137,6 +137,7 @@ DIALOGS: dict[str, Open] = {
     "render": _command("render"),
     "repairs": _command("repairs"),
     "keys": _command("keys"),
+    "palette": _command("palette"),
     "rename": _on_actions("rename"),
     "replace clip": _on_actions("replace_clip"),
     "paste": _paste,

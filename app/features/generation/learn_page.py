@@ -141,7 +141,6 @@ class LearnPage(Page):
         self.minutes = SpinBox(self, minimum=1, maximum=10000, value=15)
         self.minutes.setSuffix(" min")
         self.minutes.setAccessibleName("Minutes")
-        self.minutes.lineEdit().setTextMargins(6, 0, 0, 0)
         self.name = QLineEdit("new model", self)
         self.name.setAccessibleName("Name of the model")
         row = QHBoxLayout()

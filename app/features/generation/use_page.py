@@ -78,8 +78,6 @@ class UsePage(Page):
         self.table.itemChanged.connect(lambda _: self._enable())
         box.addWidget(self.view, 1)
         box.addLayout(self._drop_row())
-        for field in (self.seed, self.temperature, self.guidance, self.minutes):
-            field.lineEdit().setTextMargins(6, 0, 0, 0)
         self.fill()
 
     # --- building

@@ -155,6 +155,7 @@ def contribute(shell: Shell) -> Contribution:
                 where={"graph": "large", "time": "list"},
                 opens={"label": "below"},
                 least=(250, 200),
+                rank=0,
             ),
         ),
         commands=(new, *labels, *layers, *places),

@@ -110,7 +110,7 @@ class Canvas(QWidget):
         document.loaded.connect(lambda: self.reveal(()))
         for signal in (session.place.stance_changed, session.place.layer_changed):
             signal.connect(self._moved_on)
-        session.selection.changed.connect(self.update)
+        session.selection.changed.connect(self._selected)
         session.look.changed.connect(self.update)
         thumbnails.ready.connect(lambda _: self.update())
         performance.changed.connect(self.update)
@@ -141,6 +141,7 @@ class Canvas(QWidget):
     def resizeEvent(self, event: object) -> None:
         self.setMinimumHeight(int(least_height(self.width())))
         self._stale()
+        self._selected()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         begun = time.perf_counter()
@@ -226,6 +227,12 @@ class Canvas(QWidget):
     def set_misfits(self, misfits: dict[str, str]) -> None:
         """Mark actions whose ends do not fit; action id -> words."""
         self.misfits = misfits
+        self.update()
+
+    def _selected(self) -> None:
+        """Bring what was selected elsewhere in sight, too."""
+        if len(self.session.selection.actions) == 1:
+            self._scroll_to(self.session.selection.actions[0])
         self.update()
 
     def _edited(self, before: Project, after: Project) -> None:

@@ -11,7 +11,8 @@ from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter, QPaint
 from app.features.graph.graph_drops import Drop
 from app.features.graph.graph_frames import GRID
 from app.features.graph.graph_layout import Chip, GraphHit, GraphRow, Layout, Node, bar_part
-from app.look.names import fitted, plain
+from app.look.names import plain
+from app.look.shortening import fitted
 from app.look.theme import KIND_MARKS, KIND_TITLES, Theme
 from metagraph.graph.model import Kind, Project
 
@@ -69,13 +70,14 @@ def paint(
     for node in layout.nodes.values():
         if wanted(node.rect):
             _node(painter, node, layout, look, font)
-    painter.setFont(font)
-    painter.setPen(QColor(look.theme.dim))
-    painter.drawText(
-        layout.foot,
-        Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft | Qt.TextFlag.TextWordWrap,
-        look.sentence,
-    )
+    if not layout.foot.isEmpty():
+        painter.setFont(font)
+        painter.setPen(QColor(look.theme.dim))
+        painter.drawText(
+            layout.foot,
+            Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft | Qt.TextFlag.TextWordWrap,
+            look.sentence,
+        )
     _verdict(painter, layout, look, font)
     if look.arrow is not None:
         draw_arrow(
@@ -397,10 +399,10 @@ def _other(painter: QPainter, node: Node, look: GraphLook, font: QFont) -> None:
     _box(painter, rect, QColor(t.hover if hover else t.field), QColor(t.line))
     painter.setFont(font)
     painter.setPen(QColor(t.text if found is not None else t.warning))
-    text = f"to {plain(found.name)}" if found is not None else "another stance?"
-    painter.drawText(
-        rect.adjusted(8, 0, -18, 0), Qt.AlignmentFlag.AlignVCenter, _between(font, text, rect.width() - 26)
-    )
+    text, room = f"to {plain(found.name)}" if found is not None else "another stance?", rect.width() - 26
+    if found is not None and QFontMetricsF(font).horizontalAdvance(text) > room:
+        text = plain(found.name)
+    painter.drawText(rect.adjusted(8, 0, -18, 0), Qt.AlignmentFlag.AlignVCenter, _between(font, text, room))
     painter.setPen(QPen(QColor(t.dim), 1.4))
     c = QPointF(rect.right() - 12, rect.center().y())
     painter.drawPolyline([c + QPointF(-3.5, -2), c + QPointF(0, 2), c + QPointF(3.5, -2)])

@@ -57,9 +57,9 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.look import icons
-from app.look.names import fitted, fitting, plain
+from app.look.names import plain
 from app.look.plural import many, short
+from app.look.shortening import fitted, fitting
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.project.load import readable
@@ -68,6 +68,7 @@ from app.stage.thumbnails import Thumbnails
 from app.widgets.flow import Flow
 from app.widgets.making import make_widget
 from app.widgets.mime import drag_picture, load_of, mime
+from app.widgets.more_button import MoreButton
 from metagraph.graph import edits
 from metagraph.graph.generated import origin
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry, Kind, Project
@@ -463,9 +464,7 @@ class LibraryPanel(QWidget):
         document.changed.connect(self._follow)
         document.loaded.connect(self.forget)
         session.selection.changed.connect(self._show_selection)
-        session.look.changed.connect(self.restyle)
         thumbnails.ready.connect(lambda _: self.list.viewport().update())
-        self.restyle()
         self._count()
 
     def _filters(self) -> Flow:
@@ -474,6 +473,7 @@ class LibraryPanel(QWidget):
 
         def chip(key: str, text: str, tip: str) -> None:
             button = make_widget(QToolButton, self, text=text, toolTip=tip, checkable=True)
+            button.setProperty("tight", True)
             button.clicked.connect(lambda _=False, k=key: self._chip(k))
             self.chips[key] = button
             row.addWidget(button)
@@ -481,12 +481,9 @@ class LibraryPanel(QWidget):
         chip("all", "All", "All clips")
         chip("unlabelled", "Unlabelled", "Clips that were not placed yet")
         chip("labelled", "Placed", "Clips that are in the graph")
-        self.more = make_widget(
-            QToolButton, self, text="Any kind", toolTip="Show the clips of a layer or kind only"
-        )
-        self.more.setAccessibleName("Layer or kind")
-        self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
-        menu = QMenu(self.more)
+        tip = "Show the clips of a layer or kind only"
+        self.more = MoreButton(self.session.look, "Layer or kind", tip, self)
+        menu = self.more.menu_of
         menu.addAction("Any kind, any layer", lambda: self._narrow(None, None))
         menu.addSeparator()
         for kind in KINDS:
@@ -494,7 +491,6 @@ class LibraryPanel(QWidget):
         menu.addSeparator()
         for layer in LAYERS:
             menu.addAction(f"{layer.capitalize()} layer", partial(self._narrow, layer, None))
-        self.more.setMenu(menu)
         row.addWidget(self.more)
         self.chips["all"].setChecked(True)
         return row
@@ -534,9 +530,7 @@ class LibraryPanel(QWidget):
 
     def _narrow(self, layer: str | None, kind: Kind | None) -> None:
         word = layer or kind
-        self.more.setText((word or "any kind").capitalize())
-        beside = Qt.ToolButtonStyle.ToolButtonTextBesideIcon
-        self.more.setToolButtonStyle(beside if word else Qt.ToolButtonStyle.ToolButtonIconOnly)
+        self.more.show_words((word or "").capitalize())
         self._refilter(layer=layer, kind=kind)
 
     def _refilter(self, *_: object, **more: str | None) -> None:
@@ -718,7 +712,4 @@ class LibraryPanel(QWidget):
                 f"Remove {len(gone)} clip{'s' if len(gone) > 1 else ''}",
                 lambda p: edits.remove_clips(p, gone),
             )
-
-    def restyle(self) -> None:
-        self.more.setIcon(icons.icon("more", theme(self.session.look.name).text))
         self.list.viewport().update()

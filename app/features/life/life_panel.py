@@ -72,7 +72,6 @@ class DialRow:
         self.number.setAccessibleName(dial.label)
         self.number.setKeyboardTracking(False)
         self.number.setFixedWidth(92)
-        self.number.lineEdit().setTextMargins(6, 0, 0, 0)
         head = self.tick if dial.off is not None else self.label
         (self.label if head is self.tick else self.tick).hide()
         grid.addWidget(head, row, 0)

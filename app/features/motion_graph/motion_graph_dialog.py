@@ -123,7 +123,6 @@ class MotionGraphDialog(QDialog):
             row.addWidget(QLabel(words, self))
             row.addWidget(field)
             row.addSpacing(10)
-            field.lineEdit().setTextMargins(6, 0, 0, 0)
             field.valueChanged.connect(self._changed)
         row.addStretch(1)
         self.right.addLayout(row)

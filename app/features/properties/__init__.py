@@ -47,7 +47,7 @@ def contribute(shell: Shell) -> Contribution:
                 "Properties",
                 "right below",
                 make,
-                where={"time": "side", "graph": "below", "label": "below"},
+                where={"time": "list", "graph": "below", "label": "below"},
                 rank=1,
             ),
         ),

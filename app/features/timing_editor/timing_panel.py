@@ -10,7 +10,6 @@ from PySide6.QtWidgets import (
     QFrame,
     QHBoxLayout,
     QLabel,
-    QMenu,
     QPushButton,
     QScrollArea,
     QToolButton,
@@ -21,13 +20,13 @@ from PySide6.QtWidgets import (
 from app.features.timing_editor.kept_rows import seconds_of, set_number
 from app.features.timing_editor.subject import Subject
 from app.features.timing_editor.view import TimingView
-from app.look import icons
 from app.look.names import told_names
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import Session
 from app.widgets.form_fields import Chooser, Seconds, common
 from app.widgets.making import make_widget
+from app.widgets.more_button import MoreButton
 from app.widgets.sentence import Sentence
 from metagraph.graph.edits import EditError
 from metagraph.motion.retime import SPEEDS
@@ -60,12 +59,9 @@ class TimingPanel(QWidget):
         self.compare.clicked.connect(subject.compare)
         self.loop = self._button("Loop", "Play only what the action plays, again and again", True)
         self.loop.clicked.connect(subject.loop_action)
-        self.more = self._button("", "What is shown")
-        self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
-        self.menu = QMenu(self)
-        self.menu.setToolTipsVisible(True)
+        self.more = MoreButton(session.look, "What is shown", "What is shown", self)
+        self.menu = self.more.menu_of
         self.menu.aboutToShow.connect(self._fill)
-        self.more.setMenu(self.menu)
         self.view = TimingView(document, session, subject, self)
         self.view.typed.connect(self._type)
         self.area = QScrollArea(self)
@@ -114,7 +110,6 @@ class TimingPanel(QWidget):
     def refresh(self) -> None:
         """Show what the subject is now."""
         shown, t = self.subject.facts(), theme(self.session.look.name)
-        self.more.setIcon(icons.icon("more", t.text))
         first = next(iter(shown.values()), None)
         for widget in (self.use, self.joint, self.speed, self.hold, self.onion, self.compare, self.loop):
             widget.setEnabled(first is not None)
