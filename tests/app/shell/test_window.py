@@ -439,7 +439,9 @@ def test_the_layer_page_sets_weights_rest_and_base_pose(toys):
     drive.session.transport.show_clip(wave)
     drive.session.transport.set_playing(False)
     drive.session.transport.seek(0.5)
-    drive.pick(drive.library.menu(drive.document.project.clips[wave]), "Use this frame (15) as base pose")
+    drive.pick(
+        drive.library.acts.menu(drive.document.project.clips[wave]), "Use this frame (15) as base pose"
+    )
     assert (drive.document.project.base.clip, drive.document.project.base.frame) == (wave, 15)
     assert drive.preview.base.text() == "Base pose: rest wave rt, frame 15"
     assert p.base.currentText() == "rest wave rt"
