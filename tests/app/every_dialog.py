@@ -44,7 +44,7 @@ def _paste(w: Handles, _: Path) -> None:
 
 def _joints(w: Handles, _: Path) -> None:
     _actions(w)
-    w.properties.joints.click()
+    w.properties.action.joints.click()
 
 
 def _state_joints(w: Handles, _: Path) -> None:

@@ -29,6 +29,7 @@ from PySide6.QtWidgets import (
     QDockWidget,
     QGraphicsView,
     QHeaderView,
+    QLabel,
     QLineEdit,
     QTabBar,
     QToolTip,
@@ -279,6 +280,8 @@ def elided(one: Seen) -> bool:
     if isinstance(widget, QAbstractButton | QLineEdit):
         own = widget.text() if isinstance(widget, QAbstractButton) else widget.placeholderText()
         return words not in own.replace("&", "")
+    if isinstance(widget, QLabel):
+        return words.rstrip(GAP) not in widget.text() or not widget.text().rstrip().endswith(GAP)
     if isinstance(widget, QComboBox):
         return words != widget.currentText()
     return words != GAP

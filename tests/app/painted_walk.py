@@ -26,5 +26,9 @@ def walk(drive: Any, width: int, height: int) -> dict[str, list[str]]:
             drive.session.jump(action=action.id)
             drive.session.transport.set_playing(False)
             QTest.qWait(60)
+            for _ in range(200):  # a sound is read
+                if not drive.jobs.running:
+                    break
+                QTest.qWait(50)
             out[workspace.id] = faults(drive.window)
     return {k: v for k, v in out.items() if v}

@@ -105,6 +105,7 @@ class LearnPage(Page):
         row.addStretch(1)
         box.addLayout(row)
         self.table = QTableWidget(0, len(HEADS), self)
+        self.table.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
         self.table.setHorizontalHeaderLabels(list(HEADS))
         self.table.setAccessibleName("Takes to learn from")
         self.table.verticalHeader().hide()

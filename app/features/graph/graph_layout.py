@@ -122,17 +122,20 @@ class Layout:
         )
 
 
+HOLES = ("no loop", "no way out", "no gestures", "no fidgets")
+
+
 def hole(project: Project, layer: Layer, stance: str) -> str:
     """Return in words what a stance lacks, the worst first, or nothing."""
     graph = project.graphs[layer]
     if not graph.of(stance, "stance"):
-        return "no loop"
+        return HOLES[0]
     if len(graph.stances) > 1 and not graph.of(stance, "transition"):
-        return "no way out"
+        return HOLES[1]
     if not graph.of(stance, "gesture"):
-        return "no gestures"
+        return HOLES[2]
     if not graph.of(stance, "fidget"):
-        return "no fidgets"
+        return HOLES[3]
     return ""
 
 

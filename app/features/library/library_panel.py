@@ -39,6 +39,7 @@ from app.stage.thumbnails import Thumbnails
 from app.widgets.flow import Flow
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
+from app.widgets.one_stop import OneStop
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry, Kind, Project
 
 EMPTY = "Drop a folder of clips here\n\n{}"
@@ -112,6 +113,7 @@ class LibraryPanel(QWidget):
         for layer in LAYERS:
             menu.addAction(f"{layer.capitalize()} layer", partial(self._narrow, layer, None))
         row.addWidget(self.more)
+        OneStop((*self.chips.values(), self.more), self)
         self.chips["all"].setChecked(True)
         return row
 

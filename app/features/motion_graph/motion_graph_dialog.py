@@ -132,6 +132,7 @@ class MotionGraphDialog(QDialog):
         self.words.setProperty("dim", True)
         self.right.addWidget(self.words)
         self.table = QTableWidget(len(KS), 5, self)
+        self.table.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
         self.table.setHorizontalHeaderLabels(["k", "Frames", "Transitions", "Frames kept", "Trans. kept"])
         self.table.horizontalHeader().setDefaultAlignment(
             Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter

@@ -59,6 +59,7 @@ class TimingPlot(QWidget):
         self._setting = False
         self.plot = pg.PlotWidget(self)
         self.plot.setMenuEnabled(False)
+        self.plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # the fields beside it have keys
         self.plot.setMouseEnabled(False, False)
         self.plot.hideButtons()
         self.set_large(False)

@@ -27,6 +27,7 @@ from app.stage.session import Session
 from app.widgets.form_fields import Chooser, Seconds, common
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
+from app.widgets.one_stop import OneStop
 from app.widgets.sentence import Sentence
 from metagraph.graph.edits import EditError
 from metagraph.motion.retime import SPEEDS
@@ -62,6 +63,7 @@ class TimingPanel(QWidget):
         self.more = MoreButton(session.look, "What is shown", "What is shown", self)
         self.menu = self.more.menu_of
         self.menu.aboutToShow.connect(self._fill)
+        OneStop((self.hold, self.onion, self.compare, self.loop, self.more), self)
         self.view = TimingView(document, session, subject, self)
         self.view.typed.connect(self._type)
         self.area = QScrollArea(self)

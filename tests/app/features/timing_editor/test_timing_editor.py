@@ -98,7 +98,7 @@ def test_it_is_wide_under_the_character_and_says_what_the_problems_say(editor):
     assert panel.view.height() >= panel.view.minimumHeight()
     shown = facts(editor)
     assert not shown.fine and "ends" in shown.verdict and panel.verdict.words == shown.verdict
-    assert editor.properties.plot.verdict.text() == shown.verdict, "one verdict everywhere"
+    assert editor.properties.action.plot.verdict.text() == shown.verdict, "one verdict everywhere"
 
 
 def test_a_handle_is_dragged_by_its_line_and_comes_to_rest_with_a_reason_in_one_step(editor):
@@ -332,7 +332,7 @@ def test_a_hand_is_kept_during_the_looped_part_and_let_go_again(editor):
 
 def test_the_plot_in_the_properties_follows_a_clip_that_is_slowed(editor):
     editor.panel.speed.setValue(0.5)
-    xs, _ = editor.properties.plot.curve.getData()
+    xs, _ = editor.properties.action.plot.curve.getData()
     assert xs[-1] == pytest.approx(4.8, abs=0.05)
 
 
