@@ -30,5 +30,6 @@ def walk(drive: Any, width: int, height: int) -> dict[str, list[str]]:
                 if not drive.jobs.running:
                     break
                 QTest.qWait(50)
+            QTest.qWait(30)  # what was read is counted and laid out
             out[workspace.id] = faults(drive.window)
     return {k: v for k, v in out.items() if v}

@@ -18,8 +18,9 @@ def row(qtbot):
     page = QWidget()
     qtbot.addWidget(page)
     box = QHBoxLayout(page)
-    page.before, page.after = QLineEdit(page), QLineEdit(page)
+    page.before = QLineEdit(page)
     page.buttons = [QToolButton(page) for _ in range(3)]
+    page.after = QLineEdit(page)
     for widget in (page.before, *page.buttons, page.after):
         box.addWidget(widget)
     page.stop = OneStop(page.buttons, page, page.buttons[1])
