@@ -1,15 +1,16 @@
 """Take the pictures of the documentation from the real window: `python docs/pictures.py` (on a screen, or
 under `xvfb-run`).
 
-Writes docs/workspace-*.png, timing.png, practice.png, empty.png, light.png, requests.png, models.png,
+Writes docs/screens/*.webp, docs/timing.png, practice.png, empty.png, light.png, requests.png, models.png,
 label.png, export.png, web.png, conversation.png, motion-graph.png and performance.png, from our own sample
-clips only; with names behind it, only those. The web page needs Node, Chromium and what tests/package.json
-names.
+clips only; with names behind it, only those. The screen has to be larger than 2560 x 1440. The web page
+needs Node, Chromium and what tests/package.json names.
 """
 
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -59,71 +60,110 @@ def close(out: Any) -> None:
     wait(100)
 
 
-def finished(name: str, theme: str, machine: bool, action: str) -> None:
-    """The sample project with an action selected and playing."""
+SCALE = "QT_SCALE_FACTOR"
+SIZES = ((1280, 720), (1680, 1050), (2560, 1440))
+THEMES = ("dark", "light")
+TALKING = 9.7  # seconds of the sample's conversation at which both can be seen to take part
+
+
+def on_sample(theme: str = "dark", size: tuple[int, int] = (1680, 1020)) -> Any:
+    """Return a window on the sample project, everything read."""
     from app.project.files import SAMPLE
 
     out = window(theme)
+    out.window.resize(*size)
     out.files.open(SAMPLE, template=True)
     wait(20000, lambda: bool(out.document.project.clips))
     wait(5000)
-    found = next(a for a in out.document.project.actions() if a.name == action)
+    return out
+
+
+def selected(out: Any, name: str) -> Any:
+    """Select an action of the sample by its name and return it."""
+    found = next(a for a in out.document.project.actions() if a.name == name)
     out.session.jump(action=found.id)
+    return found
+
+
+def still_in_gesture(out: Any, layer: str) -> None:
+    """Stop the performance in the middle of a gesture of a layer."""
+    out.session.transport.show_plan()
+    out.session.transport.set_playing(False)
+    wait(4000, lambda: out.performance.shown.clip is None)
+    cues = out.performance.shown.plan.layers[layer].cues
+    cue = next((c for c in cues if c.action.kind == "gesture" and c.end - c.start > 2), cues[0])
+    out.session.transport.seek((cue.start + cue.end) / 2)
+
+
+def finished(name: str, theme: str, machine: bool, action: str) -> None:
+    """The sample project with an action selected and playing."""
+    out = on_sample(theme)
+    found = selected(out, action)
     out.session.transport.show_plan()
     if machine:
         out.show("machine")
     wait(4000)
-    out.session.transport.set_playing(False)
-    cues = out.performance.shown.plan.layers[found.layer].cues
-    cue = next((c for c in cues if c.action.kind == "gesture" and c.end - c.start > 2), cues[0])
-    out.session.transport.seek((cue.start + cue.end) / 2)
+    still_in_gesture(out, found.layer)
     wait(4000)
     shoot(out.window, name)
     close(out)
 
 
-def workspaces() -> None:
-    """The five workspaces, on the sample project."""
-    from app.project.files import SAMPLE
+def screens() -> None:
+    """The five workspaces in both themes: at three sizes, and at the least on a screen twice as fine."""
+    twice = os.environ.get(SCALE) == "2"
+    for theme in THEMES:
+        out = on_sample(theme)
+        found = selected(out, "shrug_bt_01")
+        for size in SIZES[:1] if twice else SIZES:
+            out.window.resize(*size)
+            for tab in out.workspaces.tabs:
+                out.workspaces.choose(tab.id)
+                on_stage(out, tab.id, found.layer)
+                keep_screen(out, f"{tab.id}-{size[0]}x{size[1]}{'-twice' if twice else ''}-{theme}")
+        close(out)
+    if not twice:
+        again = [sys.executable, __file__, "screens"]
+        subprocess.run(again, env={**os.environ, SCALE: "2"}, check=True)
 
-    out = window()
-    out.window.resize(1680, 1050)
-    out.files.open(SAMPLE, template=True)
-    wait(20000, lambda: bool(out.document.project.clips))
-    wait(5000)
-    session = out.session
-    found = next(a for a in out.document.project.actions() if a.name == "shrug_bt_01")
-    session.jump(action=found.id)
-    session.transport.show_plan()
-    session.transport.set_playing(False)
-    for tab in out.workspaces.tabs:
-        out.workspaces.choose(tab.id)
-        if tab.id == "talk":
-            session.onstage.set_conversation(next(iter(out.document.project.conversations)))
-            wait(20000, lambda: out.performance.shown.partner is not None and not out.jobs.running)
-            session.transport.seek(9.7)
-        else:
-            cues = out.performance.shown.plan.layers[found.layer].cues
-            cue = next(c for c in cues if c.action.kind == "gesture" and c.end - c.start > 2)
-            session.transport.seek((cue.start + cue.end) / 2)
-        wait(3000)
-        shoot(out.window, f"workspace-{tab.id}.png")
-    close(out)
+
+def on_stage(out: Any, workspace: str, layer: str) -> None:
+    """Put two who talk on the stage of *Talk*, a gesture on the others'."""
+    talk = next(iter(out.document.project.conversations)) if workspace == "talk" else None
+    if out.session.onstage.conversation != talk:
+        out.session.onstage.set_conversation(talk)
+        both = talk is not None
+        wait(20000, lambda: (out.performance.shown.partner is not None) == both and not out.jobs.running)
+    if talk is not None:
+        out.session.transport.set_playing(False)
+        out.session.transport.seek(TALKING)
+    else:
+        still_in_gesture(out, layer)
+
+
+def keep_screen(out: Any, name: str) -> None:
+    """Write a picture of the whole window, once all pictures in it are there, small enough to keep many."""
+    from PIL import Image
+
+    wait(1500)
+    wait(60000, lambda: not out.thumbnails.waiting and not out.jobs.running)
+    wait(700)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "whole.png"
+        out.window.grab().save(str(path))
+        with Image.open(path) as whole:
+            whole.convert("RGB").save(ROOT / "docs" / "screens" / f"{name}.webp", quality=80, method=6)
+    print(f"docs/screens/{name}.webp")
 
 
 def timing() -> None:
-    """The timing editor, with a hold, a line and onion skin."""
-    from app.project.files import SAMPLE
-    from metagraph.graph.retiming import set_hold
+    """The timing editor, with a hold, a kept hand, a line and onion skin."""
+    from metagraph.graph.retiming import keep_hand, set_hold
 
-    out = window()
-    out.window.resize(1680, 1050)
-    out.files.open(SAMPLE, template=True)
-    wait(20000, lambda: bool(out.document.project.clips))
-    wait(5000)
-    found = next(a for a in out.document.project.actions() if a.name == "shrug_bt_01")
+    out = on_sample(size=(1680, 1050))
+    found = selected(out, "shrug_bt_01")
     out.document.edit("Hold", lambda p: set_hold(p, found.clip, 0.95, 0.4))
-    out.session.jump(action=found.id)
+    out.document.edit("Keep hand", lambda p: keep_hand(p, found.clip, "right", 0.6, 0.95))
     out.workspaces.choose("time")
     subject = out.shell.panel("timing").subject
     subject.show(onion=True, dope=True, heard=next(iter(out.document.project.lines)))
@@ -180,12 +220,9 @@ def half_labelled() -> None:
 
 def requests() -> None:
     """The lanes of a performance: requests, what plays, one that is late and one that cannot."""
-    from app.project.files import SAMPLE
     from metagraph.graph import requests as a
 
-    out = window()
-    out.files.open(SAMPLE, template=True)
-    wait(20000, lambda: bool(out.document.project.clips))
+    out = on_sample()
     stage, session = out.performance, out.session
     session.transport.set_playing(False)
     for ask in (
@@ -213,11 +250,8 @@ def requests() -> None:
 def models() -> None:
     """The heat map of a model learned from our own annotation, beside what it generates."""
     from app.features.models.annotation_dialog import open_annotation
-    from app.project.files import SAMPLE
 
-    out = window()
-    out.files.open(SAMPLE, template=True)
-    wait(20000, lambda: bool(out.document.project.clips))
+    out = on_sample()
     open_annotation(
         out, ROOT / "sample_clips" / "annotation" / "conversation.eaf", lambda dialog: dialog.accept()
     )  # type: ignore[arg-type]
@@ -234,11 +268,8 @@ def models() -> None:
 def exporting() -> None:
     """The export dialog, on a target that loses something."""
     from app.features.export.export_dialog import ExportDialog
-    from app.project.files import SAMPLE
 
-    out = window()
-    out.files.open(SAMPLE, template=True)
-    wait(20000, lambda: bool(out.document.project.clips))
+    out = on_sample()
     dialog = ExportDialog(out.document, out.jobs, out.window)
     dialog.folder.setText("game/playcanvas")
     dialog.open()
@@ -276,17 +307,9 @@ def labelling() -> None:
 
 def conversation() -> None:
     """Two who talk, on their lanes."""
-    from app.project.files import SAMPLE
-
-    out = window()
-    out.files.open(SAMPLE, template=True)
-    wait(20000, lambda: bool(out.document.project.conversations))
-    session = out.session
-    session.onstage.set_conversation(next(iter(out.document.project.conversations)))
+    out = on_sample()
     out.show("conversation")
-    wait(20000, lambda: out.performance.shown.partner is not None and not out.jobs.running)
-    session.transport.set_playing(False)
-    session.transport.seek(9.7)
+    on_stage(out, "talk", "arms")
     wait(2500)
     shoot(out.window, "conversation.png")
     close(out)
@@ -367,7 +390,7 @@ def nothing() -> None:
 PICTURES: dict[str, Callable[[], None]] = {
     "empty": nothing,
     "light": lambda: finished("light.png", "light", True, "beat_large_bt_01"),
-    "workspaces": workspaces,
+    "screens": screens,
     "timing": timing,
     "practice": half_labelled,
     "requests": requests,

@@ -27,7 +27,7 @@ PAGES = [
     *sorted((ROOT / "docs").glob("*.md")),
 ]
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.S | re.M)
-PICTURES = ("workspace-graph", "workspace-time", "practice", "empty", "performance")
+PICTURES = ("timing", "practice", "empty", "performance")
 
 
 def blocks(page: Path) -> list[tuple[str, str]]:
@@ -144,9 +144,11 @@ def test_links_and_pictures_lead_somewhere(page: Path) -> None:
 
 def test_the_readme_shows_the_window_and_the_pictures_are_pictures() -> None:
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert "docs/workspace-graph.png" in text
+    assert "docs/screens/graph-1680x1050-dark.webp" in text
     for name in PICTURES:
         assert (ROOT / "docs" / f"{name}.png").read_bytes().startswith(b"\x89PNG"), name
+    screens = list((ROOT / "docs" / "screens").iterdir())
+    assert len(screens) == 40 and all(s.read_bytes()[8:12] == b"WEBP" for s in screens)
 
 
 def test_every_field_of_the_schema_is_described() -> None:

@@ -1,20 +1,14 @@
-"""How actions and clips are called where the place says the rest: without their stance in front, and cut so
-that what tells them apart from their neighbours is still seen.
-"""
+"""How actions and clips are called where the place says the rest: without their stance in front."""
 
 from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import lru_cache
-
-from PySide6.QtGui import QFont, QFontMetricsF
+from collections.abc import Iterable, Mapping, Sequence
 
 from app.look.plural import parts, short
 from metagraph.graph.model import KINDS, Action, Kind, Layer, Limb, MetaGraph, Project
 
-GAP = "…"
 _TAKE = re.compile(r"[\s.#(-]*\d+\)?$")  # the number of a take, at a name's end
 _SIDES: Mapping[str, tuple[Limb, str]] = {
     **dict.fromkeys(("left", "l", "lf", "lft"), ("left", "L")),
@@ -109,83 +103,3 @@ def node_names(project: Project, layer: Layer, stance: str, kind: Kind) -> dict[
             _KEPT.clear()
         _KEPT[key] = graph, row_names(project, graph.of(stance, kind))
     return _KEPT[key][1]
-
-
-def fitting(
-    text: str, width: float, measure: Callable[[str], float], others: Iterable[str] = (), sure: bool = False
-) -> str:
-    """Return as much of a text as a width has room for, its middle left out, or both ends. others: what
-    stands beside it; what is left is to be none of theirs, where that can be. sure: "" where it cannot.
-    """
-    if measure(text) <= width:
-        return text
-    if measure(GAP) > width:
-        return ""
-    rivals = [o for o in set(others) if o != text]
-    whole = len(text)
-    found: list[tuple[int, int, int, int]] = []  # collisions, letters lost, how uneven, letters in front
-    tail = whole
-    for head in range(whole):
-        while tail and measure(text[:head].rstrip() + GAP + _end(text, tail)) > width:
-            tail -= 1
-        if measure(text[:head].rstrip() + GAP + _end(text, tail)) > width:
-            break
-        last = min(tail, whole - head - 1)
-        begin, end = text[:head].rstrip(), _end(text, last)
-        alike = sum(1 for o in rivals if o.startswith(begin) and o.endswith(end))
-        found.append((alike, whole - head - last, abs(head - last), head))
-    if not found:
-        return "" if sure else GAP
-    alike, lost, _, head = min(found, key=lambda f: (f[0], f[1] // 3, f[2]))
-    best = text[:head].rstrip() + GAP + _end(text, whole - head - lost)
-    if alike:
-        same, inner = _inner(text, width, measure, rivals)
-        if same < alike:
-            alike, best = same, inner
-    return "" if sure and alike else best
-
-
-def _inner(
-    text: str, width: float, measure: Callable[[str], float], rivals: Sequence[str]
-) -> tuple[int, str]:
-    """Return the part of a text that fewest rivals have, both ends left out, after how many have it."""
-    starts = {_common(text, o) for o in rivals} | {
-        text.rfind(" ", 0, _common(text, o) + 1) + 1 for o in rivals
-    }
-    best = len(rivals) + 1, 0, ""
-    for start in sorted(starts):
-        end = start
-        while end < len(text) and measure(GAP + text[start : end + 1] + GAP) <= width:
-            end += 1
-        piece = text[start:end].strip()
-        if len(piece) < 2:
-            continue
-        alike = sum(1 for o in rivals if piece in o)
-        front, back = GAP if start else "", GAP if end < len(text) else ""
-        best = min(best, (alike, -len(piece), front + piece + back))
-    return best[0], best[2]
-
-
-def _common(one: str, other: str) -> int:
-    """Return how many letters two texts begin with alike."""
-    return next(
-        (n for n, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), min(len(one), len(other))
-    )
-
-
-def _end(text: str, letters: int) -> str:
-    return text[len(text) - letters :].lstrip() if letters else ""
-
-
-@lru_cache(maxsize=8192)
-def fitted(text: str, width: int, font: str, others: tuple[str, ...] = (), sure: bool = False) -> str:
-    """Return `fitting` in a font, given as `QFont.toString` does; made once."""
-    return fitting(text, width, measured(font).horizontalAdvance, others, sure)
-
-
-@lru_cache(maxsize=8)
-def measured(font: str) -> QFontMetricsF:
-    """Return the measures of a font, given as `QFont.toString` does."""
-    made = QFont()
-    made.fromString(font)
-    return QFontMetricsF(made)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 FRONT = "@|:"  # what studios put between a character's name and an action's
-_PART = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\W\d_a-zA-Z]+")
+_RUN = re.compile(r"[^\W\d_]+|\d+")  # of letters, or of digits
 
 
 def many(count: int, noun: str) -> str:
@@ -29,10 +29,23 @@ def short(name: str, stance: str) -> str:
 
 def parts(name: str) -> list[tuple[str, int, int]]:
     """Return a name's words and numbers, each with where it begins and ends."""
-    return [
-        (str(int(m[0])) if m[0].isdecimal() else m[0].lower(), m.start(), m.end())
-        for m in _PART.finditer(name)
-    ]
+    out = []
+    for run in _RUN.finditer(name):
+        if run[0].isdecimal():
+            out.append((str(int(run[0])), run.start(), run.end()))
+            continue
+        ends = [i for i in range(run.start() + 1, run.end()) if _begins_word(name, i)]
+        for begin, end in zip([run.start(), *ends], [*ends, run.end()], strict=True):
+            out.append((name[begin:end].lower(), begin, end))
+    return out
+
+
+def _begins_word(name: str, i: int) -> bool:
+    """Return whether a letter after another begins a word: "IdleBack", "HTTPServer", or in another script."""
+    before, letter, after = name[i - 1], name[i], name[i + 1 : i + 2]
+    if (before.lower() != before.upper()) != (letter.lower() != letter.upper()):
+        return True
+    return letter.isupper() and (not before.isupper() or after.islower())
 
 
 def clips_words(count: int) -> str:

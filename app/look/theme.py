@@ -139,7 +139,7 @@ def style_sheet(look: Theme) -> str:
     QMainWindow::separator:hover {{ background: {t.line}; }}
     QToolTip {{ background: {t.card}; color: {t.text}; border: 1px solid {t.line}; padding: 4px 6px; }}
     QDockWidget {{ color: {t.dim}; font-weight: 600; }}
-    QDockWidget::title {{ background: {t.panel}; padding: 7px 10px; border-bottom: 1px solid {t.line}; }}
+    QDockWidget::title {{ background: {t.panel}; padding: 8px 10px 4px 10px; border-bottom: 1px solid {t.line}; }}
     QDockWidget > QWidget {{ background: {t.panel}; }}
     QToolBar {{ background: {t.panel}; border: none; border-bottom: 1px solid {t.line}; padding: 5px 8px; spacing: 4px; }}
     QToolBar QToolButton {{ padding: 5px 9px; }}
@@ -157,6 +157,8 @@ def style_sheet(look: Theme) -> str:
         border-radius: 6px; padding: 5px 10px; }}
     QPushButton {{ background: {t.card}; border-color: {t.line}; }}
     QToolButton:hover, QPushButton:hover {{ background: {t.hover}; }}
+    QToolButton::menu-indicator {{ image: none; }}
+    QToolButton[tight="true"] {{ padding: 5px 4px; }}
     QToolButton:checked {{ background: {t.hover}; border-color: {t.line}; }}
     QToolButton:disabled, QPushButton:disabled {{ color: {t.dim}; }}
     QToolButton:focus, QPushButton:focus {{ border-color: {t.dim}; }}
@@ -199,6 +201,16 @@ def style_sheet(look: Theme) -> str:
     QLabel[heading="true"] {{ font-size: 16px; font-weight: 600; }}
     QDialogButtonBox {{ dialogbuttonbox-buttons-have-icons: 0; }}
     QLabel[title="true"] {{ font-weight: 600; }}
+    QFileDialog {{ min-width: 900px; min-height: 560px;
+        filedialog-parent-directory-icon: url({marks}/up_{t.name}.svg);
+        filedialog-new-directory-icon: url({marks}/folder_add_{t.name}.svg);
+        filedialog-listview-icon: url({marks}/grid_{t.name}.svg);
+        filedialog-detailedview-icon: url({marks}/list_{t.name}.svg);
+        backward-icon: url({marks}/back_{t.name}.svg); forward-icon: url({marks}/forth_{t.name}.svg);
+        filedialog-backward-icon: url({marks}/back_{t.name}.svg); }}
+    QFileDialog QToolButton {{ padding: 3px; min-width: 20px; min-height: 20px; }}
+    QFileDialog QTreeView {{ font-size: 12px; }}
+    QFileDialog QTreeView::item {{ padding: 4px 0; }}
     QGroupBox {{ border: none; margin-top: 18px; font-weight: 600; color: {t.dim}; }}
     QGroupBox::title {{ subcontrol-origin: margin; left: 0; }}
     """

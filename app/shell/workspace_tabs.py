@@ -12,6 +12,7 @@ from app.shell.actions import Actions, Command
 from app.shell.workspace_keeper import Workspaces
 from app.shell.workspaces import WORKSPACES
 from app.widgets.making import make_widget
+from app.widgets.one_stop import OneStop
 
 KEYS = 9  # workspaces with a key of their own
 WIDEST = 110  # pixels of an own workspace's name
@@ -108,6 +109,7 @@ class WorkspaceTabs(QWidget):
         self._row.setContentsMargins(0, 0, 0, 0)
         self._row.setSpacing(2)
         self.buttons: list[QToolButton] = []
+        self._stop = OneStop((), self)
         keeper.changed.connect(self.refresh)
         self.refresh()
 
@@ -120,6 +122,7 @@ class WorkspaceTabs(QWidget):
             gone.deleteLater()
         while len(self.buttons) < len(tabs):
             self.buttons.append(self._button(len(self.buttons)))
+        self._stop.show(self.buttons)
         for place, (tab, button) in enumerate(zip(tabs, self.buttons, strict=True)):
             words = button.fontMetrics().elidedText(tab.title, Qt.TextElideMode.ElideMiddle, WIDEST)
             button.setText(words)
@@ -134,7 +137,6 @@ class WorkspaceTabs(QWidget):
 
     def _button(self, place: int) -> QToolButton:
         button = make_widget(QToolButton, self, checkable=True)
-        button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         button.clicked.connect(partial(self._choose, place))
         button.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
         button.customContextMenuRequested.connect(partial(self._menu, place))

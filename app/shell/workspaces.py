@@ -71,7 +71,7 @@ TIME = Workspace(
     "time",
     "Time",
     "The character large, over the timing of an action",
-    across(("list", 17), (down((across(("large", 64), ("side", 36)), 54), ("below", 46)), 83)),
+    across(("list", 27), (down(("large", 53), ("below", 47)), 73)),
 )
 PERFORM = Workspace(
     "perform",

@@ -33,6 +33,7 @@ AHEAD = 15.0  # seconds before the end at which more is planned
 class Performance(QObject):
     """changed: something else plays, or the same was planned anew. requests: edits what is asked for. live:
     begins and ends live play. before: the state of the project that clips and actions are shown of instead.
+    staged: the whole performance as it was last shown, None before; a clip or an action may be shown now.
     """
 
     changed = Signal()
@@ -44,6 +45,7 @@ class Performance(QObject):
         self.document, self.session, self.jobs = document, session, jobs
         self.length = LENGTH
         self.shown = Shown(document.project, Plan(1, 0.0), LENGTH)
+        self.staged: Shown | None = None
         self._busy = self._again = False
         self._soon = QTimer(self, singleShot=True, interval=0)
         self._soon.timeout.connect(self._replan)
@@ -80,7 +82,7 @@ class Performance(QObject):
             self.replan()
 
     def _loaded(self) -> None:
-        self.before = None
+        self.before = self.staged = None
         self.live.end()
         self.live.last = None
         self.length = LENGTH
@@ -206,6 +208,8 @@ class Performance(QObject):
         if self.live.stage is not None and self.session.transport.show == "plan":
             return
         self.shown = shown
+        if self.session.transport.show == "plan":
+            self.staged = shown
         if shown.notes and shown.notes != self._noted:
             self.document.failed.emit(" ".join(shown.notes))
         self._noted = shown.notes
@@ -229,7 +233,7 @@ class Performance(QObject):
         )
         over = live.session.overlay if self.live.following else None
         if plan is not self.shown.plan or (over is None) != (self.shown.over is None):
-            self.shown = Shown(live.session.project, plan, plan.end, over=over)
+            self.shown = self.staged = Shown(live.session.project, plan, plan.end, over=over)
             self.changed.emit()
 
     def plan_beyond(self, seconds: float) -> None:

@@ -60,6 +60,11 @@ class Thumbnails(QObject):
         document.changed.connect(self._follow)
         figures.changed.connect(self.forget)
 
+    @property
+    def waiting(self) -> bool:
+        """Whether pictures that were asked for are not there yet."""
+        return bool(self._orders)
+
     def picture(self, clip: str, bare: bool = False) -> QImage | None:
         """Return a clip's picture; None until it is drawn. bare: transparent behind the figure."""
         found = self._get(clip, "bare" if bare else "card")

@@ -98,7 +98,6 @@ class Seconds(DoubleSpinBox):
         self.setSingleStep(step)
         self.setSuffix(suffix)
         self.setKeyboardTracking(False)
-        self.lineEdit().setTextMargins(6, 0, 0, 0)  # a style sheet's padding does not reach it
         self.setAccessibleName(tip)
         self.editingFinished.connect(lambda: self.lineEdit().setModified(False))
 

@@ -13,7 +13,7 @@ from functools import lru_cache
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QFont
 
-from app.look.names import measured
+from app.look.shortening import measured
 from app.stage.playback_source import Shown
 from app.widgets.request_menu import STAGE, kind_of, lane_of, request_words
 from metagraph.graph.model import LAYERS, Layer, Project

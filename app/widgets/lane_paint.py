@@ -9,9 +9,10 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QPainter, QPen
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
-from app.look.names import fitted, node_names, plain
+from app.look.names import node_names, plain
+from app.look.shortening import chipped, fitted
 from app.look.theme import KIND_MARKS, Theme
 from app.stage.playback_source import Shown
 from app.widgets.lane_geometry import LEFT, RULER, TITLES, Mark, Scale, elided, lanes, rows
@@ -21,7 +22,7 @@ from metagraph.graph.model import LAYERS, Action, Layer, Project
 INK = "#17181b"  # on the kinds' fills
 PLAIN = 5.0  # pixels up to which a bar is a plain stroke without words
 NARROW = 12.0  # the same of a request
-SIGNS = frozenset(KIND_MARKS.values())
+SMALL = 0.85  # of the font's size, in which words are written that have no room otherwise
 MIDDLE = Qt.AlignmentFlag.AlignVCenter
 
 
@@ -67,7 +68,8 @@ def paint(painter: QPainter, t: Theme, scene: LaneScene) -> None:
         rect = QRectF(
             scene.scale.x(0), area.top(), max(2.0, entry.duration * scene.scale.each), area.height()
         )
-        _bar(painter, t, rect, QColor(t.line), plain(entry.name), t.text, False, True, scene.width)
+        inner = _bar(painter, t, rect, QColor(t.line), False, scene.width)
+        _chip(painter, t.text, inner, "", plain(entry.name))
     if scene.ends is not None and (x := scene.scale.x(scene.ends)) < scene.width:
         veil = QColor(t.ground)
         veil.setAlpha(150)
@@ -125,7 +127,10 @@ def _stage(painter: QPainter, t: Theme, scene: LaneScene) -> None:
         left, right = scale.x(speech.start), scale.x(speech.end)
         if right > LEFT and left < scene.width:
             rect = QRectF(left, area.top(), max(3.0, right - left - 1), area.height() - 3)
-            _bar(painter, t, rect, QColor(t.hover), speech.text, t.text, False, width=scene.width)
+            inner = _bar(painter, t, rect, QColor(t.hover), False, scene.width)
+            if inner.width() > 10:
+                painter.setPen(QColor(t.text))
+                painter.drawText(inner, MIDDLE, _fitting(painter, speech.text, inner.width()))
 
 
 def _layer(painter: QPainter, t: Theme, scene: LaneScene, layer: Layer) -> None:
@@ -151,17 +156,16 @@ def _layer(painter: QPainter, t: Theme, scene: LaneScene, layer: Layer) -> None:
         found = shown.project.stance(stance)
         left, right = max(scale.x(a), LEFT - 8.0), min(scale.x(b), scene.width + 8.0)
         rect = QRectF(left, area.top(), right - left - 1, area.height())
-        _bar(painter, t, rect, fill, "", t.text, False)
+        _bar(painter, t, rect, fill, False)
         if found is not None:
             _in_the_clear(painter, t, rect, found.name, scene.width, spans)
     names = [cue_words(shown.project, c.action) for c in cues]
     beside = tuple(sorted(set(names)))
     for cue, name, (left, right) in zip(cues, names, spans, strict=True):
-        words = f"{KIND_MARKS[cue.action.kind]} {name}"
         rect = QRectF(left, area.top(), right - left, area.height())
-        selected = cue.action.id in scene.actions
         fill = t.fill(cue.action.kind)
-        _bar(painter, t, rect, fill, words, INK, selected, True, scene.width, beside)
+        inner = _bar(painter, t, rect, fill, cue.action.id in scene.actions, scene.width)
+        _chip(painter, INK, inner, KIND_MARKS[cue.action.kind], name, beside)
 
 
 def _in_the_clear(
@@ -199,44 +203,50 @@ def cue_words(project: Project, action: Action) -> str:
 
 
 def _bar(
-    painter: QPainter,
-    t: Theme,
-    rect: QRectF,
-    fill: QColor,
-    words: str,
-    ink: str,
-    selected: bool,
-    middle: bool = False,
-    width: float = 1e6,
-    beside: tuple[str, ...] = (),
-) -> None:
+    painter: QPainter, t: Theme, rect: QRectF, fill: QColor, selected: bool, width: float = 1e6
+) -> QRectF:
+    """Paint a bar; return where in it words have room, empty where they have none."""
     if rect.width() <= PLAIN and not selected:
         painter.fillRect(rect, fill)
-        return
+        return QRectF()
     painter.setPen(QPen(QColor(t.text), 2) if selected else Qt.PenStyle.NoPen)
     painter.setBrush(fill)
     painter.drawRoundedRect(rect, 4, 4)
     left = max(rect.left(), LEFT)
-    inner = QRectF(left + 7, rect.top(), min(rect.right(), width) - left - 10, rect.height())
-    if inner.width() > 10 and words:
-        painter.setPen(QColor(ink))
-        painter.drawText(inner, MIDDLE, _fitting(painter, words, inner.width(), middle, beside))
+    return QRectF(left + 7, rect.top(), min(rect.right(), width) - left - 10, rect.height())
 
 
-def _fitting(
-    painter: QPainter, words: str, width: float, middle: bool = False, beside: tuple[str, ...] = ()
-) -> str:
-    """Return as much of the words as there is room for, told apart from those `beside`; where there is no
-    room to speak of, the sign in front of them alone.
+def _chip(
+    painter: QPainter, ink: str, inner: QRectF, sign: str, words: str, beside: tuple[str, ...] = ()
+) -> None:
+    """Write a sign and, as far as they have room, words that are told apart from those `beside`: in a line,
+    else in the small font in as many as the bar is high, else what tells them apart; else the sign alone.
     """
-    key = painter.font().toString()
-    if not middle:
-        out = elided(words, key, int(width))
-        return out if len(out) > 3 or out == words else words[:1]
-    sign = f"{words[0]} " if words[:1] in SIGNS else ""
-    room = int(width - painter.fontMetrics().horizontalAdvance(sign))
-    out = fitted(words[len(sign) :], room, key, beside, sure=True)
-    return sign + out if len(out) > 3 or sign + out == words else words[:1]
+    painter.setPen(QColor(ink))
+    lead = painter.fontMetrics().horizontalAdvance(f"{sign} ") if sign else 0
+    room = inner.adjusted(lead, 0, 0, 0)
+    normal, small = painter.font(), QFont(painter.font())
+    small.setPixelSize(max(9, round(painter.fontInfo().pixelSize() * SMALL)))
+    tall = QFontMetricsF(small).height() - 1
+    for font, lines in ((normal, 1), (small, max(1, int(room.height() / tall)))):
+        others = beside if font is small else ()
+        shown = chipped(words, int(room.width()), lines, font.toString(), others) if room.width() > 0 else ()
+        if shown and (font is small or shown == (words,)):
+            break
+    if sign and inner.width() >= lead - 4:
+        painter.drawText(inner, MIDDLE, sign)
+    painter.setFont(font)
+    line = painter.fontMetrics().height() if font is normal else tall
+    top = room.center().y() - len(shown) * line / 2
+    for n, text in enumerate(shown):
+        painter.drawText(QRectF(room.left(), top + n * line, room.width() + 2, line), MIDDLE, text)
+    painter.setFont(normal)
+
+
+def _fitting(painter: QPainter, words: str, width: float) -> str:
+    """Return as much of the words as there is room for; hardly any, the sign in front of them alone."""
+    out = elided(words, painter.font().toString(), int(width))
+    return out if len(out) > 3 or out == words else words[:1]
 
 
 def _ties(painter: QPainter, t: Theme, scene: LaneScene) -> None:

@@ -9,7 +9,7 @@ from PySide6.QtCore import QMimeData, QRectF, Qt
 from PySide6.QtGui import QFontMetricsF, QImage, QPainter, QPixmap
 from PySide6.QtWidgets import QWidget
 
-from app.look.names import fitting
+from app.look.shortening import fitting
 from app.project.load import ANNOTATIONS, Load
 from app.project.speech_files import kinds_of
 from metagraph.formats.clips import SUFFIXES

@@ -72,6 +72,10 @@ class Stepped(OneStep):
 
     KEYS = (Qt.Key.Key_Up, Qt.Key.Key_Down, Qt.Key.Key_PageUp, Qt.Key.Key_PageDown)
 
+    def __init__(self, *arguments: Any, **properties: Any) -> None:
+        super().__init__(*arguments, **properties)
+        self.lineEdit().setTextMargins(6, 0, 0, 0)  # a style sheet's padding does not reach it
+
     def stepBy(self, steps: int) -> None:
         if self._held:
             self.quietly(super().stepBy, steps)
@@ -126,6 +130,11 @@ class ComboBox(QComboBox):
     def __init__(self, *arguments: Any, **properties: Any) -> None:
         super().__init__(*arguments, **properties)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+
+    def choose(self, data: object) -> None:
+        """Choose the row of some data, else the first. Qt knows a path or a pair only as the same object."""
+        rows = [self.itemData(n) for n in range(self.count())]
+        self.setCurrentIndex(rows.index(data) if data in rows else 0 if rows else -1)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         event.ignore()

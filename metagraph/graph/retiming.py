@@ -13,8 +13,9 @@ from metagraph.graph.clip_source import course_of, source_of, with_source
 from metagraph.graph.edits import EditError
 from metagraph.graph.manual import Manual
 from metagraph.graph.model import Action, BasePose, Project, Timing
+from metagraph.motion.clip import Clip
 from metagraph.motion.contact_hold import Contact, nearest_joint
-from metagraph.motion.retime import Hold, Retime
+from metagraph.motion.retime import SHORTEST, Hold, Retime
 
 MOMENTS = ("start", "end", "earliest_exit", "stroke", "ready", "stroke_end", "relax")
 BODY = (
@@ -94,15 +95,51 @@ def keep_hand(project: Project, clip: str, side: str, first: float, last: float)
     if None in limb:
         raise EditError(f"the {side} arm is not known: say which joints it has in the skeleton's roles")
     upper, lower, hand = (int(j) for j in limb if j is not None)
-    other = "right" if side == "left" else "left"
-    among = [roles[r] for r in (*BODY, f"{other}_hand", f"{other}_lower_arm") if r in roles]
-    to = nearest_joint(source, hand, among, first)
+    to = nearest_joint(source, hand, _touched(project, side), first)
     if to is None or last <= first:
         raise EditError("there is nothing the hand could stay with")
     names = source.skeleton.names
     contact = Contact(names[upper], names[lower], names[hand], names[to], first, last)
     kept = tuple(c for c in entry.retime.contacts if c.hand != contact.hand or not _meet(c, contact))
     return set_retime(project, clip, replace(entry.retime, contacts=(*kept, contact)))
+
+
+def set_kept(project: Project, clip: str, place: int, first: float, last: float) -> Project:
+    """Return the project with a hand of a clip kept during other seconds of the clip as it was read, as far
+    as the same hand is not kept elsewhere then; it stays with what it is nearest to at the first. Hardly any
+    seconds let it go. place: of the contact among the clip's. Raises EditError.
+    """
+    entry = project.clips.get(clip)
+    source = source_of(entry) if entry is not None else None
+    if entry is None or source is None or place >= len(entry.retime.contacts):
+        raise EditError("that hand is kept there no longer")
+    contacts, old = list(entry.retime.contacts), entry.retime.contacts[place]
+    others = [c for n, c in enumerate(contacts) if n != place and c.hand == old.hand]
+    first = max([0.0, first, *(c.last for c in others if c.last <= old.first)])
+    last = min([source.duration, last, *(c.first for c in others if c.first >= old.last)])
+    del contacts[place]
+    if last - first >= SHORTEST:
+        to = _nearest(project, source, old, first) if first != old.first else old.to
+        contacts.insert(place, replace(old, to=to, first=first, last=last))
+    return set_retime(project, clip, replace(entry.retime, contacts=tuple(contacts)))
+
+
+def _nearest(project: Project, source: Clip, contact: Contact, seconds: float) -> str:
+    """Return the joint that a kept hand is nearest to at a moment; the present one where its side is not
+    known.
+    """
+    names, roles = source.skeleton.names, anatomy.roles(project)
+    for side in ("left", "right") if source.skeleton == project.skeleton else ():
+        if (hand := roles.get(f"{side}_hand")) is not None and names[hand] == contact.hand:
+            to = nearest_joint(source, hand, _touched(project, side), seconds)
+            return contact.to if to is None else names[to]
+    return contact.to
+
+
+def _touched(project: Project, side: str) -> list[int]:
+    """Return the joints a hand of a side may stay with."""
+    roles, other = anatomy.roles(project), "right" if side == "left" else "left"
+    return [roles[r] for r in (*BODY, f"{other}_hand", f"{other}_lower_arm") if r in roles]
 
 
 def _meet(one: Contact, other: Contact) -> bool:

@@ -137,7 +137,7 @@ class Driver(Handles):
 
     def card(self, clip: str) -> tuple[QWidget, QPoint]:
         """The library card of a clip, by name; scrolled into sight."""
-        from app.features.library.library_panel import ENTRY
+        from app.features.library.clip_model import ENTRY
 
         view, proxy = self.library.list, self.library.proxy  # type: ignore[attr-defined]
         for row in range(proxy.rowCount()):

@@ -45,7 +45,7 @@ def _paste(w: Handles, _: Path) -> None:
 
 def _joints(w: Handles, _: Path) -> None:
     _actions(w)
-    w.properties.joints.click()
+    w.properties.action.joints.click()
 
 
 def _state_joints(w: Handles, _: Path) -> None:
@@ -160,6 +160,7 @@ DIALOGS: dict[str, Open] = {
     "render": _command("render"),
     "repairs": _command("repairs"),
     "keys": _command("keys"),
+    "palette": _command("palette"),
     "rename": _on_actions("rename"),
     "replace clip": _on_actions("replace_clip"),
     "paste": _paste,

@@ -29,6 +29,7 @@ from PySide6.QtWidgets import (
     QDockWidget,
     QGraphicsView,
     QHeaderView,
+    QLabel,
     QLineEdit,
     QTabBar,
     QToolTip,
@@ -214,11 +215,11 @@ def faults(window: QWidget, skip: tuple[QWidget, ...] = ()) -> list[str]:
     """
     found = seen_in(window, skip)
     out = [f"{one} is cut" for one in found if cut(one)]
-    shortened: dict[tuple[int, str], tuple[str, Seen]] = {}
     parts: dict[tuple[int, int, int], list[str]] = {}  # of what is in one item of a list
     for one in found:
         if (item := item_of(one)) is not None:
             parts.setdefault(item, []).append(one.painted.text)
+    called: dict[tuple[int, str], tuple[Seen, set[str]]] = {}  # by widget and name, what is shown of it
     for one in found:
         if not elided(one):
             continue
@@ -227,11 +228,13 @@ def faults(window: QWidget, skip: tuple[QWidget, ...] = ()) -> list[str]:
             out.append(f"{one} is not told whole by its tooltip {whole!r}")
             continue
         item = item_of(one)
-        key = id(one.widget), one.painted.text if item is None else "\n".join(parts[item])
-        name = whole.split("\n")[0]
-        if key in shortened and shortened[key][0] != name:
-            out.append(f"{one} looks like {shortened[key][1]}: {name!r}, {shortened[key][0]!r}")
-        shortened[key] = name, one
+        words = one.painted.text if item is None else "\n".join(parts[item])
+        called.setdefault((id(one.widget), whole.split("\n")[0]), (one, set()))[1].add(words)
+    shortened: dict[tuple[int, frozenset[str]], tuple[str, Seen]] = {}
+    for (widget, name), (one, lines) in called.items():
+        like = shortened.setdefault((widget, frozenset(lines)), (name, one))
+        if like[0] != name:
+            out.append(f"{one} looks like {like[1]}: {name!r}, {like[0]!r}")
     for one, other in combinations(found, 2):
         both = one.place.intersected(other.place)
         if both.width() > INSET and both.height() > INSET:
@@ -277,6 +280,8 @@ def elided(one: Seen) -> bool:
     if isinstance(widget, QAbstractButton | QLineEdit):
         own = widget.text() if isinstance(widget, QAbstractButton) else widget.placeholderText()
         return words not in own.replace("&", "")
+    if isinstance(widget, QLabel):
+        return words.rstrip(GAP) not in widget.text() or not widget.text().rstrip().endswith(GAP)
     if isinstance(widget, QComboBox):
         return words != widget.currentText()
     return words != GAP

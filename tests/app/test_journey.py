@@ -112,10 +112,10 @@ def test_the_alien_is_imported_dropped_timed_saved_killed_reopened_and_exported(
     # Timing, by dragging the end handle on the plot.
     gesture = next(a for a in drive.document.project.actions() if a.name == "generic_a")
     drive.click(drive.row(gesture.id))
-    drive.wait(lambda: drive.properties.plot.isVisible())
+    drive.wait(lambda: drive.properties.action.plot.isVisible())
     drive.pause(200)
-    plot = drive.properties.plot.plot
-    line = drive.properties.plot.lines["end"]
+    plot = drive.properties.action.plot.plot
+    line = drive.properties.action.plot.lines["end"]
     box = plot.plotItem.vb
 
     def at(seconds: float) -> tuple:

@@ -79,7 +79,7 @@ def test_a_menu_that_was_closed_is_gone(drive):
     from app.widgets.request_menu import request_menu
 
     def makers():
-        yield lambda: drive.library.menu(next(iter(project.clips.values())))
+        yield lambda: drive.library.acts.menu(next(iter(project.clips.values())))
         yield lambda: request_menu(drive.timeline, drive.performance, 4.0)
 
     for make in makers():

@@ -11,7 +11,7 @@ from metagraph.graph import edits
 from metagraph.graph.clip_source import course_of, source_of, with_source
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import BasePose
-from metagraph.graph.retiming import set_hold, set_retime, set_speed
+from metagraph.graph.retiming import keep_hand, set_hold, set_kept, set_retime, set_speed
 from metagraph.motion.retime import Hold, Retime
 
 
@@ -92,3 +92,34 @@ def test_the_course_of_a_clip_says_where_it_is_held(project, wave):
     (first, last), *_ = course_of(held.clips[wave.clip]).stays
     assert 0.2 <= first < last and last - first == pytest.approx(0.5, abs=0.2)
     assert with_source(held.clips[wave.clip], source_of(held.clips[wave.clip])) == held.clips[wave.clip]
+
+
+def kept_hand(project, clip, first=0.3, last=0.7):
+    return keep_hand(project, clip, "right", first, last)
+
+
+def test_a_kept_hand_is_kept_longer_or_elsewhere_and_let_go(project, wave):
+    kept = kept_hand(project, wave.clip)
+    (before,) = kept.clips[wave.clip].retime.contacts
+    (longer,) = set_kept(kept, wave.clip, 0, before.first, 0.9).clips[wave.clip].retime.contacts
+    assert longer == replace(before, last=0.9), "it stays where it is as long as it begins where it did"
+    whole = set_kept(kept, wave.clip, 0, -1.0, 99.0)
+    (all_of,) = whole.clips[wave.clip].retime.contacts
+    assert (all_of.first, all_of.last) == (0.0, pytest.approx(source_of(whole.clips[wave.clip]).duration))
+    for first, last in ((0.5, 0.5), (0.6, 0.2)):
+        assert set_kept(kept, wave.clip, 0, first, last).clips[wave.clip].retime.plain
+    with pytest.raises(EditError, match="no longer"):
+        set_kept(kept, wave.clip, 1, 0.1, 0.2)
+    with pytest.raises(EditError, match="no longer"):
+        set_kept(kept, "gone", 0, 0.1, 0.2)
+
+
+def test_a_hand_is_never_kept_twice_at_a_time(project, wave):
+    two = kept_hand(kept_hand(project, wave.clip, 0.1, 0.3), wave.clip, 0.6, 0.9)
+    first, second = set_kept(two, wave.clip, 0, 0.1, 0.8).clips[wave.clip].retime.contacts
+    assert (first.last, second.first) == (0.6, 0.6)
+    first, second = set_kept(two, wave.clip, 1, 0.0, 0.8).clips[wave.clip].retime.contacts
+    assert (first.last, second.first) == (0.3, 0.3)
+    other = keep_hand(two, wave.clip, "left", 0.2, 0.8)
+    third = set_kept(other, wave.clip, 2, 0.0, 0.9).clips[wave.clip].retime.contacts[2]
+    assert (third.first, third.last) == (0.0, 0.9), "the other hand has its own time"

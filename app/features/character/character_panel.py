@@ -20,6 +20,7 @@ from app.stage.playback_source import ASIDE
 from app.stage.playhead import Playhead
 from app.stage.session import Session
 from app.widgets.making import make_widget
+from app.widgets.one_stop import OneStop
 from app.widgets.quiet_fields import ComboBox, Scrub
 from app.widgets.sentence import OneLine
 from metagraph.graph import anatomy
@@ -143,6 +144,8 @@ class PreviewPanel(QWidget):
         self.frame_button = button("Frame the whole character (F)", self.frame_all)
         self.face_button = button("Close-up of the face (Shift+F)", self.frame_face)
         self.bones_button = button("Show the skeleton (B)", self._set_bones, checkable=True)
+        OneStop((self.start_button, self.play_button, self.loop_button), self, self.play_button)
+        OneStop((self.frame_button, self.face_button, self.bones_button), self)
         return row
 
     def _captions(self) -> QBoxLayout:

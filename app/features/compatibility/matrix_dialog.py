@@ -81,6 +81,7 @@ class MatrixDialog(QDialog):
         self.which.activated.connect(self._narrow)
         self.model = MatrixModel(self)
         self.table = QTableView(self)
+        self.table.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
         self.table.setModel(self.model)
         self.table.setAccessibleName("Clips against stances")
         header = self.table.horizontalHeader()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QDragMoveEvent, QDropEvent, QResizeEvent
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QMenu, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from app.features.conversation.segment_editing import Editing
 from app.features.conversation.segment_lanes import segment_words
@@ -17,6 +17,7 @@ from app.project.jobs import Jobs
 from app.stage.session import Session
 from app.widgets.making import make_widget
 from app.widgets.mime import sounds_of
+from app.widgets.more_button import MoreButton
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.sentence import Sentence
 from metagraph.graph.conversation import SPOKEN, side_name
@@ -66,13 +67,9 @@ class ConversationPanel(QWidget):
             lambda _: self.session.onstage.set_conversation(self.stage.currentData())
         )
         row.addWidget(self.stage)
-        self.more = make_widget(
-            QToolButton, self, text="…", toolTip="Rename, rates, word lists, export, remove"
-        )
-        self.more.setAccessibleName("Conversations")
-        self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
-        self.more_menu = QMenu(self)
-        self.more.setMenu(self.more_menu)
+        tip = "Rename, rates, word lists, export, remove"
+        self.more = MoreButton(self.session.look, "Conversations", tip, self)
+        self.more_menu = self.more.menu_of
         row.addWidget(self.more)
         self.title = Sentence(self)
         self.title.setMinimumHeight(2 * self.title.fontMetrics().height())

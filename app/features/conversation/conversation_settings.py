@@ -189,7 +189,6 @@ class RatesDialog(SettingDialog):
             for side in (0, 1):
                 field = DoubleSpinBox(self, toolTip=tip, suffix=" %", decimals=0)
                 field.setRange(0, 100)
-                field.lineEdit().setTextMargins(6, 0, 0, 0)
                 field.setAccessibleName(f"{side_name(self.conversation, side)} {words}")
                 field.setValue(100 * getattr(self.conversation.sides[side].rates, name))
                 self.fields[side][name] = field
@@ -288,7 +287,6 @@ class SidesDialog(SettingDialog):
         )
         self.distance.setRange(0.2, 20)
         self.distance.setValue(self.conversation.distance)
-        self.distance.lineEdit().setTextMargins(6, 0, 0, 0)
         self.distance.setAccessibleName("Distance between the two")
         grid.addWidget(QLabel("Distance", self), 12, 0)
         grid.addWidget(self.distance, 12, 1, Qt.AlignmentFlag.AlignLeft)

@@ -105,6 +105,7 @@ class LearnPage(Page):
         row.addStretch(1)
         box.addLayout(row)
         self.table = QTableWidget(0, len(HEADS), self)
+        self.table.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
         self.table.setHorizontalHeaderLabels(list(HEADS))
         self.table.setAccessibleName("Takes to learn from")
         self.table.verticalHeader().hide()
@@ -141,7 +142,6 @@ class LearnPage(Page):
         self.minutes = SpinBox(self, minimum=1, maximum=10000, value=15)
         self.minutes.setSuffix(" min")
         self.minutes.setAccessibleName("Minutes")
-        self.minutes.lineEdit().setTextMargins(6, 0, 0, 0)
         self.name = QLineEdit("new model", self)
         self.name.setAccessibleName("Name of the model")
         row = QHBoxLayout()

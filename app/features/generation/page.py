@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QLabel, QPushButton, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QWidget
 
 
 class Page(QWidget):
@@ -23,3 +23,17 @@ class Page(QWidget):
         out.setToolTip(tip)
         out.clicked.connect(lambda: run())
         return out
+
+    def row(self, *fields: tuple[str, QWidget]) -> QHBoxLayout:
+        """Return fields beside each other, each with words in front of it, or none."""
+        row = QHBoxLayout()
+        for n, (words, field) in enumerate(fields):
+            if words:
+                label = QLabel(words, self)
+                if n == 0:  # what rows begin with stands below each other
+                    label.setFixedWidth(label.fontMetrics().horizontalAdvance("Model") + 4)
+                row.addWidget(label)
+            row.addWidget(field)
+            row.addSpacing(6)
+        row.addStretch(1)
+        return row

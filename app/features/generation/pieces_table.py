@@ -35,6 +35,7 @@ class PiecesTable(QTableWidget):
         self.pieces: list[Piece] = []
         self.setHorizontalHeaderLabels(list(HEADS))
         self.setAccessibleName("Pieces")
+        self.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
         self.verticalHeader().hide()
         self.setShowGrid(False)
         self.setSelectionBehavior(QTableWidget.SelectionBehavior.SelectRows)

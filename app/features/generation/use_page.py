@@ -44,12 +44,9 @@ from metagraph.generation.stored import SUFFIX, read_card
 from metagraph.graph.conversation import side_name
 
 FILE, CHOOSE = "file", "choose"  # a sound that was chosen, and choosing one
-
-
-def choose_again(box: ComboBox, data: object) -> None:
-    """Choose the row of some data, else the first. Qt knows a path or a pair only as the same object."""
-    rows = [box.itemData(n) for n in range(box.count())]
-    box.setCurrentIndex(rows.index(data) if data in rows else 0 if rows else -1)
+NOBODY = (
+    "There is no conversation yet: drop a recording of two who talk on the window, and choose a side here."
+)
 
 
 class UsePage(Page):
@@ -81,24 +78,9 @@ class UsePage(Page):
         self.table.itemChanged.connect(lambda _: self._enable())
         box.addWidget(self.view, 1)
         box.addLayout(self._drop_row())
-        for field in (self.seed, self.temperature, self.guidance, self.minutes):
-            field.lineEdit().setTextMargins(6, 0, 0, 0)
         self.fill()
 
     # --- building
-
-    def _row(self, *fields: tuple[str, QWidget]) -> QHBoxLayout:
-        row = QHBoxLayout()
-        for n, (words, field) in enumerate(fields):
-            if words:
-                label = QLabel(words, self)
-                if n == 0:  # what rows begin with stands below each other
-                    label.setFixedWidth(label.fontMetrics().horizontalAdvance("Model") + 4)
-                row.addWidget(label)
-            row.addWidget(field)
-            row.addSpacing(6)
-        row.addStretch(1)
-        return row
 
     def _model_row(self) -> QHBoxLayout:
         self.model = ComboBox(self)
@@ -115,7 +97,7 @@ class UsePage(Page):
         self.guidance = DoubleSpinBox(self, minimum=0, maximum=5, singleStep=0.25, decimals=2, value=GUIDANCE)
         self.guidance.setAccessibleName("Follows the speech")
         self.guidance.setToolTip("How closely it follows the speech; 1 as was learned. Matching models alone")
-        return self._row(
+        return self.row(
             ("Model", self.model),
             ("", choose),
             ("Seed", self.seed),
@@ -133,7 +115,9 @@ class UsePage(Page):
             self.move_side,
         )
         strengthen(self.move_button)
-        return self._row(("Who", self.side), ("", self.move_button))
+        self.nobody = QLabel(NOBODY, self)
+        self.nobody.setProperty("dim", True)
+        return self.row(("Who", self.side), ("", self.move_button), ("", self.nobody))
 
     def _takes_row(self) -> QHBoxLayout:
         self.speech = ComboBox(self)
@@ -146,7 +130,7 @@ class UsePage(Page):
         self.cut_button = self.button(
             "Make and cut", "Cut at still moments that are alike, so that no jump shows", self.make_pieces
         )
-        return self._row(("To", self.speech), ("for", self.minutes), ("", self.cut_button))
+        return self.row(("To", self.speech), ("for", self.minutes), ("", self.cut_button))
 
     def _drop_row(self) -> QHBoxLayout:
         self.stance = ComboBox(self)
@@ -159,7 +143,7 @@ class UsePage(Page):
         strengthen(self.drop_button)
         self.progress = make_widget(QProgressBar, self, maximumWidth=180, textVisible=False)
         self.cancel_button = self.button("Cancel", "Nothing is changed then", self.cancel)
-        row = self._row(("On", self.stance), ("", self.drop_button))
+        row = self.row(("On", self.stance), ("", self.drop_button))
         for widget in (self.progress, self.cancel_button):
             widget.hide()
             row.addWidget(widget)
@@ -171,6 +155,9 @@ class UsePage(Page):
         """List models, sides and stances as they are now."""
         self._fill_models()
         project = self.document.project
+        for widget in (self.side, self.move_button):
+            widget.setVisible(bool(project.conversations))
+        self.nobody.setVisible(not project.conversations)
         for box in (self.side, self.speech):
             chosen = box.currentData()
             box.clear()
@@ -181,14 +168,14 @@ class UsePage(Page):
                 if self._sound is not None:
                     box.addItem(self._sound.name, FILE)
                 box.addItem("Choose a sound…", CHOOSE)
-            choose_again(box, chosen)
+            box.choose(chosen)
         stance = self.stance.currentData()
         self.stance.clear()
         for s in project.graphs["arms"].stances.values():
             self.stance.addItem(f"arms · {s.name}", s.id)
         self.stance.addItem("the library alone", "")
         wanted = stance if stance is not None else first_stance(project)
-        choose_again(self.stance, wanted)
+        self.stance.choose(wanted)
         self._enable()
 
     def _fill_models(self, wanted: Path | None = None) -> None:
@@ -198,7 +185,7 @@ class UsePage(Page):
         self.model.clear()
         for name, path in found.items():
             self.model.addItem(words_of(name), path)
-        choose_again(self.model, now)
+        self.model.choose(now)
         self.model.blockSignals(False)
         self._about()
 
@@ -228,8 +215,10 @@ class UsePage(Page):
 
     def _speech_chosen(self) -> None:
         self._enable()
-        if self.speech.currentData() != CHOOSE:
-            return
+        if self.speech.currentData() == CHOOSE:
+            self._choose_sound()
+
+    def _choose_sound(self) -> None:
         from app.project.speech_files import SOUNDS
 
         start, kinds = str(self.document.folder or Path.home()), " ".join(f"*{s}" for s in SOUNDS)
@@ -245,7 +234,7 @@ class UsePage(Page):
     def _enable(self) -> None:
         free = self._job is None and self.model.currentData() is not None
         self.move_button.setEnabled(free and self.side.count() > 0)
-        self.cut_button.setEnabled(free and self.speech.currentData() != CHOOSE)
+        self.cut_button.setEnabled(free)
         count = len(self.table.chosen())
         self.drop_button.setEnabled(self._job is None and count > 0)
         self.drop_button.setText(f"Drop {many(count, 'clip')}" if count else "Drop")
@@ -335,7 +324,9 @@ class UsePage(Page):
     # --- clips
 
     def make_pieces(self) -> None:
-        """Make long takes and cut them."""
+        """Make long takes and cut them; where no sound is chosen yet, ask for it first."""
+        if self.speech.currentData() == CHOOSE:
+            self._choose_sound()
         path, speech = self.model.currentData(), self.speech.currentData()
         if path is None or speech == CHOOSE:
             return

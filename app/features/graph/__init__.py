@@ -34,8 +34,8 @@ def contribute(shell: Shell) -> Contribution:
         canvas = Canvas(document, session, stage.performance, stage.thumbnails, shell.widget)
         canvas.row_actions = shell.actions.of_menu("action")
         canvas.files_dropped.connect(lambda paths, drop: importing.import_paths(list(paths), drop))
-        canvas.refused.connect(stage.refused)
-        canvas.labelled.connect(go_on)
+        canvas.acts.refused.connect(stage.refused)
+        canvas.acts.labelled.connect(go_on)
         problems.changed.connect(lambda: canvas.set_misfits(problems.misfits))
         return canvas
 
@@ -57,24 +57,24 @@ def contribute(shell: Shell) -> Contribution:
     def imported(result: Imported, place: object) -> None:
         load = importing.load_for(result)
         if isinstance(place, Drop) and load.clips:
-            canvas().do(place, load)
+            canvas().acts.do(place, load)
 
     importing.imported.connect(imported)
     verbs.offer(
-        "remove", lambda: meta() and bool(session.selection.actions), lambda: canvas().remove_selection()
+        "remove", lambda: meta() and bool(session.selection.actions), lambda: canvas().acts.remove_selection()
     )
-    verbs.offer("rename", meta, lambda: canvas().rename_stance(), rank=9)
+    verbs.offer("rename", meta, lambda: canvas().acts.rename_stance(), rank=9)
     verbs.offer(
         "select_all",
         meta,
-        lambda: session.selection.select_actions(tuple(a.id for a in canvas().listed())),
+        lambda: session.selection.select_actions(tuple(a.id for a in canvas().acts.listed())),
         rank=9,
     )
     some = lambda: bool(session.selection.clips or session.selection.actions)  # noqa: E731
     stances = lambda: list(document.project.graphs[session.place.layer].stances.values())  # noqa: E731
 
     def label(kind: Kind) -> None:
-        canvas().place_selection(kind)
+        canvas().acts.place_selection(kind)
 
     def on_layer(layer: Layer) -> bool:
         return session.place.layer == layer
@@ -138,7 +138,7 @@ def contribute(shell: Shell) -> Contribution:
         menu,
         "author",
         "&New stance…",
-        lambda: canvas().new_stance(),
+        lambda: canvas().acts.new_stance(),
         ("Ctrl+Shift+N",),
         when="meta",
         study=True,
@@ -155,6 +155,7 @@ def contribute(shell: Shell) -> Contribution:
                 where={"graph": "large", "time": "list"},
                 opens={"label": "below"},
                 least=(250, 200),
+                rank=0,
             ),
         ),
         commands=(new, *labels, *layers, *places),

@@ -31,6 +31,13 @@ class Frames:
     columns: Mapping[Kind, int]
     row: float = ROW
 
+    def all_seen(self, counts: Mapping[Kind, int]) -> bool:
+        """Return whether no node has to be scrolled. counts: of the actions of each."""
+        return all(
+            int((rect.height() - HEADER - PAD) // self.row) * self.columns[kind] >= counts[kind]
+            for kind, rect in self.nodes.items()
+        )
+
 
 def frames(width: float, top: float, bottom: float, counts: Mapping[Kind, int], name: float = 0.0) -> Frames:
     """Share a room of a width between two heights. counts: of the actions of each node. name: pixels that the
@@ -43,17 +50,9 @@ def frames(width: float, top: float, bottom: float, counts: Mapping[Kind, int], 
     if bottom - top >= PICTURED:
         for row in ROWS:
             found = _round(width, top, bottom, counts, name, row)
-            if _all_seen(found, counts):
+            if found.all_seen(counts):
                 return found
     return _round(width, top, bottom, counts, name, ROW)
-
-
-def _all_seen(found: Frames, counts: Mapping[Kind, int]) -> bool:
-    """Return whether no node has to be scrolled."""
-    return all(
-        int((rect.height() - HEADER - PAD) // found.row) * found.columns[kind] >= counts[kind]
-        for kind, rect in found.nodes.items()
-    )
 
 
 def _round(

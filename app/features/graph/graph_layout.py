@@ -22,7 +22,8 @@ ARROW = 26  # of a transition's arrow, which can be dragged
 TITLE = 124  # of a node's mark and title
 CHOOSER = 64.0  # at least, of the stance that transitions lead to
 FOOT, FOOT_NARROW = 40, 62  # the sentence at the bottom, in two lines or three
-CHIP_MIN, CHIP_MAX = 108, 230
+CHIP_MIN, SHORT, CHIP_MAX = 108, 150, 230
+BESIDES = 80  # pixels of a chip beside its words
 BOLD = 1.12  # how much wider the card's name is than the chip's
 BARE = 0  # in the place of a width: chips as wide as their names, which is all they show
 TIGHT = -1  # and: as many in a line as can be told apart
@@ -121,17 +122,20 @@ class Layout:
         )
 
 
+HOLES = ("no loop", "no way out", "no gestures", "no fidgets")
+
+
 def hole(project: Project, layer: Layer, stance: str) -> str:
     """Return in words what a stance lacks, the worst first, or nothing."""
     graph = project.graphs[layer]
     if not graph.of(stance, "stance"):
-        return "no loop"
+        return HOLES[0]
     if len(graph.stances) > 1 and not graph.of(stance, "transition"):
-        return "no way out"
+        return HOLES[1]
     if not graph.of(stance, "gesture"):
-        return "no gestures"
+        return HOLES[2]
     if not graph.of(stance, "fidget"):
-        return "no fidgets"
+        return HOLES[3]
     return ""
 
 
@@ -159,20 +163,26 @@ def arrange(
     graph = project.graphs[layer]
 
     # Many stances in a low window: narrower chips without words leave room for the nodes.
-    for widest in (CHIP_MAX, 150, BARE):
+    for widest in (CHIP_MAX, SHORT, BARE):
         chips = _chips(project, graph, width, widths, widest)
         top = chips[-1].rect.bottom() + 2 * GRID
-        if top < height - FOOT - 320:
+        # Names go before pictures and counts.
+        whole = widest != SHORT or all(_told(c, widths) + BESIDES <= SHORT for c in chips[:-1])
+        if top < height - FOOT - 320 and whole:
             break
     if top > height - FOOT - LEAST_NODES:  # names alone take too much, too
         chips = _chips(project, graph, width, widths, TIGHT)
         top = chips[-1].rect.bottom() + 2 * GRID
-    foot = FOOT if width >= NARROW else FOOT_NARROW
-    bottom = max(height - foot, top + 200.0)
     actions = {kind: graph.of(stance, kind) if stance else () for kind in BESIDE}
+    counts = {kind: len(found) for kind, found in actions.items()}
     found = graph.stances.get(stance or "")
     name = widths.get(found.name, 7.2 * len(found.name)) * BOLD + 44 if found is not None else 0.0
-    shared = frames(width, top, bottom, {kind: len(found) for kind, found in actions.items()}, name)
+    foot = FOOT if width >= NARROW else FOOT_NARROW
+    bottom = max(height - foot, top + 200.0)
+    shared = frames(width, top, bottom, counts, name)
+    if width < NARROW and not shared.all_seen(counts):  # rows before the sentence
+        foot, bottom = 0, max(height - GRID, top + 200.0)
+        shared = frames(width, top, bottom, counts, name)
     card = shared.card
     nodes = {
         kind: _node(
@@ -212,7 +222,7 @@ def _chips(
         elif widest == BARE:
             w = min(widths.get(s.name, 7.2 * len(s.name)) + 26, width - 4 * GRID)
         else:
-            w = min(max(text + 80, CHIP_MIN), widest + (80 if words else 0))
+            w = min(max(text + BESIDES, CHIP_MIN), widest + (BESIDES if words else 0))
         if x + w > width - 2 * GRID and x > 2 * GRID:
             x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID
         chips.append(Chip(ident, QRectF(x, y, w, CHIP_HEIGHT), s.name, count, words, widest <= BARE))
@@ -220,6 +230,11 @@ def _chips(
     if x + CHIP_HEIGHT > width - GRID:
         x, y = 2.0 * GRID, y + CHIP_HEIGHT + GRID
     return [*chips, Chip(None, QRectF(x, y, CHIP_HEIGHT, CHIP_HEIGHT), "+")]
+
+
+def _told(chip: Chip, widths: Mapping[str, float]) -> float:
+    """Return how wide a chip's name and count are."""
+    return widths.get(chip.name, 7.2 * len(chip.name)) + widths.get(str(chip.count), 16.0)
 
 
 def _node(

@@ -16,7 +16,7 @@ def contribute(shell: Shell) -> Contribution:
 
     def make() -> LibraryPanel:
         panel = LibraryPanel(shell.document, session, shell.stage.thumbnails, shell.widget)
-        panel.row_actions = shell.actions.of_menu("clip")
+        panel.acts.row_actions = shell.actions.of_menu("clip")
         panel.import_wanted.connect(importing.ask_import_folder)
         panel.files_dropped.connect(lambda paths: importing.import_paths(list(paths)))
         return panel
@@ -28,13 +28,13 @@ def contribute(shell: Shell) -> Contribution:
     verbs.offer(
         "remove",
         lambda: bool(session.selection.clips),
-        lambda: library().remove(session.selection.clips),
+        lambda: library().acts.remove(session.selection.clips),
         rank=6,
     )
     verbs.offer(
         "rename",
         lambda: len(session.selection.clips) == 1,
-        lambda: library().rename(session.selection.clips[0]),
+        lambda: library().acts.rename(session.selection.clips[0]),
         rank=0,
     )
     verbs.offer(

@@ -64,6 +64,7 @@ class DialRow:
         self.slider = DialSlider(parent, round((dial.high - dial.low) / dial.step), self.put_back)
         self.slider.setToolTip(f"{dial.tip}\nDouble-click puts it back to {default:g} {dial.unit}".rstrip())
         self.slider.setAccessibleName(dial.label)
+        self.slider.setFocusPolicy(Qt.FocusPolicy.ClickFocus)  # its number has the same keys
         decimals = 0 if dial.step >= 1 else 1 if dial.step >= 0.1 else 3 if dial.step < 0.01 else 2
         self.number = DoubleSpinBox(
             parent, minimum=dial.low, maximum=dial.high, singleStep=dial.step, decimals=decimals
@@ -72,7 +73,6 @@ class DialRow:
         self.number.setAccessibleName(dial.label)
         self.number.setKeyboardTracking(False)
         self.number.setFixedWidth(92)
-        self.number.lineEdit().setTextMargins(6, 0, 0, 0)
         head = self.tick if dial.off is not None else self.label
         (self.label if head is self.tick else self.tick).hide()
         grid.addWidget(head, row, 0)

@@ -116,6 +116,7 @@ class LinesPanel(QWidget):
                 self.say_button = button
         layout.addLayout(row)
         self.table = Table(0, len(COLUMNS), self)
+        self.table.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
         self.table.setHorizontalHeaderLabels(COLUMNS)
         self.table.verticalHeader().hide()
         self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)

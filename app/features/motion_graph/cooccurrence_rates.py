@@ -67,6 +67,7 @@ class RatesDialog(QDialog):
         words.setProperty("dim", True)
         box.addWidget(words)
         self.table = QTableWidget(len(self.rows), len(HEADS), self)
+        self.table.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
         self.table.setHorizontalHeaderLabels(list(HEADS))
         self.table.setAccessibleName("How often people move when something is said")
         self.table.verticalHeader().hide()

@@ -123,7 +123,6 @@ class MotionGraphDialog(QDialog):
             row.addWidget(QLabel(words, self))
             row.addWidget(field)
             row.addSpacing(10)
-            field.lineEdit().setTextMargins(6, 0, 0, 0)
             field.valueChanged.connect(self._changed)
         row.addStretch(1)
         self.right.addLayout(row)
@@ -133,6 +132,7 @@ class MotionGraphDialog(QDialog):
         self.words.setProperty("dim", True)
         self.right.addWidget(self.words)
         self.table = QTableWidget(len(KS), 5, self)
+        self.table.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
         self.table.setHorizontalHeaderLabels(["k", "Frames", "Transitions", "Frames kept", "Trans. kept"])
         self.table.horizontalHeader().setDefaultAlignment(
             Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter

@@ -110,8 +110,6 @@ class Wishes(QFrame):
         strengthen(self.go)
         row.addWidget(self.go)
         box.addLayout(row)
-        for field in (self.start, self.length, self.seed, self.tolerance):
-            field.lineEdit().setTextMargins(6, 0, 0, 0)
         self.fill()
 
     def _seconds(self, name: str, least: float, value: float) -> QDoubleSpinBox:

@@ -44,16 +44,18 @@ class TakesList(QWidget):
         self.title = QLabel("Takes", self)
         self.title.setProperty("heading", True)
         self.list = QTableWidget(0, 3, self)
+        self.list.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
         self.list.setHorizontalHeaderLabels(["Clip", "Length", "What was heard"])
         self.list.setAccessibleName("Takes")
         self.list.verticalHeader().hide()
         self.list.setShowGrid(False)
+        self.list.setTextElideMode(Qt.TextElideMode.ElideMiddle)
         self.list.setSelectionBehavior(QTableWidget.SelectionBehavior.SelectRows)
         self.list.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
         header = self.list.horizontalHeader()
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
         header.setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
-        header.resizeSection(2, 190)
+        header.resizeSection(2, 150)
         self.list.verticalHeader().setDefaultSectionSize(ROW)
         header.setHighlightSections(False)
         header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
@@ -96,6 +98,7 @@ class TakesList(QWidget):
         for row, ident in enumerate(found):
             entry = project.clips[ident]
             item = QTableWidgetItem(entry.name)
+            item.setToolTip(entry.name)
             item.setData(Qt.ItemDataRole.UserRole, ident)
             item.setFlags(
                 Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable | Qt.ItemFlag.ItemIsUserCheckable
@@ -117,7 +120,8 @@ class TakesList(QWidget):
             talk = project.conversations[recorded[0]]
             words = side_words(talk, recorded[1])
         item = QTableWidgetItem(f"{words}  ▾" if project.conversations else words)
-        item.setToolTip("Click to say whose side of which conversation was recorded along with it")
+        tip = "Click to say whose side of which conversation was recorded along with it"
+        item.setToolTip(f"{item.text()}\n{tip}")
         return item
 
     def ask_speech(self, row: int, column: int = HEARD) -> None:

@@ -23,17 +23,17 @@ def contribute(shell: Shell) -> Contribution:
         from app.features.properties.properties_panel import PropertiesPanel
 
         places = shell.services[Places]
-        panel = PropertiesPanel(shell.document, session, shell.stage.performance, shell.widget)
-        problems.changed.connect(lambda: panel.set_misfits(problems.misfits))
-        panel.set_misfits(problems.misfits)
-        panel.plot.set_compatibility(compatibility)
-        panel.timing_elsewhere = lambda: places.workspace.id == "time" and "timing" in places.panels
-        panel.time_wanted.connect(lambda: shell.actions["workspace_3"].trigger())
+        panel = PropertiesPanel(shell.document, session, shell.widget)
+        problems.changed.connect(lambda: panel.action.set_misfits(problems.misfits))
+        panel.action.set_misfits(problems.misfits)
+        panel.action.plot.set_compatibility(compatibility)
+        panel.action.timing_elsewhere = lambda: places.workspace.id == "time" and "timing" in places.panels
+        panel.action.time_wanted.connect(lambda: shell.actions["workspace_3"].trigger())
         return panel
 
     def rename() -> None:
         shell.show("properties")
-        field = shell.panel("properties").name
+        field = shell.panel("properties").action.name
         field.setFocus()
         field.selectAll()
 
@@ -47,7 +47,7 @@ def contribute(shell: Shell) -> Contribution:
                 "Properties",
                 "right below",
                 make,
-                where={"time": "side", "graph": "below", "label": "below"},
+                where={"time": "list", "graph": "below", "label": "below"},
                 rank=1,
             ),
         ),

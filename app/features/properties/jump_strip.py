@@ -31,6 +31,7 @@ class JumpStrip(pg.PlotWidget):
         self.seen: Seen | None = None
         self.subject: tuple[Project, Action] | None = None
         self.setMenuEnabled(False)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.setMouseEnabled(False, False)
         self.hideButtons()
         self.setFixedHeight(HEIGHT)

@@ -43,6 +43,7 @@ SNAP = 7  # pixels within which a handle comes to rest at a moment that does not
 LABEL, FIRST = 17.0, 12.0  # pixels of a row of words over the curves, and to the middle of the first
 ANY = 16_777_215  # Qt's largest height of a widget
 HEIGHT, LEAST = 132, 84  # pixels of the curves in a form; and where they have the room to themselves
+WORDED = 80.0  # pixels of height from which words over the curves leave something of them to be seen
 
 
 class TimingPlot(QWidget):
@@ -58,6 +59,7 @@ class TimingPlot(QWidget):
         self._setting = False
         self.plot = pg.PlotWidget(self)
         self.plot.setMenuEnabled(False)
+        self.plot.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # the fields beside it have keys
         self.plot.setMouseEnabled(False, False)
         self.plot.hideButtons()
         self.set_large(False)
@@ -266,19 +268,21 @@ class TimingPlot(QWidget):
 
     def _line_up(self) -> None:
         """Give words rows in which none lies on another: the phases on top, where each has room in its span,
-        then the handles. What finds no row is not written; the pointer's tooltip names it.
+        then the handles. What finds no row is not written, nor anything over low curves; the pointer's
+        tooltip names it.
         """
         box = self.plot.plotItem.vb
         (low, high), (_, top) = self.plot.viewRange()
         wide, tall = max(1.0, box.width()), max(1.0, box.height())
         each, measure = wide / max(high - low, 1e-6), self.fontMetrics()
         taken: dict[int, list[tuple[float, float]]] = {}
+        worded = tall >= WORDED
         for band, word in zip(self.bands, BANDS, strict=True):
             if not band.isVisible():
                 continue
             a, b = band.span
             middle, half = ((a + b) / 2 - low) * each, measure.horizontalAdvance(word) / 2 + 3
-            seen = 2 * half <= (b - a) * each
+            seen = worded and 2 * half <= (b - a) * each
             band.setVisible(seen)
             if seen:
                 band.setPos((a + b) / 2, top)
@@ -294,7 +298,7 @@ class TimingPlot(QWidget):
                 for row in range(min(1, last), last + 1)
                 if all(right <= a or left >= b for a, b in taken.get(row, ()))
             )
-            row = next(free, None) if line.isVisible() else None
+            row = next(free, None) if worded and line.isVisible() else None
             line.label.setVisible(row is not None)
             if row is not None:
                 taken.setdefault(row, []).append((left, right))

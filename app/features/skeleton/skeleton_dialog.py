@@ -4,7 +4,7 @@ moves.
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import (
     QComboBox,
     QDialog,
@@ -26,6 +26,8 @@ from metagraph.graph import anatomy, edits
 from metagraph.graph.model import PARTS, Part, Project
 from metagraph.motion.roles import ROLES, missing_roles
 
+ROW = 36  # pixels of a row, with a choice in it
+
 
 class SkeletonDialog(QDialog):
     """Shows what was found and corrects it; each choice is an edit that can be undone."""
@@ -42,6 +44,7 @@ class SkeletonDialog(QDialog):
         self.tree = QTreeWidget(self)
         self.tree.setHeaderLabels(["Joint", "Role", "Body part"])
         self.tree.header().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        self.tree.header().setStretchLastSection(False)
         self.tree.setSelectionMode(QTreeWidget.SelectionMode.ExtendedSelection)
         layout.addWidget(self.tree, 1)
         self.items = joint_tree(self.tree, document.project)
@@ -59,6 +62,12 @@ class SkeletonDialog(QDialog):
             self.tree.setItemWidget(item, 1, role)
             self.tree.setItemWidget(item, 2, part)
             self.roles[name], self.parts[name] = role, part
+            item.setSizeHint(0, QSize(0, ROW))
+        for column, boxes in ((1, self.roles), (2, self.parts)):
+            for box in boxes.values():
+                box.ensurePolished()
+            wide = max((box.sizeHint().width() for box in boxes.values()), default=100)
+            self.tree.setColumnWidth(column, wide + 12)
         row = QHBoxLayout()
         back = QPushButton("Back to what was found", self)
         back.clicked.connect(self._reset)

@@ -9,7 +9,6 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QInputDialog,
     QLabel,
-    QMenu,
     QMessageBox,
     QToolButton,
     QVBoxLayout,
@@ -23,6 +22,7 @@ from app.stage.performance import Performance
 from app.stage.session import Session
 from app.widgets.lane_geometry import outcome, wanted
 from app.widgets.making import make_widget
+from app.widgets.more_button import MoreButton
 from app.widgets.quiet_fields import ComboBox, SpinBox
 from app.widgets.request_menu import request_menu
 from app.widgets.sentence import Sentence
@@ -58,11 +58,8 @@ class TimelinePanel(QWidget):
         self.stage.setMinimumWidth(150)
         self.stage.activated.connect(self._put_on)
         row.addWidget(self.stage)
-        self.more = make_widget(QToolButton, self, text="…", toolTip="New, rename, length, remove")
-        self.more.setAccessibleName("Performances")
-        self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
-        self.more_menu = QMenu(self)
-        self.more.setMenu(self.more_menu)
+        self.more = MoreButton(session.look, "Performances", "New, rename, length, remove", self)
+        self.more_menu = self.more.menu_of
         self.more_menu.aboutToShow.connect(self._fill)
         row.addWidget(self.more)
         self.title = Sentence(self)
@@ -92,7 +89,6 @@ class TimelinePanel(QWidget):
         row.addWidget(QLabel("Seed", self))
         self.seed = SpinBox(self, toolTip="Another seed gives another performance of the same graph")
         self.seed.setFixedWidth(84)
-        self.seed.lineEdit().setTextMargins(6, 0, 0, 0)
         self.seed.setRange(0, 999999)
         self.seed.setAccessibleName("Seed")
         self.seed.valueChanged.connect(self._seeded)

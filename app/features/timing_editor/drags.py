@@ -9,7 +9,7 @@ from typing import Any, Protocol
 from PySide6.QtCore import QPointF
 
 from app.features.timing_editor.axis import Axis
-from app.features.timing_editor.track import Facts, Stay
+from app.features.timing_editor.track import Facts, Kept, Stay
 from app.project.document import Document
 from app.stage.transport import Transport
 from app.widgets.gesture import PressDrag, Reason
@@ -27,7 +27,7 @@ Changes = Mapping[str, Mapping[str, Any]]
 
 class Host(Protocol):
     """The view, as drags know it. snapped: where what is dragged has come to rest. held: what is dragged, in
-    words. snaps: all places to rest there are.
+    words. snaps: all places to rest there are. stretched: a kept hand as it would be, of which action.
     """
 
     document: Document
@@ -35,6 +35,7 @@ class Host(Protocol):
     snapped: Snap | None
     held: str
     snaps: tuple[Snap, ...]
+    stretched: tuple[str, Kept] | None
 
     @property
     def transport(self) -> Transport: ...

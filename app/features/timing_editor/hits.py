@@ -22,12 +22,14 @@ FIRST = (
     "stroke",
     "exit",
 )  # of lines on one another
-What = Literal["handle", "block", "stay", "ruler", "row"]
+What = Literal["handle", "block", "stay", "kept", "ruler", "row"]
 
 
 @dataclass(frozen=True)
 class Hit:
-    """ident: of the action. name: of the handle, the block or the row, of a hold its moment in the file."""
+    """ident: of the action. name: of the handle, the block or the row, of a hold its moment in the file, of a
+    kept hand what `kept_rows` calls its part.
+    """
 
     what: What
     ident: str

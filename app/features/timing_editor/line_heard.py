@@ -14,6 +14,7 @@ from app.stage.line_player import RATE
 from app.stage.playback_source import Shown
 from app.widgets.waveforms import Envelope
 from metagraph.graph.model import Action, Project
+from metagraph.playback.asked_lines import asked_line
 from metagraph.playback.life.track import Speech
 from metagraph.playback.life.voice import voice_of
 
@@ -48,13 +49,25 @@ def line_of(project: Project, ident: str, action: Action, stroke: float) -> Said
     """Return a line of the project laid on an action so that its first stress falls on the stroke; None where
     the line is gone.
     """
-    line = project.lines.get(ident)
-    if line is None:
+    if ident not in project.lines:
         return None
-    speech = Speech("line", 0.0, line.duration or 0.0, ident, line.text, length=line.duration)
+    speech = _speech(project, ident)
     voice = voice_of(project.voices, speech)
     first = float(voice.accents[0]) if len(voice.accents) else 0.0
     return Said(speech, round(stroke - first, 3))
+
+
+def said_with(project: Project, action: Action) -> Said | None:
+    """Return the line that an action is asked for with, performed or not; None where there is none."""
+    found = asked_line(project, action) if action.clip in project.clips else None
+    if found is None:
+        return None
+    return Said(_speech(project, found.line), round(project.span(action)[0] + found.at, 3))
+
+
+def _speech(project: Project, ident: str) -> Speech:
+    line = project.lines[ident]
+    return Speech("line", 0.0, line.duration or 0.0, ident, line.text, length=line.duration)
 
 
 def stresses(project: Project, said: Said | None) -> tuple[float, ...]:

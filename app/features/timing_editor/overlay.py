@@ -7,11 +7,12 @@ from collections.abc import Mapping, Sequence
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
+from app.features.timing_editor import kept_rows
 from app.features.timing_editor.axis import Axis
 from app.features.timing_editor.hits import Hit
 from app.features.timing_editor.paint import Look, ruler_words
 from app.features.timing_editor.rows import RULER, TrackRows
-from app.features.timing_editor.track import Facts
+from app.features.timing_editor.track import Facts, Kept
 from metagraph.playback.timing import WORDS
 from metagraph.suggest.snapping import Snap
 
@@ -135,8 +136,27 @@ def held(
     painter.drawText(box, Qt.AlignmentFlag.AlignCenter, look.elided(words, wide - 10))
 
 
+def stretched(
+    painter: QPainter,
+    look: Look,
+    axis: Axis,
+    tracks: Sequence[TrackRows],
+    facts: Mapping[str, Facts],
+    ident: str,
+    kept: Kept,
+) -> None:
+    """Paint a kept hand as it would be if it were let go now."""
+    rows = next((r for r in tracks if r.ident == ident), None)
+    if rows is not None and kept.hand in facts[ident].hands:
+        painter.setPen(QPen(QColor(look.t.text), 1.4, Qt.PenStyle.DashLine))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawRoundedRect(kept_rows.bar(axis, rows, facts[ident], kept), 3, 3)
+
+
 def tip(facts: Facts, hit: Hit, seconds: float) -> str:
     """Say what is under the pointer, and what can be done with it."""
+    if hit.what == "kept":
+        return kept_rows.tip(facts, hit)
     if hit.what == "handle":
         found = facts.handle(hit.name)
         own = "" if found is None or found.own else ", as found from the motion"

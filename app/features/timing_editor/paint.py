@@ -79,6 +79,10 @@ def names(painter: QPainter, look: Look, rows: TrackRows, facts: Facts) -> None:
     for name, rect in rows.rows.items():
         if name in TITLES and name != "speed":
             painter.drawText(QRectF(10, rect.top(), GUTTER - 14, rect.height()), MIDDLE, TITLES[name])
+    for n, hand in enumerate(facts.hands):
+        rect = rows.rows[f"hand {n}"]
+        words = look.elided(hand, GUTTER - 14, True)
+        painter.drawText(QRectF(10, rect.top(), GUTTER - 14, rect.height()), MIDDLE, words)
     speed = rows.rows["speed"]
     y = speed.top() + 2
     painter.drawText(QRectF(10, y, GUTTER - 14, line), MIDDLE, f"{facts.top:.1f} m/s")
@@ -96,9 +100,8 @@ def names(painter: QPainter, look: Look, rows: TrackRows, facts: Facts) -> None:
 def ground(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Facts) -> None:
     """Paint what lies behind the rows: the part that plays is lighter than the rest of the clip."""
     t = look.t
-    for name in ("poses", "line", "speed", "stance"):
-        if name in rows.rows:
-            rect = rows.rows[name]
+    for name, rect in rows.rows.items():
+        if name not in ("phases", "numbers"):
             left, right = max(axis.x(0), axis.left), min(axis.x(axis.length), axis.left + axis.width)
             painter.fillRect(QRectF(left, rect.top(), right - left, rect.height()), QColor(t.field))
     speed = rows.rows["speed"]
@@ -170,20 +173,6 @@ def stays(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Fac
             painter.drawRoundedRect(label, 3, 3)
             painter.setPen(QColor(look.t.text))
             painter.drawText(label, Qt.AlignmentFlag.AlignCenter, words)
-
-
-def kept(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Facts) -> None:
-    """Paint where hands are kept on the body: a bar for each, with its words where they fit."""
-    rect = rows.rows["speed"]
-    painter.setFont(look.small)
-    for n, (first, last, words) in enumerate(facts.kept):
-        box = QRectF(axis.x(first), rect.bottom() - (n + 1) * 15, axis.each * (last - first), 13)
-        painter.setPen(QPen(QColor(look.t.text), 1))
-        painter.setBrush(QColor(look.t.hover))
-        painter.drawRoundedRect(box, 3, 3)
-        painter.drawText(
-            box.adjusted(4, 0, -2, 0), MIDDLE, look.elided(words, max(0.0, box.width() - 6), True)
-        )
 
 
 def blocks(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Facts) -> None:

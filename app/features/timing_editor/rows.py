@@ -20,11 +20,16 @@ SIZES: dict[str, tuple[float, float, float]] = {
     "phases": (20.0, 22.0, 0.0),
     "speed": (40.0, 90.0, 2.0),
     "numbers": (37.0, 37.0, 0.0),
+    "hand": (18.0, 20.0, 0.0),  # of each hand that is kept, "hand 0" the first
     "stance": (20.0, 30.0, 0.4),
 }
 MOST = {"poses": 150.0, "line": 60.0, "stance": 64.0}
 JOINT = 13.0  # pixels of a joint in the dope sheet
 TITLES = {"poses": "poses", "line": "line", "phases": "phases", "speed": "speed", "stance": "to stance"}
+
+
+def size(row: str) -> tuple[float, float, float]:
+    return SIZES[row.split()[0]]
 
 
 @dataclass(frozen=True)
@@ -91,19 +96,19 @@ def _laid_out(wants: Sequence[TrackWants], width: float, height: float) -> Itera
 
 
 def _least(want: TrackWants, many: bool) -> float:
-    rows = sum(SIZES[name][0] + (0.0 if name == "phases" else GAP) for name in want.rows)
+    rows = sum(size(name)[0] + (0.0 if name == "phases" else GAP) for name in want.rows)
     return rows + (TITLE if many else 0.0) + (want.joints * JOINT + GAP if want.joints else 0.0)
 
 
 def _heights(names: Sequence[str], spare: float) -> dict[str, float]:
     """Share what is left over: first what each row would like, then by its share."""
-    out = {name: SIZES[name][0] for name in names}
-    wanted = {name: SIZES[name][1] - SIZES[name][0] for name in names}
+    out = {name: size(name)[0] for name in names}
+    wanted = {name: size(name)[1] - size(name)[0] for name in names}
     part = min(1.0, spare / total) if (total := sum(wanted.values())) > 0 else 0.0
     for name in names:
         out[name] += wanted[name] * part
-    left, shares = spare - total * part, sum(SIZES[name][2] for name in names)
+    left, shares = spare - total * part, sum(size(name)[2] for name in names)
     for name in names:
-        more = left * SIZES[name][2] / shares if shares and left > 0 else 0.0
+        more = left * size(name)[2] / shares if shares and left > 0 else 0.0
         out[name] = min(out[name] + more, MOST.get(name, 1e9))
     return out

@@ -12,7 +12,7 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QImage
 
 from app.features.timing_editor.axis import Axis
-from app.features.timing_editor.line_heard import Said, Waves, line_of, said_in, stresses
+from app.features.timing_editor.line_heard import Said, Waves, line_of, said_in, said_with, stresses
 from app.features.timing_editor.track import Facts, Track
 from app.project.document import Document
 from app.stage.compatibility_state import Compatibility
@@ -83,7 +83,6 @@ class Subject(QObject):
         self._old: dict[str, Track] = {}
         self._waves = Waves()
         self._sheets: dict[str, Once[DopeSheet]] = {}
-        self._spoken: dict[str, Said | None] = {}
         document.loaded.connect(self._loaded)
         document.changed.connect(self._edited)
         session.selection.changed.connect(self._selected)
@@ -99,7 +98,7 @@ class Subject(QObject):
     def _loaded(self) -> None:
         """Another project: nothing is remembered of the one before."""
         self.shows, self.said, self.marked = Shows(), None, None
-        self.idents, self._tracks, self._old, self._sheets, self._spoken = (), {}, {}, {}, {}
+        self.idents, self._tracks, self._old, self._sheets = (), {}, {}, {}
         self._waves = Waves()
         self.session.transport.set_part(None)
         self._compare(None)
@@ -115,12 +114,12 @@ class Subject(QObject):
         self.changed.emit()
 
     def _edited(self, before: Project, after: Project) -> None:
-        same = ("graphs", "clips", "roles", "parts", "skeleton", "lines", "voices")
+        same = ("graphs", "clips", "roles", "parts", "skeleton", "lines", "voices", "performances")
         if any(getattr(before, name) is not getattr(after, name) for name in same):
+            self._hear()
             self.changed.emit()
 
     def _planned(self) -> None:
-        self._spoken = {} if self.session.transport.show == "plan" else self._spoken
         self._hear()
         self.changed.emit()
 
@@ -129,7 +128,9 @@ class Subject(QObject):
             self.changed.emit()
 
     def _hear(self) -> None:
-        """Find what is said over the first of the actions: as laid on it by hand, else as it is performed."""
+        """Find what is said over the first of the actions: as laid on it by hand, else as it is performed on
+        stage, else the line that asks for it.
+        """
         action = self.document.project.action(self.idents[0]) if self.idents else None
         if action is None:
             self.said = None
@@ -139,9 +140,9 @@ class Subject(QObject):
             at = stroke.at if stroke is not None else self.document.project.span(action)[0]
             self.said = line_of(self.document.project, self.shows.heard, action, at)
             return
-        if self.session.transport.show == "plan":
-            self._spoken[action.id] = said_in(self.performance.shown, action)
-        self.said = self._spoken.get(action.id)
+        project, staged = self.document.project, self.performance.staged
+        said = said_in(staged, action) if staged is not None else None
+        self.said = said if said is not None else said_with(project, action)
 
     def show(self, **changes: Any) -> None:
         """Show something else of the actions; fields of `Shows`."""
@@ -180,7 +181,8 @@ class Subject(QObject):
             *(["poses"] if self.shows.poses and one else []),
             *(["line"] if self.shows.line and self.said is not None and place == 0 else []),
         ]
-        return (*first, "phases", "speed", "numbers", "stance")
+        hands = [f"hand {n}" for n in range(len(tuple(self.facts().values())[place].hands))]
+        return (*first, "phases", "speed", "numbers", *hands, "stance")
 
     def film(self, ident: str) -> list[QImage]:
         action = self.document.project.action(ident)

@@ -10,7 +10,6 @@ from PySide6.QtWidgets import (
     QFrame,
     QHBoxLayout,
     QLabel,
-    QMenu,
     QPushButton,
     QScrollArea,
     QToolButton,
@@ -18,15 +17,17 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.features.timing_editor.kept_rows import seconds_of, set_number
 from app.features.timing_editor.subject import Subject
 from app.features.timing_editor.view import TimingView
-from app.look import icons
 from app.look.names import told_names
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import Session
 from app.widgets.form_fields import Chooser, Seconds, common
 from app.widgets.making import make_widget
+from app.widgets.more_button import MoreButton
+from app.widgets.one_stop import OneStop
 from app.widgets.sentence import Sentence
 from metagraph.graph.edits import EditError
 from metagraph.motion.retime import SPEEDS
@@ -59,13 +60,10 @@ class TimingPanel(QWidget):
         self.compare.clicked.connect(subject.compare)
         self.loop = self._button("Loop", "Play only what the action plays, again and again", True)
         self.loop.clicked.connect(subject.loop_action)
-        self.more = self._button("", "What is shown")
-        self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
-        self.menu = QMenu(self)
-        self.menu.setToolTipsVisible(True)
+        self.more = MoreButton(session.look, "What is shown", "What is shown", self)
+        self.menu = self.more.menu_of
         self.menu.aboutToShow.connect(self._fill)
-        self.more.setMenu(self.menu)
-        self.more.setStyleSheet("QToolButton::menu-indicator { image: none; }")
+        OneStop((self.hold, self.onion, self.compare, self.loop, self.more), self)
         self.view = TimingView(document, session, subject, self)
         self.view.typed.connect(self._type)
         self.area = QScrollArea(self)
@@ -114,7 +112,6 @@ class TimingPanel(QWidget):
     def refresh(self) -> None:
         """Show what the subject is now."""
         shown, t = self.subject.facts(), theme(self.session.look.name)
-        self.more.setIcon(icons.icon("more", t.text))
         first = next(iter(shown.values()), None)
         for widget in (self.use, self.joint, self.speed, self.hold, self.onion, self.compare, self.loop):
             widget.setEnabled(first is not None)
@@ -205,10 +202,11 @@ class TimingPanel(QWidget):
         """Let a number be typed where it stands."""
         facts = self.subject.facts().get(ident)
         found = facts.handle(handle) if facts is not None else None
-        if found is None:
+        kept = seconds_of(facts, handle) if facts is not None else None
+        if found is None and kept is None:
             return
         self._typing = (ident, handle)
-        self.number.show_value(found.number)
+        self.number.show_value(found.number if found is not None else kept)
         wide = max(86, round(box.width()))
         left = min(max(0, round(box.center().x() - wide / 2)), self.view.width() - wide)
         self.number.setGeometry(left, round(box.top()) - 4, wide, 26)
@@ -224,6 +222,9 @@ class TimingPanel(QWidget):
         ident, handle = self._typing
         facts = self.subject.facts().get(ident)
         if facts is None or value < 0:
+            return
+        if seconds_of(facts, handle) is not None:
+            self._try(lambda: set_number(self.view, facts, handle, value))
             return
         start, end = facts.span
         at = {"in": start + value, "out": end - value}.get(handle, value)

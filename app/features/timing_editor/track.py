@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from app.look.names import plain
 from app.widgets.memo import Once
-from metagraph.graph import end_gaps
+from metagraph.graph import anatomy, end_gaps
 from metagraph.graph.clip_source import course_of
 from metagraph.graph.model import Action, ClipEntry, Project, Timing
 from metagraph.motion.retime import Hold
@@ -34,12 +34,28 @@ class Stay:
     last: float
 
 
+@dataclass(frozen=True)
+class Kept:
+    """A hand that is kept on the body. place: among the clip's. hand: whose row it is in, in words. to: the
+    joint it stays at. first, last: seconds of the clip as it plays.
+    """
+
+    place: int
+    hand: str
+    to: str
+    first: float
+    last: float
+
+    def with_end(self, end: str, seconds: float) -> Kept:
+        """Return it with its "first" or its "last" somewhere else."""
+        return replace(self, first=seconds) if end == "first" else replace(self, last=seconds)
+
+
 @dataclass(frozen=True, eq=False)
 class Facts:
     """An action as it is now. name: what it is called where its stance is clear. speeds `[F]`: of what it
     moves, which snapping goes by. curves: those that are drawn. seen: what is known of its jumps. verdict: in
-    words; fine: whether nothing shows. stays: where the clip is held. kept: where a hand is kept on the body:
-    first and last second, in words.
+    words; fine: whether nothing shows. stays: where the clip is held. kept: where a hand is kept on the body.
     """
 
     action: Action
@@ -55,7 +71,12 @@ class Facts:
     verdict: str
     fine: bool
     stays: tuple[Stay, ...] = ()
-    kept: tuple[tuple[float, float, str], ...] = ()
+    kept: tuple[Kept, ...] = ()
+
+    @property
+    def hands(self) -> tuple[str, ...]:
+        """The hands that are kept somewhere; each has a row."""
+        return tuple(dict.fromkeys(kept.hand for kept in self.kept))
 
     def handle(self, name: str) -> Handle | None:
         return next((h for h in self.handles if h.name == name), None)
@@ -133,18 +154,20 @@ class Track:
             words,
             fine,
             stays_of(entry),
-            kept_of(entry),
+            kept_of(project, entry),
         )
 
 
-def kept_of(entry: ClipEntry) -> tuple[tuple[float, float, str], ...]:
-    """Return where hands are kept on the body, first and last second of the clip as it plays, in words."""
+def kept_of(project: Project, entry: ClipEntry) -> tuple[Kept, ...]:
+    """Return where hands are kept on the body."""
     course = course_of(entry) if entry.retime.contacts else None
     if course is None:
         return ()
+    roles, names = anatomy.roles(project), project.skeleton.names if project.skeleton is not None else ()
+    sides = {names[roles[f"{s}_hand"]]: f"{s} hand" for s in ("left", "right") if f"{s}_hand" in roles}
     return tuple(
-        (course.time(c.first), course.time(c.last, late=True), f"{c.hand} stays at {c.to}")
-        for c in entry.retime.contacts
+        Kept(n, sides.get(c.hand, c.hand), c.to, course.time(c.first), course.time(c.last, late=True))
+        for n, c in enumerate(entry.retime.contacts)
     )
 
 

@@ -21,6 +21,7 @@ from PySide6.QtWidgets import QToolTip, QWidget
 from app.features.timing_editor import drags, filmstrip, overlay, paint
 from app.features.timing_editor.axis import Axis
 from app.features.timing_editor.hits import Hit, hit_at
+from app.features.timing_editor.kept_rows import KeptDrag, hit_kept, paint_kept
 from app.features.timing_editor.rows import (
     GUTTER,
     RIGHT,
@@ -30,7 +31,7 @@ from app.features.timing_editor.rows import (
     least_height,
 )
 from app.features.timing_editor.subject import Subject
-from app.features.timing_editor.track import Facts
+from app.features.timing_editor.track import Facts, Kept
 from app.look.theme import theme
 from app.project.document import Document
 from app.stage.session import Session
@@ -60,6 +61,7 @@ class TimingView(QWidget):
         self.snapped: Snap | None = None
         self.snaps: tuple[Snap, ...] = ()
         self.held = ""
+        self.stretched: tuple[str, Kept] | None = None
         self.numbers: dict[str, dict[str, QRectF]] = {}
         self._clip = ""
         self._still: Once[tuple[QPixmap, dict[str, dict[str, QRectF]]]] = Once()
@@ -120,7 +122,12 @@ class TimingView(QWidget):
 
     def hit(self, at: QPointF) -> Hit | None:
         """Return what is under a point."""
-        return hit_at(self.tracks(), self.subject.facts(), self.axis, self.numbers, at)
+        tracks, facts, axis = self.tracks(), self.subject.facts(), self.axis
+        for rows in tracks:
+            numbers = self.numbers.get(rows.ident, {})
+            if facts[rows.ident].kept and (kept := hit_kept(rows, facts[rows.ident], axis, numbers, at)):
+                return kept
+        return hit_at(tracks, facts, axis, self.numbers, at)
 
     # --- painting
 
@@ -134,6 +141,8 @@ class TimingView(QWidget):
         if seconds is not None:
             overlay.playhead(painter, look, self.axis, tracks, facts, seconds)
         overlay.part(painter, look, self.axis, self.transport.part, facts)
+        if self.stretched is not None:
+            overlay.stretched(painter, look, self.axis, tracks, facts, *self.stretched)
         if self.held:
             overlay.held(painter, look, self.axis, self.width(), tracks, self.snaps, self.snapped, self.held)
         painter.end()
@@ -196,7 +205,7 @@ class TimingView(QWidget):
                 paint.stance(painter, look, axis, rows, shown)
             out[rows.ident] = paint.handles(painter, look, axis, rows, shown)
             paint.stays(painter, look, axis, rows, shown)
-            paint.kept(painter, look, axis, rows, shown)
+            out[rows.ident].update(paint_kept(painter, look, axis, rows, shown))
             painter.setClipping(False)
             sheet = self.subject.sheet(rows.ident)
             if sheet.names:
@@ -232,6 +241,8 @@ class TimingView(QWidget):
         elif hit.what == "stay":
             stay = next(s for s in facts.stays if f"{s.hold.at}" == hit.name)
             self.hand.take(drags.StayDrag(self, facts, stay), at)
+        elif hit.what == "kept":
+            self.hand.take(KeptDrag(self, facts, hit.name, self.subject.playhead()), at)
         elif hit.what == "block":
             self.hand.take(self._block_drag(facts, "" if shift or not facts.blocks else hit.name), at)
         elif hit.what == "ruler" and shift:
@@ -269,7 +280,7 @@ class TimingView(QWidget):
         if not self.hand.move(event.position(), free):
             hit = self.hit(event.position())
             wide = Qt.CursorShape.SizeHorCursor
-            shapes = {"handle": wide, "stay": wide, "block": Qt.CursorShape.OpenHandCursor}
+            shapes = {"handle": wide, "stay": wide, "kept": wide, "block": Qt.CursorShape.OpenHandCursor}
             self.setCursor(shapes.get(hit.what if hit else "", Qt.CursorShape.ArrowCursor))
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
@@ -278,7 +289,7 @@ class TimingView(QWidget):
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         hit = self.hit(event.position())
         box = self.numbers.get(hit.ident, {}).get(hit.name) if hit is not None else None
-        if hit is not None and hit.what == "handle" and box is not None:
+        if hit is not None and hit.what in ("handle", "kept") and box is not None:
             self.typed.emit(hit.ident, hit.name, box)
         elif hit is not None and hit.what == "ruler":
             self.transport.set_part(None)

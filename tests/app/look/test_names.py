@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from app.look.names import GAP, apart, fitting, node_names, plain, row_names
+from app.look.names import apart, node_names, plain, row_names
 from metagraph.graph import edits
 
 
@@ -86,26 +84,3 @@ def test_a_nodes_names_follow_its_actions_and_its_stance(toy):
     ident = next(iter(first))
     project = edits.update_actions(project, [ident], name="something_else_07")
     assert node_names(project, "arms", rest, "gesture")[ident] == "something else"
-
-
-def letters(text: str) -> float:
-    return float(len(text))
-
-
-def test_what_tells_neighbours_apart_is_kept():
-    row = [f"a very long name {x} that ends alike" for x in ("left", "right", "both")]
-    shown = [fitting(name, 20, letters, row) for name in row]
-    assert len(set(shown)) == 3 and all(len(s) <= 20 and GAP in s for s in shown)
-    assert fitting(row[0], 20, letters) == "a very lo…ends alike"
-    assert fitting("hands at sides", 30, letters) == "hands at sides"
-    assert fitting("abc", 0.5, letters) == ""
-    assert fitting("abc", 1, letters) == GAP
-
-
-@given(st.text(max_size=40), st.integers(0, 45), st.lists(st.text(max_size=40), max_size=4))
-def test_what_is_shown_always_fits_and_is_of_the_text(text, width, others):
-    shown = fitting(text, width, letters, others)
-    assert len(shown) <= width or shown == text == ""
-    if shown not in (text, ""):
-        head, _, tail = shown.partition(GAP) if GAP not in text else ("", GAP, "")
-        assert text.startswith(head) and text.endswith(tail)

@@ -13,7 +13,7 @@ CTRL = Qt.KeyboardModifier.ControlModifier
 
 def fields(drive):
     drive.session.selection.select_actions((next(drive.document.project.actions().__iter__()).id,))
-    panel = drive.properties
+    panel = drive.properties.action
     return (drive.library.search, drive.canvas, panel.name, panel.start, panel.stance, drive.library.list)
 
 

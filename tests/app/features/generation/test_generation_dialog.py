@@ -17,6 +17,7 @@ import pytest
 import soundfile
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QFileDialog
 
 from app.features.generation import learn_page
 from app.features.generation.generation_dialog import GenerationDialog
@@ -369,3 +370,28 @@ def test_without_torch_it_says_what_to_install_and_still_samples(shown, monkeypa
     assert not dialog.learn.train.isEnabled() and dialog.use.move_button.isEnabled()
     shot(dialog, "no_torch")
     dialog.close()
+
+
+def test_without_a_conversation_it_says_how_to_get_one(shown):
+    drive, dialog = shown
+    use = dialog.use
+    assert use.side.isVisible() and not use.nobody.isVisible()
+    drive.document.edit("No talk", lambda p: replace(p, conversations={}))
+    assert not use.side.isVisible() and not use.move_button.isVisible()
+    assert use.nobody.isVisible() and "drop a recording" in use.nobody.text()
+    drive.document.undo()
+    assert use.side.isVisible() and use.move_button.isEnabled() and not use.nobody.isVisible()
+
+
+def test_without_a_sound_making_clips_asks_for_one_first(shown, tmp_path, monkeypatch):
+    drive, dialog = shown
+    use, asked = dialog.use, []
+    drive.document.edit("No talk", lambda p: replace(p, conversations={}))
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: asked.append(1) or ("", ""))
+    press(use.cut_button)
+    assert asked == [1] and use._job is None, "nothing was chosen"
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(tmp_path / "talk.wav"), ""))
+    use.minutes.setValue(0.2)
+    press(use.cut_button)
+    assert use._job is not None and use.speech.currentText() == "talk.wav"
+    drive.wait(lambda: use._job is None)

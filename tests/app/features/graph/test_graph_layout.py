@@ -47,7 +47,8 @@ def boxes(layout) -> dict[str, QRectF]:
     found = {f"node {kind}": node.rect for kind, node in layout.nodes.items()}
     found["card"] = layout.card
     found |= {f"chip {n}": chip.rect for n, chip in enumerate(layout.chips)}
-    found["foot"] = layout.foot
+    if not layout.foot.isEmpty():  # in a narrow room rows go before the sentence
+        found["foot"] = layout.foot
     return found
 
 

@@ -133,7 +133,7 @@ def test_the_properties_repoint_several_transitions_at_once(toys):
     drive = toys
     ways = tuple(a.id for a in drive.document.project.graphs["arms"].of(drive.id("up"), "transition"))
     drive.session.selection.select_actions(ways)
-    box = drive.properties.ends
+    box = drive.properties.action.ends
     assert box.isVisibleTo(drive.properties)
     place = next(n for n in range(box.count()) if box.itemData(n) == drive.id("far"))
     box.activated.emit(place)

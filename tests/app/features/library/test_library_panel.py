@@ -6,7 +6,8 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QFont, QFontMetrics
 
-from app.features.library.library_panel import Filter, two_lines
+from app.features.library.clip_card import two_lines
+from app.features.library.clip_model import Filter
 from metagraph.graph import edits
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from PySide6.QtTest import QTest
 
+from app.features.graph.graph_words import tip
 from metagraph.graph import edits
 from metagraph.graph.notes import PROJECT
 
@@ -38,8 +39,9 @@ def test_a_note_is_written_on_what_is_selected_and_is_one_step(toys):
     drive.document.redo()
     drive.session.selection.select_actions((gesture.id,))
     assert panel.text.toPlainText() == "too fast 1 2"
-    row = drive.canvas.layout_now().row(gesture.id)
-    assert "too fast" in drive.canvas._tip(drive.canvas.layout_now().hit(row.rect.center()))
+    layout = drive.canvas.layout_now()
+    hit = layout.hit(layout.row(gesture.id).rect.center())
+    assert "too fast" in tip(drive.document.project, layout, hit, None, {})
     drive.docks["notes"].close()
 
 

@@ -119,7 +119,7 @@ def timed(toys, toy, wide):
         )
     )
     drive.session.jump(action=toy.id(wide, "wide"))
-    drive.wait(lambda: drive.properties.plot.strip.seen is not None)
+    drive.wait(lambda: drive.properties.action.plot.strip.seen is not None)
     drive.settle()
     return drive
 
@@ -128,7 +128,7 @@ def timed(toys, toy, wide):
 @pytest.mark.gl
 def test_a_dragged_end_comes_to_rest_where_it_does_not_jump_in_one_step(timed, toy, wide):
     drive = timed
-    timing = drive.properties.plot
+    timing = drive.properties.action.plot
     plot, box = timing.plot, timing.plot.plotItem.vb
     ident = toy.id(wide, "wide")
 
@@ -155,7 +155,7 @@ def test_a_dragged_end_comes_to_rest_where_it_does_not_jump_in_one_step(timed, t
 @pytest.mark.window
 @pytest.mark.gl
 def test_alt_leaves_the_marks_out(timed, monkeypatch):
-    plot = timed.properties.plot
+    plot = timed.properties.action.plot
     goal = plot.strip.seen.proposed.end
     near = goal + 3 * plot.plot.plotItem.vb.viewPixelSize()[0]
     assert plot._snapped("end", near) == goal
@@ -170,7 +170,7 @@ def test_alt_leaves_the_marks_out(timed, monkeypatch):
 @pytest.mark.gl
 def test_proposed_times_are_taken_over_with_a_click_in_one_step(timed, toy, wide):
     drive = timed
-    ident, plot = toy.id(wide, "wide"), drive.properties.plot
+    ident, plot = toy.id(wide, "wide"), drive.properties.action.plot
     assert "ends 94 cm from stance 'rest'" in plot.verdict.text()
     assert plot.strip.tip(QPointF(200, 20)).startswith("At ")
     proposed = plot.strip.seen.proposed

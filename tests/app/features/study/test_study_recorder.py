@@ -147,7 +147,7 @@ def test_looks_playing_refusals_and_dialogs_are_told(recorded):
     d.session.place.set_layer("head")
     d.session.selection.select_actions((d.id("rest wave rt"),))
     d.session.show_context(d.id("rest wave rt"))
-    d.canvas.refused.emit("not there")
+    d.canvas.acts.refused.emit("not there")
     d.document.failed.emit("not at all")
     from app.features.study.study_note import NoteDialog
 

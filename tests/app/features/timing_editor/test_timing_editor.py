@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QWheelEvent
@@ -9,6 +11,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from metagraph.graph import edits
+from metagraph.graph.requests import Line, Play
+from metagraph.graph.retiming import keep_hand
 from metagraph.playback.timing import EDGES, times_of
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -94,7 +98,7 @@ def test_it_is_wide_under_the_character_and_says_what_the_problems_say(editor):
     assert panel.view.height() >= panel.view.minimumHeight()
     shown = facts(editor)
     assert not shown.fine and "ends" in shown.verdict and panel.verdict.words == shown.verdict
-    assert editor.properties.plot.verdict.text() == shown.verdict, "one verdict everywhere"
+    assert editor.properties.action.plot.verdict.text() == shown.verdict, "one verdict everywhere"
 
 
 def test_a_handle_is_dragged_by_its_line_and_comes_to_rest_with_a_reason_in_one_step(editor):
@@ -316,8 +320,9 @@ def test_a_hand_is_kept_during_the_looped_part_and_let_go_again(editor):
     editor.pick(editor.panel.menu, "Keep the right hand where it is")
     (contact,) = editor.document.project.clips[clip].retime.contacts
     assert (contact.first, contact.last) == pytest.approx((0.5, 0.9), abs=0.01)
-    ((first, last, words),) = facts(editor).kept
-    assert (first, last) == pytest.approx((0.5, 0.9), abs=0.02) and "stays at" in words
+    (kept,) = facts(editor).kept
+    assert (kept.first, kept.last) == pytest.approx((0.5, 0.9), abs=0.02)
+    assert kept.hand == "right hand" and kept.to
     editor.view.grab()
     editor.panel.menu.aboutToShow.emit()
     editor.pick(editor.panel.menu, "Let go of the hands")
@@ -327,7 +332,7 @@ def test_a_hand_is_kept_during_the_looped_part_and_let_go_again(editor):
 
 def test_the_plot_in_the_properties_follows_a_clip_that_is_slowed(editor):
     editor.panel.speed.setValue(0.5)
-    xs, _ = editor.properties.plot.curve.getData()
+    xs, _ = editor.properties.action.plot.curve.getData()
     assert xs[-1] == pytest.approx(4.8, abs=0.05)
 
 
@@ -337,3 +342,62 @@ def test_a_drag_of_the_real_pointer_moves_the_end(editor):
     editor.pause(250)
     assert timing(editor).end == pytest.approx(1.9, abs=0.06)
     assert editor.document.undo_stack.undoText() == "Change timing" and editor.view.held == ""
+
+
+@pytest.fixture
+def kept(editor):
+    """A hand that is kept from 0.5 to 0.9 s."""
+    clip = editor.document.project.action(editor.ident).clip
+    editor.document.edit("Keep hand", lambda p: keep_hand(p, clip, "right", 0.5, 0.9))
+    editor.view.grab()
+    editor.contacts = lambda: editor.document.project.clips[clip].retime.contacts
+    return editor
+
+
+def test_a_kept_hand_is_dragged_by_its_ends_in_one_step_each(kept):
+    count = kept.document.undo_stack.count()
+    pull(kept, at(kept, 0.9, "hand 0"), at(kept, 1.1, "hand 0"), ALT, let_go=False)
+    assert kept.view.held == "right hand kept 0.50 to 1.10 s" and kept.contacts()[0].last == 0.9
+    QTest.mouseRelease(kept.view, Qt.MouseButton.LeftButton, ALT, at(kept, 1.1, "hand 0"))
+    assert kept.contacts()[0].last == pytest.approx(1.1, abs=0.01) and kept.contacts()[0].first == 0.5
+    assert kept.view.held == "" and kept.view.stretched is None
+    pull(kept, at(kept, 0.5, "hand 0"), at(kept, 0.51, "hand 0") - QPoint(60, 0), ALT)
+    assert kept.contacts()[0].first < 0.48 and kept.contacts()[0].last == pytest.approx(1.1, abs=0.01)
+    assert kept.document.undo_stack.count() == count + 2
+
+
+def test_a_kept_hand_comes_to_rest_where_the_action_has_something(kept):
+    pull(kept, at(kept, 0.9, "hand 0"), at(kept, 1.2, "hand 0") + QPoint(3, 0))
+    assert kept.contacts()[0].last == pytest.approx(1.2, abs=0.001), "its retraction begins there"
+
+
+def test_all_of_a_kept_hand_is_moved_and_escape_and_nothing_let_it_be(kept):
+    before = kept.document.project
+    pull(kept, at(kept, 0.7, "hand 0"), at(kept, 0.8, "hand 0"), let_go=False)
+    kept.view.setFocus()
+    kept.key(Qt.Key.Key_Escape, widget=kept.view)
+    assert kept.document.project is before and kept.view.stretched is None
+    pull(kept, at(kept, 0.7, "hand 0"), at(kept, 0.8, "hand 0"))
+    (contact,) = kept.contacts()
+    assert (contact.first, contact.last) == pytest.approx((0.6, 1.0), abs=0.02)
+    pull(kept, at(kept, contact.last, "hand 0"), at(kept, 0.3, "hand 0"), ALT)
+    assert kept.contacts() == ()
+
+
+def test_the_number_of_a_kept_hands_end_is_typed(kept):
+    box = kept.view.numbers[kept.ident]["kept 0 last"]
+    place = box.center().toPoint()
+    assert "stays at" in kept.view.tip(QPointF(place))
+    QTest.mouseDClick(kept.view, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, place)
+    assert kept.panel.number.isVisible()
+    kept.panel.number.setValue(1.3)
+    assert kept.contacts()[0].last == pytest.approx(1.3)
+
+
+def test_the_line_that_asks_for_an_action_is_seen_before_anything_was_performed(editor):
+    line = Line(text="well now", duration=0.8, asks=(Play(action=editor.ident, at=0.1),))
+    editor.document.edit("Line", lambda p: replace(p, lines={"l9": line}))
+    assert "line" in editor.panel.subject.row_names(0)
+    assert editor.panel.subject.said.offset == pytest.approx(timing(editor).start - 0.1)
+    editor.document.undo_stack.undo()
+    assert "line" not in editor.panel.subject.row_names(0)

@@ -143,5 +143,5 @@ def test_it_stands_in_the_menus_of_actions_and_clips(saved):
     drive = saved
     assert drive.actions["twins"] in drive.canvas.row_actions
     entry = next(iter(drive.document.project.clips.values()))
-    texts = [a.text().replace("&", "") for a in drive.library.menu(entry).actions()]
+    texts = [a.text().replace("&", "") for a in drive.library.acts.menu(entry).actions()]
     assert "Make mirrored twin" in texts and "Repairs…" in texts

@@ -1,0 +1,171 @@
+"""What is done to the meta-graph from its canvas, by drops, keys and menus: an edit, or words that say why
+not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QObject, Signal
+from PySide6.QtWidgets import QInputDialog, QWidget
+
+from app.features.graph.graph_drops import Drop, drop_at, perform
+from app.features.graph.graph_layout import GraphHit
+from app.project.document import Document
+from app.project.load import Load
+from app.stage.session import Session
+from metagraph.graph import edits
+from metagraph.graph.model import KINDS, Action, Kind
+
+
+class GraphActs(QObject):
+    """refused: words for the status bar. labelled: clips were placed by a key; (clips, the actions made of
+    them). widget: over which questions appear.
+    """
+
+    refused = Signal(str)
+    labelled = Signal(object, object)
+
+    def __init__(self, document: Document, session: Session, widget: QWidget) -> None:
+        super().__init__(widget)
+        self.document, self.session, self.widget = document, session, widget
+
+    def what(self, hit: GraphHit, load: Load) -> Drop:
+        """Return what letting a load go on something would do."""
+        return drop_at(
+            self.document.project,
+            self.session.place.layer,
+            self.session.place.stance(),
+            self.session.place.other(),
+            hit,
+            load,
+        )
+
+    def do(self, drop: Drop, load: Load) -> None:
+        """Perform a drop and select what it made."""
+        before = {a.id for a in self.document.project.actions()}
+        layer = self.session.place.layer
+        verb = "Move" if load.actions else "Place"
+        noun = f"{load.count} {'action' if load.actions else 'clip'}{'s' if load.count != 1 else ''}"
+        try:
+            self.document.edit(f"{verb} {noun}", lambda p: perform(p, layer, drop, load))
+        except edits.EditError as error:
+            self.refused.emit(str(error))
+            return
+        made = tuple(a.id for a in self.document.project.actions() if a.id not in before) or load.actions
+        if drop.kind in ("stance", None) and made:
+            action = self.document.project.action(made[0])
+            if action is not None:
+                self.session.place.set_stance(action.stance)
+        self.session.selection.select_actions(made)
+        self.session.transport.show_plan()
+
+    def place_selection(self, kind: Kind) -> None:
+        """Label the selection, clips or actions, with a kind on the current stance: the keys 1 to 4."""
+        load = Load(clips=self.session.selection.clips, actions=self.session.selection.actions)
+        if not load:
+            self.refused.emit("Select clips or actions first.")
+            return
+        stance = self.session.place.stance()
+        new = kind == "stance" and bool(load.clips)
+        hit = (
+            GraphHit("card", stance, "stance")
+            if new
+            else GraphHit("loop", stance, "stance")
+            if kind == "stance"
+            else GraphHit("node", None, kind)
+        )
+        drop = self.what(hit, load)
+        if not drop.possible:
+            self.refused.emit(drop.words)
+            return
+        before = self.document.project
+        self.do(drop, load)
+        if load.clips and self.document.project is not before:
+            self.labelled.emit(load.clips, self.session.selection.actions)
+
+    def move_to(self, stance: str) -> None:
+        chosen = self.session.selection.actions
+        try:
+            self.document.edit("Move actions", lambda p: edits.to_stance(p, chosen, stance))
+        except edits.EditError as error:
+            self.refused.emit(str(error))
+
+    def end_selection_in(self, stance: str) -> None:
+        self.end_in(self.session.selection.actions, stance)
+
+    def end_in(self, actions: Sequence[str], stance: str) -> None:
+        """Let transitions end in another stance, in one step."""
+        try:
+            self.document.edit("Change end stance", lambda p: edits.set_ends(p, actions, stance))
+        except edits.EditError as error:
+            self.refused.emit(str(error))
+
+    def show_clip(self) -> None:
+        actions = self.session.selection.selected_actions()
+        self.session.selection.select_clips(tuple(dict.fromkeys(a.clip for a in actions)))
+
+    def new_stance(self) -> None:
+        name, accepted = QInputDialog.getText(
+            self.widget, "New stance", f"Name of the new {self.session.place.layer} stance:"
+        )
+        if accepted and name.strip():
+            layer = self.session.place.layer
+            self.document.edit("New stance", lambda p: edits.add_stance(p, layer, name))
+            self.session.place.set_stance(list(self.document.project.graphs[layer].stances)[-1])
+
+    def rename_stance(self, stance: str | None = None) -> None:
+        found = self.document.project.stance(stance or self.session.place.stance())
+        if found is None:
+            return
+        name, accepted = QInputDialog.getText(self.widget, "Rename stance", "Name:", text=found.name)
+        if accepted and name.strip():
+            self.document.edit("Rename stance", lambda p: edits.rename_stance(p, found.id, name))
+
+    def remove_selection(self) -> None:
+        """Take the selected actions out of the graph."""
+        gone = self.session.selection.actions
+        if gone:
+            self.document.edit(
+                f"Remove {len(gone)} action{'s' if len(gone) > 1 else ''}",
+                lambda p: edits.remove_actions(p, gone),
+            )
+
+    def listed(self) -> list[Action]:
+        """The actions of the current stance, in the order of the nodes."""
+        stance = self.session.place.stance()
+        graph = self.document.project.graphs[self.session.place.layer]
+        return [a for kind in KINDS[1:] for a in (graph.of(stance, kind) if stance else ())]
+
+    def loops(self) -> tuple[Action, ...]:
+        """The loops of the current stance."""
+        stance = self.session.place.stance()
+        graph = self.document.project.graphs[self.session.place.layer]
+        return tuple(graph.of(stance, "stance")) if stance else ()
+
+    def nudge_likelihood(self, action: str, by: float) -> None:
+        """Make the selected actions, or one alone, likelier or less likely; a key held down is one step."""
+        found = self.document.project.action(action)
+        if found is not None:
+            value = round(min(3.0, max(0.1, found.likelihood + by)), 1)
+            chosen = self.session.selection.actions or (action,)
+            self.document.edit(
+                "Change likelihood",
+                lambda p: edits.update_actions(p, chosen, likelihood=value),
+                merge="likelihood keys",
+            )
+
+    def select(self, action: str, more: bool, since: str | None) -> None:
+        """Select what is pressed. more: beside what is selected already, or no longer. since: all from this
+        one on.
+        """
+        chosen, ids = self.session.selection.actions, [a.id for a in self.listed()]
+        if more:
+            rest = tuple(i for i in chosen if i != action)
+            self.session.selection.select_actions(rest if action in chosen else (*chosen, action))
+        elif since is not None:
+            if since in ids and action in ids:
+                a, b = sorted((ids.index(since), ids.index(action)))
+                self.session.selection.select_actions(tuple(ids[a : b + 1]))
+        elif action not in chosen:
+            self.session.selection.select_actions((action,))

@@ -1,0 +1,97 @@
+"""What is drawn on the canvas besides its layout, and the strokes all its parts are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPen
+
+from app.features.graph.graph_drops import Drop
+from app.features.graph.graph_layout import GraphHit
+from app.look.shortening import fitted
+from app.look.theme import Theme
+from metagraph.graph.model import Kind, Project
+
+RADIUS = 8.0
+NOWHERE = GraphHit("nothing")
+
+
+@dataclass(frozen=True)
+class GraphLook:
+    """Everything that is drawn besides the layout."""
+
+    theme: Theme
+    project: Project
+    selected: Collection[str] = ()
+    fresh: Collection[str] = ()  # just made
+    hover: GraphHit = NOWHERE
+    focus: str | None = None
+    playing: Collection[str] = ()  # actions under the playhead
+    misfits: dict[str, str] = field(default_factory=dict)  # action -> what is wrong with its ends
+    picture: QImage | None = None
+    chip_pictures: dict[str, QImage] = field(default_factory=dict)
+    row_pictures: Mapping[str, QImage] = field(default_factory=dict)  # by clip
+    other: str | None = None
+    drop: Drop | None = None
+    drop_hit: GraphHit = NOWHERE
+    drop_at: QPointF | None = None  # where something is held: what a drop does stands beside it
+    arrow: tuple[QPointF, QPointF] | None = None  # being dragged, from where to where
+    sentence: str = ""
+
+
+def bold(font: QFont) -> QFont:
+    out = QFont(font)
+    out.setWeight(QFont.Weight.DemiBold)
+    return out
+
+
+def draw_box(
+    painter: QPainter,
+    rect: QRectF,
+    fill: QColor,
+    edge: QColor | None,
+    width: float = 1.0,
+    dashed: bool = False,
+) -> None:
+    painter.setBrush(fill)
+    if edge is None:
+        painter.setPen(Qt.PenStyle.NoPen)
+    else:
+        pen = QPen(edge, width)
+        if dashed:
+            pen.setDashPattern([4, 3])
+        painter.setPen(pen)
+    painter.drawRoundedRect(rect.adjusted(width / 2, width / 2, -width / 2, -width / 2), RADIUS, RADIUS)
+
+
+def between(font: QFont, text: str, width: float, others: tuple[str, ...] = ()) -> str:
+    """Return as much of a text as there is room for, with what tells it from those beside it."""
+    return fitted(text, int(width), font.toString(), others)
+
+
+def upper(picture: QImage) -> QRectF:
+    """Return the part of a picture in which arms and head are."""
+    return QRectF(
+        picture.width() * 0.24, picture.height() * 0.03, picture.width() * 0.52, picture.height() * 0.52
+    )
+
+
+def draw_offer(painter: QPainter, rect: QRectF, look: GraphLook, kind: Kind, font: QFont) -> None:
+    """Say in a dashed box what a drop will do, or why it will not."""
+    assert look.drop is not None
+    t = look.theme
+    color = QColor(t.kinds[kind]) if look.drop.possible else QColor(t.warning)
+    fill = QColor(t.ground)
+    fill.setAlpha(225)
+    draw_box(painter, rect.adjusted(5, 5, -5, -5), fill, color, 1.4, dashed=True)
+    if look.drop_at is not None:
+        return  # it stands beside what is held
+    painter.setPen(color)
+    painter.setFont(font)
+    painter.drawText(
+        rect.adjusted(14, 8, -14, -8),
+        Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap,
+        look.drop.words.replace("*", ""),
+    )

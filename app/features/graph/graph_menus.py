@@ -1,0 +1,68 @@
+"""The menus of the canvas."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QAction
+from PySide6.QtWidgets import QMenu
+
+from app.features.graph.graph_acts import GraphActs
+from app.features.graph.graph_layout import GraphHit
+from metagraph.graph import edits
+
+
+def menu_of(acts: GraphActs, hit: GraphHit, row_actions: Sequence[QAction]) -> QMenu:
+    """Return what can be done with what is under the pointer; an action there is selected."""
+    menu = QMenu(acts.widget)
+    menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+    if hit.area in ("row", "bar", "head") and hit.ident:
+        if hit.ident not in acts.session.selection.actions:
+            acts.session.selection.select_actions((hit.ident,))
+        menu.addAction("Play in context", lambda: acts.session.show_context(str(hit.ident)))
+        menu.addSeparator()
+        move = menu.addMenu("Move to stance")
+        for stance in acts.document.project.graphs[acts.session.place.layer].stances.values():
+            move.addAction(stance.name, partial(acts.move_to, stance.id))
+        if hit.kind == "transition":
+            ends = menu.addMenu("End in stance")
+            for stance in acts.document.project.graphs[acts.session.place.layer].stances.values():
+                if stance.id != acts.session.place.stance():
+                    ends.addAction(stance.name, partial(acts.end_selection_in, stance.id))
+        menu.addAction("Show clip in the library", acts.show_clip)
+        menu.addSeparator()
+        menu.addActions(row_actions)
+        menu.addSeparator()
+        menu.addAction("Remove from the graph\tDel", acts.remove_selection)
+    elif hit.area in ("chip", "card") and hit.ident:
+        stance_id = hit.ident
+        menu.addAction("Rename stance…\tF2", lambda: acts.rename_stance(stance_id))
+        menu.addAction(
+            "Start here",
+            lambda: acts.document.edit("Start here", lambda p: edits.set_start(p, stance_id)),
+        )
+        menu.addSeparator()
+        menu.addAction(
+            "Remove stance and its actions",
+            lambda: acts.document.edit("Remove stance", lambda p: edits.remove_stance(p, stance_id)),
+        )
+    else:
+        menu.addAction("New stance…", acts.new_stance)
+    return menu
+
+
+def ends_menu(acts: GraphActs) -> QMenu:
+    """Return the stances that dropped transitions can end in."""
+    menu = QMenu(acts.widget)
+    menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+    current, other = acts.session.place.stance(), acts.session.place.other()
+    for stance in acts.document.project.graphs[acts.session.place.layer].stances.values():
+        if stance.id != current:
+            entry = menu.addAction(stance.name, partial(acts.session.place.set_other, stance.id))
+            entry.setCheckable(True)
+            entry.setChecked(stance.id == other)
+    if menu.isEmpty():
+        menu.addAction("Make a second stance first").setEnabled(False)
+    return menu

@@ -1,0 +1,69 @@
+"""The pictures on the canvas, and the beat to which the stance in the middle moves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from PySide6.QtCore import QTimer
+from PySide6.QtGui import QImage
+from PySide6.QtWidgets import QWidget
+
+from app.features.graph.graph_layout import Layout
+from app.stage.thumbnails import Thumbnails
+from metagraph.graph.model import MetaGraph
+
+RATE = 12  # pictures a second of the stance in the middle
+SLOW = 0.015  # seconds of drawing for each of which a picture of it is left out
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """hero: of the stance in the middle. chips: by stance. rows: by clip. None is there that is not drawn
+    yet.
+    """
+
+    hero: QImage | None = None
+    chips: dict[str, QImage] = field(default_factory=dict)
+    rows: dict[str, QImage] = field(default_factory=dict)
+
+
+def pictures_of(thumbnails: Thumbnails, layout: Layout, graph: MetaGraph, beat: int) -> Pictures:
+    """Return the pictures that a layout has room for; those that are not there yet are drawn."""
+    loops = {ident: next(iter(graph.of(ident, "stance")), None) for ident in graph.stances}
+    chips = {
+        ident: thumbnails.picture(loop.clip, bare=True) for ident, loop in loops.items() if loop is not None
+    }
+    seen = (row for node in layout.nodes.values() for row in node.rows if not row.picture.isEmpty())
+    rows = {clip: thumbnails.picture(clip, bare=True) for clip in {row.action.clip for row in seen}}
+    hero = loops.get(layout.stance or "")
+    return Pictures(
+        thumbnails.moving(hero.clip, beat) if hero is not None else None,
+        {ident: picture for ident, picture in chips.items() if picture is not None},
+        {clip: picture for clip, picture in rows.items() if picture is not None},
+    )
+
+
+class Beat:
+    """Calls again and again, less often while drawing is slow. count: how often it has."""
+
+    def __init__(self, call: Callable[[], None], parent: QWidget) -> None:
+        self.call, self.count = call, 0
+        self._rest = 0  # beats to leave out
+        self._timer = QTimer(parent, interval=1000 // RATE)
+        self._timer.timeout.connect(self._next)
+        self._timer.start()
+
+    def drawn(self, seconds: float) -> None:
+        """Tell how long drawing has taken."""
+        self._rest = min(RATE, int(seconds / SLOW))
+
+    def stop(self) -> None:
+        self._timer.stop()
+
+    def _next(self) -> None:
+        if self._rest > 0:  # jobs keep the processor busy: the stance moves more slowly, the window does not
+            self._rest -= 1
+            return
+        self.count += 1
+        self.call()

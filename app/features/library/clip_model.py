@@ -1,0 +1,132 @@
+"""The project's clips as Qt lists them, and those of them that are looked for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from PySide6.QtCore import (
+    QAbstractListModel,
+    QMimeData,
+    QModelIndex,
+    QPersistentModelIndex,
+    QSortFilterProxyModel,
+    Qt,
+)
+
+from app.project.document import Document
+from app.widgets.mime import mime
+from metagraph.graph.generated import origin
+from metagraph.graph.model import ClipEntry, Project
+
+Index = QModelIndex | QPersistentModelIndex
+ENTRY = Qt.ItemDataRole.UserRole
+
+
+@dataclass(frozen=True)
+class Filter:
+    """What the library shows. labelled: None for both. kind, layer: None for any; they look at the actions
+    that use a clip.
+    """
+
+    text: str = ""
+    labelled: bool | None = None
+    layer: str | None = None
+    kind: str | None = None
+
+    def takes(self, project: Project, entry: ClipEntry) -> bool:
+        if (
+            self.labelled is not None
+            and (entry.id in project.uses or entry.id in project.drawn) != self.labelled
+        ):
+            return False
+        if (self.layer or self.kind) and not any(
+            (not self.layer or a.layer == self.layer) and (not self.kind or a.kind == self.kind)
+            for a in project.uses.get(entry.id, ())
+        ):
+            return False
+        name = f"{entry.name} {entry.path}".lower()
+        return all(word in name for word in self.text.lower().split())
+
+
+class ClipModel(QAbstractListModel):
+    """The project's clips, in their order."""
+
+    def __init__(self, document: Document) -> None:
+        super().__init__(document)
+        self.document = document
+        self.entries: list[ClipEntry] = list(document.project.clips.values())
+        document.changed.connect(self._follow)
+
+    def rowCount(self, parent: Index = QModelIndex()) -> int:  # noqa: B008 - Qt's signature
+        return 0 if parent.isValid() else len(self.entries)
+
+    def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> object:
+        if not index.isValid() or index.row() >= len(self.entries):
+            return None
+        entry = self.entries[index.row()]
+        if role == Qt.ItemDataRole.DisplayRole:
+            return entry.name
+        if role == ENTRY:
+            return entry
+        if role == Qt.ItemDataRole.ToolTipRole:
+            notes = "".join(
+                f"\n{note}"
+                for note in (entry.motion.notes if entry.motion is not None else ("The file is missing.",))
+            )
+            uses = ", ".join(f"{a.kind} ({a.layer})" for a in self.document.project.uses.get(entry.id, ()))
+            uses = uses or (
+                "drawn as a state" if entry.id in self.document.project.drawn else "not placed yet"
+            )
+            made = f"\n{origin(entry)}" if entry.made_by else ""
+            return (
+                f"{entry.name}\n{entry.duration:.2f} s, {entry.frames} frames at {entry.fps:g} "
+                f"fps\n{entry.path}{made}\n{uses}{notes}"
+            )
+        if role == Qt.ItemDataRole.AccessibleTextRole:
+            return f"{entry.name}, {entry.duration:.1f} seconds"
+        return None
+
+    def flags(self, index: Index) -> Qt.ItemFlag:
+        return super().flags(index) | Qt.ItemFlag.ItemIsDragEnabled
+
+    def mimeData(self, indexes: Sequence[QModelIndex]) -> QMimeData:
+        return mime(clips=[self.entries[i.row()].id for i in indexes])
+
+    def _follow(self, before: Project, after: Project) -> None:
+        if before.clips is not after.clips:
+            fresh = list(after.clips.values())
+            same = [e.id for e in fresh] == [e.id for e in self.entries]
+            if same:
+                self.entries = fresh
+            else:
+                self.beginResetModel()
+                self.entries = fresh
+                self.endResetModel()
+        if before is not after and self.entries:
+            self.dataChanged.emit(self.index(0), self.index(len(self.entries) - 1))
+
+
+class FilterModel(QSortFilterProxyModel):
+    def __init__(self, model: ClipModel) -> None:
+        super().__init__(model)
+        self.filter = Filter()
+        self.setSourceModel(model)
+
+    def set_filter(self, rule: Filter) -> None:
+        if rule != self.filter:
+            if hasattr(self, "beginFilterChange"):
+                self.beginFilterChange()
+                self.filter = rule
+                self.endFilterChange()
+            else:
+                self.filter = rule
+                self.invalidateFilter()
+
+    def filterAcceptsRow(self, row: int, parent: Index) -> bool:
+        model = self.sourceModel()
+        assert isinstance(model, ClipModel)
+        return self.filter.takes(model.document.project, model.entries[row])
+
+    def mimeData(self, indexes: Sequence[QModelIndex]) -> QMimeData:
+        return mime(clips=[i.data(ENTRY).id for i in indexes])

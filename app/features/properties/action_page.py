@@ -1,0 +1,264 @@
+"""The properties of actions, one or many at once: every control writes through one edit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.properties.page_form import Edit, form_in
+from app.features.properties.timing_plot import TimingPlot
+from app.features.properties.variation_rows import ActionRows
+from app.look.theme import KIND_MARKS, KIND_TITLES, theme
+from app.project.document import Document
+from app.stage.session import Session
+from app.widgets.choice_row import LimbRow
+from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, common
+from app.widgets.halves import Halves
+from app.widgets.making import make_widget
+from metagraph.graph import edits
+from metagraph.graph.model import LIMBS, Action
+from metagraph.playback.timing import retimed
+
+
+class ActionPage(Halves):
+    """time_wanted: the timing is to be seen whole. timing_elsewhere: whether it is, beside this."""
+
+    time_wanted = Signal()
+
+    def __init__(self, document: Document, session: Session, edit: Edit, parent: QWidget) -> None:
+        first, second = QWidget(parent), QWidget(parent)
+        super().__init__(first, second, parent)
+        self.document, self.session, self.edit = document, session, edit
+        self.misfits: dict[str, str] = {}
+        self.low = False  # there is no room for the curves
+        self.timing_elsewhere: Callable[[], bool] = lambda: False
+        page, box = second, QVBoxLayout(second)
+        box.setContentsMargins(0, 0, 0, 0)
+        upper = QVBoxLayout(first)
+        upper.setContentsMargins(0, 0, 0, 0)
+        upper.setSpacing(8)
+        head = QHBoxLayout()
+        self.name = Field(page, "Name of the action", "Name")
+        self.name.editingFinished.connect(self._rename)
+        self.kind = QLabel(page)
+        head.addWidget(self.name, 1)
+        head.addWidget(self.kind)
+        self.timing = make_widget(QToolButton, page, text="Timing", toolTip="Show its timing whole")
+        self.timing.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.timing.clicked.connect(self.time_wanted)
+        head.addWidget(self.timing)
+        upper.addLayout(head)
+        self.plot = TimingPlot(document, session, page)
+        self.plot.changed.connect(lambda fields: self._set("Change timing", merge="timing", timing=fields))
+        self.plot.finished.connect(document.finish_merging)
+        upper.addWidget(self.plot)
+        form = form_in(box)
+
+        def pair(title: str, *fields: QWidget) -> QWidget:
+            row = QWidget(page)
+            line = QHBoxLayout(row)
+            line.setContentsMargins(0, 0, 0, 0)
+            for field in fields:
+                line.addWidget(field, 1)
+            form.addRow(title, row)
+            return row
+
+        self.start, self.end = Seconds(page, "Start in the clip"), Seconds(page, "End in the clip")
+        self.blend_in, self.blend_out = Seconds(page, "Blend in"), Seconds(page, "Blend out")
+        pair("Start, end", self.start, self.end)
+        self.blend_row = pair("Blend in, out", self.blend_in, self.blend_out)
+        self.start.valueChanged.connect(lambda v: self._timing("start", v))
+        self.end.valueChanged.connect(lambda v: self._timing("end", v))
+        self.blend_in.valueChanged.connect(lambda v: self._timing("blend_in", v))
+        self.blend_out.valueChanged.connect(lambda v: self._timing("blend_out", v))
+        self.leave = QCheckBox("early, from", page)
+        self.leave.setAccessibleName("May be left early")
+        self.leave.setToolTip("Whether what comes next may begin before its end")
+        self.leave.clicked.connect(self._leave)
+        self.earliest = Seconds(page, "Earliest exit: from here on the action may be left")
+        self.earliest.valueChanged.connect(lambda v: self._timing("earliest_exit", v))
+        self.leave_row = pair("Exit", self.leave, self.earliest)
+        self.limb = LimbRow(page, "stance")
+        self.limb.chosen.connect(lambda n: self._set("Change limb", limb=LIMBS[n]))
+        form.addRow("Limb", self.limb)
+        self.tags = Field(
+            page, "Words apart by commas; requests can ask for them: positive, negative, ...", "Tags"
+        )
+        self.tags.editingFinished.connect(self._retag)
+        form.addRow("Tags", self.tags)
+        self.likelihood = Seconds(page, "Likelihood against the others of its node; 1 is usual", 100, "", 0.1)
+        self.likelihood.valueChanged.connect(self._likely)
+        form.addRow("Likelihood", self.likelihood)
+        self.variation = ActionRows(form, page)
+        self.variation.changed.connect(lambda text, fields: self._set(text, **fields))
+        self.stance = Chooser(page, toolTip="The stance it starts from")
+        self.stance.activated.connect(self._restance)
+        form.addRow("Stance", self.stance)
+        self.ends = Chooser(page, toolTip="The stance it ends in")
+        self.ends.activated.connect(self._reend)
+        form.addRow("Ends in", self.ends)
+        self.form = form
+        self.joints = make_widget(QPushButton, page, toolTip="Let it move only some joints")
+        self.joints.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # after a click the space bar still plays
+        self.joints.clicked.connect(self._mask)
+        form.addRow("Joints", self.joints)
+        self.trouble = QLabel(page, wordWrap=True)
+        box.addWidget(self.trouble)
+        box.addStretch(1)
+        self.turned.connect(self.plot.set_large)
+
+    def show_actions(self, actions: Sequence[Action]) -> None:
+        """Show what actions have in common."""
+        if not actions:
+            return
+        project, t = self.document.project, theme(self.session.look.name)
+        one = len(actions) == 1
+        kind, layer = common([a.kind for a in actions]), common([a.layer for a in actions])
+        self.name.setReadOnly(not one)
+        of = tuple(a.id for a in actions)
+        self.name.show_text(actions[0].name if one else f"{len(actions)} actions", of)
+        title = f"{KIND_MARKS[kind]} {KIND_TITLES[kind]}" if kind is not Mixed else "Mixed kinds"
+        self.kind.setText(f"{title} · {layer.capitalize() if layer is not Mixed else 'layers'}")
+        self.kind.setStyleSheet(f"color: {t.kinds[kind]}" if kind is not Mixed else "")
+        self.plot.setVisible(one)
+        self.plot.set_curves(not self.low)
+        self.timing.setVisible(one and self.low and not self.timing_elsewhere())
+        if one:
+            self.plot.show_action(actions[0])
+        spans = [project.span(a) for a in actions]
+        self.start.show_value(common([s for s, _ in spans]))
+        self.end.show_value(common([e for _, e in spans]))
+        self.blend_in.show_value(common([a.timing.blend_in for a in actions]))
+        self.blend_out.show_value(common([a.timing.blend_out for a in actions]))
+        stance = kind == "stance"
+        blend_title = self.form.labelForField(self.blend_row)
+        if isinstance(blend_title, QLabel):
+            blend_title.setText("Blend at seam" if stance else "Blend in, out")
+        self.blend_out.setVisible(not stance)
+        self.form.setRowVisible(self.leave_row, not stance)
+        exits = common([a.timing.earliest_exit for a in actions])
+        leaves = common([a.timing.earliest_exit is not None for a in actions])
+        self.leave.blockSignals(True)
+        self.leave.setTristate(leaves is Mixed)
+        state = Qt.CheckState
+        self.leave.setCheckState(
+            state.PartiallyChecked if leaves is Mixed else state.Checked if leaves else state.Unchecked
+        )
+        self.leave.blockSignals(False)
+        self.earliest.setEnabled(exits is not None)
+        self.earliest.show_value(0.0 if exits is None else exits)
+        arms = layer == "arms" and not stance
+        self.form.setRowVisible(self.limb, arms)
+        self.limb.show_limb(common([a.limb for a in actions]))
+        tags = common([a.tags for a in actions])
+        self.tags.show_text("" if tags is Mixed else ", ".join(tags), of)
+        self.tags.setPlaceholderText(MIXED if tags is Mixed else "positive, greeting, …")
+        self.likelihood.show_value(common([a.likelihood for a in actions]))
+        self.variation.show_actions(project, actions)
+        self._fill_stances(actions, kind)
+        masks = common([a.joints for a in actions])
+        self.joints.setText(
+            MIXED if masks is Mixed else f"{len(masks)} joints only" if masks else "all its layer reaches"
+        )
+        self.joints.setEnabled(project.skeleton is not None)
+        self._show_trouble()
+
+    def set_misfits(self, misfits: dict[str, str]) -> None:
+        """Tell what is wrong with actions; action id -> words."""
+        self.misfits = misfits
+        self._show_trouble()
+
+    def _show_trouble(self) -> None:
+        chosen = self.session.selection.actions
+        wrong = self.misfits.get(chosen[0], "") if len(chosen) == 1 else ""
+        self.trouble.setText(wrong)
+        self.trouble.setStyleSheet(f"color: {theme(self.session.look.name).warning}")
+        self.trouble.setVisible(bool(wrong))
+
+    def _fill_stances(self, actions: Sequence[Action], kind: Any) -> None:
+        project = self.document.project
+        layer = common([a.layer for a in actions])
+        stances = project.graphs[layer].stances.values() if layer is not Mixed else ()
+        for box, values in (
+            (self.stance, [a.stance for a in actions]),
+            (self.ends, [a.end_stance for a in actions]),
+        ):
+            shared = common(values)
+            box.show_entries(
+                [(s.name, s.id) for s in stances], shared, MIXED if shared is Mixed else "choose one"
+            )
+            box.setEnabled(bool(stances))
+        self.form.setRowVisible(self.ends, kind == "transition")
+
+    def _set(self, text: str, merge: str | None = None, **changes: Any) -> None:
+        chosen = self.session.selection.actions
+        self.edit(text, lambda p: edits.update_actions(p, chosen, **changes), merge)
+
+    def _timing(self, field: str, value: float) -> None:
+        if value < 0:  # "mixed" was typed over with nothing
+            self.show_actions(self.session.selection.selected_actions())
+            return
+        chosen = self.session.selection.actions
+        self.edit("Change timing", lambda p: retimed(p, chosen, field, value))
+        self.show_actions(self.session.selection.selected_actions())  # what was out of the clip was clamped
+
+    def _leave(self) -> None:
+        on, project = self.leave.checkState() != Qt.CheckState.Unchecked, self.document.project
+        exits: dict[str, dict[str, Any]] = {}
+        for action in self.session.selection.selected_actions():
+            start, end = project.span(action)
+            at = action.timing.earliest_exit
+            exits[action.id] = {
+                "timing": {
+                    "earliest_exit": None
+                    if not on
+                    else round(start + 0.7 * (end - start), 3)
+                    if at is None
+                    else at
+                }
+            }
+        self.edit("Change earliest exit", lambda p: edits.update_each(p, exits))
+
+    def _rename(self) -> None:
+        actions = self.session.selection.selected_actions()
+        name = " ".join(self.name.text().split())
+        if len(actions) == 1 and name and name != actions[0].name:
+            self._set("Rename action", name=name)
+
+    def _retag(self) -> None:
+        actions = self.session.selection.selected_actions()
+        tags = tuple(dict.fromkeys(w.strip().lower() for w in self.tags.text().split(",") if w.strip()))
+        mixed = actions and common([a.tags for a in actions]) is Mixed
+        if actions and not (mixed and not tags) and any(a.tags != tags for a in actions):
+            self._set("Change tags", tags=tags)
+
+    def _likely(self, value: float) -> None:
+        if value > 0:
+            self._set("Change likelihood", likelihood=round(value, 3))
+        else:
+            self.show_actions(self.session.selection.selected_actions())
+
+    def _restance(self, place: int) -> None:
+        stance, chosen = self.stance.itemData(place), self.session.selection.actions
+        if self.edit("Move to another stance", lambda p: edits.to_stance(p, chosen, stance)):
+            self.session.place.set_stance(stance)
+
+    def _reend(self, place: int) -> None:
+        stance, chosen = self.ends.itemData(place), self.session.selection.actions
+        self.edit("Change end stance", lambda p: edits.set_ends(p, chosen, stance))
+
+    def _mask(self) -> None:
+        from app.widgets.joint_mask import MaskDialog
+
+        MaskDialog(self.document, self.session, self).open()

@@ -1,0 +1,64 @@
+"""The properties of clips: what was read, and what uses them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QLabel, QWidget
+
+from app.features.properties.page_form import page_box
+from app.look.theme import KIND_MARKS, theme
+from app.project.document import Document
+from app.stage.session import Session
+
+
+class ClipPage(QWidget):
+    def __init__(self, document: Document, session: Session, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.document, self.session = document, session
+        box = page_box(self)
+        self.title = QLabel(self, wordWrap=True)
+        self.title.setProperty("title", True)
+        self.words = QLabel(self, wordWrap=True)
+        self.words.setProperty("dim", True)
+        self.words.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        box.addWidget(self.title)
+        box.addWidget(self.words)
+        self.uses = QLabel(self, wordWrap=True)
+        self.uses.setTextFormat(Qt.TextFormat.RichText)
+        self.uses.linkActivated.connect(lambda ident: self.session.jump(action=ident))
+        box.addWidget(self.uses)
+        box.addStretch(1)
+
+    def show_clips(self, clips: Sequence[str]) -> None:
+        """Show what clips are, and what uses them."""
+        project, t = self.document.project, theme(self.session.look.name)
+        entries = [project.clips[c] for c in clips]
+        total = sum(e.duration for e in entries)
+        if len(entries) == 1:
+            e = entries[0]
+            self.title.setText(e.name)
+            notes = "".join(
+                f"\n\n{note}"
+                for note in (e.motion.notes if e.motion is not None else ("The file is missing.",))
+            )
+            self.words.setText(f"{e.duration:.2f} s, {e.frames} frames at {e.fps:g} fps\n{e.path}{notes}")
+        else:
+            self.title.setText(f"{len(entries)} clips")
+            self.words.setText(f"{total:.1f} s together")
+        lines = []
+        for action in [a for c in clips for a in project.uses.get(c, ())][:20]:
+            stance = project.stance(action.stance)
+            color = t.kinds[action.kind]
+            where = escape(f"{action.kind} of {stance.name if stance else '?'}, {action.layer}")
+            lines.append(
+                f"<p style='margin:2px'><span style='color:{color}'>{KIND_MARKS[action.kind]}</span> "
+                f"<a style='color:{t.text}' href='{action.id}'>{where}</a></p>"
+            )
+        keys = (
+            "<p>Drag onto a node, or press <b>1</b> stance, <b>2</b> gesture, <b>3</b> fidget, <b>4</b> "
+            "transition.</p>"
+        )
+        self.uses.setText("".join(lines) + keys)

@@ -1,0 +1,42 @@
+"""The button with three dots, behind which a panel has what is wanted rarely."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QMenu, QToolButton, QWidget
+
+from app.look import icons
+from app.look.theme import theme
+from app.look.theme_choice import ThemeChoice
+
+
+class MoreButton(QToolButton):
+    """menu: opened by a click. name: told where it cannot be seen. tip: what is in the menu."""
+
+    def __init__(self, look: ThemeChoice, name: str, tip: str, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setText("…")
+        self.setToolTip(tip)
+        self.look = look
+        self.menu_of = QMenu(self)
+        self.menu_of.setToolTipsVisible(True)
+        self.setAccessibleName(name)
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # after a click the space bar still plays
+        self.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonIconOnly)
+        self.setProperty("tight", True)
+        self.setMenu(self.menu_of)
+        look.changed.connect(self._restyle)
+        self._restyle()
+
+    def show_words(self, words: str) -> None:
+        """Stand for what was chosen in the menu, "" for the dots alone."""
+        beside, alone = (
+            Qt.ToolButtonStyle.ToolButtonTextBesideIcon,
+            Qt.ToolButtonStyle.ToolButtonIconOnly,
+        )
+        self.setText(words or "…")
+        self.setToolButtonStyle(beside if words else alone)
+
+    def _restyle(self) -> None:
+        self.setIcon(icons.icon("more", theme(self.look.name).text))

@@ -1,0 +1,35 @@
+"""Goes through the five workspaces of a window and looks at their words."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from PySide6.QtOpenGLWidgets import QOpenGLWidget
+from PySide6.QtTest import QTest
+
+from app.shell.workspaces import WORKSPACES
+from app.stage.gl_view import ImageView
+from tests.app.painted_text import faults, without
+
+
+def walk(drive: Any, width: int, height: int) -> dict[str, list[str]]:
+    """Return what is wrong in each workspace at a size."""
+    out = {}
+    action = next(a for a in drive.document.project.actions() if a.kind == "gesture" and a.layer == "arms")
+    drive.window.resize(width, height)
+    with without(QOpenGLWidget, ImageView):
+        for workspace in WORKSPACES:
+            drive.workspaces.choose(workspace.id)
+            drive.session.onstage.set_conversation(
+                next(iter(drive.document.project.conversations), None) if workspace.id == "talk" else None
+            )
+            drive.session.jump(action=action.id)
+            drive.session.transport.set_playing(False)
+            QTest.qWait(60)
+            for _ in range(200):  # a sound is read
+                if not drive.jobs.running:
+                    break
+                QTest.qWait(50)
+            QTest.qWait(30)  # what was read is counted and laid out
+            out[workspace.id] = faults(drive.window)
+    return {k: v for k, v in out.items() if v}
