@@ -310,8 +310,9 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
         )
     for name, blend in (("in", timing.blend_in), ("out", timing.blend_out)):
         if not _sound(blend):
+            severity: Severity = "warning" if np.isfinite(blend) else "error"  # a negative one plays as none
             yield at(
-                "error", "blend", f"blends {name} for {blend:g} s", f"Set its blend {name} to 0 s or more."
+                severity, "blend", f"blends {name} for {blend:g} s", f"Set its blend {name} to 0 s or more."
             )
     if timing.earliest_exit is not None and not timing.start <= timing.earliest_exit <= end:
         yield at(
