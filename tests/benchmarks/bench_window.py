@@ -1,14 +1,13 @@
 """How the window feels, in figures: python tests/benchmarks/bench_window.py [cold] [stalls] [edits]
 [proposing]
 
-cold: seconds from starting the process to the first painted window, and to the first painted character of the
-sample project. stalls: the longest time the window's thread did not come round while the sample project is
-opened, edited, given 300 lines and looked at, and pictures a second in the preview. edits: milliseconds from
-an edit to the last view that followed it, and to the painted window, in the sample project and in one of
-10,000 actions.
-proposing: how late a timer of 5 ms on the window's thread comes while a job proposes labels for 1,000 clips,
-while all of them are compared with the stances, and while the table of that is scrolled; the preview stands
-still, as drawing it without a graphics card would be all that is seen.
+cold: seconds from starting the process to the first painted window, and to the first painted character of
+the sample project. stalls: the longest time the window's thread did not come round while the sample project
+is opened, edited, given 300 lines and looked at, and pictures a second in the preview. edits: milliseconds
+from an edit to the last view that followed it, and to the painted window, in the sample project and in one
+of 10,000 actions. proposing: how late a timer of 5 ms on the window's thread comes while a job proposes
+labels for 1,000 clips, while all of them are compared with the stances, and while the table of that is
+scrolled; the preview stands still, as drawing it without a graphics card would be all that is seen.
 
 Without a screen everything runs in Xvfb. Nothing of the user's is touched.
 """
