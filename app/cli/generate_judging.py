@@ -46,7 +46,7 @@ def manner_arguments(parser: ArgumentParser) -> None:
         "--lookahead", type=int, help="frames of sound ahead, 0 for live use (default: all the model uses)"
     )
     parser.add_argument(
-        "--guidance", type=float, help="how closely a matching model follows the speech (default: 1.75)"
+        "--guidance", type=float, help="how closely a matching model follows the speech (default: 1.5)"
     )
     parser.add_argument("--draws", type=int, default=200, help="draws of blocks for intervals (default: 200)")
 

@@ -22,6 +22,7 @@ from metagraph.formats.clips import read_clips
 from metagraph.formats.gltf_writer import write_glb
 from metagraph.formats.store import open_project, save_project
 from metagraph.generation import train_process
+from metagraph.generation.chunks import GUIDANCE
 from metagraph.generation.features import RATE
 from metagraph.generation.stored import read_model, write_model
 from metagraph.generation.take_files import find_takes, read_takes
@@ -64,6 +65,12 @@ def model(takes: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 # --- planted, info
+
+
+def test_help_tells_the_guidance_in_use(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["generate", "evaluate", "--help"])
+    assert f"default: {GUIDANCE:g})" in " ".join(capsys.readouterr().out.split())
 
 
 def test_planted_takes_are_made_once(takes: Path, capsys: pytest.CaptureFixture[str]) -> None:
