@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QWheelEvent
 from PySide6.QtWidgets import (
     QComboBox,
     QDialog,
@@ -63,6 +63,13 @@ def ask_recover(window: QWidget, found: FoundJournal, saved: Path | None) -> tup
     return choices if taken else None
 
 
+class ChoiceField(QComboBox):
+    """What becomes of a sitting; scrolling never changes it."""
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        event.ignore()
+
+
 class RecoverDialog(QDialog):
     """A row for each sitting that a crash ended, the latest first."""
 
@@ -82,7 +89,7 @@ class RecoverDialog(QDialog):
         grid.setHorizontalSpacing(14)
         grid.setVerticalSpacing(10)
         grid.setColumnStretch(1, 1)
-        self.fields: list[QComboBox] = []
+        self.fields: list[ChoiceField] = []
         offered: list[Choice] = ["recover", "copy", "later", "discard"]
         if saved is None:
             offered.remove("copy")  # there is nothing to lie beside
@@ -94,7 +101,7 @@ class RecoverDialog(QDialog):
             told.setWordWrap(True)
             told.setMinimumWidth(300)
             grid.addWidget(told, n, 1)
-            field = QComboBox(rows)
+            field = ChoiceField(rows)
             for choice in offered:
                 field.addItem(WORDS[choice], choice)
             field.setCurrentIndex(0 if n == 0 else offered.index("later"))
@@ -122,7 +129,7 @@ class RecoverDialog(QDialog):
         """Return what is chosen for each sitting, in the order they were given."""
         return tuple(field.currentData() for field in self.fields)
 
-    def _only(self, chosen: QComboBox) -> None:
+    def _only(self, chosen: ChoiceField) -> None:
         """A window goes on with one of them."""
         if chosen.currentData() == "recover":
             for field in self.fields:

@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import jsonschema
 import pytest
@@ -21,6 +22,7 @@ from metagraph.engines.export import schema_text
 from metagraph.engines.reading import read_export
 from metagraph.formats.store import open_project
 from metagraph.graph import requests as a
+from tests.app import recovering
 from tests.processes import started
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -167,14 +169,11 @@ def test_the_alien_is_imported_dropped_timed_saved_killed_reopened_and_exported(
     )
 
     # Reopening offers the edit.
-    asked = []
-    monkeypatch.setattr(
-        QMessageBox, "question", lambda *a, **k: (asked.append(a[2]), QMessageBox.StandardButton.Yes)[1]
-    )
+    person = SimpleNamespace(asked=[], next=[("recover",)])
+    recovering.answers(monkeypatch, person)
     drive.files.open(path)
     drive.wait(lambda: drive.document.project.action(gesture.id).likelihood == 2.5, 30)
-    assert asked
-    assert "1 edit" in asked[0]
+    assert "1 edit" in person.asked[0]
     assert drive.document.dirty, "recovered edits are not saved yet"
     assert drive.document.project.graphs["head"] == saved.graphs["head"]
 

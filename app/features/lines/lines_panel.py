@@ -6,7 +6,15 @@ from pathlib import Path
 
 import msgspec
 from PySide6.QtCore import QEvent, QItemSelection, QItemSelectionModel, Qt, Signal
-from PySide6.QtGui import QColor, QDragEnterEvent, QDragMoveEvent, QDropEvent, QKeyEvent, QResizeEvent
+from PySide6.QtGui import (
+    QColor,
+    QDragEnterEvent,
+    QDragMoveEvent,
+    QDropEvent,
+    QKeyEvent,
+    QResizeEvent,
+    QShowEvent,
+)
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QFileDialog,
@@ -90,6 +98,7 @@ class LinesPanel(QWidget):
         super().__init__(parent)
         self.document, self.session, self.performance, self.jobs = document, session, performance, jobs
         self._filling = False
+        self._stale = True  # lines have changed that nobody has seen
         self._rows: dict[int, tuple[object, ...]] = {}  # what each row shows
         self.setAcceptDrops(True)
         layout = QVBoxLayout(self)
@@ -143,17 +152,28 @@ class LinesPanel(QWidget):
         self.empty.setProperty("dim", True)
         layout.addWidget(self.empty, 1)
         document.changed.connect(self._edited)
-        session.look.changed.connect(self.refresh)
-        self.refresh()
+        session.look.changed.connect(self._changed)
 
     # --- showing
 
     def _edited(self, before: Project, after: Project) -> None:
         if before.lines is not after.lines or before.voices is not after.voices:
+            self._changed()
+
+    def _changed(self) -> None:
+        """Refresh what is seen; what is not waits until it is: some hundred lines take a while."""
+        self._stale = True
+        if self.isVisible():
             self.refresh()
+
+    def showEvent(self, event: QShowEvent) -> None:
+        if self._stale:
+            self.refresh()
+        super().showEvent(event)
 
     def refresh(self) -> None:
         """Show the lines as they are."""
+        self._stale = False
         project, chosen, look = self.document.project, set(self.chosen()), theme(self.session.look.name)
         here = self.table.currentItem()
         current = (here.data(Qt.ItemDataRole.UserRole), here.column()) if here is not None else None

@@ -156,7 +156,7 @@ def test_a_damaged_model_is_refused_in_words(
 
 
 def test_a_model_that_is_not_there_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert "no such model" in run(capsys, "info", tmp_path / "none.mgmodel", code=1)
+    assert "No such file" in run(capsys, "info", tmp_path / "none.mgmodel", code=1)
 
 
 # --- sample, cut

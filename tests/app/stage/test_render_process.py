@@ -31,13 +31,14 @@ def test_a_video_is_written_and_its_progress_told(qapp, talk, tmp_path):
     project, ident = talk
     job, told = Job("x", lambda job: None), []
     job.progress.connect(lambda done, total, words: told.append((done, total)))
-    out = write(
-        project, ROOT / "sample_clips", RenderOrder(tmp_path / "a.mp4", ident, 0.5, (320, 180), 10), job
-    )
+    folder = tmp_path / "out"
+    folder.mkdir()
+    order = RenderOrder(folder / "a.mp4", ident, 0.5, (320, 180), 10)
+    out = write(project, ROOT / "sample_clips", order, job)
     assert out.stat().st_size > 1000
     qapp.processEvents()
     assert told[-1] == (5, 5)
-    assert [p.name for p in tmp_path.iterdir()] == ["a.mp4"]
+    assert [p.name for p in folder.iterdir()] == ["a.mp4"]
 
 
 def test_motion_is_the_performance(qapp, talk, tmp_path):
