@@ -21,7 +21,6 @@ import traceback
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from types import TracebackType
 
@@ -116,6 +115,8 @@ def report() -> str:
 
 
 def _versions() -> Iterable[str]:
+    from importlib.metadata import PackageNotFoundError, version  # takes a while to import, for a start
+
     yield f"Metagraph {__version__}"
     system = f"{platform.system()} {platform.release()}, {platform.machine()}"
     yield f"Python {platform.python_version()} on {system}"

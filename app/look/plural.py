@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 FRONT = "@|:"  # what studios put between a character's name and an action's
 _RUN = re.compile(r"[^\W\d_]+|\d+")  # of letters, or of digits
@@ -27,7 +28,8 @@ def short(name: str, stance: str) -> str:
     return name
 
 
-def parts(name: str) -> list[tuple[str, int, int]]:
+@lru_cache(maxsize=16384)  # each name is looked at beside each stance, whenever cards are painted
+def parts(name: str) -> tuple[tuple[str, int, int], ...]:
     """Return a name's words and numbers, each with where it begins and ends."""
     out = []
     for run in _RUN.finditer(name):
@@ -37,7 +39,7 @@ def parts(name: str) -> list[tuple[str, int, int]]:
         ends = [i for i in range(run.start() + 1, run.end()) if _begins_word(name, i)]
         for begin, end in zip([run.start(), *ends], [*ends, run.end()], strict=True):
             out.append((name[begin:end].lower(), begin, end))
-    return out
+    return tuple(out)
 
 
 def _begins_word(name: str, i: int) -> bool:
