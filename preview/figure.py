@@ -44,8 +44,9 @@ class Figure:
         self.drawn = rules.drawn(skeleton)
         _, rest = skeleton.globals(skeleton.rest)
         self.height = max(1e-3, float(np.ptp(rest[self.drawn], axis=0).max()))
-        self.lines = np.array([i for i in range(len(skeleton)) if self.drawn[i] and self._above(i) >= 0], int)
-        self.line_starts = np.array([self._above(i) for i in self.lines], int)
+        self._above = rules.above(skeleton, self.drawn)
+        self.lines = np.flatnonzero(self.drawn & (self._above >= 0))
+        self.line_starts = self._above[self.lines]
         body = [k for k, i in enumerate(self.lines) if not rules.is_finger(skeleton.names[i])]
         self.shadow = (self.lines[body], self.line_starts[body])
         self._head = rules.head(skeleton)
@@ -54,13 +55,6 @@ class Figure:
     def coarse(self) -> Mesh:
         """The mesh for shadows and for figures small in the picture."""
         return coarse(self.mesh)
-
-    def _above(self, joint: int) -> int:
-        """The nearest drawn joint above, or -1."""
-        parent = int(self.skeleton.parents[joint])
-        while parent >= 0 and not self.drawn[parent]:
-            parent = int(self.skeleton.parents[parent])
-        return parent
 
     def palette(self, rotations: Array, positions: Array) -> Array:
         """Return `[..., M, 3, 4]` float32: rest pose to posed, from global `rotations [..., J, 4]`,
@@ -118,7 +112,7 @@ class Figure:
         owner = self.sources[main]
         for joint in reversed(range(len(self.skeleton))):  # what is not drawn counts for the joint above
             if not self.drawn[joint]:
-                owner[owner == joint] = self._above(joint)
+                owner[owner == joint] = self._above[joint]
         radii = np.zeros(len(self.skeleton))
         for joint in np.flatnonzero(self.drawn).tolist():
             points = vertices["position"][owner == joint].astype(float)

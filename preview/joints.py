@@ -99,3 +99,12 @@ def drawn(skeleton: Skeleton) -> NDArray[Any]:
     if not keep.any():
         keep[0] = True
     return keep
+
+
+def above(skeleton: Skeleton, shown: NDArray[Any]) -> NDArray[Any]:
+    """Return `[J]`: for each joint the nearest one above it of those shown `[J]`, or -1."""
+    out = np.full(len(skeleton), -1)
+    for i, parent in enumerate(skeleton.parents):  # parents stand before their children
+        if parent >= 0:
+            out[i] = parent if shown[parent] else out[parent]
+    return out

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal
 
@@ -26,6 +25,7 @@ from app.project.questions import moment_words
 from metagraph.formats.recovery import Left
 from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.motion.clip import Clip
+from preview.joints import above, drawn
 
 Choice = Literal["recover", "copy", "later", "discard"]
 WORDS: dict[Choice, str] = {
@@ -177,18 +177,15 @@ class SittingPicture(QWidget):
 
     def _paint_figure(self, painter: QPainter, room: QRectF) -> None:
         assert self._figure is not None
-        points, bones = self._figure
-        scale = min(
-            room.width() / max(np.ptp(points[:, 0]), 1e-6), room.height() / max(np.ptp(points[:, 1]), 1e-6)
-        )
+        low, high = self._figure.min((0, 1)), self._figure.max((0, 1))
+        scale = min(room.width() / max(high[0] - low[0], 1e-6), room.height() / max(high[1] - low[1], 1e-6))
         x, y = room.center().x(), room.bottom()
-        middle, low = (points[:, 0].min() + points[:, 0].max()) / 2, points[:, 1].min()
-        at = [QPointF(x + scale * (a - middle), y - scale * (b - low)) for a, b in points.tolist()]
+        middle = (low[0] + high[0]) / 2
         painter.setPen(
             QPen(self.palette().text().color(), 1.6, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap)
         )
-        for joint, parent in bones:
-            painter.drawLine(at[parent], at[joint])
+        for bone in self._figure.tolist():
+            painter.drawLine(*(QPointF(x + scale * (a - middle), y - scale * (b - low[1])) for a, b in bone))
 
     def _paint_layers(self, painter: QPainter, room: QRectF) -> None:
         """A bar for each layer, in the colours of what is on it."""
@@ -211,13 +208,18 @@ class SittingPicture(QWidget):
                 bar.moveLeft(bar.right())
 
 
-def _figure(clip: Clip) -> tuple[np.ndarray, Sequence[tuple[int, int]]] | None:
-    """Return where a clip's joints are at first, across and up `[J, 2]`, and which are joined."""
+def _figure(clip: Clip) -> np.ndarray | None:
+    """Return the bones of a clip's first pose, as the preview's stick figure has them: where each begins and
+    ends, across and up `[B, 2, 2]`. None where there are none.
+    """
     skeleton = clip.skeleton
     if len(skeleton) < 2 or not clip.frames:
         return None
     places = skeleton.globals(clip.poses()[:1])[1][0]
     if not np.isfinite(places).all():
         return None
+    shown = drawn(skeleton)
+    starts = above(skeleton, shown)
+    ends = np.flatnonzero(shown & (starts >= 0))
     turned = np.stack([0.88 * places[:, 0] + 0.47 * places[:, 2], places[:, 1]], -1)
-    return turned, [(j, int(p)) for j, p in enumerate(skeleton.parents) if p >= 0]
+    return turned[np.stack([starts[ends], ends], -1)] if len(ends) else None

@@ -74,3 +74,9 @@ def test_a_head_that_is_not_called_one_is_drawn_by_its_role():
     names = tuple(n.replace("Head", "JtSkullA").replace("Neck", "JtNeckB") for n in skeleton.names)
     renamed = Skeleton(names, skeleton.parents, skeleton.rest_rotations, skeleton.rest_translations)
     assert joints.head(renamed) == skeleton.names.index("Head")
+
+
+def test_a_bone_goes_past_what_is_not_drawn_to_the_nearest_joint_that_is():
+    rows = ("Hips", None), ("ik_spine", "Hips"), ("Spine", "ik_spine"), ("Head", "Spine"), ("Prop", None)
+    shown = np.array([True, False, True, True, True])
+    assert joints.above(rig(*rows), shown).tolist() == [-1, 0, 0, 2, -1]
