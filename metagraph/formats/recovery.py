@@ -220,7 +220,7 @@ def read_journal(journal: Path, saved: Path | None) -> Left | None:
     return Left(
         journal,
         found,
-        good + before,
+        before + max(1, sum(record.get("how") != "merged" for record in edits[:good])) if good else before,
         _owner(head),
         written,
         head["saved"] if behind else now,

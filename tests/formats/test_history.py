@@ -84,6 +84,14 @@ def test_a_run_of_merged_edits_is_one_step_and_what_was_undone_none(tmp_path: Pa
     assert steps[-1].after == left.project
 
 
+def test_a_drag_is_told_as_one_edit(tmp_path: Path) -> None:
+    states = numbered(6)
+    journal = begun(tmp_path, states[0])
+    for at, (before, after) in enumerate(pairwise(states)):
+        journal.edit(before, after, "drag", "merged" if at else "done")
+    assert left_by(journal).edits == 1
+
+
 def test_undoing_what_was_saved_is_a_step_that_can_be_undone(tmp_path: Path) -> None:
     a, b = numbered(2)
     journal = begun(tmp_path, b)  # saved after a became b
