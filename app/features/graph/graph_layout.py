@@ -28,6 +28,7 @@ BOLD = 1.12  # how much wider the card's name is than the chip's
 BARE = 0  # in the place of a width: chips as wide as their names, which is all they show
 TIGHT = -1  # and: as many in a line as can be told apart
 TIGHTEST = 84.0
+CHOOSER = 196.0  # pixels from a chooser to the right edge of its node: "another stance?" is told whole
 LEAST_NODES = 300.0  # pixels of height for a card and its nodes below each other
 
 Area = Literal["chip", "add", "card", "loop", "node", "row", "bar", "head", "other", "start", "nothing"]
@@ -270,7 +271,7 @@ def _node(
     if below:
         other = QRectF(rect.left() + GRID, rect.top() + HEADER - 2, rect.width() - 2 * GRID, ROW)
     elif kind == "transition":  # right of the title, as far as the count
-        x = max(rect.right() - 168, rect.left() + TITLE)
+        x = max(rect.right() - CHOOSER, rect.left() + TITLE)
         other = QRectF(x, rect.top() + 7, max(0.0, rect.right() - 42 - x), HEADER - 14)
     return Node(kind, rect, header, body, tuple(rows), len(actions), first, most, other, columns)
 

@@ -14,7 +14,7 @@ from metagraph.graph.model import Kind
 
 TEACH = {
     "gesture": "Drop clips that mean something\nor beat time: a shrug, a point.",
-    "fidget": "Drop small habits here:\na scratch, tapping fingers.",
+    "fidget": "Drop small habits:\na scratch, tapping fingers.",
     "transition": "Drop clips that lead to another stance.",
 }
 
@@ -60,7 +60,7 @@ def draw_node(painter: QPainter, node: Node, layout: Layout, look: GraphLook, fo
         flags = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap
         room = node.body.adjusted(2 * GRID, 2, -GRID, 0)
         while text and painter.boundingRect(room, flags, text).height() > room.height():
-            text = text.rpartition("\n")[0]
+            text = text.rpartition("\n")[0].rstrip(":")
         painter.drawText(room, flags, text)
     if target:
         free = QRectF(node.rect.left() + 3, node.rect.bottom() - 60, node.rect.width() - 6, 56)

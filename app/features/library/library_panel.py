@@ -74,8 +74,11 @@ class LibraryPanel(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(8, 8, 4, 0)
         layout.setSpacing(6)
-        layout.addWidget(self.search)
-        layout.addLayout(self._filters())
+        filters, top = self._filters(), QHBoxLayout()
+        top.addWidget(self.search, 1)
+        top.addWidget(self.more)  # beside the chips it would not fit where counts are long
+        layout.addLayout(top)
+        layout.addLayout(filters)
         self.stack = QStackedLayout()
         self.stack.addWidget(self.list)
         self.stack.addWidget(self._empty())
@@ -112,8 +115,7 @@ class LibraryPanel(QWidget):
         menu.addSeparator()
         for layer in LAYERS:
             menu.addAction(f"{layer.capitalize()} layer", partial(self._narrow, layer, None))
-        row.addWidget(self.more)
-        OneStop((*self.chips.values(), self.more), self)
+        OneStop(tuple(self.chips.values()), self)
         self.chips["all"].setChecked(True)
         return row
 

@@ -13,7 +13,7 @@ from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 
 
 def standing(skeleton: Skeleton) -> Clip:
-    return Clip("stand", skeleton, 30.0, skeleton.rest[None], skeleton.rest_translations[None, :1])
+    return Clip("stand", skeleton, 30.0, skeleton.rest_rotations[None], skeleton.rest_translations[None, :1])
 
 
 def test_the_picture_has_the_bones_of_the_preview_and_none_of_the_face(drive):
