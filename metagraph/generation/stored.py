@@ -5,10 +5,14 @@ arrays are read as plain little-endian numbers, and their names, shapes and size
 
 from __future__ import annotations
 
+import ast
 import io
 import platform
+import struct
 import zipfile
-from collections.abc import Mapping
+import zlib
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from math import prod
@@ -46,6 +50,8 @@ MOST_TOLD = 16 * 2**20  # bytes of model.json
 _JSON = "model.json"
 _REMEDY = "Take it from where it came from again, or train it anew."
 _TYPES = {"<f4": 4, "<f2": 2}
+# What reading a broken archive raises beside its own errors.
+_BROKEN = (EOFError, NotImplementedError, RuntimeError, ValueError, KeyError, IndexError, OverflowError)
 _Numbers = tuple[float, ...]
 _Text = Annotated[str, Meta(max_length=4000)]
 
@@ -253,31 +259,29 @@ def _member(name: str) -> zipfile.ZipInfo:
 def read_model(path: str | Path) -> Model:
     """Read a model. Raises FileError for whatever is not one."""
     path = check_file(path, ARRAYS)
-    try:
-        with zipfile.ZipFile(path) as archive:
-            card = _card(path, archive)
-            return Model(card, _weights(path, archive, card))
-    except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror or error})", remedy=_REMEDY) from None
-    except (zipfile.BadZipFile, zipfile.LargeZipFile, EOFError, NotImplementedError, RuntimeError) as error:
-        raise FileError(path, f"is damaged, or no model ({error})", remedy=_REMEDY) from None
-    except Exception as error:
-        if isinstance(error, FileError):
-            raise
-        if type(error).__module__ in ("zlib", "struct", "builtins"):  # what broken archives end in
-            raise FileError(path, f"is damaged ({error})", remedy=_REMEDY) from None
-        raise
+    with _opened(path) as archive:
+        card = _card(path, archive)
+        return Model(card, _weights(path, archive, card))
 
 
 @guarded
 def read_card(path: str | Path) -> ModelCard:
     """Read what is told of a model, without its weights. Raises FileError."""
     path = check_file(path, ARRAYS)
+    with _opened(path) as archive:
+        return _card(path, archive)
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[zipfile.ZipFile]:
+    """Open an archive; whatever broken ones end in, here or while they are read, is a FileError."""
     try:
         with zipfile.ZipFile(path) as archive:
-            return _card(path, archive)
-    except (OSError, zipfile.BadZipFile) as error:
-        raise FileError(path, f"cannot be read as a model ({error})", remedy=_REMEDY) from None
+            yield archive
+    except OSError as error:
+        raise FileError(path, f"cannot be read ({error.strerror or error})", remedy=_REMEDY) from None
+    except (zipfile.BadZipFile, zipfile.LargeZipFile, zlib.error, struct.error, *_BROKEN) as error:
+        raise FileError(path, f"is damaged, or no model ({error})", remedy=_REMEDY) from None
 
 
 def _card(path: Path, archive: zipfile.ZipFile) -> ModelCard:
@@ -331,7 +335,7 @@ def _array(path: Path, archive: zipfile.ZipFile, member: str, shape: tuple[int, 
     content = io.BytesIO(_bytes(archive, member, 4 * prod(shape) + 4096))
     try:
         found, fortran, dtype = _header(content)
-    except (ValueError, SyntaxError, TypeError, UnicodeDecodeError) as error:
+    except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError) as error:
         raise FileError(path, f"is no array ({error})", f"'{name}'", _REMEDY) from None
     if dtype.hasobject or dtype.str not in _TYPES:
         raise FileError(
@@ -349,10 +353,18 @@ def _array(path: Path, archive: zipfile.ZipFile, member: str, shape: tuple[int, 
 
 
 def _header(content: BinaryIO) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
-    if np.lib.format.read_magic(content) != (1, 0):
+    """Return an array's shape, order and type. NumPy's own reader warns of old headers and mends them."""
+    if content.read(8) != b"\x93NUMPY\x01\x00":
         raise ValueError("another version of arrays")
-    shape, fortran, dtype = np.lib.format.read_array_header_1_0(content, max_header_size=4096)
-    return tuple(shape), bool(fortran), dtype
+    told = ast.literal_eval(
+        content.read(min(4096, int.from_bytes(content.read(2), "little"))).decode("latin-1")
+    )
+    if not isinstance(told, dict) or set(told) != {"descr", "fortran_order", "shape"}:
+        raise ValueError("its head does not say what it is")
+    shape, kind = told["shape"], told["descr"]
+    if not isinstance(shape, tuple) or not all(type(n) is int for n in shape) or not isinstance(kind, str):
+        raise ValueError("its head does not say how large it is")
+    return shape, told["fortran_order"] is True, np.dtype(kind)
 
 
 def _bytes(archive: zipfile.ZipFile, member: str, most: int) -> bytes:

@@ -7,10 +7,9 @@ file in tests/fuzz/kept/READER.
 
 from __future__ import annotations
 
-import copy
+import contextlib
 import hashlib
 import json
-import math
 import random
 import struct
 import sys
@@ -21,10 +20,12 @@ import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from metagraph import files
 from metagraph.errors import FileError
+from metagraph.formats import fbx_readers
+from tests.fuzz.seed_files import BML, ascii_fbx, model_file, spoilt_archive
+from tests.fuzz.spoiling import JSON, NUMBERS, XML, spoilt_glb, spoilt_json, spoilt_words
 
 ROOT = Path(__file__).resolve().parents[2]
 KEPT = Path(__file__).with_name("kept")
@@ -41,96 +42,6 @@ class Fuzzed:
     seeds: Callable[[], dict[str, bytes]]
     words: tuple[bytes, ...] = ()
     structured: Callable[[random.Random, bytes], bytes] | None = None
-
-
-NUMBERS = (b"-1", b"0", b"1e309", b"-1e30", b"nan", b"inf", b"9" * 40, b"1e-300", b"4294967296", b"0.5")
-JSON = (b"{", b"}", b"[", b"]", b"null", b"true", b'""', b'"\\ud800"', b"[" * 200, b'{"a":' * 200, b",", b":")
-XML = (b"<", b">", b"</", b"/>", b"&a;", b"<!DOCTYPE x [<!ENTITY a 'b'>]>", b"<![CDATA[", b"'", b'"')
-
-HOSTILE: tuple[Any, ...] = (
-    -1, 0, 1, 3, 255, 1 << 31, (1 << 63) - 1, 1 << 70, 1e308, -1e30, 0.5, None, "", "VEC4", "x" * 300, [], {},
-    [0] * 5, [[]], True, "\ud800", "../../etc/passwd", "/dev/zero", {"x": []}, [None], 1e-300,
-)  # fmt: skip
-
-
-def places(value: Any) -> Iterator[tuple[Any, Any]]:
-    """Yield every value of a document by what holds it."""
-    stack = [value]
-    while stack:
-        holder = stack.pop()
-        some = (
-            holder.items()
-            if isinstance(holder, dict)
-            else enumerate(holder)
-            if isinstance(holder, list)
-            else ()
-        )
-        for key, inner in list(some):
-            yield holder, key
-            stack.append(inner)
-
-
-def spoilt(chance: random.Random, document: Any) -> Any:
-    """Return a document with some values replaced, taken away, doubled or swapped."""
-    document = json.loads(json.dumps(document))
-    for _ in range(chance.choice((1, 1, 1, 2, 4))):
-        spots = list(places(document))
-        if not spots:
-            break
-        holder, key = chance.choice(spots)
-        match chance.randrange(5):
-            case 0 if isinstance(holder, dict):
-                holder.pop(key, None)
-            case 1 if isinstance(holder, list):
-                holder += [copy.deepcopy(holder[key]) for _ in range(chance.choice((1, 7)))]
-            case 2:
-                other, at = chance.choice(spots)
-                holder[key] = copy.deepcopy(other[at])
-            case _:
-                holder[key] = copy.deepcopy(chance.choice(HOSTILE))
-    return document
-
-
-def spoilt_json(chance: random.Random, data: bytes) -> bytes:
-    return json.dumps(spoilt(chance, json.loads(data))).encode()
-
-
-def packed(document: Any, body: bytes) -> bytes:
-    text = json.dumps(document).encode()
-    text += b" " * (-len(text) % 4)
-    head = struct.pack("<4sIIII", b"glTF", 2, 28 + len(text) + len(body), len(text), 0x4E4F534A)
-    return head + text + struct.pack("<II", len(body), 0x004E4942) + body
-
-
-def spoilt_glb(chance: random.Random, data: bytes) -> bytes:
-    size = struct.unpack_from("<I", data, 12)[0]
-    document, body = json.loads(data[20 : 20 + size]), bytearray(data[28 + size :])
-    if chance.random() < 0.75:
-        document = spoilt(chance, document)
-    if chance.random() < 0.5:
-        special = struct.pack("<f", chance.choice((math.nan, math.inf, 3e38, 1e-45, -1.0, 0.0)))
-        for _ in range(chance.choice((1, 4, 64))):
-            at = 4 * chance.randrange(max(1, len(body) // 4))
-            body[at : at + 4] = special if chance.random() < 0.5 else chance.randbytes(4)
-    return packed(document, bytes(body))
-
-
-def spoilt_words(chance: random.Random, data: bytes) -> bytes:
-    """Return a text with words replaced, lines doubled, dropped or swapped."""
-    lines = data.split(b"\n")
-    for _ in range(chance.choice((1, 1, 2, 5))):
-        n = chance.randrange(len(lines))
-        match chance.randrange(4):
-            case 0:
-                lines[n:n] = [lines[chance.randrange(len(lines))]] * chance.choice((1, 20))
-            case 1:
-                del lines[n : n + chance.choice((1, 3))]
-                lines = lines or [b""]
-            case _:
-                words = lines[n].split(b" ")
-                words[chance.randrange(len(words))] = chance.choice(NUMBERS)
-                lines[n] = b" ".join(words)
-    return b"\n".join(lines)
 
 
 def mutated(chance: random.Random, seeds: list[bytes], one: Fuzzed) -> bytes:
@@ -275,13 +186,17 @@ def _readers() -> dict[str, Fuzzed]:
     from metagraph.engines.reading import read_export
     from metagraph.formats.clips import read_clips
     from metagraph.formats.elan import read_elan
+    from metagraph.formats.fbx import read_fbx_clips
     from metagraph.formats.gltf import has_skinned_mesh, morph_targets, read_character, vrm_roles
     from metagraph.formats.keypoints import read_keypoints
     from metagraph.formats.recovery import read_journal
     from metagraph.formats.store import read_project
     from metagraph.formats.transcripts import read_transcript
+    from metagraph.generation.stored import read_card, read_model
+    from metagraph.graph.requests import RequestError
     from metagraph.live.osc_bytes import OscError, messages_of, padded
     from metagraph.pictures import picture_size
+    from metagraph.playback.bml import read_bml
     from metagraph.speech.lines import read_voice, voice_from_phones
     from metagraph.study.log import read as read_log
     from metagraph.study.study_plan import read_study
@@ -303,8 +218,15 @@ def _readers() -> dict[str, Fuzzed]:
         size = picture_size(path.read_bytes())
         assert size is None or min(size) > 0
 
+    def bml(path: Path) -> None:
+        with contextlib.suppress(RequestError):
+            read_bml(path.read_text(errors="replace"))
+
+    def model(path: Path) -> None:
+        survives(read_card, path)
+        read_model(path)
+
     def message(path: Path) -> None:
-        from metagraph.graph.requests import RequestError
         from metagraph.live.messages import read, split
 
         try:
@@ -335,6 +257,9 @@ def _readers() -> dict[str, Fuzzed]:
     )
     bundle = b"#bundle\0" + bytes(8) + struct.pack(">I", len(note)) + note
     return {
+        "model": Fuzzed(model, model_file, (b"PK", b"NUMPY"), spoilt_archive),
+        "bml": Fuzzed(bml, _fixed(a_xml=BML), XML, spoilt_words),
+        "fbx": Fuzzed(read_fbx_clips, _fixed(a_fbx=ascii_fbx()), (b"{", b"}", b"*9", b"Model:", b'"'), spoilt_words),
         "bvh": Fuzzed(read_clips, _clip_seeds(".bvh"), bvh, spoilt_words),
         "gltf": Fuzzed(read_clips, _clip_seeds(".glb"), JSON, spoilt_glb),
         "character": Fuzzed(drawn, _clip_seeds(".glb"), JSON, spoilt_glb),
@@ -392,7 +317,7 @@ def main(names: str, count: int = 1_000_000, seed: int = 0) -> int:
     found = 0
     for name in _readers() if names == "all" else names.split(","):
         begin, own, seen = time.perf_counter(), 0, set[str]()
-        with tempfile.TemporaryDirectory() as folder:
+        with tempfile.TemporaryDirectory() as folder, fbx_readers.batch():
             for data, why in fuzz(name, count, seed, Path(folder)):
                 own += 1
                 key = why.strip().splitlines()[-1][:80] + "".join(why.splitlines()[-3:-1])

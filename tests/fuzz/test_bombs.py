@@ -25,7 +25,7 @@ from metagraph.formats.keypoints import read_keypoints
 from metagraph.graph.model import Project
 from metagraph.pictures import picture_size
 from metagraph.speech.lines import read_voice, voice_from_phones
-from tests.fuzz.readers import packed
+from tests.fuzz.spoiling import packed
 
 MEMORY = 300 << 20  # bytes that a file of kilobytes may cost
 
