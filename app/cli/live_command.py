@@ -8,12 +8,15 @@ import signal
 import sys
 import time
 from argparse import ArgumentParser, Namespace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.kept_options import kept_name, kept_seed
 from metagraph.live import OSC_PORT, PORT
 
 if TYPE_CHECKING:
+    from metagraph.graph.model import Project
+    from metagraph.graph.requests import Performance
     from metagraph.live.live_session import LiveSession
     from metagraph.live.server import Options, Server
     from metagraph.live.wire import Batch, Ready, Result
@@ -139,10 +142,50 @@ def _greet(server: Server, ready: Ready, options: Options, as_json: bool) -> Non
 
 
 def _keep(session: LiveSession, options: Namespace) -> None:
-    """Add the session to the project as it is saved now."""
+    """Add the session to the project as it is saved now; where that cannot be, to a project beside it.
+    Raises FileError, which says where the session is.
+    """
+    from metagraph.errors import FileError
     from metagraph.formats.store import open_project, save_project
     from metagraph.graph.performance_edits import add_performance
 
-    project, ident = add_performance(open_project(options.project).project, session.performance(options.keep))
-    save_project(project, options.project, options.project)
+    played = session.performance(options.keep)
+    lacks = session.kept_words()
+    if lacks:
+        print(f"note: {lacks}", file=sys.stderr)
+    try:
+        project, ident = add_performance(open_project(options.project).project, played)
+        save_project(project, options.project, options.project)
+    except (FileError, ValueError, RuntimeError) as error:
+        place = _kept_beside(session.project, played, options.project)
+        remedy = f"What was played is kept in '{place}', which can be opened." if place is not None else ""
+        if place is None:
+            import msgspec
+
+            print(msgspec.json.encode(played).decode(), flush=True)
+            remedy = "What was played stands on standard output, since no file could be written."
+        cause = error.cause if isinstance(error, FileError) else str(error)
+        raise FileError(options.project, cause, getattr(error, "where", ""), remedy) from None
     print(f"kept as '{project.performances[ident].name}'", file=sys.stderr)
+
+
+def _kept_beside(project: Project, played: Performance, path: Path) -> Path | None:
+    """Save a project with what was played beside another one, or where this computer keeps passing files;
+    return where, None when nothing can be written.
+    """
+    import tempfile
+
+    from metagraph.errors import FileError
+    from metagraph.file_names import file_stem
+    from metagraph.formats.store import SUFFIX, save_project
+    from metagraph.graph.performance_edits import add_performance
+
+    whole, _ = add_performance(project, played)
+    own = path.name.removesuffix(SUFFIX)
+    stem = file_stem(f"{own} - {played.name} {time.strftime('%Y-%m-%d %H.%M.%S')}", most=200)
+    for folder in (path.resolve().parent, Path(tempfile.gettempdir())):
+        place = folder / f"{stem}{SUFFIX}"
+        with contextlib.suppress(FileError, OSError):
+            save_project(whole, place, path)
+            return place
+    return None

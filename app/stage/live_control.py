@@ -9,7 +9,6 @@ from PySide6.QtCore import QObject, Signal
 from app.project.document import Document
 from app.stage.session import Session
 from metagraph.graph.requests import Performance as KeptPerformance
-from metagraph.graph.requests import RequestError
 
 if TYPE_CHECKING:
     from app.stage.live_stage import LiveStage
@@ -53,11 +52,9 @@ class LiveControl(QObject):
             return
         stage, self.stage = self.stage, None
         stage.stop()
-        try:
-            self.last = stage.performance() if stage.tape.count else None
-        except RequestError as error:
-            self.last = None
-            self.document.failed.emit(str(error))
+        self.last = stage.performance() if stage.tape.count else None
+        if self.last is not None and (lacks := stage.session.kept_words()):
+            self.document.failed.emit(lacks[0].upper() + lacks[1:])
         stage.deleteLater()
         self.changed.emit()
 

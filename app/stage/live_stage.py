@@ -40,8 +40,8 @@ class _Shown(Tape):
         self.latest: tuple[AnyRequest, ...] = ()
         self.count = 0
 
-    def keep(self, asks: Sequence[AnyRequest]) -> None:
-        super().keep(asks)
+    def keep(self, asks: Sequence[AnyRequest], now: float) -> None:
+        super().keep(asks, now)
         shown = [ask for ask in asks if ask.__struct_config__.tag != "withdraw"]
         if shown:
             self.latest = (*self.latest, *shown)[-SHOWN:]
@@ -194,5 +194,5 @@ class LiveStage(QObject):
         return f"Live at {ready.websocket}: {who}"
 
     def performance(self) -> Performance:
-        """Return what was played so far, to be kept. Raises RequestError when it was too much."""
+        """Return what was played so far, to be kept."""
         return self.session.performance("Live session")

@@ -17,6 +17,7 @@ from msgspec import Meta, Struct
 from metagraph.graph.words import Layer, Limb, Mode
 
 LONGEST_NAME = 200  # letters of a performance's name
+LONGEST_PERFORMANCE = 36000.0  # seconds
 Id = Annotated[str, Meta(min_length=1, max_length=200)]
 Seconds = Annotated[float, Meta(ge=0, le=1e6, description="seconds")]
 # Of any length by type, since msgspec mistakes a text of limited length beside a tuple of fixed length, and
@@ -197,7 +198,7 @@ class Performance(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_
     name: Annotated[str, Meta(max_length=LONGEST_NAME)]
     asks: tuple[AnyRequest, ...] = ()
     seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)] | None = None
-    length: Annotated[float, Meta(gt=0, le=36000)] = 60.0
+    length: Annotated[float, Meta(gt=0, le=LONGEST_PERFORMANCE)] = 60.0
     idle: bool = True
     stances: dict[Layer, str] = {}
 

@@ -379,7 +379,7 @@ class LiveSession:
         self.running.reach(now, self._edited)
         if work.asks:
             asks = list(work.asks.values())
-            self.tape.keep(asks)
+            self.tape.keep(asks, now)
             self.running.hear(now, asks)
         for done in work.over:
             out.replies[done.place] = Reply(id=done.ident, state="refused", why=done.why)
@@ -516,10 +516,11 @@ class LiveSession:
         return next((plan for begin, plan in reversed(self._past) if begin <= seconds), self._past[0][1])
 
     def performance(self, name: str) -> a.Performance:
-        """Return the session so far, to be kept: `perform` plays it as it was played. Raises RequestError
-        when it was too long.
+        """Return the session so far, to be kept: `perform` plays it as it was played. It ends before now
+        when that is more than is kept (`kept_words`).
         """
-        asks, length = self.tape.asks(), max(self.now, 0.1)
+        length = max(0.1, min(self.now, self.tape.until, a.LONGEST_PERFORMANCE))
+        asks = tuple(ask for ask in self.tape.asks() if (ask.told or 0.0) <= length)
         return a.Performance(
             name=name,
             asks=asks,
@@ -528,3 +529,14 @@ class LiveSession:
             idle=self.running.idle,
             stances=self.running.stances,
         )
+
+    def kept_words(self) -> str:
+        """Return what a performance of the session lacks, "" when it has all."""
+        if self.now <= min(self.tape.until, a.LONGEST_PERFORMANCE):
+            return ""
+        if self.tape.until < a.LONGEST_PERFORMANCE:
+            why = f"more was asked than is kept of a session, {self.tape.most / 1024 / 1024:g} MiB"
+        else:
+            why = "no performance is longer"
+        kept = min(self.tape.until, a.LONGEST_PERFORMANCE)
+        return f"only the first {kept / 60:.0f} minutes of {self.now / 60:.0f} are kept: {why}"

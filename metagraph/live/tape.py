@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import msgspec
@@ -14,29 +15,27 @@ _read = msgspec.msgpack.Decoder(list[a.AnyRequest])
 
 
 class Tape:
-    """Asks in the order in which they became known (`told`). whole: whether it holds all there were."""
+    """Asks in the order in which they became known (`told`). most: bytes it holds. until: seconds from which
+    on it holds nothing more, inf while it holds all there were.
+    """
 
     def __init__(self, most: int = MOST) -> None:
-        self.most, self.whole = most, True
+        self.most, self.until = most, math.inf
         self._data = bytearray()
 
     def __len__(self) -> int:
         return len(self._data)
 
-    def keep(self, asks: Sequence[a.AnyRequest]) -> None:
-        """Add asks; from where it would grow too long on, it keeps nothing more."""
+    def keep(self, asks: Sequence[a.AnyRequest], now: float) -> None:
+        """Add the asks of one moment; from the one on at which it would grow too long, it keeps nothing."""
         data = msgspec.msgpack.encode(asks)
-        self.whole = self.whole and len(self._data) + len(data) < self.most
-        if asks and self.whole:
+        if asks and len(self._data) + len(data) >= self.most:
+            self.until = min(self.until, now)
+        elif asks and self.until == math.inf:
             self._data += len(data).to_bytes(4, "little") + data
 
     def asks(self) -> tuple[a.AnyRequest, ...]:
-        """Return all of it. Raises RequestError when there was more than it could hold."""
-        if not self.whole:
-            raise a.RequestError(
-                f"more was asked than is kept of a session, {self.most / 1024 / 1024:g} MiB; it cannot be "
-                "replayed"
-            )
+        """Return all of it."""
         out: list[a.AnyRequest] = []
         place = 0
         while place < len(self._data):

@@ -508,11 +508,25 @@ def test_a_session_performs_again_exactly_as_it_was_played(seed: int, idle: bool
         )
 
 
-def test_a_session_too_long_to_be_kept_says_so(session: LiveSession) -> None:
-    session.tape.most = 200
-    ask(session, *({"do": "nod", "at": 5 + 2 * n} for n in range(10)))
-    with pytest.raises(a.RequestError, match="cannot be replayed"):
-        session.performance("x")
+def test_of_a_session_too_long_to_be_kept_the_beginning_is_and_that_is_said(session: LiveSession) -> None:
+    assert session.kept_words() == ""
+    session.tape.most = 400
+    for n in range(40):
+        ask(session, {"do": "nod"}, at=1.0 + n)
+    kept = session.performance("x")
+    assert 1 <= len(kept.asks) < 40
+    assert max(ask.told or 0 for ask in kept.asks) < kept.length < session.now
+    assert "of 1 are kept: more was asked than is kept of a session" in session.kept_words()
+
+
+def test_a_session_longer_than_any_performance_is_kept_as_far_as_one_goes(session: LiveSession) -> None:
+    ask(session, {"do": "nod"})
+    session.now = a.LONGEST_PERFORMANCE + 600.0
+    kept = session.performance("x")
+    assert kept.length == a.LONGEST_PERFORMANCE and len(kept.asks) == 1
+    assert session.kept_words() == "only the first 600 minutes of 610 are kept: no performance is longer"
+    read = msgspec.json.decode(msgspec.json.encode(kept), type=a.Performance)
+    assert read == kept
 
 
 def test_gestures_are_looked_at_beforehand_one_a_tick(sample: Project) -> None:

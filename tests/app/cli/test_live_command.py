@@ -4,17 +4,26 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
 import sys
+import tempfile
+from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 
+from app.cli import live_command
 from app.cli.parser import main
-from metagraph.formats.store import open_project
+from metagraph.errors import FileError
+from metagraph.formats import store
+from metagraph.formats.store import open_project, read_project
+from metagraph.graph.requests import Performance
+from metagraph.live.live_session import LiveSession
 from tests.processes import started
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -120,3 +129,54 @@ def test_the_token_may_come_from_the_environment(few: Path) -> None:
         command(few, *FREE), input="", capture_output=True, text=True, cwd=ROOT, timeout=120, env=environ
     )
     assert lines(done.stdout)[0]["token"] is True
+
+
+@pytest.fixture
+def played(few: Path, tmp_path: Path) -> tuple[LiveSession, Namespace]:
+    """A session of a project of its own, about to be kept."""
+    project = shutil.copytree(few.parent, tmp_path / "own") / few.name
+    session = LiveSession(open_project(project).project)
+    session.receive(1, b'{"do":"nod"}')
+    session.tick(0.5)
+    return session, Namespace(project=project, keep="talk")
+
+
+def test_a_session_whose_project_was_damaged_meanwhile_is_kept_beside_it(
+    played: tuple[LiveSession, Namespace],
+) -> None:
+    session, options = played
+    options.project.write_text("graphs: [")
+    with pytest.raises(FileError, match=r"is kept in '(.*)', which can be opened") as told:
+        live_command._keep(session, options)
+    place = Path(re.search("kept in '(.*?)'", str(told.value))[1])  # type: ignore[index]
+    assert place.parent == options.project.parent and options.project.read_text() == "graphs: ["
+    opened = open_project(place)
+    assert "talk" in [p.name for p in opened.project.performances.values()] and not opened.notes
+
+
+def test_a_session_whose_folder_takes_nothing_is_kept_where_passing_files_are(
+    played: tuple[LiveSession, Namespace], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session, options = played
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    shutil.rmtree(options.project.parent)
+    options.project.parent.write_text("a file where the folder was")
+    with pytest.raises(FileError, match="is kept in"):
+        live_command._keep(session, options)
+    (place,) = tmp_path.glob("* - talk *.metagraph.yaml")
+    assert read_project(place).performances
+
+
+def test_a_session_that_no_disk_takes_stands_on_standard_output(
+    played: tuple[LiveSession, Namespace], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    session, options = played
+
+    def full(*_: object) -> None:
+        raise FileError(options.project, "cannot be saved: the disk is full", remedy="Make room.")
+
+    monkeypatch.setattr(store, "save_project", full)
+    with pytest.raises(FileError, match=r"the disk is full.* stands on standard output"):
+        live_command._keep(session, options)
+    kept = msgspec.json.decode(capsys.readouterr().out, type=Performance)
+    assert kept.name == "talk" and len(kept.asks) == 1
