@@ -120,8 +120,16 @@ def arguments(parser: ArgumentParser) -> None:
         "--without",
         action="append",
         default=[],
-        choices=(*SPOKEN, "idle", "peaks"),
-        help="leave a constraint out",
+        choices=(*SPOKEN, "idle", "peaks", "edges"),
+        help="leave a constraint out; edges: where segments begin and end, so that only kinds count",
+    )
+    made.add_argument(
+        "--strict", action="store_true", help="find nothing rather than give up constraints one by one"
+    )
+    made.add_argument(
+        "--free-jumps",
+        action="store_true",
+        help="jump as often as it likes, and to where it stands, for what jumps look like alone",
     )
     made.add_argument(
         "--tolerance",
@@ -420,7 +428,9 @@ def synthesize(options: Namespace) -> int:
     from metagraph.synthesis.constraints import changes, heard, wanted
     from metagraph.synthesis.graph import build as build_graph
     from metagraph.synthesis.graph import threshold
-    from metagraph.synthesis.search import best, greedy
+    from metagraph.synthesis.path_quality import quality
+    from metagraph.synthesis.relaxing import Answer, Constraints, answer
+    from metagraph.synthesis.ruled_search import FREE, JUMP_RULES, find_path
     from metagraph.synthesis.search_evaluation import WINDOW, cut
     from metagraph.synthesis.states import key_states
 
@@ -460,11 +470,23 @@ def synthesize(options: Namespace) -> int:
     keys = key_states(states, options.keys, changes(states, speech))
     graph = build_graph(states, threshold(states, options.k, options.level), keys, options.most)
     use = [k for k in SOUNDS if k not in options.without]
-    want = wanted(
-        cut(new, options.start, seconds), seconds, options.tolerance, use, "peaks" not in options.without
+    asked = Constraints(
+        options.tolerance,
+        tuple(use),
+        "peaks" not in options.without,
+        "edges" not in options.without,
+        FREE if options.free_jumps else JUMP_RULES,
     )
-    sound = heard(states, speech)
-    path = best(graph, sound, want) if options.search == "exact" else greedy(graph, sound, want, options.seed)
+    said, sound = cut(new, options.start, seconds), heard(states, speech)
+    if options.strict:
+        want = wanted(said, seconds, asked.tolerance, asked.use, asked.peaks, asked.edges)
+        found = Answer(find_path(graph, sound, want, options.search, asked.rules, options.seed), asked)
+    else:
+        found = answer(graph, sound, said, seconds, asked, options.search, options.seed)
+    path = found.path
+    if words := found.words():
+        print(f"note: {words}", file=sys.stderr)
+    looks = quality(states, path)
     clip = assemble(states, clips, path, options.out.stem)
     options.out.parent.mkdir(parents=True, exist_ok=True)
     if options.out.suffix == ".bvh":
@@ -478,11 +500,16 @@ def synthesize(options: Namespace) -> int:
         "transitions": len(path.jumps),
         "cost": path.cost,
         "takes": len({states.take(int(s)) for s in path.states}),
+        "given_up": list(found.given_up),
+        "misses": [asdict(m) for m in found.misses],
+        "repeated": looks.repeated,
+        "rest": looks.frozen,
+        "rest_of_takes": looks.source,
     }
     say(
         options,
         f"{options.out}: {seconds:.1f} s with {len(path.jumps)} transitions, cost {path.cost:.3g}, of "
-        f"{data['takes']} takes",
+        f"{data['takes']} takes; {looks.words()}",
         data,
     )
     return 0

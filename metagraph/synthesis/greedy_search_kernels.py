@@ -20,9 +20,9 @@ class Speech(NamedTuple):
 
     stretch `[T]`: which one a frame is in. ends `[S]`: the frame after each. rows `[S]`: its row of until
     `[M, F]`: the first state from each on, itself included, that does not go with it, or is past the take.
-    stressed, closing `[S]`: whether a stress is to be met in it, and by its end. stresses `[T]`, closes
-    `[T]`: the same of frames. peak_at `[F]`: the first state with a stress from each on. stops `[F]`: the end
-    of its take.
+    stressed, closing `[S]`: whether an event is to be met in it, and by its end. stresses `[T]`, closes
+    `[T]`: the same of frames. events `[S]`: which one, a row of peak_at `[2, F]`: the first state with such
+    an event from each on. stops `[F]`: the end of its take.
     """
 
     stretch: Array
@@ -33,6 +33,7 @@ class Speech(NamedTuple):
     closing: Array
     stresses: Array
     closes: Array
+    events: Array
     peak_at: Array
     stops: Array
 
@@ -50,16 +51,14 @@ class Links(NamedTuple):
 
 
 @compiled
-def until_of(kinds: Array, kept: Array, last: Array, mask: Any) -> Array:
-    """Return `[F]` the first state from each on, itself included, that nobody may be in: of another kind, cut
-    away, or past the take.
-    """
-    out = np.empty(len(kinds), np.int32)
-    end = len(kinds)
-    for state in range(len(kinds) - 1, -1, -1):
+def until_of(fits: Array, last: Array) -> Array:
+    """Return `[F]` the first state from each on, itself included, that does not fit, or is past the take."""
+    out = np.empty(len(fits), np.int32)
+    end = len(fits)
+    for state in range(len(fits) - 1, -1, -1):
         if last[state]:
             end = state + 1
-        if not (kept[state] and kinds[state] & mask):
+        if not fits[state]:
             end = state
         out[state] = end
     return out
@@ -109,7 +108,7 @@ def reach(t: Any, state: Any, met: Any, speech: Any) -> Any:
         whole = speech.ends[k] - t
         length = min(whole, speech.until[speech.rows[k], state] - state)
         if speech.stressed[k]:
-            met = met or speech.peak_at[state] < state + length
+            met = met or speech.peak_at[speech.events[k], state] < state + length
             if length == whole and speech.closing[k]:
                 if not met:
                     return speech.ends[k] - 1
@@ -130,7 +129,9 @@ def _met(t: Any, after: Any, state: Any, met: Any, speech: Any) -> Any:
         return False
     for frame in range(t, after):
         if speech.stresses[frame]:
-            met = not speech.closes[frame] and (met or speech.peak_at[state + frame - t] == state + frame - t)
+            x = state + frame - t
+            row = speech.events[speech.stretch[frame]]
+            met = not speech.closes[frame] and (met or speech.peak_at[row, x] == x)
     return met
 
 
@@ -184,15 +185,15 @@ def _note(
 @compiled_exactly
 def segment(
     t0: Any, t1: Any, at: Array, own: Array, price: Array, mets: Array, links: Any, speech: Any, best: Array,
-    saved: Any, branches: Any, tries: Any, deepest: Any, random: Any,
+    saved: Any, branches: Any, tries: Any, deepest: Any, least: Any, random: Any,
 ) -> Any:  # fmt: skip
     """Find ways through the frames t0 .. t1 - 1 of one segment from runs that are kept, depth first.
 
-    Runs `[N]`: since when (at), in which state (own), at what cost (price), and whether an open stress was
-    met by t0 (mets). best `[2 F]`: all -1, and left so. Returns all runs, given ones first: what each
-    branches off, at, own, price; and what came through: `[C, 5]` int32 the run it branches off at a frame in
-    a state (frame -1: it is that run itself), how far it goes, 2 x its last state + met; its cost `[C]`; and
-    the next random number.
+    Runs `[N]`: since when (at), in which state (own), at what cost (price), and whether an open event was
+    met by t0 (mets). best `[2 F]`: all -1, and left so. least: frames between two transitions. Returns all
+    runs, given ones first: what each branches off, at, own, price; and what came through: `[C, 5]` int32 the
+    run it branches off at a frame in a state (frame -1: it is that run itself), how far it goes, 2 x its last
+    state + met; its cost `[C]`; and the next random number.
     """
     made = given = len(at)
     off = np.full(given, -1, np.int32)
@@ -233,7 +234,10 @@ def segment(
             for t in range(begin - (at[run] < t0), min(end, t1 - 1)):
                 x = own[run] + t - at[run]
                 if t >= begin and speech.stresses[t]:
-                    met = not speech.closes[t] and (met or speech.peak_at[x] == x)
+                    row = speech.events[speech.stretch[t]]
+                    met = not speech.closes[t] and (met or speech.peak_at[row, x] == x)
+                if at[run] > 0 and t - at[run] + 1 < least:  # it came here a moment ago
+                    continue
                 first, after = links.starts[x], links.starts[x + 1]
                 if after == first:
                     continue
@@ -255,6 +259,8 @@ def segment(
                     if total >= bound or until[target] <= target:
                         continue
                     far = reach(t + 1, target, met, speech)
+                    if far < min(t + 1 + least, len(speech.stretch)):
+                        continue
                     if far >= t1:
                         through = _met(t + 1, t1, target, met, speech)
                         count = _note(

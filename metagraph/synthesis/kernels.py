@@ -246,40 +246,92 @@ def cheap(starts: Array, targets: Array, costs: Array, bound: Any) -> Any:
 
 
 @compiled_exactly
-def relax(
+def follow(
+    cost: Array, new: Array, back: Array, follows: Array, fits: Array, meets: Array, bound: Any
+) -> None:
+    """Go one frame on along the takes: cost, new `[2, F]` what the cheapest way to a state costs, without and
+    with the event of the open window met; back `[2, F]`: where it comes from, 2 state + met. fits, meets
+    `[F]`: which states may come, and which of them are that event. bound: what no way may cost more than.
+    """
+    for met in range(2):
+        for state in range(cost.shape[1] - 1):
+            so_far = cost[met, state]
+            if so_far <= bound and so_far < np.inf and follows[state] and fits[state + 1]:
+                into = 1 if meets[state + 1] else met
+                if so_far < new[into, state + 1]:
+                    new[into, state + 1] = so_far
+                    back[into, state + 1] = 2 * state + met
+
+
+@compiled_exactly
+def leap(
     cost: Array,
-    new: Array,
-    back: Array,
+    landed: Array,
+    sources: Array,
     starts: Array,
     targets: Array,
     costs: Array,
-    follows: Array,
     fits: Array,
-    peaks: Array,
     bound: Any,
 ) -> None:
-    """Go one frame on from all states: cost, new `[2, F]` what the cheapest way to a state costs, without and
-    with its stress met; back `[2, F]`: where it comes from, 2 state + met. fits, peaks `[F]`: which states
-    may come, and which of them meet the stress. bound: what no way may cost more than.
+    """Jump from all states: landed `[2, F]` what the cheapest way to jump into a state costs, without and
+    with the event met that was waited for before; sources `[2, F]`: where it comes from, 2 state + met.
     """
+    landed[:] = np.inf
     for met in range(2):
         for state in range(cost.shape[1]):
             so_far = cost[met, state]
             if not (so_far <= bound and so_far < np.inf):
                 continue
             left = bound - so_far
-            if follows[state] and fits[state + 1]:
-                into = 1 if peaks[state + 1] else met
-                if so_far < new[into, state + 1]:
-                    new[into, state + 1] = so_far
-                    back[into, state + 1] = 2 * state + met
             for place in range(starts[state], starts[state + 1]):
-                if costs[place] > left:
-                    continue
                 target = targets[place]
-                if fits[target]:
-                    into = 1 if peaks[target] else met
+                if costs[place] <= left and fits[target]:
                     total = so_far + costs[place]
-                    if total < new[into, target]:
-                        new[into, target] = total
-                        back[into, target] = 2 * state + met
+                    if total < landed[met, target]:
+                        landed[met, target] = total
+                        sources[met, target] = 2 * state + met
+
+
+@compiled_exactly
+def arrive(
+    landed: Array,
+    sources: Array,
+    frames: Any,
+    new: Array,
+    back: Array,
+    runs: Array,
+    good: Array,
+    pieces: Array,
+    upcoming: Array,
+) -> None:
+    """Bring those who jumped `frames` frames ago to where they are now: they may jump again.
+
+    new, back `[2, F]` as `follow` has them, back here -1 - (2 state + met) of where the jump came from, and
+    runs `[2, F]` how many frames ago it landed there. good `[F]`: how many frames of a take on end, up to a
+    state, have fitted. pieces `[n, 4]`: of each window among these frames the first and the last, counted
+    from the landing, its row of upcoming `[2, F]` (the next state that is such an event, from each on), and
+    whether it was open before.
+    """
+    for state in range(landed.shape[1] - frames + 1):
+        end = state + frames - 1
+        if good[end] < frames:
+            continue
+        for before in range(2):
+            total = landed[before, state]
+            if not total < np.inf:
+                continue
+            met, dead = before == 1, False
+            for n in range(len(pieces)):
+                hit = upcoming[pieces[n, 2], state + pieces[n, 0]] <= state + pieces[n, 1]
+                met = hit or (met and pieces[n, 3] == 1)
+                if pieces[n, 1] < frames - 1:  # it closes on the way
+                    dead = dead or not met
+                    met = False
+            if len(pieces) == 0:
+                met = False
+            into = 1 if met else 0
+            if not dead and total < new[into, end]:
+                new[into, end] = total
+                back[into, end] = -1 - sources[before, state]
+                runs[into, end] = frames

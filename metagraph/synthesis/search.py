@@ -8,7 +8,7 @@ other costs less. Both count what transitions cost.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.suggest.tracks import RATE
-from metagraph.synthesis.constraints import HeardStates, WantedSegment
+from metagraph.synthesis.constraints import EDGE, STRESS, HeardStates, WantedSegment
 from metagraph.synthesis.graph import MotionGraph
 from metagraph.synthesis.states import SynthesisError
 
@@ -42,26 +42,36 @@ LONGEST = 60  # frames of a stretch that is searched at once
 LOOK = 90  # frames beyond a stretch: who goes on that long by itself is not held to be dear
 AHEAD = 0.05  # of the threshold: what a second less of that counts as
 APART = 3  # frames: ends of kept candidates
+EVENTS = (STRESS, EDGE)  # in the order of rows that are looked up
 MOST = 4_000_000_000  # bytes of way back that are kept at once
 
 
 @dataclass(frozen=True, eq=False)
 class Path:
     """states `[T]`: one after another, a frame each. cost: of its transitions together. jumps `[n]`: the
-    frames that come by a transition instead of following.
+    frames that come by a transition instead of following. price: what the search made least, where jumps have
+    prices beside what they look like.
     """
 
     states: Array
     cost: float
     jumps: Array
+    price: float = 0.0
 
 
-def best(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment, cancelled: Cancelled = None) -> Path:
-    """Return the cheapest path that has what is wanted. Raises SynthesisError when there is none, saying at
-    what time all end, or when it was cancelled.
+def best(
+    graph: MotionGraph,
+    heard: HeardStates,
+    wanted: WantedSegment,
+    cancelled: Cancelled = None,
+    run: int = 1,
+) -> Path:
+    """Return the cheapest path that has what is wanted. run: frames between two transitions, at least. Raises
+    SynthesisError when there is none, saying at what time all end, or when it was cancelled.
 
     Ways dearer than a bound are not followed, which is exact: what is found within it is the cheapest. The
-    bound grows until there is one, up to what the greedy search found.
+    bound grows until there is one, up to what the greedy search found. A jump and the frames after it are one
+    step, so that how long ago the last one was need not be part of where one is.
     """
     states, frames = len(graph.states), len(wanted)
     if 8 * states * frames > MOST:
@@ -72,14 +82,15 @@ def best(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment, cancelle
         )
     try:
         deepest, more = DEEPER[0]
-        dear = _greedy(graph, heard, wanted, 1, SAVED, BRANCHES + more, deepest, cancelled).cost
-        bounds = [share * dear + 1e-6 for share in (0.4, 0.7)] + [dear * (1 + 1e-5) + 1e-6]
+        dear = _greedy(graph, heard, wanted, 1, SAVED, BRANCHES + more, deepest, cancelled, run).cost
+        shares = (0.4, 0.7) if run == 1 else (0.75,)  # where jumps have prices, all are nearer to each other
+        bounds = [share * dear + 1e-6 for share in shares] + [dear * (1 + 1e-5) + 1e-6]
     except SynthesisError:
         bounds = [share * graph.threshold.limit for share in (1.0, 4.0)]
     back = np.empty((frames, 2, states), np.int32)
     for bound in (*bounds, float("inf")):
         try:
-            return _best_within(graph, heard, wanted, back, bound, cancelled)
+            return _best_within(graph, heard, wanted, back, bound, cancelled, run)
         except SynthesisError:
             if bound == float("inf") or (cancelled is not None and cancelled()):
                 raise
@@ -99,43 +110,95 @@ def _best_within(
     back: Array,
     bound: float,
     cancelled: Cancelled = None,
+    run: int = 1,
 ) -> Path:
     """Return the cheapest path of those that cost no more than a bound. back: room for the way back `[T, 2,
     F]`. Raises SynthesisError when there is none.
     """
-    from metagraph.synthesis.kernels import cheap, relax
+    from metagraph.synthesis.greedy_search_kernels import next_of
+    from metagraph.synthesis.kernels import arrive, cheap, follow, leap
 
     states, frames, most = len(graph.states), len(wanted), np.float32(bound)
+    run = min(run, max(1, frames - 1))
     links = (
         cheap(graph.starts, graph.targets, graph.costs, most)
         if np.isfinite(bound)
         else (graph.starts, graph.targets, graph.costs)
     )
     follows = ~graph.states.last
+    first = np.zeros(states, bool)
+    first[graph.states.starts[:-1]] = True
+    happening = [heard.happens(what) for what in EVENTS]
+    upcoming = np.stack([next_of(marked) for marked in happening])
+    spans = _spans(wanted)
+    landed = np.empty((run, 2, states), np.float32)
+    sources, runs = np.empty((run, 2, states), np.int32), np.zeros((2, states), np.int32)
     cost = np.full((2, states), np.inf, np.float32)
     fits = _fits(graph, heard, wanted, 0)
-    met = fits & heard.peaks & (wanted.window[0] >= 0)
+    met = fits & _meets(happening, wanted, 0)
     cost[0, fits & ~met] = 0
     cost[1, met] = 0
+    good = fits.astype(np.int32)
     _close(cost, wanted, 0)
+    alive = 0 if np.isfinite(cost).any() else -1
     for t in range(1, frames):
         _go_on(cancelled)
         new = np.full((2, states), np.inf, np.float32)
         fits = _fits(graph, heard, wanted, t)
-        relax(cost, new, back[t], *links, follows, fits, heard.peaks & (wanted.window[t] >= 0), most)
+        place = t % run
+        leap(cost, landed[place], sources[place], *links, fits, most)
+        good[1:], good[0] = np.where(first[1:], 0, good[:-1]), 0
+        good = np.where(fits, good + 1, 0).astype(np.int32)
+        follow(cost, new, back[t], follows, fits, _meets(happening, wanted, t), most)
+        for ago in range(1 if t == frames - 1 else run, run + 1):  # at the end a run may be cut short
+            if ago <= t:
+                place = (t - ago + 1) % run
+                pieces = _pieces(spans, t - ago + 1, t)
+                arrive(landed[place], sources[place], ago, new, back[t], runs, good, pieces, upcoming)
         cost = new
         _close(cost, wanted, t)
+        if np.isfinite(cost).any():
+            alive = t
+        elif t - alive >= run or t == frames - 1:  # nobody is on the way from a jump either
+            break
+    if alive < frames - 1:
+        raise SynthesisError(_stuck(alive + 1))
     met_at, state = np.unravel_index(int(cost.argmin()), cost.shape)
     total = float(cost[met_at, state])
     way = np.empty(frames, np.int64)
-    b, s = int(met_at), int(state)
-    for t in range(frames - 1, -1, -1):
+    t, b, s = frames - 1, int(met_at), int(state)
+    while True:
         if _closes(wanted, t):
             b = 1  # at the end of its window its stress was met
-        way[t] = s
-        before = int(back[t, b, s])
-        b, s = before % 2, before // 2
+        before = int(back[t, b, s]) if t else 0
+        length = 1 if before >= 0 else int(runs[b, s]) if t == frames - 1 else run
+        way[t - length + 1 : t + 1] = np.arange(s - length + 1, s + 1)
+        if t == 0:
+            break
+        before = before if before >= 0 else -1 - before
+        t, b, s = t - length, before % 2, before // 2
     return Path(way, total, _jumps(way))
+
+
+def _spans(wanted: WantedSegment) -> list[tuple[int, int, int]]:
+    """Return the first and last frame of each window, and which of EVENTS it waits for."""
+    edges = np.flatnonzero(np.diff(wanted.window)) + 1
+    begins = [0, *edges.tolist()]
+    return [
+        (a, b - 1, EVENTS.index(wanted.event(a)))
+        for a, b in zip(begins, [*begins[1:], len(wanted)], strict=True)
+        if wanted.window[a] >= 0
+    ]
+
+
+def _pieces(spans: Sequence[tuple[int, int, int]], first: int, last: int) -> Array:
+    """Return, as `arrive` has them, the windows among the frames first .. last."""
+    rows = [
+        (max(a, first) - first, min(b, last) - first, row, a < first)
+        for a, b, row in spans
+        if a <= last and b >= first
+    ]
+    return np.array(rows, np.int64).reshape(-1, 4)
 
 
 def greedy(
@@ -146,6 +209,7 @@ def greedy(
     saved: int = SAVED,
     branches: int = BRANCHES,
     cancelled: Cancelled = None,
+    run: int = 1,
 ) -> Path:
     """Return a path that has what is wanted, found as the paper's search finds it, a stretch of speech after
     the other.
@@ -155,16 +219,16 @@ def greedy(
     stretch only cheap ones are kept. Beyond the paper: a run that goes on longer with what is said next
     counts as a little cheaper, no two kept ones end within a few frames of each other while there are others,
     what is dearer than more than enough others is not followed, and a search that comes to an end is tried
-    again, deeper. saved: how many are kept; branches: how many are gone deeper into of a run. Raises
-    SynthesisError when it comes to an end before the speech does, though there may be a path, or when it was
-    cancelled.
+    again, deeper. saved: how many are kept; branches: how many are gone deeper into of a run; run: frames
+    between two transitions, at least. Raises SynthesisError when it comes to an end before the speech does,
+    though there may be a path, or when it was cancelled.
     """
     *first, last = ((branches + more, deepest) for deepest, more in DEEPER)
     for wide, deep in first:
         with suppress(SynthesisError):
-            return _greedy(graph, heard, wanted, seed, saved, wide, deep, cancelled)
+            return _greedy(graph, heard, wanted, seed, saved, wide, deep, cancelled, run)
         _go_on(cancelled)
-    return _greedy(graph, heard, wanted, seed, saved, *last, cancelled)
+    return _greedy(graph, heard, wanted, seed, saved, *last, cancelled, run)
 
 
 def _greedy(
@@ -176,6 +240,7 @@ def _greedy(
     branches: int,
     deepest: int,
     cancelled: Cancelled,
+    least: int = 1,
 ) -> Path:
     from metagraph.synthesis.greedy_search_kernels import segment
 
@@ -208,6 +273,7 @@ def _greedy(
             branches,
             TRIES,
             deepest,
+            least,
             np.uint64(random),
         )
         if not len(found):
@@ -281,47 +347,60 @@ def _links(graph: MotionGraph) -> Links:
 def _speech(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment) -> Speech:
     from metagraph.synthesis.greedy_search_kernels import Speech, next_of, until_of
 
+    events = np.array([EVENTS.index(wanted.event(t)) for t in range(len(wanted))], np.int32)
+    barred = np.array([wanted.bars(t) for t in range(len(wanted))], np.uint8)
     new = np.ones(len(wanted), bool)
-    new[1:] = (np.diff(wanted.allowed) != 0) | (np.diff(wanted.window) != 0)
+    new[1:] = (np.diff(wanted.allowed) != 0) | (np.diff(wanted.window) != 0) | (np.diff(barred) != 0)
     begins = np.flatnonzero(new)
     ends = np.append(begins[1:], len(wanted))
-    masks, rows = np.unique(wanted.allowed[begins], return_inverse=True)
+    both, rows = np.unique(np.stack([wanted.allowed[begins], barred[begins]], 1), axis=0, return_inverse=True)
     last = graph.states.last
-    until = np.stack([until_of(heard.kinds, graph.kept, last, mask) for mask in masks])
+    until = np.stack(
+        [
+            until_of(graph.kept & ((heard.kinds & mask) != 0) & ~heard.happens(int(bars)), last)
+            for mask, bars in both
+        ]
+    )
     stresses, closes = wanted.window >= 0, np.array([_closes(wanted, t) for t in range(len(wanted))])
     stretch = (np.cumsum(new) - 1).astype(np.int32)
     return Speech(
         stretch,
         ends,
-        rows,
+        rows.reshape(-1),
         until,
         stresses[begins],
         closes[ends - 1],
         stresses,
         closes,
-        next_of(heard.peaks),
+        events[begins],
+        np.stack([next_of(heard.happens(what)) for what in EVENTS]),
         next_of(last) + 1,
     )
 
 
 def _fits(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment, t: int) -> Array:
-    return np.asarray(graph.kept & ((heard.kinds & wanted.allowed[t]) != 0))
+    fits = graph.kept & ((heard.kinds & wanted.allowed[t]) != 0)
+    barred = wanted.bars(t)
+    return np.asarray(fits & ~heard.happens(barred) if barred else fits)
+
+
+def _meets(happening: Sequence[Array], wanted: WantedSegment, t: int) -> Array:
+    """Return `[F]` which states are the event that the window of a frame waits for."""
+    if wanted.window[t] < 0:
+        return np.zeros(len(happening[0]), bool)
+    return happening[EVENTS.index(wanted.event(t))]
 
 
 def _closes(wanted: WantedSegment, t: int) -> bool:
-    """Return whether a stress has to have been met by now."""
+    """Return whether an event has to have been met by now."""
     return bool(wanted.window[t] >= 0 and (t + 1 == len(wanted) or wanted.window[t + 1] != wanted.window[t]))
 
 
 def _close(cost: Array, wanted: WantedSegment, t: int) -> None:
-    """Forget ways on which a stress was not met whose window ends; the others begin anew. Raises
-    SynthesisError when none is left.
-    """
+    """Forget ways on which the event was not met whose window ends; the others begin anew."""
     if _closes(wanted, t):
         cost[0] = cost[1]
         cost[1] = np.inf
-    if not np.isfinite(cost).any():
-        raise SynthesisError(_stuck(t))
 
 
 def _jumps(way: Array) -> Array:

@@ -6,11 +6,11 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import astuple, dataclass, fields, replace
 from statistics import fmean, median
 from time import perf_counter
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,8 @@ from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.constraints import TOLERANCE, HeardStates, changes, heard, wanted
 from metagraph.synthesis.cooccurrence import wilson
 from metagraph.synthesis.graph import MotionGraph, build, threshold
-from metagraph.synthesis.search import Path, best, greedy
+from metagraph.synthesis.path_quality import quality
+from metagraph.synthesis.ruled_search import FREE, JUMP_RULES, JumpRules, Search, find_path
 from metagraph.synthesis.states import (
     KEYS,
     LEVEL,
@@ -34,7 +35,6 @@ from metagraph.synthesis.states import (
 )
 
 Array = NDArray[Any]
-Search = Literal["greedy", "exact"]
 
 WINDOW = 15.0  # seconds of speech a case
 EVERY = 14.0  # seconds from one case to the next
@@ -43,14 +43,16 @@ LEAST = 1.0  # seconds of a take that make a case
 
 @dataclass(frozen=True)
 class Setting:
-    """What constrains a search: segments of these kinds, where clauses' stresses are, and how exactly,
-    seconds.
+    """What constrains a search: segments of these kinds, where clauses' stresses are (peaks), where segments
+    begin and end (edges), and how exactly, seconds; and how it may jump.
     """
 
     name: str
     use: tuple[Sound, ...] = SOUNDS
     peaks: bool = True
     tolerance: float = TOLERANCE
+    edges: bool = True
+    rules: JumpRules = JUMP_RULES
 
 
 def _without(kind: Sound) -> Setting:
@@ -61,6 +63,8 @@ SETTINGS: tuple[Setting, ...] = (
     Setting("all constraints"),
     *(_without(kind) for kind in ("clause", "response", "hesitation", "idle")),
     Setting("without peaks", peaks=False),
+    Setting("without edges", edges=False),
+    Setting("free jumps", rules=FREE),
     Setting("no constraints", ()),
     Setting("tolerance 0.05 s", tolerance=0.05),
     Setting("tolerance 0.2 s", tolerance=0.2),
@@ -69,8 +73,9 @@ SETTINGS: tuple[Setting, ...] = (
 
 @dataclass(frozen=True)
 class Case:
-    """One window of a take that was held out. start, length, seconds of the search: seconds. transitions,
-    cost: of what was found, 0 where nothing was; then `why` says why.
+    """One window of a take that was held out. start, length, seconds of the search: seconds. found: whether
+    there is motion that does not stand still (`PathQuality`). transitions, cost, repeated, rest: of what was
+    found, 0 where nothing was; `why` says why nothing was found, or not counted.
     """
 
     take: str
@@ -83,6 +88,8 @@ class Case:
     transitions: int
     cost: float
     why: str = ""
+    repeated: float = 0.0
+    rest: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -103,7 +110,8 @@ class Graph:
 class EvaluationRow:
     """All cases of a setting and a search. success: the share that found motion, 0..1, low, high: its 95 %
     interval (Wilson). seconds: median of the searches, whether they found something or not. per_second, cost:
-    of those found, transitions a second, and the mean.
+    of those found, transitions a second, and the mean. repeated: mean share of their frames that were shown
+    within 3 s before. rest: seconds of the longest rest in any.
     """
 
     setting: str
@@ -116,6 +124,8 @@ class EvaluationRow:
     seconds: float
     per_second: float
     cost: float
+    repeated: float
+    rest: float
 
 
 @dataclass(frozen=True)
@@ -150,6 +160,8 @@ def _row(setting: str, search: Search, cases: Sequence[Case]) -> EvaluationRow:
         median(c.seconds for c in cases),
         sum(c.transitions for c in found) / moved if moved else 0.0,
         fmean(c.cost for c in found) if found else 0.0,
+        fmean(c.repeated for c in found) if found else 0.0,
+        max((c.rest for c in found), default=0.0),
     )
 
 
@@ -265,14 +277,7 @@ def _warm(searches: Collection[Search]) -> None:
     )
     graph = build(tiny, threshold(tiny, 2), np.arange(4))
     for search in searches:
-        _SEARCHES[search](graph, HeardStates(np.ones(4, np.uint8), np.zeros(4, bool)), wanted([], 0.1))
-
-
-def _exact(graph: MotionGraph, sound: HeardStates, said: Any, seed: int = 1) -> Path:
-    return best(graph, sound, said)
-
-
-_SEARCHES: Mapping[Search, Callable[..., Path]] = {"greedy": greedy, "exact": _exact}
+        find_path(graph, HeardStates(np.ones(4, np.uint8), np.zeros(4, bool)), wanted([], 0.1), search, FREE)
 
 
 def _graph(
@@ -310,14 +315,22 @@ def without(states: States, take: int) -> States:
 def _tried(
     case: Case, graph: MotionGraph, sound: HeardStates, said: Sequence[Segment], setting: Setting, seed: int
 ) -> Case:
-    want = wanted(said, case.length, setting.tolerance, setting.use, setting.peaks)
+    want = wanted(said, case.length, setting.tolerance, setting.use, setting.peaks, setting.edges)
     begun = perf_counter()
     try:
-        path = _SEARCHES[case.search](graph, sound, want, seed=seed)
+        path = find_path(graph, sound, want, case.search, setting.rules, seed)
     except SynthesisError as error:
         return replace(case, seconds=perf_counter() - begun, why=str(error))
+    took, looks = perf_counter() - begun, quality(graph.states, path)
     return replace(
-        case, found=True, seconds=perf_counter() - begun, transitions=len(path.jumps), cost=path.cost
+        case,
+        found=not looks.stands_still,
+        seconds=took,
+        transitions=len(path.jumps),
+        cost=path.cost,
+        why=f"it {looks.rest_words()}" if looks.stands_still else "",
+        repeated=looks.repeated,
+        rest=looks.frozen,
     )
 
 
@@ -352,14 +365,14 @@ def _lines(evaluation: Evaluation) -> Iterator[str]:
         )
     yield (
         f"{'constraints':<20}{'search':<8}{'found':>9}{'success':>9}  "
-        f"{'95 %':<14}{'median':>9}{'jumps/s':>9}{'cost':>9}"
+        f"{'95 %':<14}{'median':>9}{'jumps/s':>9}{'cost':>9}{'again':>7}{'rest':>7}"
     )
     for r in evaluation.rows:
         interval = f"{r.low:.0%} to {r.high:.0%}"
         yield (
             f"{r.setting:<20}{r.search:<8}{f'{r.found}/{r.cases}':>9}{r.success:>9.1%}  "
             f"{interval:<14}{1000 * r.seconds:>6.0f} ms"
-            f"{r.per_second:>9.2f}{r.cost:>9.3g}"
+            f"{r.per_second:>9.2f}{r.cost:>9.3g}{r.repeated:>7.0%}{r.rest:>5.1f} s"
         )
     if not evaluation.whole:
         yield "It was cancelled: these are the cases until then."

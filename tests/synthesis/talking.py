@@ -17,7 +17,7 @@ FPS = 30.0
 
 
 def speech(seconds: float, seed: int) -> list[Segment]:
-    """Clauses with a stress, answers and hesitations, silence between them; on frames."""
+    """Clauses with a stress, answers and hesitations, with silence between them or none; on frames."""
     chance = np.random.default_rng(seed)
     at, out = float(chance.uniform(0.3, 1.0)), []
     while True:
@@ -30,7 +30,7 @@ def speech(seconds: float, seed: int) -> list[Segment]:
             round((a + float(chance.uniform(0.3, 0.7)) * (b - a)) * FPS) / FPS if kind == "clause" else None
         )
         out.append(Segment(kind, a, b, peak))  # type: ignore[arg-type]
-        at = b + float(chance.uniform(0.25, 1.1))
+        at = b + (0.0 if kind == "clause" and chance.random() < 0.3 else float(chance.uniform(0.25, 1.1)))
 
 
 def talking(name: str, segments: list[Segment], seconds: float, seed: int = 1, fps: float = FPS) -> Clip:

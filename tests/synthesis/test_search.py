@@ -12,7 +12,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph.conversation import SOUNDS, Segment
-from metagraph.synthesis.constraints import ALL, HeardStates, WantedSegment, changes, heard, wanted
+from metagraph.synthesis.constraints import (
+    ALL,
+    EDGE,
+    STRESS,
+    HeardStates,
+    WantedSegment,
+    changes,
+    heard,
+    wanted,
+)
 from metagraph.synthesis.graph import MotionGraph, Threshold
 from metagraph.synthesis.search import Path, best, greedy
 from metagraph.synthesis.states import States, SynthesisError
@@ -36,43 +45,48 @@ def graph_of(frames: int, takes: list[int], links: dict[tuple[int, int], float])
     return MotionGraph(states, limit, np.arange(frames), starts, targets, costs, np.ones(frames, bool))
 
 
-def cheapest(graph: MotionGraph, sound: HeardStates, want: WantedSegment) -> float | None:
+def cheapest(graph: MotionGraph, sound: HeardStates, want: WantedSegment, run: int = 1) -> float | None:
     """What the cheapest path costs, by trying all."""
     last = graph.states.last
 
     @cache
-    def onward(t: int, state: int, met: bool) -> float:
+    def onward(t: int, state: int, met: bool, since: int) -> float:
         if not graph.kept[state] or not sound.kinds[state] & want.allowed[t]:
             return np.inf
-        met = (met or bool(sound.peaks[state])) if want.window[t] >= 0 else False
+        if want.bars(t) and sound.happens(want.bars(t))[state]:
+            return np.inf
+        met = (met or bool(sound.happens(want.event(t))[state])) if want.window[t] >= 0 else False
         ends = want.window[t] >= 0 and (t + 1 == len(want) or want.window[t + 1] != want.window[t])
         if ends and not met:
             return np.inf
         if t + 1 == len(want):
             return 0.0
         met = met and not ends
-        ways = [] if last[state] else [onward(t + 1, state + 1, met)]
-        for place in range(graph.starts[state], graph.starts[state + 1]):
-            ways.append(float(graph.costs[place]) + onward(t + 1, int(graph.targets[place]), met))
+        ways = [] if last[state] else [onward(t + 1, state + 1, met, min(run, since + 1))]
+        for place in range(graph.starts[state], graph.starts[state + 1]) if since >= run else ():
+            ways.append(float(graph.costs[place]) + onward(t + 1, int(graph.targets[place]), met, 1))
         return min(ways, default=np.inf)
 
-    found = min(onward(0, s, False) for s in range(len(graph.states)))
+    found = min(onward(0, s, False, run) for s in range(len(graph.states)))
     return None if found == np.inf else found
 
 
-def check(graph: MotionGraph, sound: HeardStates, want: WantedSegment, path: Path) -> None:
+def check(graph: MotionGraph, sound: HeardStates, want: WantedSegment, path: Path, run: int = 1) -> None:
     """A path is one, has what is wanted, and costs what it says."""
     total = 0.0
     assert len(path.states) == len(want)
     for t, state in enumerate(path.states):
         assert sound.kinds[state] & want.allowed[t]
+        assert not sound.happens(want.bars(t))[state]
         if t and state != path.states[t - 1] + 1:
             before = int(path.states[t - 1])
             places = range(graph.starts[before], graph.starts[before + 1])
             total += next(float(graph.costs[p]) for p in places if graph.targets[p] == state)
             assert t in path.jumps
+    assert (np.diff(path.jumps) >= run).all()
     for number in set(want.window[want.window >= 0].tolist()):
-        assert sound.peaks[path.states[want.window == number]].any()
+        inside = want.window == number
+        assert sound.happens(want.event(int(np.flatnonzero(inside)[0])))[path.states[inside]].any()
     assert path.cost == pytest.approx(total, abs=1e-4)
 
 
@@ -92,29 +106,36 @@ def test_the_best_path_is_the_cheapest_of_all_and_is_found_whenever_there_is_one
             np.uint8,
         ),
         np.array(data.draw(st.lists(st.booleans(), min_size=frames, max_size=frames))),
+        np.array(data.draw(st.lists(st.booleans(), min_size=frames, max_size=frames))),
     )
     length = data.draw(st.integers(1, 10))
     allowed = data.draw(
         st.lists(st.sampled_from([IDLE, IDLE | CLAUSE, CLAUSE, ALL]), min_size=length, max_size=length)
     )
-    window = np.full(length, -1, np.int32)
-    if data.draw(st.booleans()):
+    window, events = np.full(length, -1, np.int32), np.full(length, STRESS, np.uint8)
+    for number in range(data.draw(st.integers(0, 2))):
         a = data.draw(st.integers(0, length - 1))
-        window[a : a + data.draw(st.integers(1, 4))] = 0
-    want = WantedSegment(np.array(allowed, np.uint8), window)
-    wanted_cost = cheapest(graph, sound, want)
+        b = a + data.draw(st.integers(1, 4))
+        window[a:b], events[a:b] = number, data.draw(st.sampled_from([STRESS, EDGE]))
+    if (np.diff(window) < 0).any() and len(set(window.tolist())) == 3:
+        window[: int(np.argmin(window))] = -1  # the second is not to lie inside of the first
+    bits = st.sampled_from([0, 0, 0, STRESS, EDGE, STRESS | EDGE])
+    barred = data.draw(st.lists(bits, min_size=length, max_size=length))
+    want = WantedSegment(np.array(allowed, np.uint8), window, events, np.array(barred, np.uint8))
+    run = data.draw(st.integers(1, 5))
+    wanted_cost = cheapest(graph, sound, want, run)
     if wanted_cost is None:
         with pytest.raises(SynthesisError, match="no motion goes with this speech"):
-            best(graph, sound, want)
+            best(graph, sound, want, run=run)
         return
-    path = best(graph, sound, want)
-    check(graph, sound, want, path)
+    path = best(graph, sound, want, run=run)
+    check(graph, sound, want, path, run)
     assert path.cost == pytest.approx(wanted_cost, abs=1e-4)
     try:
-        other = greedy(graph, sound, want, seed=data.draw(st.integers(0, 9)))
+        other = greedy(graph, sound, want, seed=data.draw(st.integers(0, 9)), run=run)
     except SynthesisError:
         return
-    check(graph, sound, want, other)
+    check(graph, sound, want, other, run)
     assert other.cost >= path.cost - 1e-4
 
 
@@ -123,17 +144,27 @@ def test_starts_ends_and_stresses_may_be_a_tenth_of_a_second_off() -> None:
     assert len(want) == 90
     either = np.flatnonzero(want.allowed == (IDLE | CLAUSE))
     assert either.tolist() == [*range(27, 33), *range(57, 63)]
-    assert np.flatnonzero(want.window >= 0).tolist() == list(range(42, 49))
+    stress = (want.window >= 0) & (want.events == STRESS)
+    assert np.flatnonzero(stress).tolist() == list(range(42, 49))
+    edges = (want.window >= 0) & (want.events == EDGE)
+    assert np.flatnonzero(edges).tolist() == [*range(27, 34), *range(57, 64)]
+    assert ((want.barred & STRESS == 0) == stress).all()
+    assert ((want.barred & EDGE == 0) == edges).all()
+    loose = wanted([Segment("clause", 1.0, 2.0, 1.5)], 3.0, edges=False)
+    assert np.flatnonzero(loose.window >= 0).tolist() == list(range(42, 49)) and not loose.barred.any()
     exact = wanted([Segment("clause", 1.0, 2.0, 1.5)], 3.0, tolerance=0)
-    assert (exact.allowed == CLAUSE).sum() == 30 and (exact.window >= 0).sum() == 1
+    assert (exact.allowed == CLAUSE).sum() == 30 and (exact.window >= 0).sum() == 3
 
 
 def test_a_kind_that_is_left_out_lets_anything_go() -> None:
     segments = [Segment("clause", 0.5, 1.0, 0.7), Segment("response", 1.5, 2.0)]
     want = wanted(segments, 2.5, use=("idle", "clause"))
     assert (want.allowed[45:60] == ALL).all() and (want.window >= 0).any()
-    assert not (wanted(segments, 2.5, use=("idle", "response")).window >= 0).any()
-    assert (wanted(segments, 2.5, use=()).allowed == ALL).all()
+    other = wanted(segments, 2.5, use=("idle", "response"))
+    assert set(np.flatnonzero(other.window >= 0).tolist()) == {*range(42, 49), *range(57, 64)}
+    assert (other.events[other.window >= 0] == EDGE).all()
+    free = wanted(segments, 2.5, use=())
+    assert (free.allowed == ALL).all() and not free.barred.any() and (free.window < 0).all()
 
 
 def test_what_was_heard_is_told_take_by_take() -> None:

@@ -90,6 +90,9 @@ class Wishes(QFrame):
         self.peaks = make_widget(QCheckBox, "Stresses", self, checked=True)
         self.peaks.setToolTip("A clause's stress lies where the stress lay that the motion was made with")
         row.addWidget(self.peaks)
+        self.edges = make_widget(QCheckBox, "Starts and ends", self, checked=True)
+        self.edges.setToolTip("What is heard begins and ends where that did which the motion was made with")
+        row.addWidget(self.edges)
         self.tolerance = DoubleSpinBox(
             self, minimum=0.0, maximum=1.0, singleStep=0.05, decimals=2, value=0.1, suffix=" s"
         )
@@ -131,7 +134,7 @@ class Wishes(QFrame):
 
     def _limits(self) -> None:
         talks = self.speech.currentData() is not None
-        for box in (*self.kinds.values(), self.peaks, self.tolerance, self.start):
+        for box in (*self.kinds.values(), self.peaks, self.edges, self.tolerance, self.start):
             box.setEnabled(talks)
         self.seed.setEnabled(not self.search.currentData())
         self.whole.setEnabled(talks)
@@ -170,6 +173,7 @@ class Wishes(QFrame):
             self.peaks.isChecked(),
             self.tolerance.value(),
             int(self.seed.value()),
+            self.edges.isChecked(),
         )
 
     def name(self) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
@@ -17,6 +17,10 @@ from app.look.plural import many
 from metagraph.graph.conversation import SOUNDS, Segment, Sound, heard_by
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
+
+if TYPE_CHECKING:
+    from metagraph.synthesis.path_quality import PathQuality
+    from metagraph.synthesis.ruled_search import Search
 
 FOLDER = "motion-graph"  # beside the project file, where new clips are kept
 LONG = 6.0  # seconds from which a clip is a take; shorter ones are chosen by hand
@@ -114,6 +118,7 @@ class Wish:
     peaks: bool = True
     tolerance: float = 0.1
     seed: int = 1
+    edges: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +129,8 @@ class FoundMotion:
     cost: float
     jumps: int
     took: float
+    looks: PathQuality
+    given_up: str = ""
 
     def words(self) -> str:
         rate = self.jumps / max(self.clip.duration, 1e-9)
@@ -134,7 +141,10 @@ class FoundMotion:
             if self.jumps > 1
             else "1 transition"
         )
-        return f"{self.clip.duration:.1f} s with {jumps}, cost {self.cost:.3g} m, found in {self.took:.2f} s."
+        again = f"{self.looks.repeated:.0%} of it shown again within 3 s, {self.looks.rest_words()}"
+        found = f"found in {self.took:.2f} s"
+        given_up = f" {self.given_up[0].upper()}{self.given_up[1:]}." if self.given_up else ""
+        return f"{self.clip.duration:.1f} s with {jumps}, cost {self.cost:.3g} m, {found}; {again}.{given_up}"
 
 
 def synthesise(
@@ -144,30 +154,20 @@ def synthesise(
     saying what would help, or when it was cancelled.
     """
     from metagraph.synthesis.assemble import assemble
-    from metagraph.synthesis.constraints import heard, wanted
-    from metagraph.synthesis.search import best, greedy
-    from metagraph.synthesis.states import SynthesisError
+    from metagraph.synthesis.constraints import heard
+    from metagraph.synthesis.path_quality import quality
+    from metagraph.synthesis.relaxing import Constraints, answer
 
     said = heard(graph.states, takes.speech)
     # Takes nobody annotated went with anything.
     use = wish.use if takes.told else ()
-    asked = wanted(wish.segments, wish.seconds, wish.tolerance, use, wish.peaks and takes.told)
+    asked = Constraints(wish.tolerance, use, wish.peaks and takes.told, wish.edges)
+    search: Search = "exact" if wish.exact else "greedy"
     began = time.perf_counter()
-    try:
-        path = (
-            best(graph, said, asked, cancelled)
-            if wish.exact
-            else greedy(graph, said, asked, seed=wish.seed, cancelled=cancelled)
-        )
-    except SynthesisError as error:
-        if (use and wish.segments) or (cancelled is not None and cancelled()):
-            raise
-        raise SynthesisError(
-            f"these takes cannot go on for {wish.seconds:g} s without a jump: choose more takes, raise k or "
-            "the level, or ask for less"
-        ) from error
-    took = time.perf_counter() - began
-    return FoundMotion(assemble(graph.states, takes.clips, path, name), path.cost, len(path.jumps), took)
+    found = answer(graph, said, wish.segments, wish.seconds, asked, search, wish.seed, cancelled)
+    took, path = time.perf_counter() - began, found.path
+    made = assemble(graph.states, takes.clips, path, name)
+    return FoundMotion(made, path.cost, len(path.jumps), took, quality(graph.states, path), found.words())
 
 
 def table(
