@@ -26,6 +26,7 @@ RATE = 16000  # samples a second
 HOP, WINDOW = 640, 1024  # samples: 40 ms, a frame; 64 ms
 MELS = 27
 FLOOR = 1e-5  # of a mel's power
+AT_ONCE = 64  # windows: few enough to stay near at hand in memory
 STRANGEST = 4.0  # standardised: sounds further from those learned from are heard as this far
 CLOSED = 0.2  # seconds: shorter gaps in somebody's speech are none
 SELF, PARTNER, BOTH, NONE = range(ACTIVITY)
@@ -76,11 +77,12 @@ def _hann() -> Array:
     return np.asarray(window)
 
 
-def _mels(window: Array) -> Array:
-    """Return the mels `[MELS]` of one window of samples `[WINDOW]`, natural logarithms, float32."""
-    heard = np.fft.rfft(window * _hann())
-    power = heard.real**2 + heard.imag**2
-    return np.log(_bank() @ power + FLOOR).astype(np.float32)
+def _mels(windows: Array) -> Array:
+    """Return the mels `[n, MELS]` of windows of samples `[n, WINDOW]`, natural logarithms, float32."""
+    heard = np.fft.rfft(windows * _hann())
+    powers = heard.real**2 + heard.imag**2
+    bank = _bank()  # frame by frame: a product of several may round otherwise than that of one
+    return np.array([np.log(bank @ power + FLOOR) for power in powers], np.float32).reshape(-1, MELS)
 
 
 def silence(audio: int = MELS) -> Array:
@@ -142,10 +144,11 @@ class AudioStream:
 
     def _ready(self, count: int) -> Array:
         out = np.empty((max(0, count), self.tracks * MELS), np.float32)
-        for n in range(len(out)):
-            for track in range(self.tracks):
-                window = self._kept[track, n * HOP : n * HOP + WINDOW]
-                out[n, track * MELS : (track + 1) * MELS] = _mels(window)
+        for track in range(self.tracks if len(out) else 0):
+            windows = np.lib.stride_tricks.sliding_window_view(self._kept[track], WINDOW)[::HOP]
+            for n in range(0, len(out), AT_ONCE):
+                some = windows[n : min(n + AT_ONCE, len(out))]
+                out[n : n + len(some), track * MELS : (track + 1) * MELS] = _mels(some)
         self._kept = self._kept[:, len(out) * HOP :]
         return out
 
