@@ -47,9 +47,9 @@ class Offscreen:
         self._ctx = standalone_context()
         with self._ctx:
             self.renderer = Renderer(self._ctx, samples)
-            self._fbo = self._ctx.simple_framebuffer((max(1, width), max(1, height)))
-        self.size = (max(1, width), max(1, height))
+        self._held: list[Any] = []
         self._released = False
+        self.resize(width, height)
 
     @property
     def description(self) -> str:
@@ -78,8 +78,15 @@ class Offscreen:
     def resize(self, width: int, height: int) -> None:
         self.size = (max(1, width), max(1, height))
         with self._ctx:
-            self._fbo.release()
-            self._fbo = self._ctx.simple_framebuffer(self.size)
+            self._give_back()
+            # Made one by one: what a simple framebuffer holds is not given back with it.
+            color, depth = self._ctx.renderbuffer(self.size, 4), self._ctx.depth_renderbuffer(self.size)
+            self._fbo = self._ctx.framebuffer([color], depth)
+            self._held = [color, depth, self._fbo]
+
+    def _give_back(self) -> None:
+        while self._held:
+            self._held.pop().release()
 
     def release(self) -> None:
         """Give the context back. Safe to call twice."""
@@ -88,7 +95,7 @@ class Offscreen:
         self._released = True
         with contextlib.suppress(Exception), self._ctx:  # a lost context has nothing left to give back
             self.renderer.release()
-            self._fbo.release()
+            self._give_back()
         self._ctx.release()
 
     def __enter__(self) -> Offscreen:
