@@ -4,9 +4,10 @@ shown.
 
 from __future__ import annotations
 
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QLineEdit, QToolButton, QVBoxLayout, QWidget
 
 from app.features.manual import manual_commands as commands
+from app.features.manual import manual_many
 from app.features.manual.manual_canvas import ManualCanvas
 from app.features.manual.manual_inspector import Inspector
 from app.look.plural import many
@@ -25,6 +26,21 @@ class ManualEditor(QWidget):
         self.inspector = Inspector(canvas, canvas.performance)
         self.words = QLabel(self)
         self.words.setProperty("dim", True)
+        self.search = make_widget(
+            QLineEdit, self, toolTip="Select the states whose names hold these words (/)"
+        )
+        self.search.setPlaceholderText("Find states")
+        self.search.setAccessibleName("Find states")
+        self.search.setClearButtonEnabled(True)
+        self.search.setMaximumWidth(190)
+        self.search.textEdited.connect(self._find)
+        self.search.returnPressed.connect(self._found)
+        self.table = _button(
+            self,
+            "Import table…",
+            "Draw links from a spreadsheet: from, to, when, trigger, weight, exit, blend",
+        )
+        self.table.clicked.connect(self._choose_table)
         self.trigger = Chooser(self, toolTip="A trigger that links of this layer wait for")
         self.trigger.setMinimumWidth(150)
         self.fire = _button(
@@ -40,7 +56,7 @@ class ManualEditor(QWidget):
         row.setSpacing(8)
         row.addWidget(self.words)
         row.addStretch(1)
-        for part in (self.trigger, self.fire, self.arrange, self.fit):
+        for part in (self.search, self.table, self.trigger, self.fire, self.arrange, self.fit):
             row.addWidget(part)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
@@ -49,6 +65,7 @@ class ManualEditor(QWidget):
         layout.addWidget(canvas, 1)
         canvas.document.changed.connect(self._edited)
         canvas.viewed.connect(self.show_words)
+        canvas.find_wanted.connect(self._begin_finding)
         self.session.place.layer_changed.connect(self.show_words)
         self.show_words()
 
@@ -61,7 +78,8 @@ class ManualEditor(QWidget):
         manual = self.canvas.scene().manual
         zoom = f"{self.canvas.view.scale * 100:.0f} %"
         self.words.setText(
-            f"{many(len(manual.states), 'state')}, {many(len(manual.links), 'link')}    {zoom}"
+            f"{many(len(manual.states), 'state')}, {many(len(manual.links), 'link')} for "
+            f"{many(len(manual.ways), 'connection')}    {zoom}"
         )
         chosen = self.trigger.currentData()
         first = chosen if chosen in manual.triggers else next(iter(manual.triggers), None)
@@ -69,6 +87,31 @@ class ManualEditor(QWidget):
         for part in (self.trigger, self.fire):
             part.setEnabled(bool(manual.triggers))
         self.arrange.setEnabled(bool(manual.states))
+        self.table.setEnabled(bool(manual.states))
+        self.search.setEnabled(bool(manual.states))
+
+    def _find(self, text: str) -> None:
+        """Select the states and aliases whose names hold all words."""
+        words, manual = text.lower().split(), self.canvas.scene().manual
+        named = [(i, s.name) for i, s in manual.states.items()]
+        named += [(i, a.name) for i, a in manual.aliases.items()] if len(words) else []
+        found = tuple(i for i, name in named if words and all(w in name.lower() for w in words))
+        states = tuple(i for i in found if i in manual.states)
+        self.session.selection.select_states(states or found)
+
+    def _begin_finding(self) -> None:
+        self.search.setFocus()
+        self.search.selectAll()
+
+    def _found(self) -> None:
+        """Show what was found, and give the keys back to the canvas."""
+        if self.session.selection.states:
+            self.canvas.fit()
+            self.canvas.setFocus()
+
+    def _choose_table(self) -> None:
+        folder = self.canvas.document.folder
+        manual_many.choose_table(self.canvas, self, str(folder or ""))
 
     def _fire(self) -> None:
         trigger = self.trigger.currentData()
