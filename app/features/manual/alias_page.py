@@ -124,7 +124,7 @@ class AliasPage(QWidget):
     def _filter(self, words: str) -> None:
         for n in range(self.list.count()):
             item = self.list.item(n)
-            item.setHidden(not all(w in item.text().lower() for w in words.lower().split()))
+            item.setHidden(bool(words.strip()) and not manual_groups.fits(words, item.text()))
 
     def _ticked(self, item: QListWidgetItem) -> None:
         """A tick counts for all rows that are selected with it."""

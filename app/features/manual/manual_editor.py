@@ -4,6 +4,7 @@ shown.
 
 from __future__ import annotations
 
+from PySide6.QtCore import QSizeF
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QLineEdit, QToolButton, QVBoxLayout, QWidget
 
 from app.features.manual import manual_commands as commands
@@ -13,8 +14,12 @@ from app.features.manual.manual_inspector import Inspector
 from app.look.plural import many
 from app.widgets.form_fields import Chooser
 from app.widgets.making import make_widget
+from metagraph.graph import manual_groups
 from metagraph.graph.model import Project
 from metagraph.graph.problem import Problem
+
+
+FIND = "Select the states whose names hold these words (/): sit wave, sit -wave, sit | stand"
 
 
 class ManualEditor(QWidget):
@@ -27,7 +32,7 @@ class ManualEditor(QWidget):
         self.words = QLabel(self)
         self.words.setProperty("dim", True)
         self.search = make_widget(
-            QLineEdit, self, toolTip="Select the states whose names hold these words (/)"
+            QLineEdit, self, toolTip=FIND
         )
         self.search.setPlaceholderText("Find states")
         self.search.setAccessibleName("Find states")
@@ -91,22 +96,23 @@ class ManualEditor(QWidget):
         self.search.setEnabled(bool(manual.states))
 
     def _find(self, text: str) -> None:
-        """Select the states and aliases whose names hold all words."""
-        words, manual = text.lower().split(), self.canvas.scene().manual
-        named = [(i, s.name) for i, s in manual.states.items()]
-        named += [(i, a.name) for i, a in manual.aliases.items()] if len(words) else []
-        found = tuple(i for i, name in named if words and all(w in name.lower() for w in words))
-        states = tuple(i for i in found if i in manual.states)
-        self.session.selection.select_states(states or found)
+        """Select the states whose names fit, or where none does the aliases."""
+        manual = self.canvas.scene().manual
+        states = tuple(i for i, s in manual.states.items() if manual_groups.fits(text, s.name))
+        aliases = tuple(i for i, a in manual.aliases.items() if manual_groups.fits(text, a.name))
+        self.session.selection.select_states(states or aliases)
 
     def _begin_finding(self) -> None:
         self.search.setFocus()
         self.search.selectAll()
 
     def _found(self) -> None:
-        """Show what was found, and give the keys back to the canvas."""
-        if self.session.selection.states:
-            self.canvas.fit()
+        """Give the keys back to the canvas, and show what was found where it is not in sight."""
+        nodes, chosen = self.canvas.scene().nodes, self.session.selection.states
+        seen = self.canvas.view.rect(QSizeF(self.canvas.size()))
+        if chosen:
+            if not all(seen.contains(nodes[i]) for i in chosen if i in nodes):
+                self.canvas.fit()
             self.canvas.setFocus()
 
     def _choose_table(self) -> None:
