@@ -155,7 +155,10 @@ class Expert(Participant):
                 self._click(state, more=n > 0)
             self.held(len(states))
         found = self.drive.session.selection.states
-        assert frozenset(found) == self.chosen, f"{len(found)} rather than {len(states)} selected"
+        if frozenset(found) != self.chosen:
+            off = {self.drive.document.project.state(i) for i in self.chosen ^ frozenset(found)}
+            where = [(s.name, s.x, s.y) if s is not None else "an alias" for s in off]
+            raise AssertionError(f"{len(found)} rather than {len(states)} selected: {where} at {runs}")
 
     def held(self, count: int) -> None:
         """Count the key that is held down while several are selected."""
@@ -170,8 +173,14 @@ class Expert(Participant):
 
     def _band(self, work: Work, first: int, last: int, more: bool) -> None:
         longest = max(len(work.order[n]) for n in range(first, last + 1))
-        a = self.canvas.view.to(QPointF(-70, first * DOWN - 16)).toPoint()
-        b = self.canvas.view.to(QPointF((longest - 1) * ACROSS + 150, last * DOWN + 40)).toPoint()
+        view, scene = self.canvas.view, self.canvas.scene()
+        low, high, right = first * DOWN - 16, last * DOWN + 70, (longest - 1) * ACROSS + 215
+        corners = [
+            ((x, y), (right, high if y == low else low)) for x in range(-20, -300, -9) for y in (low, high)
+        ]
+        corners += [((x + 240.0, y), (-16, z)) for (x, y), (_, z) in corners]
+        corners = [(a, b) for a, b in corners if scene.hit(QPointF(*a), view.scale).area == "nothing"]
+        a, b = (view.to(QPointF(*c)).toPoint() for c in corners[0])  # where nothing is
         keys = CONTROL if more else Qt.KeyboardModifier.NoModifier
         QTest.mouseMove(self.canvas, a)
         QTest.mousePress(self.canvas, LEFT, keys, a)
