@@ -4,18 +4,24 @@ labelled and goes through what is proposed.
 
 from __future__ import annotations
 
+import subprocess
 from collections.abc import Sequence
+from dataclasses import asdict, replace
 from typing import Any
+from zlib import crc32
 
-from PySide6.QtCore import QPointF, Qt
+from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
 
+from metagraph.graph import edits
 from metagraph.graph.edits import limb_of
 from metagraph.graph.manual import ANY
-from metagraph.graph.model import LIMBS
+from metagraph.graph.model import LIMBS, Project
 from metagraph.study.by_hand import Drawing, Way, Work, works
 from metagraph.study.finding import Words
-from tests.app.participant import LEFT, Participant
+from metagraph.suggest.review import DECIDING
+from tests.app.participant import LEFT, Participant, Task
 
 CONTROL = Qt.KeyboardModifier.ControlModifier
 ACROSS, DOWN = 240.0, 96.0  # units a dropped grid takes for each clip
@@ -245,3 +251,122 @@ class Expert(Participant):
 
     def table(self, text: str) -> None:
         raise NotImplementedError("a table is written in another program")
+
+
+class Reviewer(Participant):
+    """Has the clips labelled and goes through the proposals. look: every clip is watched once, alone, in full;
+    else those that are sure are accepted unseen. watched: seconds of motion that were.
+    """
+
+    watched = 0.0
+
+    def review(self, look: bool) -> None:
+        from app.features.labelling.review_dialog import ReviewDialog
+
+        d = self.drive
+        self.think()
+        QTest.keyClick(d.window, Qt.Key.Key_P, CONTROL)
+        d.wait(lambda: bool(d.window.findChildren(ReviewDialog)))
+        dialog = d.window.findChildren(ReviewDialog)[-1]
+        self.wait(lambda: dialog.current is not None)
+        corner = dialog.legend.mapToGlobal(QPoint(2, 2))
+        words = ["xdotool", "mousemove", str(corner.x()), str(corner.y()), "click", "1"]
+        self.hands.stop()  # a window manager would have given it the keyboard
+        subprocess.run(words, check=True, timeout=10)
+        d.wait(dialog.isActiveWindow)
+        QApplication.instance().installEventFilter(self.hands)
+        truth = self._truth(dialog.review)
+        self.corrected = self.looked = 0
+        (self._watch if look else self._accept)(dialog, truth)
+        assert not dialog.work.waiting(), f"{len(dialog.work.waiting())} clips wait"
+        dialog.close()
+        d.wait(lambda: not dialog.isVisible())
+
+    def _watch(self, dialog: Any, truth: dict[str, dict[str, Any]]) -> None:
+        self.think()
+        QTest.keyClick(dialog, Qt.Key.Key_W)
+        while dialog.current is not None:
+            clip = dialog.current
+            self.watched += self.given.project.clips[clip].duration
+            self.looked += 1
+            if self._correct(dialog, clip, truth[clip]):
+                self.think()
+                QTest.keyClick(dialog, Qt.Key.Key_Return)
+            else:
+                dialog.watching.go_on(clip)  # it has played through
+        self.think()
+        QTest.keyClick(dialog, Qt.Key.Key_Return)
+
+    def _accept(self, dialog: Any, truth: dict[str, dict[str, Any]]) -> None:
+        self.think()
+        QTest.keyClick(dialog, Qt.Key.Key_A)
+        while dialog.current is not None:
+            self._correct(dialog, dialog.current, truth[dialog.current])
+            self.think()
+            QTest.keyClick(dialog, Qt.Key.Key_Return)
+            self.drive.pause(1)
+
+    def _correct(self, dialog: Any, clip: str, wanted: dict[str, Any]) -> bool:
+        """Correct the fields that are wrong, by keys; return whether there were any."""
+        wrong = False
+        for name in DECIDING:
+            choices = [v for v, _ in dialog.review.choices(clip, name)]
+            if not choices or dialog.review.value(clip, name) == wanted[name]:
+                continue
+            rows = [row.name for row in dialog.fields.rows]
+            steps = (rows.index(name) - rows.index(dialog.row)) % len(rows)
+            self.think()
+            for _ in range(steps):
+                QTest.keyClick(dialog, Qt.Key.Key_Down)
+            at = choices.index(wanted[name])
+            if at < 9:
+                QTest.keyClick(dialog, Qt.Key(Qt.Key.Key_1 + at))
+            while dialog.review.value(clip, name) != wanted[name]:
+                QTest.keyClick(dialog, Qt.Key.Key_Right)
+            self.corrected += 1
+            wrong = True
+        return wrong
+
+    def _truth(self, review: Any) -> dict[str, dict[str, Any]]:
+        """What each clip is, with the stances called as the review calls them: by the loops in them."""
+        reference = self.given.reference
+        called: dict[str, str] = {}
+        for action in reference.actions():
+            p = review.found.proposals[action.clip]
+            if action.kind == "stance" and p.stance is not None:
+                called.setdefault(action.stance, review.found.places[p.stance.value].name)
+        return {
+            a.clip: {
+                "kind": a.kind,
+                "layer": a.layer,
+                "stance": called[a.stance],
+                "end_stance": called[a.end_stance] if a.end_stance else None,
+                "limb": a.limb,
+            }
+            for a in reference.actions()
+        }
+
+
+def without_times(project: Project) -> Project:
+    """Return a project whose actions have the times of clips that are dropped: the review proposes others."""
+    for action in list(project.actions()):
+        timing = edits.default_timing(project.clips[action.clip], action.kind)
+        project = edits.update_actions(project, [action.id], timing=asdict(timing))
+    return project
+
+
+def hidden(given: Task) -> Task:
+    """Return a task whose clips' names tell nothing."""
+    order = sorted(given.project.clips, key=lambda c: crc32(given.project.clips[c].name.encode()))
+    names = {c: f"clip_{n:03}" for n, c in enumerate(order, 1)}
+
+    def renamed(project: Project) -> Project:
+        clips = {
+            c: replace(
+                e, name=names[c], path=f"{names[c]}.glb", motion=e.motion and replace(e.motion, name=names[c])
+            )
+            for c, e in ((c, project.clips[c]) for c in order)
+        }
+        return replace(project, clips=clips)
+
+    return Task(renamed(given.project), renamed(given.reference))

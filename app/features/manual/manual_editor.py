@@ -18,7 +18,6 @@ from metagraph.graph import manual_groups
 from metagraph.graph.model import Project
 from metagraph.graph.problem import Problem
 
-
 FIND = "Select the states whose names hold these words (/): sit wave, sit -wave, sit | stand"
 
 
@@ -31,9 +30,7 @@ class ManualEditor(QWidget):
         self.inspector = Inspector(canvas, canvas.performance)
         self.words = QLabel(self)
         self.words.setProperty("dim", True)
-        self.search = make_widget(
-            QLineEdit, self, toolTip=FIND
-        )
+        self.search = make_widget(QLineEdit, self, toolTip=FIND)
         self.search.setPlaceholderText("Find states")
         self.search.setAccessibleName("Find states")
         self.search.setClearButtonEnabled(True)
