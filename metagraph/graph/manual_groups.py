@@ -115,17 +115,3 @@ def paste_links(project: Project, layer: Layer, links: Sequence[Link], nodes: Se
         raise EditError("these links are drawn already")
     after = replace(found, links={**found.links, **out})
     return project.with_manual(after, next_id=project.next_id + len(out))
-
-
-def fits(words: str, name: str) -> bool:
-    """Whether a name fits what is searched for: it holds all words of one of the parts between |, and none
-    that begin with -. Nothing fits no words.
-    """
-    name = name.lower()
-    for part in words.lower().split("|"):
-        terms = part.split()
-        if any(t for t in terms if not t.startswith("-")) and all(
-            (t[1:] not in name or t == "-") if t.startswith("-") else t in name for t in terms
-        ):
-            return True
-    return False

@@ -74,6 +74,7 @@ class Work:
         stand together, and blocks that often are stand near each other.
         """
         sets = [s for r in self.cover.rectangles for s in (r.sources, r.targets)] + [self.unasked, self.loops]
+        sets += [as_set(n for n, c in enumerate(self.clips) if self.limbs[c] == x) for x in ("left", "right")]
         blocks: dict[tuple[bool, ...], list[int]] = {}
         for n in range(len(self.clips)):
             blocks.setdefault(tuple(bool(s >> n & 1) for s in sets), []).append(n)
@@ -101,7 +102,7 @@ class Work:
         """Return a set as the fewest runs of blocks, (first, last)."""
         out: list[tuple[int, int]] = []
         for n, block in enumerate(self.order):
-            if want >> block[0] & 1:
+            if any(want >> n & 1 for n in block):
                 if out and out[-1][1] == n - 1:
                     out[-1] = (out[-1][0], n)
                 else:
@@ -148,6 +149,30 @@ def ways(named: bool = True) -> list[Way]:
     return [w for w in out if w.links != "from a table" or (w.pick == "words" and w.settle == "many at once")]
 
 
+def batches(library: dict[str, str], wanted: Sequence[str]) -> list[tuple[list[str], str]]:
+    """Return batches of clips with the words that show just them of a library, which they leave; no words
+    where nothing else is left. library: clip -> name.
+    """
+    out: list[tuple[list[str], str]] = []
+    left = dict.fromkeys(wanted)
+    while left:
+        clips = list(library)
+        finder = Finder([library[c] for c in clips])
+        want = as_set(n for n, c in enumerate(clips) if c in left)
+        if want == (1 << len(clips)) - 1:
+            batch, words = list(left), ""
+        else:
+            found = finder.best(want)
+            one = bits(want)[0]
+            words = found.text if found is not None else library[clips[one]]
+            batch = list(left) if found is not None else [clips[one]]
+        out.append((batch, words))
+        for clip in batch:
+            left.pop(clip)
+            library.pop(clip)
+    return out
+
+
 class Drawing:
     """Carries a way out. limbs: clip -> the limb its state has once it was dropped."""
 
@@ -191,34 +216,8 @@ class Drawing:
             return
         for clip in work.clips if look else ():
             self.hand.look(clip)
-        for clips, words in self._batches(work):
+        for clips, words in batches(self.library, work.clips):
             self.hand.drop(work, clips, words)
-
-    def _batches(self, work: Work) -> list[tuple[list[str], str]]:
-        """Return batches of the layer's clips with the words that show just them of what is not dropped yet;
-        no words where nothing else is left.
-        """
-        out: list[tuple[list[str], str]] = []
-        left = dict.fromkeys(work.clips)
-        while left:
-            clips = list(self.library)
-            finder = Finder([self.library[c] for c in clips])
-            want = as_set(n for n, c in enumerate(clips) if c in left)
-            if want == (1 << len(clips)) - 1:
-                batch, words = list(left), ""
-            else:
-                inside = {m: p for m, p in finder.parts.items() if m & ~want == 0}
-                found = finder.one(want)
-                mask = max(inside, key=lambda m: (m.bit_count(), -len(inside[m])), default=want & -want)
-                words = (
-                    found.text if found is not None else inside.get(mask, self.library[clips[bits(mask)[0]]])
-                )
-                batch = [clips[n] for n in bits(want if found is not None else mask)]
-            out.append((batch, words))
-            for clip in batch:
-                left.pop(clip)
-                self.library.pop(clip)
-        return out
 
     def _limbs(self, work: Work, guessed: Mapping[str, str]) -> None:
         for limb in ("left", "right", "both"):

@@ -94,7 +94,7 @@ class CountedHand:
             words = words.split("__")[0] + "__"  # typed once for all clips of a stance
         made.think()
         if words is not None and words != self._typed and (words or self._typed):
-            made.think()
+            made.think(1 + words.count(" ") + words.count("|"))
             made.keys(
                 4 + max(1, len(words)) + (len(clips) > 1)
             )  # to the search field, all of it, and out again

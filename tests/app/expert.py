@@ -97,7 +97,7 @@ class Expert(Participant):
         self.think()
         moved = words is not None and words != self.searched and bool(words or self.searched)
         if moved:
-            self.think()
+            self.thoughts += 1 + words.count(" ") + words.count("|")
             QTest.keyClick(d.window, Qt.Key.Key_F, CONTROL)
             QTest.keyClick(library.search, Qt.Key.Key_A, CONTROL)
             if words:

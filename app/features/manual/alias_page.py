@@ -23,6 +23,7 @@ from app.widgets.form_fields import Chooser, Field
 from app.widgets.making import make_widget
 from metagraph.graph import manual_groups
 from metagraph.graph.manual import Alias
+from metagraph.graph.name_search import fits
 
 NO_ENTRY = "no entry: nothing leads to it"
 IDENT = Qt.ItemDataRole.UserRole
@@ -124,7 +125,7 @@ class AliasPage(QWidget):
     def _filter(self, words: str) -> None:
         for n in range(self.list.count()):
             item = self.list.item(n)
-            item.setHidden(bool(words.strip()) and not manual_groups.fits(words, item.text()))
+            item.setHidden(bool(words.strip()) and not fits(words, item.text()))
 
     def _ticked(self, item: QListWidgetItem) -> None:
         """A tick counts for all rows that are selected with it."""

@@ -14,8 +14,8 @@ from app.features.manual.manual_inspector import Inspector
 from app.look.plural import many
 from app.widgets.form_fields import Chooser
 from app.widgets.making import make_widget
-from metagraph.graph import manual_groups
 from metagraph.graph.model import Project
+from metagraph.graph.name_search import fits
 from metagraph.graph.problem import Problem
 
 FIND = "Select the states whose names hold these words (/): sit wave, sit -wave, sit | stand"
@@ -95,8 +95,8 @@ class ManualEditor(QWidget):
     def _find(self, text: str) -> None:
         """Select the states whose names fit, or where none does the aliases."""
         manual = self.canvas.scene().manual
-        states = tuple(i for i, s in manual.states.items() if manual_groups.fits(text, s.name))
-        aliases = tuple(i for i, a in manual.aliases.items() if manual_groups.fits(text, a.name))
+        states = tuple(i for i, s in manual.states.items() if fits(text, s.name))
+        aliases = tuple(i for i, a in manual.aliases.items() if fits(text, a.name))
         self.session.selection.select_states(states or aliases)
 
     def _begin_finding(self) -> None:
