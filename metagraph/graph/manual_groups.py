@@ -44,12 +44,18 @@ def add_alias(project: Project, layer: Layer, states: Sequence[str], every: bool
 
 
 def shared_words(names: Sequence[str]) -> str:
-    """Return the words that all names begin with, "" for none."""
-    low, high = min(names), max(names)
-    start = low[: next((n for n, (a, b) in enumerate(zip(low, high, strict=False)) if a != b), len(low))]
-    if any(len(n) > len(start) and n[len(start)].isalnum() for n in names):
-        start = re.sub(r"[^\W_]+$", "", start)  # a word cut in two is none that they share
-    return start.strip(" _-.")
+    """Return the words that all names begin with, or where there are none, those that most begin with; "" for
+    none.
+    """
+    starts: Counter[str] = Counter()
+    for name in names:
+        ends = [m.end() for m in re.finditer(r"[^\W_]+", name)]
+        starts.update({name[:end] for end in ends})
+    for least in (len(names), len(names) // 2 + 1):
+        shared = [start for start, count in starts.items() if count >= least]
+        if shared:
+            return max(shared, key=len).strip(" _-.")
+    return ""
 
 
 def update_aliases(project: Project, aliases: Collection[str], **changes: Any) -> Project:

@@ -124,6 +124,7 @@ def test_many_links_are_drawn_at_once_none_twice_and_none_to_itself() -> None:
 
 
 def test_what_names_share_is_what_an_alias_is_called() -> None:
+    assert g.shared_words(["hips__wave", "hips__nod", "sit__to__hips"]) == "hips"
     assert g.shared_words(["sit__nod", "sit__wave"]) == "sit"
     assert g.shared_words(["sitting", "sit"]) == "" and g.shared_words(["sit", "sit_2"]) == "sit"
     assert (

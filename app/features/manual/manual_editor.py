@@ -34,7 +34,7 @@ class ManualEditor(QWidget):
         self.search.setPlaceholderText("Find states")
         self.search.setAccessibleName("Find states")
         self.search.setClearButtonEnabled(True)
-        self.search.setMaximumWidth(190)
+        self.search.setMinimumWidth(90)
         self.search.textEdited.connect(self._find)
         self.search.returnPressed.connect(self._found)
         self.table = _button(
@@ -44,7 +44,7 @@ class ManualEditor(QWidget):
         )
         self.table.clicked.connect(self._choose_table)
         self.trigger = Chooser(self, toolTip="A trigger that links of this layer wait for")
-        self.trigger.setMinimumWidth(150)
+        self.trigger.setMinimumWidth(110)
         self.fire = _button(
             self, "Fire", "Fire it now: the machine goes there over the shortest way of links"
         )
@@ -53,23 +53,31 @@ class ManualEditor(QWidget):
         self.arrange.clicked.connect(lambda: commands.arrange(canvas))
         self.fit = _button(self, "Show all", "Show what is selected, or all (F)")
         self.fit.clicked.connect(canvas.fit)
-        row = QHBoxLayout()
-        row.setContentsMargins(12, 6, 12, 6)
-        row.setSpacing(8)
-        row.addWidget(self.words)
-        row.addStretch(1)
-        for part in (self.search, self.table, self.trigger, self.fire, self.arrange, self.fit):
-            row.addWidget(part)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
-        layout.addLayout(row)
+        above, below = self._row(6, 0), self._row(2, 6)
+        above.addWidget(self.words, 1)
+        for part in (self.arrange, self.fit):
+            above.addWidget(part)
+        below.addWidget(self.search, 1)
+        for part in (self.table, self.trigger, self.fire):
+            below.addWidget(part)
+        layout.addLayout(above)
+        layout.addLayout(below)
         layout.addWidget(canvas, 1)
         canvas.document.changed.connect(self._edited)
         canvas.viewed.connect(self.show_words)
         canvas.find_wanted.connect(self._begin_finding)
         self.session.place.layer_changed.connect(self.show_words)
         self.show_words()
+
+    @staticmethod
+    def _row(top: int, bottom: int) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setContentsMargins(12, top, 12, bottom)
+        row.setSpacing(8)
+        return row
 
     def _edited(self, before: Project, after: Project) -> None:
         if before.manual is not after.manual:

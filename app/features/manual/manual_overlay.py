@@ -14,6 +14,7 @@ from app.stage.playback_source import Shown
 from metagraph.graph.model import Layer
 from metagraph.playback.manual_playback import clip_seconds
 
+TOLD = 8  # selected links, up to which each tells what it waits for
 EMPTY = "Drop clips here to make states. Drag from a state's border to draw a link."
 
 
@@ -64,7 +65,7 @@ def paint_over(p: QPainter, look: painter.ManualLook, marks: Marks, rect: QRectF
         painter.paint_link(p, look, links[marks.hover.ident], strong, 1.8)
     for ident in look.links:
         if ident in links:
-            painter.paint_link(p, look, links[ident], strong, 2.4)
+            painter.paint_link(p, look, links[ident], strong, 2.4, told=len(look.links) <= TOLD)
     _nodes(p, look, marks)
     for source in marks.sources if marks.source else ():
         begin = look.view.to(look.scene.nodes[source].center())
