@@ -237,6 +237,9 @@ class ReviewDialog(QDialog):
             self.go_to(self.work.after(None))
 
     def _later(self) -> None:
+        if self.watching.on and self.current is not None:
+            self.watching.skip(self.current)
+            return
         self.go_to(self.work.open_after(self.current))
 
     def _earlier(self) -> None:

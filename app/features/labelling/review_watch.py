@@ -13,12 +13,13 @@ from metagraph.suggest.review import Review
 
 class Watching:
     """on: clips go on by themselves. held: the one that plays stays until it is gone on from. watched: in the
-    order they were. go: shows a clip; None when all were watched.
+    order they were; skipped: seen, and not to be accepted. go: shows a clip; None when all were watched.
     """
 
     def __init__(self, go: Callable[[str | None], None]) -> None:
         self.on = self.held = False
         self.watched: list[str] = []
+        self.skipped: set[str] = set()
         self._order: list[str] = []
         self._go = go
 
@@ -27,7 +28,7 @@ class Watching:
         belong is seen.
         """
         self._order = ordered(review, waiting)
-        self.watched, self.on, self.held = [], True, False
+        self.watched, self.skipped, self.on, self.held = [], set(), True, False
         self._go(next(iter(self._order), None))
 
     def stop(self) -> list[str]:
@@ -43,9 +44,20 @@ class Watching:
     def go_on(self, clip: str) -> None:
         """Count a clip as watched, and go to the next."""
         self.held = False
+        self.skipped.discard(clip)
         if clip not in self.watched:
             self.watched.append(clip)
-        self._go(next((c for c in self._order if c not in self.watched), None))
+        self._on()
+
+    def skip(self, clip: str) -> None:
+        """Go to the next without accepting a clip."""
+        self.held = False
+        self.skipped.add(clip)
+        self._on()
+
+    def _on(self) -> None:
+        seen = self.skipped.union(self.watched)
+        self._go(next((c for c in self._order if c not in seen), None))
 
     def hold(self) -> None:
         """Stay with the clip that plays."""
@@ -56,7 +68,11 @@ class Watching:
         done, every = len(self.watched), len(self._order)
         if clip is None:
             return f"<b>{done} of {every} watched.</b> Enter accepts them as they are shown."
-        state = "Held: correct it, Enter goes on" if self.held else "Any correction holds, W ends and accepts"
+        state = (
+            "Held: correct it, Enter goes on"
+            if self.held
+            else "Any correction holds, Tab leaves it out, W ends and accepts"
+        )
         return f"<b>Watching {min(done + 1, every)} of {every}</b> &nbsp; {escape(state)}"
 
 

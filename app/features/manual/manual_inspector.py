@@ -22,6 +22,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.manual import manual_commands as commands
+from app.features.manual import manual_many
 from app.features.manual.alias_page import AliasPage
 from app.features.manual.exit_row import ExitRow
 from app.features.manual.manual_canvas import ManualCanvas
@@ -134,6 +135,11 @@ class Inspector(QScrollArea):
         self.alone = QPushButton("Play alone", page)
         self.alone.clicked.connect(lambda: self.session.show_context(self.session.selection.states[0]))
         box.addWidget(_row(page, self.begin, self.alone))
+        self.group = make_widget(
+            QPushButton, "Make alias", page, toolTip="One node that stands for all that is selected (Ctrl+G)"
+        )
+        self.group.clicked.connect(lambda: manual_many.make_alias(self.canvas))
+        box.addWidget(self.group)
         self.state_trouble = QLabel(page, wordWrap=True)
         box.addWidget(self.state_trouble)
         box.addStretch(1)
@@ -189,6 +195,7 @@ class Inspector(QScrollArea):
         self.paste = QPushButton("Paste settings", page)
         self.paste.clicked.connect(lambda: commands.paste(self.canvas))
         box.addWidget(_row(page, self.copy, self.paste))
+        self.group.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         for button in (self.fire, self.play, self.copy, self.paste, self.begin, self.alone):
             button.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # after a click the space bar still plays
         self.link_trouble = QLabel(page, wordWrap=True)

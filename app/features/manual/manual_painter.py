@@ -275,7 +275,8 @@ def paint_alias(painter: QPainter, look: ManualLook, alias: Alias, rect: QRectF)
     painter.drawRoundedRect(rect, rect.height() / 2, rect.height() / 2)
     if scale < TINY:
         return
-    inner = rect.adjusted(14 * scale, 0, -14 * scale, 0)
+    room = 14 * scale if scale >= SMALL else 3
+    inner = rect.adjusted(room, 0, -room, 0)
     words = "every state" if alias.every else f"{count} state{'' if count == 1 else 's'}"
     if alias.entry is not None:
         words += f", enters {look.scene.manual.states[alias.entry].name}"
