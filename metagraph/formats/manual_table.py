@@ -3,7 +3,7 @@
 The first row names the columns: `from` and `to`, and as wanted `when` (finished or request), `trigger`,
 `weight`, `exit` (end, at once, 80 %, or seconds) and `blend`; cells that are left empty are as a drawn link
 has them. `from` and `to` are names of states or aliases, `any` for any state, a pattern such as `sitting*`,
-or several of these with | between them. A pattern in `from` that fits several states becomes an alias.
+or several of these with | between them. Several states in `from` become an alias.
 """
 
 from __future__ import annotations
@@ -153,28 +153,27 @@ def _linked(
 
 
 def _nodes(project: Project, layer: Layer, row: Row, column: str) -> tuple[Project, list[str]]:
-    """Return what a cell names, and the project, which has an alias more where a pattern fits several states
-    to leave.
-    """
+    """Return what a cell names, and the project, with an alias more where several states are to be left."""
     if column not in row.cells:
         raise ValueError(f"'{column}' is empty")
+    found = machine(project, layer)
     out: dict[str, None] = {}
-    for word in (w.strip() for w in row.cells[column].split("|")):
-        found = machine(project, layer)
+    words = [w.strip() for w in row.cells[column].split("|")]
+    for word in words:
         named = [*found.states] if (word, column) == ("*", "to") else _named(found, word)
         if not named:
             raise ValueError(f"'{column}' names '{word}', which is no state or alias of the {layer} layer")
-        if column == "from" and len(named) > 1:
-            same = next((a.id for a in found.aliases.values() if a.states == tuple(named)), None)
-            if same is None:
-                same = f"g{project.next_id}"
-                project = manual_groups.add_alias(project, layer, named)
-                name = word.strip("*?_- ")
-                if name:
-                    project = manual_groups.update_aliases(project, [same], name=name)
-            named = [same]
         out.update(dict.fromkeys(named))
-    return project, list(out)
+    states = tuple(i for i in found.states if i in out)
+    if column == "to" or len(states) < 2:
+        return project, list(out)
+    same = next((a.id for a in found.aliases.values() if a.states == states), None)
+    if same is None:
+        same = f"g{project.next_id}"
+        project = manual_groups.add_alias(project, layer, states)
+        if len(words) == 1 and words[0].strip("*?_- "):
+            project = manual_groups.update_aliases(project, [same], name=words[0].strip("*?_- "))
+    return project, [same, *(i for i in out if i not in states)]
 
 
 def _named(found: Manual, word: str) -> list[str]:

@@ -301,10 +301,11 @@ class Drawing:
     def _table(self, work: Work) -> str:
         """Return the table that names every rectangle by patterns."""
         finder = self.finders[work.layer]
-        lines = ["from,to,when"]
+        lines = ["from,to,when,exit"]
         for r in work.cover.rectangles:
-            sources = _pattern(finder, r.sources)
-            for targets, when in ((r.targets & ~work.unasked, ""), (r.targets & work.unasked, "finished")):
+            sources, alone = _pattern(finder, r.sources), r.sources.bit_count() == 1
+            asked = "request,end" if alone else ""  # as links from an alias are drawn
+            for targets, when in ((r.targets & ~work.unasked, asked), (r.targets & work.unasked, "finished")):
                 if targets:
                     lines.append(f"{sources},{_pattern(finder, targets)},{when}".rstrip(","))
         return "\n".join(lines)
@@ -316,7 +317,9 @@ def _pattern(finder: Finder, want: int) -> str:
     out: list[str] = []
     left = want
     while left:
-        best = max(inside, key=lambda m: (m & left).bit_count() / (len(inside[m]) + 3))
+        best = max(inside, key=lambda m: (m & left).bit_count() / (len(inside[m]) + 3), default=0)
+        if not best & left:
+            raise ValueError("no part of their names tells these states from the others")
         out.append(f"*{inside[best]}*")
         left &= ~best
     return "|".join(out)

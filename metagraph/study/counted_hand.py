@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -235,6 +236,11 @@ def try_way(way: Way, reference: Project, look: bool = False) -> Tried:
 
 
 def searched(reference: Project, named: bool = True, look: bool = False) -> list[Tried]:
-    """Try every way, the cheapest first. Those whose machine is not the reference come last."""
-    out = [try_way(way, reference, look) for way in ways(named)]
+    """Try every way, the cheapest first; those whose machine is not the reference come last, and those that
+    cannot be gone, as names do not tell states apart, are left out.
+    """
+    out = []
+    for way in ways(named):
+        with suppress(ValueError):  # EditError among them
+            out.append(try_way(way, reference, look))
     return sorted(out, key=lambda t: (bool(t.score.mistakes), t.seconds + t.looked))

@@ -58,8 +58,8 @@ class ManualEditor(QWidget):
         layout.setSpacing(0)
         above, below = self._row(6, 0), self._row(2, 6)
         above.addWidget(self.words, 1)
-        for part in (self.arrange, self.fit):
-            above.addWidget(part)
+        above.addWidget(self.arrange)
+        above.addWidget(self.fit)
         below.addWidget(self.search, 1)
         for part in (self.table, self.trigger, self.fire):
             below.addWidget(part)
