@@ -86,6 +86,21 @@ def window() -> Any:
     return Driver(made, Bot())
 
 
+def looked_at(row: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a row of clips dropped one by one with each looked at before: keys and the clips' own time."""
+    from app.project.files import SAMPLE
+    from metagraph.formats.store import open_project
+    from tests.app.participant import task
+
+    clips = task(open_project(SAMPLE).project, row["clips"]).project.clips.values()
+    operators = dict(row["operators"])
+    for name, count in LOOK.items():
+        operators[name] += count * len(clips)
+    every = sum(e.duration for e in clips)
+    times = {"hands": predicted(operators), "seconds": predicted({**operators, "L": every})}
+    return {**row, "look": True, "operators": operators, **times}
+
+
 def done(condition: str, clips: int, named: bool, look: bool) -> dict[str, Any]:
     """Do a task; return what it took."""
     from app.project.files import SAMPLE
@@ -142,9 +157,6 @@ def done(condition: str, clips: int, named: bool, look: bool) -> dict[str, Any]:
     drive.window.close()
     QTest.qWait(50)
     operators = dict(result.operators)
-    if look and condition == ONE_BY_ONE:
-        for name, count in LOOK.items():
-            operators[name] += count * clips
     row["processor"] = time.process_time() - began
     return row | told(operators, every * look, found)
 
@@ -334,7 +346,8 @@ def main(arguments: Sequence[str]) -> None:
         if any(key(r) == one for r in rows):
             continue
         started = time.monotonic()
-        row = done(*one)
+        plain = next((r for r in rows if key(r) == (*one[:3], False)), None)
+        row = looked_at(plain) if one[0] == ONE_BY_ONE and one[3] and plain is not None else done(*one)
         print(*one, f"{time_words(row['seconds'])} predicted, {row['mistakes']} mistakes,", end=" ")
         print(f"{time.monotonic() - started:.0f} s here", flush=True)
         rows.append(row)

@@ -212,7 +212,7 @@ class Drawing:
             for clip in (work.clips[n] for block in blocks for n in block):
                 if look:
                     self.hand.look(clip)
-                self.hand.drop(work, [clip], self.library[clip] if self.way.named else None)
+                self.hand.drop(work, [clip], _prefix(self.library[clip]) if self.way.named else None)
             return
         for clip in work.clips if look else ():
             self.hand.look(clip)
@@ -309,6 +309,11 @@ class Drawing:
                 if targets:
                     lines.append(f"{sources},{_pattern(finder, targets)},{when}".rstrip(","))
         return "\n".join(lines)
+
+
+def _prefix(name: str) -> str:
+    """Return what is searched for once for all clips of a stance, where names begin with it."""
+    return name.split("__")[0] + "__" if "__" in name else name
 
 
 def _pattern(finder: Finder, want: int) -> str:

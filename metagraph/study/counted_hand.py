@@ -91,8 +91,6 @@ class CountedHand:
 
     def drop(self, work: Work, clips: Sequence[str], words: str | None) -> None:
         made = self.made
-        if len(clips) == 1 and words is not None and "__" in words:
-            words = words.split("__")[0] + "__"  # typed once for all clips of a stance
         made.think()
         if words is not None and words != self._typed and (words or self._typed):
             made.think(1 + words.count(" ") + words.count("|"))
