@@ -7,12 +7,13 @@ from __future__ import annotations
 import subprocess
 from collections.abc import Sequence
 from dataclasses import asdict, replace
+from functools import partial
 from typing import Any
 from zlib import crc32
 
-from PySide6.QtCore import QPoint, QPointF, Qt
+from PySide6.QtCore import QPoint, QPointF, Qt, QTimer
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QInputDialog, QLineEdit
 
 from metagraph.graph import edits
 from metagraph.graph.edits import limb_of
@@ -318,14 +319,27 @@ class Reviewer(Participant):
             self.think()
             for _ in range(steps):
                 QTest.keyClick(dialog, Qt.Key.Key_Down)
-            at = choices.index(wanted[name])
-            if at < 9:
+            at = choices.index(wanted[name]) if wanted[name] in choices else None
+            if at is None:  # a stance that nothing was proposed for on this layer
+                QTimer.singleShot(100, partial(self._type, wanted[name]))
+                QTest.keyClick(dialog, Qt.Key.Key_N)
+            elif at < 9:
                 QTest.keyClick(dialog, Qt.Key(Qt.Key.Key_1 + at))
             while dialog.review.value(clip, name) != wanted[name]:
                 QTest.keyClick(dialog, Qt.Key.Key_Right)
             self.corrected += 1
             wrong = True
         return wrong
+
+    def _type(self, words: str) -> None:
+        """Answer the question that is asked, or about to be."""
+        asked = QApplication.activeModalWidget()
+        field = asked.findChild(QLineEdit) if isinstance(asked, QInputDialog) else None
+        if field is None:
+            QTimer.singleShot(50, partial(self._type, words))
+            return
+        QTest.keyClicks(field, words)
+        QTest.keyClick(field, Qt.Key.Key_Return)
 
     def _truth(self, review: Any) -> dict[str, dict[str, Any]]:
         """What each clip is, with the stances called as the review calls them: by the loops in them."""
