@@ -185,7 +185,9 @@ class Expert(Participant):
         corners = [
             ((x, y), (right, high if y == low else low)) for x in range(-20, -300, -9) for y in (low, high)
         ]
-        corners += [((x + 240.0, y), (-16, z)) for (x, y), (_, z) in corners]
+        corners += [
+            ((right + 9.0 * n, y), (-16, high if y == low else low)) for n in range(60) for y in (low, high)
+        ]
         corners = [(a, b) for a, b in corners if scene.hit(QPointF(*a), view.scale).area == "nothing"]
         a, b = (view.to(QPointF(*c)).toPoint() for c in corners[0])  # where nothing is
         keys = CONTROL if more else Qt.KeyboardModifier.NoModifier

@@ -507,11 +507,9 @@ def test_all_clips_are_watched_through_a_correction_holds_and_they_are_accepted_
     assert drive.document.project.uses[second][0].kind == wanted
     press(dialog, K.Key_Backspace)  # one step
     assert len(dialog.work.waiting()) == 152
-    press(dialog, K.Key_W)
+    press(dialog, K.Key_W, K.Key_Return)
     out = dialog.current
-    press(
-        dialog, K.Key_Tab, K.Key_Return, K.Key_W
-    )  # ended after one: that is accepted, what was left out is not
+    press(dialog, K.Key_Tab, K.Key_W)  # ended after one: that is accepted, what was left out is not
     assert len(dialog.work.waiting()) < 152 and out in dialog.work.waiting()
 
 
