@@ -50,6 +50,7 @@ TICKS = {
     180: "3 h",
     600: "10 h",
 }
+IN_WINDOW = 50  # clips, up to which states laid out by hand are in reach of a rubber band in one window
 LOOK = {"K": 2}  # on to the next clip in the library, and play it
 
 
@@ -118,7 +119,10 @@ def done(condition: str, clips: int, named: bool, look: bool) -> dict[str, Any]:
     row: dict[str, Any] = {"condition": condition, "clips": clips, "named": named, "look": look}
     every = sum(e.duration for e in given.project.clips.values())
     counted: Any = None
-    if condition == BY_KEYS:
+    if condition == BEST and not named and clips > IN_WINDOW:
+        counted = searched(given.reference, named, look)[0]
+        row["counted"] = True
+    elif condition == BY_KEYS:
         counted = dropped(given.reference)
     elif condition in (FROM_ANY, EVERY):
         links: Any = "from any state" if condition == FROM_ANY else "one by one"
@@ -126,7 +130,7 @@ def done(condition: str, clips: int, named: bool, look: bool) -> dict[str, Any]:
     if counted is not None:
         operators = dict(counted.operators)
         for name, count in LOOK.items():
-            operators[name] += count * clips * look
+            operators[name] += count * clips * look * (condition != BEST)
         return row | told(operators, every * look, counted.score)
     drive = window()
     bare(drive, given, "manual" if condition == BEST else "meta")
@@ -236,19 +240,20 @@ def table(rows: Sequence[Mapping[str, Any]]) -> str:
     for named, look, title in KINDS:
         out += [f"### {title}", ""]
         out.append(
-            f"| clips | way | {' | '.join(OPERATORS)} | waits | hands | in all | times the proposals | links | mistakes |"
+            f"| clips | way | {' | '.join(OPERATORS)} | waits | hands | in all | times the proposals | connections | mistakes |"
         )
         out.append("|---" * (len(OPERATORS) + 8) + "|")
         mine = [r for r in rows if (r["named"], r["look"]) == (named, look)]
         for row in sorted(mine, key=lambda r: (r["clips"], SHOWN.index(r["condition"]))):
-            cells = [row["clips"], row["condition"]]
+            cells = [row["clips"], row["condition"] + " (counted)" * row.get("counted", False)]
             cells += [f"{row['operators'].get(k, 0):,.0f}" for k in OPERATORS]
             cells += [
                 f"{row['operators'].get('R', 0):.0f} s",
                 time_words(row["hands"]),
                 time_words(row["seconds"]),
             ]
-            cells += [times(rows, row), f"{row['connections']:,}", row["mistakes"]]
+            ratio = times(rows, row) if row["condition"] in (PROPOSED, BY_KEYS, BEST) else ""
+            cells += [ratio, f"{row['connections']:,}", row["mistakes"]]
             out.append(f"| {' | '.join(map(str, cells))} |")
         out.append("")
     return "\n".join(out)
@@ -279,7 +284,7 @@ def time_words(seconds: float) -> str:
 
 def plot(rows: Sequence[Mapping[str, Any]]) -> str:
     """Return predicted minutes over clips, both on log scales, as SVG that stands on light and dark pages."""
-    wide, high, left, top, right, bottom = 760, 430, 64, 20, 250, 48
+    wide, high, left, top, right, bottom = 800, 430, 64, 20, 290, 48
     rows = [r for r in rows if r["named"] and r["look"]]
     sizes = sorted({r["clips"] for r in rows})
     minutes = [r["seconds"] / 60 for r in rows]
@@ -322,12 +327,10 @@ def plot(rows: Sequence[Mapping[str, Any]]) -> str:
         parts.append(f'<polyline points="{way}" fill="none" stroke="{color}" stroke-width="2.5"/>')
         parts += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="4" fill="{color}"/>' for a, b in points]
         last = mine[-1]
-        *first, words = condition.split(", ")
-        for n, line in enumerate([*first, f"{words}, {time_words(last['seconds'])}"]):
-            parts.append(
-                f'<text x="{points[-1][0] + 14:.1f}" y="{points[-1][1] + 4 + 15 * n:.1f}" '
-                f'fill="{color}">{line}</text>'
-            )
+        parts.append(
+            f'<text x="{points[-1][0] + 12:.1f}" y="{points[-1][1] + 4:.1f}" '
+            f'fill="{color}">{condition}, {time_words(last["seconds"])}</text>'
+        )
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {high}" font-family="sans-serif" '
         'font-size="12" role="img" '
