@@ -1,15 +1,16 @@
-"""Let the scripted participant do the labelling task in both conditions: `python docs/participant.py`, under
-Xvfb.
+"""Let scripted experts do the labelling task in both conditions: `python docs/participant.py`, under Xvfb.
 
-With 10, 20, 50, 100 and 152 of the sample clips, or with the numbers given, through the real windows with
-real events (needs xdotool; half an hour for all). Writes docs/participant.md, a table, and
-docs/participant.svg, how each grows. A run that was interrupted goes on where it was; `--anew` begins again.
+With 10, 20, 50, 100 and 152 of the sample clips, or with the numbers given, through the real windows with real
+events (needs xdotool; half an hour for all), each in the quickest way known; ways that nobody would go who knows
+the tool are counted with the real edits, without the window. Writes docs/participant.md and docs/participant.svg.
+A run that was interrupted goes on where it was; `--anew` begins again.
 """
 
 from __future__ import annotations
 
 import json
 import math
+import os
 import subprocess
 import sys
 import tempfile
@@ -25,42 +26,32 @@ from PySide6.QtCore import QPoint, QSettings  # noqa: E402
 from PySide6.QtTest import QTest  # noqa: E402
 
 from app.main import prepare  # noqa: E402
+from metagraph.study.klm import predicted  # noqa: E402
 
 SIZES = (10, 20, 50, 100, 152)
-NAMES = {
-    "meta": "meta-graph",
-    "manual": "state machine, to and from stances only",
-    "manual, every connection": "state machine, every connection",
+PROPOSED, BY_KEYS, ONE_BY_ONE = (
+    "meta-graph, proposals",
+    "meta-graph, no proposals",
+    "meta-graph, clip by clip",
+)
+BEST, FROM_ANY = "state machine, best way found", "state machine, from any state"
+EVERY = "state machine, link by link"
+SHOWN = (PROPOSED, BY_KEYS, ONE_BY_ONE, BEST, FROM_ANY, EVERY)
+COLORS = dict(zip(SHOWN, ("#2a9d8f", "#7fb8a4", "#b5cfc2", "#c1554b", "#e09f3e", "#d9b98a"), strict=True))
+OPERATORS = "KPBHMS"
+TICKS = {
+    0.1: "6 s",
+    0.3: "20 s",
+    1: "1 min",
+    3: "3 min",
+    10: "10 min",
+    30: "30 min",
+    60: "1 h",
+    180: "3 h",
+    600: "10 h",
 }
-COLORS = {"meta": "#2a9d8f", "manual": "#e09f3e", "manual, every connection": "#c1554b"}
-OPERATORS = "KPBHM"
-TICKS = {1: "1 min", 3: "3 min", 10: "10 min", 30: "30 min", 60: "1 h", 180: "3 h", 600: "10 h"}
-
-
-ABOVE = """# What each way of authoring costs an expert's hands
-
-Made by `xvfb-run -a -s "-screen 0 1920x1200x24" python docs/participant.py`: a scripted participant that makes no mistakes does the same
-task in both conditions through the real windows, with real drags, clicks and keys, one clip after another. Operators are counted by the
-program's own recorder; times are those of the keystroke-level model (K 0.28, P 1.10, B 0.10, H 0.40, M 1.35 s; a drag is P B P B; a
-thought stands before each clip, each link, each other setting and each command). Scrolling and waiting are not counted, nor is looking at
-motion or trying out times.
-
-The state machine is drawn twice: *every connection* a meta-graph implies, which is the equivalent machine, and only those *to and from
-stances*, which lets every clip play but none follow another without coming to rest. A request link between two clips gets its exit time.
-
-![How the predicted time grows with the clips](participant.svg)
-
-| clips | condition | K | P | B | H | M | predicted | a clip | times the meta-graph | connections | missing | mistakes | processor |
-|---|---|---|---|---|---|---|---|---|---|---|---|---|---|
-"""
-BELOW = """
-
-*Missing*: connections of the meta-graph's machine that were not drawn. *Mistakes*: wrong, unwanted or ill-timed ones. *Processor*: what
-the program and the software renderer took meanwhile, on two shared cores without a graphics card; the script waits for nothing else.
-
-These are predictions of what hands do, for somebody who never errs and knows what is right. In the paper one animator took 8 hours with
-a meta-graph and 63 with a state machine for 152 clips, most of it looking, deciding and finding mistakes.
-"""
+IN_WINDOW = 50  # clips, up to which states laid out by hand are in reach of a rubber band in one window
+LOOK = {"K": 2}  # on to the next clip in the library, and play it
 
 
 class Bot:
@@ -77,75 +68,226 @@ class Bot:
         QTest.qWait(milliseconds)
 
 
-def done(condition: str, clips: int) -> dict[str, Any]:
-    """Do a task; return what it took."""
+def window() -> Any:
+    """Return a hand in a new window."""
     from app.main import make_window
-    from app.project.files import SAMPLE
-    from metagraph.formats.store import open_project
     from tests.app.conftest import Driver
-    from tests.app.participant import Participant, bare, task
 
     QSettings().clear()
-    window = make_window()
-    window.resize(1680, 1020)
-    window.show()
-    window.make_late_panels()
-    window.activateWindow()
-    corner = window.statusBar().mapToGlobal(QPoint(300, 8))
+    made = make_window()
+    made.resize(1680, 1020)
+    made.show()
+    made.make_late_panels()
+    made.activateWindow()
+    corner = made.statusBar().mapToGlobal(QPoint(300, 8))
     subprocess.run(
         ["xdotool", "mousemove", str(corner.x()), str(corner.y()), "click", "1"], check=True, timeout=10
     )
     QTest.qWait(300)
-    drive = Driver(window, Bot())
+    return Driver(made, Bot())
+
+
+def looked_at(row: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a row of clips dropped one by one with each looked at before: keys and the clips' own time."""
+    from app.project.files import SAMPLE
+    from metagraph.formats.store import open_project
+    from tests.app.participant import task
+
+    clips = task(open_project(SAMPLE).project, row["clips"]).project.clips.values()
+    operators = dict(row["operators"])
+    for name, count in LOOK.items():
+        operators[name] += count * len(clips)
+    every = sum(e.duration for e in clips)
+    times = {"hands": predicted(operators), "seconds": predicted({**operators, "L": every})}
+    return {**row, "look": True, "operators": operators, **times}
+
+
+def done(condition: str, clips: int, named: bool, look: bool) -> dict[str, Any]:
+    """Do a task; return what it took."""
+    from app.project.files import SAMPLE
+    from metagraph.formats.store import open_project
+    from metagraph.study.by_hand import Way
+    from metagraph.study.counted_drops import dropped
+    from metagraph.study.counted_hand import searched, try_way
+    from metagraph.study.normal_machine import normal
+    from metagraph.study.score import score
+    from tests.app.expert import Expert, Reviewer, hidden, without_times
+    from tests.app.participant import Participant, bare, task
+
     given = task(open_project(SAMPLE).project, clips)
-    bare(drive, given, condition)
-    result = Participant(drive, given).do(condition)
-    window.shell.document.undo_stack.setClean()
-    window.close()
+    given = given if named else hidden(given)
+    row: dict[str, Any] = {"condition": condition, "clips": clips, "named": named, "look": look}
+    every = sum(e.duration for e in given.project.clips.values())
+    counted: Any = None
+    if condition == BEST and not named and clips > IN_WINDOW:
+        counted = searched(given.reference, named, look)[0]
+        row["counted"] = True
+    elif condition == BY_KEYS:
+        counted = dropped(given.reference)
+    elif condition in (FROM_ANY, EVERY):
+        links: Any = "from any state" if condition == FROM_ANY else "one by one"
+        counted = try_way(Way("one by one", links, "clicks", "each", named), given.reference)
+    if counted is not None:
+        operators = dict(counted.operators)
+        for name, count in LOOK.items():
+            operators[name] += count * clips * look * (condition != BEST)
+        return row | told(operators, every * look, counted.score)
+    drive = window()
+    bare(drive, given, "manual" if condition == BEST else "meta")
+    began = time.process_time()
+    if condition == BEST:
+        best = searched(given.reference, named)[0]
+        row["way"], row["links"] = str(best.way), best.edges
+        row["least"] = [w.cover.least for w in _works(given)]
+        row["rectangles"] = [len(w.cover.rectangles) for w in _works(given)]
+        row["tried"] = [
+            [str(t.way), round(t.seconds, 1), t.edges, len(t.score.mistakes)]
+            for t in searched(given.reference, named)
+        ]
+        expert = Expert(drive, given)
+        expert.act = lambda _: expert.draw(best.way, look)  # type: ignore[method-assign]
+        result = expert.do("best")
+    elif condition == PROPOSED:
+        reviewer = Reviewer(drive, given)
+        reviewer.act = lambda _: reviewer.review(look)  # type: ignore[method-assign]
+        result = reviewer.do("meta")
+        row["corrected"] = reviewer.corrected
+    else:
+        result = Participant(drive, given).do("meta")
+    project = drive.document.project
+    plain = project if condition == BEST else without_times(project)
+    found = score(normal(plain), normal(given.reference))
+    drive.shell.document.undo_stack.setClean()
+    drive.window.close()
     QTest.qWait(50)
-    s = result.score
+    operators = dict(result.operators)
+    row["processor"] = time.process_time() - began
+    return row | told(operators, every * look, found)
+
+
+def _works(given: Any) -> list[Any]:
+    from metagraph.study.by_hand import works
+
+    return works(given.reference)
+
+
+def told(operators: dict[str, float], looked: float, found: Any) -> dict[str, Any]:
+    """Return what a task took, and how right it is."""
     return {
-        "condition": condition,
-        "clips": clips,
-        "operators": dict(result.operators),
-        "predicted": result.predicted,
-        "seconds": result.seconds,
-        "ours": result.ours,
-        "connections": s.right,
-        "missing": s.missing,
-        "mistakes": s.extra + s.wrong + sum(m.count for m in s.mistakes if m.what != "missing"),
+        "operators": operators,
+        "hands": predicted(operators),
+        "seconds": predicted({**operators, "L": looked}),
+        "connections": found.right,
+        "missing": found.missing,
+        "mistakes": found.extra + found.wrong + sum(m.count for m in found.mistakes if m.what != "missing"),
     }
 
 
+def tasks(sizes: Sequence[int]) -> list[tuple[str, int, bool, bool]]:
+    """Return (condition, clips, names tell, each is looked at), in the order they are done."""
+    out = []
+    for size in sizes:
+        for named, look in ((True, False), (True, True), (False, True)):
+            some = SHOWN if named else (PROPOSED, BEST, FROM_ANY)
+            out += [(c, size, named, look) for c in some]
+    return out
+
+
+def key(row: Mapping[str, Any]) -> tuple[str, int, bool, bool]:
+    return row["condition"], row["clips"], row["named"], row["look"]
+
+
+def times(rows: Sequence[Mapping[str, Any]], row: Mapping[str, Any], base: str = PROPOSED) -> str:
+    """Return how many times as long a row takes as another condition of the same task."""
+    first = next((r for r in rows if key(r) == (base, *key(row)[1:])), None)
+    return f"{row['seconds'] / first['seconds']:.1f}" if first is not None else ""
+
+
+KINDS = (
+    (True, False, "Names tell what clips are; nothing is looked at"),
+    (True, True, "Names tell what clips are; each is watched once"),
+    (False, True, "Names tell nothing; each is watched once"),
+)
+
+
+def fair(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Return the best against the best, by sizes."""
+    sizes = sorted({r["clips"] for r in rows})
+    by = {key(r): r for r in rows}
+    out = [
+        "| clips | " + " | ".join(title.lower() for *_, title in KINDS) + " | by name alone, no proposals |"
+    ]
+    out.append("|---|" + "---|" * (len(KINDS) + 1))
+    for size in sizes:
+        cells = []
+        for ours, theirs, named, look in (
+            *((PROPOSED, BEST, named, look) for named, look, _ in KINDS),
+            (BY_KEYS, BEST, True, False),
+        ):
+            a, b = by.get((ours, size, named, look)), by.get((theirs, size, named, look))
+            cells.append(
+                f"{time_words(a['seconds'])} : {time_words(b['seconds'])} = **{b['seconds'] / a['seconds']:.1f}**"
+                if a is not None and b is not None
+                else ""
+            )
+        out.append(f"| {size} | {' | '.join(cells)} |")
+    return "\n".join(out)
+
+
 def table(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return what was found as a page."""
-    lines = []
-    for row in sorted(rows, key=lambda r: (r["clips"], list(NAMES).index(r["condition"]))):
-        base = next((r for r in rows if r["clips"] == row["clips"] and r["condition"] == "meta"), row)
-        cells = [
-            row["clips"],
-            NAMES[row["condition"]],
-            *(f"{row['operators'].get(k, 0):,}" for k in OPERATORS),
-        ]
-        cells += [
-            time_words(row["predicted"]),
-            f"{row['predicted'] / row['clips']:.1f} s",
-            f"{row['predicted'] / base['predicted']:.1f}",
-        ]
-        cells += [f"{row['connections']:,}", f"{row['missing']:,}", row["mistakes"], f"{row['ours']:.0f} s"]
-        lines.append(f"| {' | '.join(map(str, cells))} |")
-    return f"{ABOVE}{chr(10).join(lines)}{BELOW}"
+    """Return what was found as tables."""
+    out = []
+    for named, look, title in KINDS:
+        out += [f"### {title}", ""]
+        out.append(
+            f"| clips | way | {' | '.join(OPERATORS)} | waits | hands | in all | times the proposals | connections | mistakes |"
+        )
+        out.append("|---" * (len(OPERATORS) + 8) + "|")
+        mine = [r for r in rows if (r["named"], r["look"]) == (named, look)]
+        for row in sorted(mine, key=lambda r: (r["clips"], SHOWN.index(r["condition"]))):
+            cells = [row["clips"], row["condition"] + " (counted)" * row.get("counted", False)]
+            cells += [f"{row['operators'].get(k, 0):,.0f}" for k in OPERATORS]
+            cells += [
+                f"{row['operators'].get('R', 0):.0f} s",
+                time_words(row["hands"]),
+                time_words(row["seconds"]),
+            ]
+            ratio = times(rows, row) if row["condition"] in (PROPOSED, BY_KEYS, BEST) else ""
+            cells += [ratio, f"{row['connections']:,}", row["mistakes"]]
+            out.append(f"| {' | '.join(map(str, cells))} |")
+        out.append("")
+    return "\n".join(out)
+
+
+def search_table(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Return every way that was tried at the largest task, and how few aliases there must be."""
+    size = max(r["clips"] for r in rows)
+    row = next(r for r in rows if key(r) == (BEST, size, True, False))
+    out = [
+        f"With {size} clips, by layer {', '.join(map(str, row['rectangles']))} aliases do, and fewer than "
+    ]
+    out = [
+        f"{out[0]}{', '.join(map(str, row['least']))} cannot.",
+        "",
+        "| way | predicted | links | mistakes |",
+        "|---|---|---|---|",
+    ]
+    out += [f"| {way} | {time_words(s)} | {links:,} | {wrong} |" for way, s, links, wrong in row["tried"]]
+    return "\n".join(out)
 
 
 def time_words(seconds: float) -> str:
+    if seconds < 90:
+        return f"{seconds:.0f} s"
     return f"{seconds / 3600:.1f} h" if seconds >= 5400 else f"{seconds / 60:.1f} min"
 
 
 def plot(rows: Sequence[Mapping[str, Any]]) -> str:
     """Return predicted minutes over clips, both on log scales, as SVG that stands on light and dark pages."""
-    wide, high, left, top, right, bottom = 760, 430, 64, 20, 250, 48
+    wide, high, left, top, right, bottom = 800, 430, 64, 20, 290, 48
+    rows = [r for r in rows if r["named"] and r["look"]]
     sizes = sorted({r["clips"] for r in rows})
-    minutes = [r["predicted"] / 60 for r in rows]
+    minutes = [r["seconds"] / 60 for r in rows]
     x1, x2 = math.log(min(sizes) * 0.9), math.log(max(sizes) * 1.1)
     y1, y2 = math.log10(0.7 * min(minutes)), math.log10(1.6 * max(minutes))
 
@@ -180,17 +322,15 @@ def plot(rows: Sequence[Mapping[str, Any]]) -> str:
         mine = sorted((r for r in rows if r["condition"] == condition), key=lambda r: r["clips"])
         if not mine:
             continue
-        points = [(x(r["clips"]), y(r["predicted"] / 60)) for r in mine]
+        points = [(x(r["clips"]), y(r["seconds"] / 60)) for r in mine]
         way = " ".join(f"{a:.1f},{b:.1f}" for a, b in points)
         parts.append(f'<polyline points="{way}" fill="none" stroke="{color}" stroke-width="2.5"/>')
         parts += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="4" fill="{color}"/>' for a, b in points]
         last = mine[-1]
-        *first, words = NAMES[condition].split(", ")
-        for n, line in enumerate([*first, f"{words}, {time_words(last['predicted'])}"]):
-            parts.append(
-                f'<text x="{points[-1][0] + 14:.1f}" y="{points[-1][1] + 4 + 15 * n:.1f}" '
-                f'fill="{color}">{line}</text>'
-            )
+        parts.append(
+            f'<text x="{points[-1][0] + 12:.1f}" y="{points[-1][1] + 4:.1f}" '
+            f'fill="{color}">{condition}, {time_words(last["seconds"])}</text>'
+        )
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {high}" font-family="sans-serif" '
         'font-size="12" role="img" '
@@ -200,33 +340,35 @@ def plot(rows: Sequence[Mapping[str, Any]]) -> str:
 
 def main(arguments: Sequence[str]) -> None:
     sizes = [int(a) for a in arguments if a.isdigit()] or SIZES
-    kept = Path(tempfile.gettempdir()) / "metagraph-participant.jsonl"
+    kept = Path(tempfile.gettempdir()) / "metagraph-participant-2.jsonl"
     if "--anew" in arguments:
         kept.unlink(missing_ok=True)
     rows = [json.loads(line) for line in kept.read_text().splitlines()] if kept.is_file() else []
     prepare()
-    for size in sizes:
-        for condition in NAMES:
-            if any(r["clips"] == size and r["condition"] == condition for r in rows):
-                continue
-            row = done(condition, size)
-            print(
-                f"{size} clips, {NAMES[condition]}: {time_words(row['predicted'])} predicted, "
-                f"{row['seconds']:.0f} s here",
-                flush=True,
-            )
-            rows.append(row)
-            with kept.open("a") as file:
-                file.write(json.dumps(row) + "\n")
-    (ROOT / "docs" / "participant.md").write_text(table(rows), encoding="utf-8")
+    for one in tasks(sizes):
+        if any(key(r) == one for r in rows):
+            continue
+        started = time.monotonic()
+        plain = next((r for r in rows if key(r) == (*one[:3], False)), None)
+        row = looked_at(plain) if one[0] == ONE_BY_ONE and one[3] and plain is not None else done(*one)
+        print(*one, f"{time_words(row['seconds'])} predicted, {row['mistakes']} mistakes,", end=" ")
+        print(f"{time.monotonic() - started:.0f} s here", flush=True)
+        rows.append(row)
+        with kept.open("a") as file:
+            file.write(json.dumps(row) + "\n")
+    rows = [r for r in rows if r["clips"] in sizes]
+    page = (ROOT / "docs" / "participant.md").read_text(encoding="utf-8")
+    for name, text in (("fair", fair(rows)), ("ways", table(rows)), ("search", search_table(rows))):
+        first, last = f"<!-- {name} -->", f"<!-- end of {name} -->"
+        before, _, rest = page.partition(first)
+        page = f"{before}{first}\n{text}\n{last}{rest.partition(last)[2]}"
+    (ROOT / "docs" / "participant.md").write_text(page, encoding="utf-8")
     (ROOT / "docs" / "participant.svg").write_text(plot(rows), encoding="utf-8")
     print("docs/participant.md\ndocs/participant.svg")
 
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:
-        import os
-
         os.environ["XDG_CONFIG_HOME"] = os.environ["XDG_DATA_HOME"] = folder
         QSettings.setDefaultFormat(QSettings.Format.IniFormat)
         QSettings.setPath(QSettings.Format.IniFormat, QSettings.Scope.UserScope, folder)

@@ -12,7 +12,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from metagraph.formats.store import open_project, save_project
-from metagraph.graph import edits, manual_edits
+from metagraph.graph import edits, manual_edits, manual_groups
 from metagraph.graph.manual import ANY, WHENS
 from metagraph.graph.model import KINDS, LAYERS, LIMBS, PARTS, Markov, Project
 from metagraph.motion.clip import Clip
@@ -285,10 +285,21 @@ def _manual(draw: Any, project: Project) -> Project:
             manual_edits.add_states(project, chosen, layer, draw(times), -draw(times)) if chosen else project
         )
     some = draw(st.lists(st.sampled_from(states), min_size=1, max_size=3))
-    step = draw(st.integers(0, 7))
+    step = draw(st.integers(0, 9))
+    aliases = list(project.manual[layer].aliases)
+    if step > 7:
+        if not aliases or step == 8:
+            return manual_groups.add_alias(project, layer, some, draw(st.booleans()))
+        changes = {"again": draw(st.booleans()), "entry": draw(st.none() | st.sampled_from(states))}
+        after = manual_groups.update_aliases(project, aliases[-1:], name=draw(names), **changes)
+        return manual_groups.choose(after, aliases[-1], some, draw(st.booleans()))
     if step < 3 or not links:
+        entered = [a.id for a in project.manual[layer].aliases.values() if a.entry is not None]
         return manual_edits.add_link(
-            project, layer, draw(st.sampled_from([*states, ANY])), draw(st.sampled_from(states))
+            project,
+            layer,
+            draw(st.sampled_from([*states, *aliases, ANY])),
+            draw(st.sampled_from([*states, *entered])),
         )
     if step == 3:
         fields = {
@@ -306,7 +317,11 @@ def _manual(draw: Any, project: Project) -> Project:
             "trigger": draw(names),
             "weight": draw(st.sampled_from([0.5, 3.0])),
         }
-        fields = {"exit_time": draw(st.none() | times), "blend": draw(times)}
+        fields = {
+            "exit_time": draw(st.none() | times),
+            "exit_part": draw(st.sampled_from([None, 0.5, 1.0])),
+            "blend": draw(times),
+        }
         return manual_edits.update_links(
             project, [draw(st.sampled_from(links))], condition=condition, **fields
         )
@@ -315,7 +330,7 @@ def _manual(draw: Any, project: Project) -> Project:
             project, layer, manual_edits.copied(project, some), draw(times), draw(times)
         )[0]
     if step == 6:
-        return manual_edits.remove(project, some[:1], [draw(st.sampled_from(links))])
+        return manual_edits.remove(project, [*some[:1], *aliases[:1]], [draw(st.sampled_from(links))])
     return manual_edits.set_start(
         manual_edits.move_nodes(project, layer, {some[0]: (draw(times), 0.5), ANY: (-3.0, 4.0)}), some[-1]
     )

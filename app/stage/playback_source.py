@@ -5,6 +5,7 @@ time.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -161,8 +162,9 @@ def alone(project: Project, clip: str) -> Shown:
 def by_hand(project: Project, length: float, fires: Iterable[Fire] = (), only: str | None = None) -> Shown:
     """Return the manual state machines playing. only: a state or link to look at alone."""
     if only is not None:
-        plan = link_alone(project, only) if project.state(only) is None else state_alone(project, only)
-        return Shown(project, plan.plan, plan.end, manual=plan)
+        with suppress(KeyError):  # a link to a group that has no entry leads nowhere
+            plan = link_alone(project, only) if project.state(only) is None else state_alone(project, only)
+            return Shown(project, plan.plan, plan.end, manual=plan)
     plan = make_manual_plan(project, length, fires)
     return Shown(project, plan.plan, length, manual=plan)
 

@@ -20,7 +20,7 @@ class Selection(QObject):
         self.document = document
         self.clips: tuple[str, ...] = ()  # in the library
         self.actions: tuple[str, ...] = ()  # in the graph
-        self.states: tuple[str, ...] = ()  # in the manual state machine
+        self.states: tuple[str, ...] = ()  # and aliases, in the manual state machine
         self.links: tuple[str, ...] = ()
         self.copied: str | None = None  # the action whose properties can be pasted
 
@@ -61,6 +61,6 @@ class Selection(QObject):
         self._select(
             tuple(i for i in self.clips if i in after.clips),
             tuple(i for i in self.actions if after.action(i) is not None),
-            tuple(i for i in self.states if after.state(i) is not None),
+            tuple(i for i in self.states if after.state(i) is not None or after.alias(i) is not None),
             tuple(i for i in self.links if after.link(i) is not None),
         )

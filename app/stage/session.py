@@ -81,7 +81,7 @@ class Session(QObject):
         """Go to a place of the project: what the problems panel and the timeline call."""
         project = self.document.project
         found = project.action(action) if action else None
-        drawn = project.state(action) if action else None
+        drawn = (project.state(action) or project.alias(action)) if action else None
         if drawn is not None:  # what the manual state machine plays is named by its states
             self.place.set_layer(drawn.layer)
             self.selection.select_states((drawn.id,))

@@ -34,12 +34,12 @@ from metagraph.formats.data import (
 )
 from metagraph.formats.fields import Data, DataError
 from metagraph.formats.locking import Owner
-from metagraph.formats.manual_data import link_data, manual_data, state_data
+from metagraph.formats.manual_data import alias_data, link_data, manual_data, state_data
 from metagraph.formats.store import content_digest, file_digest
 from metagraph.graph.manual import Manual
 from metagraph.graph.model import LAYERS, Layer, MetaGraph, Project
 
-KEYED = ("clips", "stances", "actions", "states", "links")
+KEYED = ("clips", "stances", "actions", "states", "aliases", "links")
 ABOUT = ("step", "how")  # what a record says of its edit, beside what changed
 How = Literal["done", "merged", "undone", "redone"]
 
@@ -100,6 +100,7 @@ def _manual(before: Mapping[Layer, Manual], after: Mapping[Layer, Manual]) -> Da
                 if getattr(old, name) != getattr(new, name)
             }
             _keyed(part, "states", old.states, new.states, state_data)
+            _keyed(part, "aliases", old.aliases, new.aliases, alias_data)
             _keyed(part, "links", old.links, new.links, link_data)
             if part:
                 out[layer] = part

@@ -1,13 +1,15 @@
 """The manual state machine: states and links drawn one by one, as in the engines' editors. What the
 meta-graph is compared with.
 
-A state plays a part of a clip. A link leads from one state, or from any, to another; it is taken when its
-source has finished, or when its trigger is fired. One machine a layer; ids are never names and never change.
+A state plays a part of a clip. A link leads from one state, from the states an alias stands for, or from any,
+to another; it is taken when its source has finished, or when its trigger is fired. An alias with an entry is
+a group, a machine inside the machine: a link to it leads to its entry. One machine a layer; ids are never
+names and never change.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -54,12 +56,34 @@ class State:
 
 
 @dataclass(frozen=True, slots=True)
-class Link:
-    """source: a state's id, or ANY; target: a state's id. blend: seconds in which the target takes over, both
-    running on.
+class Alias:
+    """Stands for several states: a link from it can be taken from each of them.
 
-    exit_time: seconds of the source's clip at which it may be left, in a loop each time round. None: a
-    finished link blends so that the source ends with the blend, a requested one is taken at once.
+    states: which, by id; every: all of the layer instead, those to come, too. again: its links may lead a
+    state back to itself. entry: the state that a link to it leads to, which makes it a group; None: no link
+    leads to it. x, y: where its left upper corner stands in the editor.
+    """
+
+    id: str
+    name: str
+    layer: Layer
+    states: tuple[str, ...] = ()
+    every: bool = False
+    again: bool = False
+    entry: str | None = None
+    x: float = 0.0
+    y: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """source: the id of a state or alias, or ANY; target: that of a state, or of an alias that has an entry.
+    blend: seconds in which the target takes over, both running on.
+
+    exit_time: seconds of the source's clip at which it may be left, in a loop each time round. exit_part,
+    0..1, in its place: the share of what its source plays by which the blend is over; 1 is the end of the
+    source, and a loop, which has none, is left at once. Both None: a finished link blends so that the source
+    ends with the blend, a requested one is taken at once.
     """
 
     id: str
@@ -68,6 +92,7 @@ class Link:
     condition: Condition = Condition()
     exit_time: float | None = None
     blend: float = 0.25
+    exit_part: float | None = None
 
 
 @dataclass(frozen=True)
@@ -82,6 +107,7 @@ class Manual:
     start: str | None = None
     any_x: float = -280.0
     any_y: float = 0.0
+    aliases: Mapping[str, Alias] = field(default_factory=dict)
 
     @cached_property
     def out(self) -> Mapping[str, tuple[Link, ...]]:
@@ -100,12 +126,72 @@ class Manual:
             sorted({x.condition.trigger for x in self.links.values() if x.condition.when == "request"})
         )
 
+    @cached_property
+    def _member(self) -> Mapping[str, tuple[Alias, ...]]:
+        """The aliases each state is one of: those it was chosen for before those of every state."""
+        out: dict[str, list[Alias]] = {i: [] for i in self.states}
+        for alias in sorted(self.aliases.values(), key=lambda a: a.every):
+            for state in self.members(alias):
+                out[state].append(alias)
+        return MappingProxyType({i: tuple(found) for i, found in out.items()})
+
+    def members(self, alias: Alias) -> tuple[str, ...]:
+        """Return the states an alias stands for, in the order of the machine."""
+        chosen = frozenset(alias.states)
+        return tuple(i for i in self.states if alias.every or i in chosen)
+
+    def end(self, link: Link) -> str | None:
+        """Return the state a link leads to, None where its target is a group without an entry."""
+        group = self.aliases.get(link.target)
+        end = link.target if group is None else group.entry
+        return end if end in self.states else None
+
     def leaving(self, state: str) -> Iterator[Link]:
-        """Yield the links by which a state can be left: its own, then those from any state to another one."""
-        yield from self.out.get(state, ())
-        for link in self.out.get(ANY, ()):
-            if link.target != state:
-                yield link
+        """Yield the links by which a state can be left, each with the state it leads to as its target.
+
+        Its own come first, then those of its aliases, then those from any state, which lead to another one.
+        Of links that are taken alike to the same state only the first kind is there.
+        """
+        taken: set[tuple[str, str, str]] = set()
+        wider: list[tuple[Iterable[Link], bool]] = [(self.out.get(state, ()), True)]
+        wider += [(self.out.get(a.id, ()), a.again) for a in self._member.get(state, ())]
+        wider.append((self.out.get(ANY, ()), False))
+        for links, again in wider:
+            mine = set()
+            for link in links:
+                end = self.end(link)
+                if end is None or (end == state and not again):
+                    continue
+                how = (end, link.condition.when, link.condition.trigger * (link.condition.when == "request"))
+                if how not in taken:
+                    mine.add(how)
+                    yield link if end == link.target else replace(link, target=end)
+            taken |= mine
+
+    @cached_property
+    def ways(self) -> Mapping[tuple[str, str], tuple[Link, ...]]:
+        """Every connection, (source state, target state), with the links that make it, as `leaving` has
+        them.
+        """
+        out: dict[tuple[str, str], tuple[Link, ...]] = {}
+        for state in self.states:
+            for link in self.leaving(state):
+                out[state, link.target] = (*out.get((state, link.target), ()), link)
+        return MappingProxyType(out)
+
+    @cached_property
+    def _entering(self) -> Mapping[str, tuple[Link, ...]]:
+        out: dict[str, list[Link]] = {}
+        for link in self.links.values():
+            if (end := self.end(link)) is not None:
+                out.setdefault(end, []).append(link)
+        return MappingProxyType({end: tuple(group) for end, group in out.items()})
+
+    def entering(self, state: str) -> tuple[Link, ...]:
+        """Return the links that lead to a state, those to a group it is the entry of, too, in the order they
+        were drawn.
+        """
+        return self._entering.get(state, ())
 
     def reachable(self) -> frozenset[str]:
         """Return the states that can come to play, the start among them."""
@@ -115,7 +201,7 @@ class Manual:
         queue = [self.start]
         for state in queue:
             for link in self.leaving(state):
-                if link.target in self.states and link.target not in seen:
+                if link.target not in seen:
                     seen.add(link.target)
                     queue.append(link.target)
         return frozenset(seen)
@@ -129,19 +215,14 @@ def _by(links: Mapping[str, Link], field_name: str) -> Mapping[str, tuple[Link, 
 
 
 def links_expanded(manual: Manual) -> frozenset[tuple[str, str]]:
-    """Return every connection as (source state, target state): a link from any state stands for one from
-    every other.
+    """Return every connection as (source state, target state): a link from an alias or from any state stands
+    for one from each of its states, or from every other.
     """
-    states = manual.states
-    out = {(x.source, x.target) for x in manual.links.values() if x.source in states and x.target in states}
-    for link in manual.out.get(ANY, ()):
-        if link.target in states:
-            out.update((state, link.target) for state in states if state != link.target)
-    return frozenset(out)
+    return frozenset(manual.ways)
 
 
 def without(manual: Manual, states: Collection[str] = (), links: Collection[str] = ()) -> Manual:
-    """Return the machine without some states, the links that touch them, and some links."""
+    """Return the machine without some states and aliases, the links that touch them, and some links."""
     gone = set(states)
     left = {i: s for i, s in manual.states.items() if i not in gone}
     kept = {
@@ -150,7 +231,15 @@ def without(manual: Manual, states: Collection[str] = (), links: Collection[str]
         if i not in links and x.source not in gone and x.target not in gone
     }
     start = manual.start if manual.start not in gone else next(iter(left), None)
-    return replace(manual, states=left, links=kept, start=start)
+    aliases = {i: _alias_without(a, gone) for i, a in manual.aliases.items() if i not in gone}
+    return replace(manual, states=left, links=kept, start=start, aliases=aliases)
+
+
+def _alias_without(alias: Alias, gone: Collection[str]) -> Alias:
+    if alias.entry not in gone and not any(s in gone for s in alias.states):
+        return alias
+    entry = None if alias.entry in gone else alias.entry
+    return replace(alias, states=tuple(s for s in alias.states if s not in gone), entry=entry)
 
 
 def without_clips(manuals: Mapping[Layer, Manual], clips: Collection[str]) -> Mapping[Layer, Manual]:

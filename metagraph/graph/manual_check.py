@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from metagraph.graph.manual import ANY, Link, Manual, State
+from metagraph.graph.manual import ANY, Alias, Link, Manual, State
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.problem import Problem, Severity
 
@@ -43,7 +43,7 @@ def _machine(project: Project, manual: Manual) -> Iterator[Problem]:
             yield at(
                 "warning", "unreachable", "cannot be reached", "Draw a link to it from a state that can."
             )
-        ways = [x for x in manual.leaving(state.id) if x.target in manual.states and x.target != state.id]
+        ways = [x for x in manual.leaving(state.id) if x.target != state.id]
         if not ways and len(manual.states) > 1:
             if state.loop:
                 yield at(
@@ -62,6 +62,8 @@ def _machine(project: Project, manual: Manual) -> Iterator[Problem]:
         elif ways and not state.loop and not any(x.condition.when == "finished" for x in ways):
             message = "holds its last frame until something is requested"
             yield at("hint", "waits", message, "Let one of its links be taken when it has finished.")
+    for alias in manual.aliases.values():
+        yield from _alias(manual, alias)
     seen: set[tuple[str, str, str, str]] = set()
     for link in manual.links.values():
         yield from _link(project, manual, link)
@@ -96,9 +98,34 @@ def _state(
         yield at("error", "mask", message, "Correct its joints.")
 
 
+def _alias(manual: Manual, alias: Alias) -> Iterator[Problem]:
+    def at(severity: Severity, code: str, message: str, remedy: str) -> Problem:
+        return Problem(
+            severity, code, f"alias '{alias.name}' {message}", remedy, manual.layer, state=alias.id
+        )
+
+    used = alias.id in manual.out or alias.id in manual.into
+    if not manual.members(alias):
+        yield at("warning" if used else "hint", "alias-empty", "stands for no state", "Choose its states.")
+    elif not used:
+        yield at("hint", "alias-unused", "has no links", "Draw a link from it, or remove it.")
+    if alias.entry is not None and alias.entry not in manual.members(alias):
+        name = manual.states[alias.entry].name if alias.entry in manual.states else "a state that is gone"
+        yield at(
+            "warning",
+            "alias-entry",
+            f"is entered by '{name}', not one of its states",
+            "Choose another entry.",
+        )
+
+
 def _about(manual: Manual, link: Link, severity: Severity, code: str, message: str, remedy: str) -> Problem:
     source, target = manual.states.get(link.source), manual.states.get(link.target)
-    names = f"{source.name if source else 'any state'} → {target.name if target else '?'}"
+    aliases = manual.aliases
+    names = " → ".join(
+        found.name if found is not None else aliases[ident].name if ident in aliases else otherwise
+        for found, ident, otherwise in ((source, link.source, "any state"), (target, link.target, "?"))
+    )
     return Problem(severity, code, f"link {names} {message}", remedy, manual.layer, link=link.id)
 
 
@@ -117,6 +144,13 @@ def _link(project: Project, manual: Manual, link: Link) -> Iterator[Problem]:
         )
     if not link.blend >= 0:
         yield at("error", "blend", f"blends for {link.blend:g} s", "Set its blend to 0 or more.")
+    if manual.end(link) is None:
+        yield at(
+            "error",
+            "no-entry",
+            "leads to an alias that has no entry",
+            "Choose the state that it is entered by.",
+        )
     if link.source == ANY and link.condition.when == "finished":
         yield at(
             "warning",

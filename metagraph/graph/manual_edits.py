@@ -11,8 +11,8 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from metagraph.graph.edits import EditError, free_name
-from metagraph.graph.manual import ANY, Condition, Link, Manual, State, without
+from metagraph.graph.edits import EditError, free_name, limb_of
+from metagraph.graph.manual import ANY, Alias, Condition, Link, Manual, State, without
 from metagraph.graph.model import BasePose, Layer, Project
 
 WIDE, HIGH = 240.0, 96.0  # how far apart states that are dropped together stand, in units of the editor
@@ -44,7 +44,7 @@ def add_states(
     project: Project, clips: Sequence[str], layer: Layer, x: float = 0.0, y: float = 0.0
 ) -> Project:
     """Make a state of each clip, in a grid whose left upper corner is at x, y. The first state of a layer is
-    its start.
+    its start; in the layer of the arms a clip's name says which one it moves, as for the meta-graph.
 
     The first state of the whole project also gives the base pose, as the first stance does (`edits.place`).
     Raises EditError.
@@ -60,7 +60,13 @@ def add_states(
         ident, name = f"m{project.next_id + n}", free_name(project.clips[clip].name, taken)
         taken.add(name)
         states[ident] = State(
-            ident, clip, name, layer, x=_whole(x + n % columns * WIDE), y=_whole(y + n // columns * HIGH)
+            ident,
+            clip,
+            name,
+            layer,
+            limb=limb_of(project.clips[clip].name) if layer == "arms" else "both",
+            x=_whole(x + n % columns * WIDE),
+            y=_whole(y + n // columns * HIGH),
         )
     first = (
         project.base.clip is None
@@ -79,14 +85,18 @@ def link_refusal(project: Project, layer: Layer, source: str, target: str) -> st
     found = machine(project, layer)
     if target == ANY:
         return "no link can lead to any state: draw it the other way round"
-    if target not in found.states or (source != ANY and source not in found.states):
+    group = found.aliases.get(target)
+    if group is not None and found.end(Link("", source, target)) is None:
+        return f"'{group.name}' has no entry: choose the state it is entered by first"
+    known = found.states.keys() | found.aliases.keys()
+    if target not in known or (source != ANY and source not in known):
         return "a link joins two states of one layer"
     return None
 
 
 def add_link(project: Project, layer: Layer, source: str, target: str) -> Project:
-    """Draw a link, taken when its source has finished; one from any state waits for a request named after its
-    target.
+    """Draw a link, taken when its source has finished. One from any state waits for a request named after its
+    target; so does one from an alias, and for the end of what plays.
 
     Raises EditError with the words of `link_refusal`.
     """
@@ -94,10 +104,45 @@ def add_link(project: Project, layer: Layer, source: str, target: str) -> Projec
     if why is not None:
         raise EditError(why)
     found = machine(project, layer)
-    ident = f"l{project.next_id}"
-    condition = Condition("request", found.states[target].name) if source == ANY else Condition()
-    links = {**found.links, ident: Link(ident, source, target, condition)}
-    return project.with_manual(replace(found, links=links), next_id=project.next_id + 1)
+    return project.with_manual(
+        replace(found, links={**found.links, **_new(found, [(source, target)], project.next_id)}),
+        next_id=project.next_id + 1,
+    )
+
+
+def add_links(project: Project, layer: Layer, sources: Sequence[str], targets: Sequence[str]) -> Project:
+    """Draw a link from each of several sources to each of several targets, as `add_link` does; none from a
+    state to itself, and none where one is drawn already.
+
+    Raises EditError with the words of `link_refusal`, or when there is none to draw.
+    """
+    for source in sources:
+        for target in targets:
+            if (why := link_refusal(project, layer, source, target)) is not None:
+                raise EditError(why)
+    found = machine(project, layer)
+    there = {(x.source, x.target) for x in found.links.values()}
+    pairs = [(a, b) for a in sources for b in targets if a != b and (a, b) not in there]
+    if not pairs:
+        raise EditError("these links are drawn already")
+    links = {**found.links, **_new(found, pairs, project.next_id)}
+    return project.with_manual(replace(found, links=links), next_id=project.next_id + len(pairs))
+
+
+def _new(found: Manual, pairs: Sequence[tuple[str, str]], number: int) -> dict[str, Link]:
+    out = {}
+    for n, (source, target) in enumerate(pairs):
+        ident, waits = f"l{number + n}", source == ANY or source in found.aliases
+        condition = Condition("request", name_of(found, target)) if waits else Condition()
+        part = 1.0 if source in found.aliases else None
+        out[ident] = Link(ident, source, target, condition, exit_part=part)
+    return out
+
+
+def name_of(manual: Manual, ident: str) -> str:
+    """Return how a state or alias is called, or its id where it is gone."""
+    found = manual.states.get(ident) or manual.aliases.get(ident)
+    return found.name if found is not None else ident
 
 
 def update_states(project: Project, states: Collection[str], **changes: Any) -> Project:
@@ -125,7 +170,7 @@ def update_links(project: Project, links: Collection[str], **changes: Any) -> Pr
             if link is not None:
                 now = replace(link.condition, **condition)
                 if now.when == "request" and not now.trigger:
-                    target = project.state(link.target)
+                    target = project.state(link.target) or project.alias(link.target)
                     now = replace(now, trigger=target.name if target is not None else link.target)
                 each[ident] = {**changes, "condition": now}
         return _updated(project, "links", each)
@@ -133,7 +178,7 @@ def update_links(project: Project, links: Collection[str], **changes: Any) -> Pr
 
 
 def move_nodes(project: Project, layer: Layer, places: Mapping[str, tuple[float, float]]) -> Project:
-    """Put nodes elsewhere: states by id, and the node for any state as ANY."""
+    """Put nodes elsewhere: states and aliases by id, and the node for any state as ANY."""
     found = machine(project, layer)
     if ANY in places:
         found = replace(found, any_x=_whole(places[ANY][0]), any_y=_whole(places[ANY][1]))
@@ -143,7 +188,11 @@ def move_nodes(project: Project, layer: Layer, places: Mapping[str, tuple[float,
         if i in found.states
     }
     states = {**found.states, **moved} if moved else found.states
-    return project.with_manual(replace(found, states=states))
+    aliases = {
+        i: replace(a, x=_whole(places[i][0]), y=_whole(places[i][1])) if i in places else a
+        for i, a in found.aliases.items()
+    }
+    return project.with_manual(replace(found, states=states, aliases=aliases))
 
 
 def set_start(project: Project, state: str) -> Project:
@@ -155,10 +204,12 @@ def set_start(project: Project, state: str) -> Project:
 
 
 def remove(project: Project, states: Collection[str] = (), links: Collection[str] = ()) -> Project:
-    """Remove states with the links that touch them, and links; clips stay in the library."""
+    """Remove states and aliases with the links that touch them, and links; clips stay in the library."""
     machines = dict(project.manual)
     for layer, found in project.manual.items():
-        if any(i in found.states for i in states) or any(i in found.links for i in links):
+        if any(i in found.states or i in found.aliases for i in states) or any(
+            i in found.links for i in links
+        ):
             machines[layer] = without(found, states, links)
     return (
         replace(project, manual=machines)
@@ -169,40 +220,44 @@ def remove(project: Project, states: Collection[str] = (), links: Collection[str
 
 @dataclass(frozen=True)
 class CopiedPiece:
-    """What was copied: states, and the links among them."""
+    """What was copied: states and aliases, and the links among them."""
 
     states: tuple[State, ...]
     links: tuple[Link, ...]
+    aliases: tuple[Alias, ...] = ()
 
 
 def copied(project: Project, states: Collection[str]) -> CopiedPiece:
-    """Return states with the links among them, to be pasted. Their order is the machine's."""
+    """Return states and aliases with the links among them, to be pasted. Their order is the machine's."""
     chosen = [s for m in project.manual.values() for s in m.states.values() if s.id in states]
-    inside = {s.id for s in chosen}
+    aliases = tuple(a for m in project.manual.values() for a in m.aliases.values() if a.id in states)
+    inside = {*(s.id for s in chosen), *(a.id for a in aliases)}
     links = [
         x
         for m in project.manual.values()
         for x in m.links.values()
         if x.target in inside and x.source in inside
     ]
-    return CopiedPiece(tuple(chosen), tuple(links))
+    return CopiedPiece(tuple(chosen), tuple(links), aliases)
 
 
 def paste(
     project: Project, layer: Layer, piece: CopiedPiece, x: float, y: float
 ) -> tuple[Project, tuple[str, ...]]:
-    """Return the project with copies of states and of the links among them, and the copies' ids. x, y: their
-    left upper corner.
+    """Return the project with copies of states and aliases and of the links among them, and the copies' ids.
+    x, y: their left upper corner. A copied alias stands for the copies of its states, and for those of its
+    states that are still there and were not copied.
 
     Raises EditError when a clip is no longer there.
     """
-    if not piece.states:
+    nodes: list[State | Alias] = [*piece.states, *piece.aliases]
+    if not nodes:
         return project, ()
-    why = refusal(project, [s.clip for s in piece.states])
+    why = refusal(project, [s.clip for s in piece.states]) if piece.states else None
     if why is not None:
         raise EditError(why)
     found = machine(project, layer)
-    left, top = min(s.x for s in piece.states), min(s.y for s in piece.states)
+    left, top = min(s.x for s in nodes), min(s.y for s in nodes)
     states, links, number = dict(found.states), dict(found.links), project.next_id
     taken = {s.name for s in states.values()}
     made: dict[str, str] = {}
@@ -214,7 +269,27 @@ def paste(
         states[ident] = replace(
             state, id=ident, name=name, layer=layer, x=_whole(x + state.x - left), y=_whole(y + state.y - top)
         )
-    names = {s.id: s.name for s in piece.states}
+    aliases = dict(found.aliases)
+    called = {a.name for a in aliases.values()}
+    for alias in piece.aliases:
+        ident = f"g{number}"
+        number += 1
+        members = tuple(made.get(i, i) for i in alias.states if i in made or i in states)
+        entry = made.get(alias.entry or "", alias.entry)
+        aliases[ident] = replace(
+            alias,
+            id=ident,
+            name=free_name(alias.name, called),
+            layer=layer,
+            states=members,
+            entry=entry if entry in states else None,
+            x=_whole(x + alias.x - left),
+            y=_whole(y + alias.y - top),
+        )
+        called.add(aliases[ident].name)
+        made[alias.id] = ident
+    names = {s.id: s.name for s in nodes}
+    new_names = {i: s.name for i, s in states.items()} | {i: a.name for i, a in aliases.items()}
     for link in piece.links:
         ident = f"l{number}"
         number += 1
@@ -222,11 +297,12 @@ def paste(
         if (
             condition.when == "request" and condition.trigger == names[link.target]
         ):  # named after its target, as the copy's is
-            condition = replace(condition, trigger=states[made[link.target]].name)
+            condition = replace(condition, trigger=new_names[made[link.target]])
         links[ident] = replace(
             link, id=ident, source=made[link.source], target=made[link.target], condition=condition
         )
-    after = replace(found, states=states, links=links, start=found.start or next(iter(states)))
+    start = found.start or next(iter(states), None)
+    after = replace(found, states=states, links=links, start=start, aliases=aliases)
     return project.with_manual(after, next_id=number), tuple(made.values())
 
 
@@ -234,18 +310,23 @@ def paste_settings(project: Project, links: Collection[str], settings: Link) -> 
     """Give links another one's condition, exit time and blend; where it waits for its target's name, they
     wait for theirs.
     """
-    target = project.state(settings.target)
+    target = project.state(settings.target) or project.alias(settings.target)
     own = target is not None and settings.condition.trigger == target.name
     each: dict[str, Mapping[str, Any]] = {}
     for ident in links:
         link = project.link(ident)
         if link is None:
             continue
-        to = project.state(link.target)
+        to = project.state(link.target) or project.alias(link.target)
         condition = (
             replace(settings.condition, trigger=to.name) if own and to is not None else settings.condition
         )
-        each[ident] = {"condition": condition, "exit_time": settings.exit_time, "blend": settings.blend}
+        each[ident] = {
+            "condition": condition,
+            "exit_time": settings.exit_time,
+            "exit_part": settings.exit_part,
+            "blend": settings.blend,
+        }
     return _updated(project, "links", each)
 
 

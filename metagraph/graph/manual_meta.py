@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from metagraph.graph.expand import connections
 from metagraph.graph.manual import ANY, Link, Manual, State, links_expanded
+from metagraph.graph.manual_timing import exit_moment
 from metagraph.graph.model import Action, Kind, MetaGraph, Project, Stance, Timing
 
 Pairs = frozenset[tuple[str, str]]
@@ -99,7 +100,7 @@ def _graph(project: Project, manual: Manual) -> tuple[MetaGraph, Mapping[str, st
             stances[start].id,
             state.name,
             stances[end].id if kind == "transition" else None,
-            _timing(manual, state, kind, of),
+            _timing(project, manual, state, kind, of),
             state.limb,
             state.joints,
             _tags(manual, state),
@@ -149,11 +150,16 @@ def _ends(
     out: dict[str, Counter[int]] = {}
     before: dict[str, list[str]] = {}
     after: dict[str, list[str]] = {}
-    drawn = {(x.source, x.target) for x in manual.links.values() if x.source != ANY}
+    wide = {ANY, *(a.id for a in manual.aliases.values() if a.every)}
+    drawn = {
+        pair
+        for pair, links in manual.ways.items()
+        if any(manual.links[x.id].source not in wide for x in links)
+    }
     for source, target in sorted(pairs):
         weight = (
             len(of) + 1 if (source, target) in drawn else 1
-        )  # a link of its own says more than all from any state
+        )  # a link of its own, or of some states, says more than all from any state
         if source in of and target not in of:
             into.setdefault(target, Counter())[of[source]] += weight
         elif source not in of and target in of:
@@ -191,7 +197,7 @@ def _placed(
 
 
 def _entering(manual: Manual, state: State) -> tuple[Link, ...]:
-    return manual.into.get(state.id, ())
+    return manual.entering(state.id)
 
 
 def _unasked(manual: Manual, state: State) -> bool:
@@ -199,14 +205,14 @@ def _unasked(manual: Manual, state: State) -> bool:
     return bool(links) and all(x.condition.when == "finished" for x in links)
 
 
-def _timing(manual: Manual, state: State, kind: Kind, of: Mapping[str, int]) -> Timing:
+def _timing(project: Project, manual: Manual, state: State, kind: Kind, of: Mapping[str, int]) -> Timing:
     """Return an action's timing: blends and exit of the links that join it to its stances, the first of
     each.
     """
     if kind == "stance":
         return Timing(state.start, state.end, 0.0, 0.0, True)
-    leaving = [*manual.out.get(state.id, ()), *manual.out.get(ANY, ())]
-    first = _first(_entering(manual, state), lambda x: x.source in of)
+    leaving = tuple(manual.leaving(state.id))
+    first = _first(_entering(manual, state), lambda x: _from_rest(manual, x, of))
     last = _first(leaving, lambda x: x.target in of)
     blends = [x.blend if x is not None else Timing().blend_in for x in (first, last)]
     return Timing(
@@ -214,8 +220,21 @@ def _timing(manual: Manual, state: State, kind: Kind, of: Mapping[str, int]) -> 
         state.end,
         blends[0],
         blends[1],
-        earliest_exit=last.exit_time if last is not None else None,
+        earliest_exit=_exit(project, state, last) if last is not None else None,
     )
+
+
+def _from_rest(manual: Manual, link: Link, of: Mapping[str, int]) -> bool:
+    alias = manual.aliases.get(link.source)
+    return link.source in of if alias is None else any(s in of for s in manual.members(alias))
+
+
+def _exit(project: Project, state: State, link: Link) -> float | None:
+    """Return the clip seconds at which a link may be taken, None for at the state's end or at once."""
+    if link.exit_time is not None or link.exit_part is None or link.exit_part >= 1:
+        return link.exit_time
+    at = exit_moment(project, state, link)
+    return round(at, 6) if at is not None else None
 
 
 def _first(links: Sequence[Link], fits: Callable[[Link], bool]) -> Link | None:

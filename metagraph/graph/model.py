@@ -13,7 +13,7 @@ from typing import Any
 
 from metagraph.graph.conversation import Conversation
 from metagraph.graph.life import Face, Life
-from metagraph.graph.manual import Link, Manual, State
+from metagraph.graph.manual import Alias, Link, Manual, State
 from metagraph.graph.requests import Line, Performance, Point
 from metagraph.graph.words import KINDS, LAYERS, LIMBS, MODES, PARTS, Kind, Layer, Limb, Mode, Part
 from metagraph.motion.clip import Clip
@@ -428,6 +428,14 @@ class Project:
         """Return the state of a manual machine of that id, whatever its layer."""
         return (
             next((m.states[ident] for m in self.manual.values() if ident in m.states), None)
+            if ident is not None
+            else None
+        )
+
+    def alias(self, ident: str | None) -> Alias | None:
+        """Return the alias of a manual machine of that id, whatever its layer."""
+        return (
+            next((m.aliases[ident] for m in self.manual.values() if ident in m.aliases), None)
             if ident is not None
             else None
         )

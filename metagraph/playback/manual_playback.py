@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
 from metagraph.graph.manual import Link, Manual, State
+from metagraph.graph.manual_timing import exit_moment
 from metagraph.graph.model import LAYERS, Action, Kind, Layer, Project, Timing
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
@@ -192,39 +193,16 @@ def _drawn(manual: Manual, state: State, seed: int, visit: int) -> Link | None:
     """Draw the finished link by which a state will be left at its `visit`-th turn, None where there is
     none.
     """
-    finished = {
-        x.id: x
-        for x in manual.leaving(state.id)
-        if x.condition.when == "finished" and x.target in manual.states
-    }
+    finished = {x.id: x for x in manual.leaving(state.id) if x.condition.when == "finished"}
     weights = {i: x.condition.weight for i, x in finished.items() if x.condition.weight > 0}
     return finished[pick(seed, f"{state.id} {visit}", "link", weights)] if weights else None
-
-
-def leave_at(project: Project, state: State, link: Link) -> float | None:
-    """Return the clip seconds at which a link is taken, None for one that is taken as soon as it is asked
-    for.
-    """
-    if link.exit_time is None and link.condition.when == "request":
-        return None
-    start, end = project.span(action_of(state))
-    if link.exit_time is None:
-        return max(start, end - link.blend)
-    return min(max(start, link.exit_time), end)
 
 
 def _moment(project: Project, here: Played, link: Link, ready: float) -> float:
     """Return when a link is taken, `ready` at the earliest; in a loop the next time round."""
     start, end = project.span(here.action)
-    state = State(
-        here.action.id,
-        here.action.clip,
-        "",
-        here.action.layer,
-        start=here.action.timing.start,
-        end=here.action.timing.end,
-    )
-    leave = leave_at(project, state, link)
+    state = project.manual[here.action.layer].states[here.action.id]
+    leave = exit_moment(project, state, link)
     if leave is None:
         return ready
     moment = here.start + leave - here.entry
@@ -241,8 +219,6 @@ def route(manual: Manual, state: str, trigger: str) -> tuple[Link, ...] | None:
     queue = [state]
     for here in queue:
         for link in manual.leaving(here):
-            if link.target not in manual.states:
-                continue
             if link.condition.when == "request" and link.condition.trigger == trigger:
                 way = [link]
                 step = before[here]
@@ -274,21 +250,24 @@ def state_alone(project: Project, ident: str) -> ManualPlan:
 def link_alone(project: Project, ident: str) -> ManualPlan:
     """Return a plan of one link: its source's last second, the blend, its target's first. Raises KeyError.
 
-    Of a link from any state the start is the source, or where that is the target another state.
+    Of a link from several states the start is the source, or where that is not one of them, or the target,
+    another of them.
     """
     link = project.link(ident)
-    target = project.state(link.target) if link is not None else None
-    if link is None or target is None:
+    manual = next((m for m in project.manual.values() if ident in m.links), None)
+    target = manual.states.get(manual.end(link) or "") if manual is not None and link is not None else None
+    if link is None or manual is None or target is None:
         raise KeyError(ident)
-    manual = project.manual[target.layer]
-    others = (manual.start, *manual.states)
+    alias = manual.aliases.get(link.source)
+    some = manual.members(alias) if alias is not None else tuple(manual.states)
+    others = (manual.start, *some) if manual.start in some else some
     source = (
         project.state(link.source)
         or manual.states[next((s for s in others if s and s != target.id), target.id)]
     )
     first = _turn(project, source, 0.0, None)
     start, end = project.span(first.action)
-    leave = leave_at(project, source, link)
+    leave = exit_moment(project, source, link)
     leave = min(start + AROUND, end) if leave is None else leave
     lead = min(AROUND, leave - start)
     first = replace(first, entry=leave - lead)

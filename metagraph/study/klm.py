@@ -16,8 +16,10 @@ from dataclasses import dataclass, fields
 @dataclass(frozen=True)
 class Times:
     """Seconds an operator takes: K a key, by an average typist; P pointing at a target; B a button pressed or
-    released; H a hand to the other device; M a mental preparation. A wait for the system (R) is told in
-    seconds by whoever measures it.
+    released; H a hand to the other device; M a mental preparation; S a scroll or zoom with the wheel to where
+    something is, which takes about as long as pointing at it (Hinckley, Cutrell, Bathiche and Muss 2002,
+    "Quantitative Analysis of Scrolling Techniques": Fitts' law holds for both). A wait for the system (R) and
+    looking at motion (L) are told in seconds by whoever measures them.
     """
 
     K: float = 0.28
@@ -25,16 +27,17 @@ class Times:
     B: float = 0.10
     H: float = 0.40
     M: float = 1.35
+    S: float = 1.10
 
 
 USUAL = Times()
 
 
 def predicted(operators: Mapping[str, float], times: Times = USUAL) -> float:
-    """Return seconds for how many operators of each kind there were; R counts as seconds itself. Raises
-    ValueError for a kind that there is not.
+    """Return seconds for how many operators of each kind there were; R and L count as seconds themselves.
+    Raises ValueError for a kind that there is not.
     """
-    known = {f.name: float(getattr(times, f.name)) for f in fields(times)} | {"R": 1.0}
+    known = {f.name: float(getattr(times, f.name)) for f in fields(times)} | {"R": 1.0, "L": 1.0}
     odd = sorted(set(operators) - set(known))
     if odd:
         raise ValueError(f"'{odd[0]}' is no operator; there are {', '.join(known)}")

@@ -15,8 +15,9 @@ from pathlib import PurePosixPath
 
 from metagraph.graph.expand import connections as expanded
 from metagraph.graph.expand import ends_in
-from metagraph.graph.manual import Link, Manual, State, links_expanded
+from metagraph.graph.manual import Link, Manual, State
 from metagraph.graph.manual_meta import as_meta
+from metagraph.graph.manual_timing import exit_moment, state_span
 from metagraph.graph.model import LAYERS, ClipEntry, Kind, Layer, Limb, MetaGraph, Project
 
 AT_ITS_END = 1e-3  # seconds: as near to its end a state is left at its end
@@ -151,7 +152,7 @@ def _of_graph(project: Project, graph: MetaGraph, names: Mapping[str, str]) -> N
 
 def _of_manual(project: Project, manual: Manual, meant: MetaGraph, names: Mapping[str, str]) -> NormalMachine:
     keys = _keys({s.id: s.clip for s in manual.states.values()}, names)
-    spans = {s.id: _span(project, s) for s in manual.states.values()}
+    spans = {s.id: state_span(project, s) for s in manual.states.values()}
     roles = _roles(manual, meant)
     states = {}
     for s in manual.states.values():
@@ -169,38 +170,23 @@ def _of_manual(project: Project, manual: Manual, meant: MetaGraph, names: Mappin
             s.limb,
             tuple(sorted(s.joints)),
         )
-    links: dict[Pair, Link] = {}
-    for link in (
-        manual.links.values()
-    ):  # the first that was drawn, and one of the pair's own before one from any state
-        if link.source in manual.states:
-            links.setdefault((link.source, link.target), link)
-    for link in manual.links.values():
-        for source in manual.states if link.source not in manual.states else ():
-            links.setdefault((source, link.target), link)
     found = {}
-    for source, target in sorted(links_expanded(manual)):
+    for (source, target), links in sorted(manual.ways.items()):
         if source == target and manual.states[source].loop:
             continue  # what loops already follows itself
-        link = links[source, target]
-        found[keys[source], keys[target]] = NormalConnection(_leave(link, spans[source][1]), link.blend)
+        link = links[0]
+        found[keys[source], keys[target]] = NormalConnection(
+            _leave(project, manual.states[source], link), link.blend
+        )
     return NormalMachine(manual.layer, states, found, {i: s.name for i, s in meant.stances.items()}, True)
 
 
-def _span(project: Project, state: State) -> tuple[float, float]:
-    entry = project.clips.get(state.clip)
-    length = entry.duration if entry is not None else 0.0
-    start = min(max(0.0, state.start), length)
-    return start, max(start, length if state.end is None else min(state.end, length))
-
-
-def _leave(link: Link, end: float) -> float | None:
+def _leave(project: Project, state: State, link: Link) -> float | None:
     """Return when a link leaves its source, as a meta-graph counts: where its blend would end with the
     source, at the source's end.
     """
-    if link.exit_time is None:
-        return end if link.condition.when == "finished" else None
-    return end if link.exit_time + link.blend >= end - AT_ITS_END else link.exit_time
+    at, end = exit_moment(project, state, link), state_span(project, state)[1]
+    return end if at is not None and at + link.blend >= end - AT_ITS_END else at
 
 
 Role = tuple[Kind | None, str | None, str | None]

@@ -1,10 +1,11 @@
 """A scripted participant: does a labelling task in the real window with real events, in either condition, and
 counts its hands' work.
 
-It knows what is right and makes no mistake; how it goes about it is what an expert would do: one clip after
-another, dragged from the library, stance by stance, found by typing the stance's name once. Scrolling the
-library has no operator in the model and is not counted. Thoughts (M) are placed by rule: one before each
-clip, one before each link or other setting, one before each command.
+It knows what is right and makes no mistake. `Participant` goes about it as somebody does who was shown the tool
+once: one clip after another, dragged from the library, stance by stance, found by typing the stance's name once.
+`Expert` does what `by_hand` found to be quickest, or has the clips labelled and goes through the proposals.
+Thoughts (M) are placed by rule: one before each clip, one before each link or other setting, one before each
+command, one for each part of what is searched for. Waits of more than 0.3 s for what the program does are R.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from PySide6.QtWidgets import QApplication, QScrollArea
 
 from app.features.study.operator_events import Hands
 from metagraph.graph import edits
+from metagraph.graph.edits import limb_of
 from metagraph.graph.expand import ends_in
 from metagraph.graph.model import LAYERS, LIMBS, Layer, Project
 from metagraph.study.klm import predicted
@@ -28,6 +30,8 @@ from metagraph.study.score import Score, score
 
 LEFT = Qt.MouseButton.LeftButton
 CONDITIONS = ("meta", "manual", "manual, every connection")
+EXPERT = ("review", "aliases")
+LEAST_WAIT = 0.3
 
 
 @dataclass(frozen=True)
@@ -96,7 +100,8 @@ class Participant:
 
     def __init__(self, drive: Any, given: Task) -> None:
         self.drive, self.given = drive, given
-        self.thoughts = 0
+        self.thoughts = self.scrolls = 0
+        self.waited = 0.0
         self.hands = Hands(lambda now: None, lambda dialog, shown: None, lambda: None, drive.window)
         self.typed = ""
 
@@ -125,7 +130,22 @@ class Participant:
         """Drag a clip from the library, with the real pointer."""
         before = self.drive.document.project
         self.think()
-        self.drive.drag(self.drive.card(clip), target, lambda: self.drive.document.project is not before)
+        self.drive.drag(self.card(clip), target, lambda: self.drive.document.project is not before)
+
+    def card(self, clip: str) -> tuple[Any, QPoint]:
+        """The card of a clip, scrolled to where it is not in sight."""
+        bar = self.drive.library.list.verticalScrollBar()
+        before = bar.value()
+        out: tuple[Any, QPoint] = self.drive.card(clip)
+        self.scrolls += bar.value() != before
+        return out
+
+    def wait(self, until: Any) -> None:
+        """Wait for the program."""
+        began = time.monotonic()
+        self.drive.wait(until, 120)
+        spent = time.monotonic() - began
+        self.waited += spent if spent > LEAST_WAIT else 0.0
 
     def layer(self, layer: Layer) -> None:
         if self.drive.session.place.layer != layer:
@@ -138,16 +158,13 @@ class Participant:
 
     def do(self, condition: str) -> Result:
         started, ours = time.monotonic(), time.process_time()
-        if condition == "meta":
-            self._meta()
-        else:
-            self._manual(condition == CONDITIONS[2])
+        self.act(condition)
         project = self.drive.document.project
         counts = Counter(self.hands.operators.take(time.monotonic()).operators)
         self.hands.stop()
         drags = counts.pop("D", 0)  # pressing and letting go are counted already
         counts["P"] += drags  # a drag points at where it ends
-        counts["M"] = self.thoughts
+        counts["M"], counts["S"], counts["R"] = self.thoughts, self.scrolls, round(self.waited)
         found = score(normal(project), normal(self.given.reference))
         return Result(
             condition,
@@ -158,6 +175,12 @@ class Participant:
             time.process_time() - ours,
             found,
         )
+
+    def act(self, condition: str) -> None:
+        if condition == "meta":
+            self._meta()
+        else:
+            self._manual(condition == CONDITIONS[2])
 
     def _wanted(self) -> list[Any]:
         return list(self.given.reference.actions())
@@ -257,6 +280,7 @@ class Participant:
         canvas.look_at(ManualView(scale, 0.0, 0.0))
         canvas.settle()
         self.think()
+        self.scrolls += 1
 
     def _links(self, mine: list[Any], whole: bool) -> list[tuple[str, str]]:
         """The links to draw: to and from stances, or all that the meta-graph implies."""
@@ -290,9 +314,12 @@ class Participant:
         """Click a control of the inspector, which may have to be scrolled to."""
         area = self.drive.editor.inspector
         self.drive.wait(widget.isVisible)
-        for parent in area.findChildren(QScrollArea):
+        for parent in [area, *area.findChildren(QScrollArea)]:
             if parent.isAncestorOf(widget):
+                bar = parent.verticalScrollBar()
+                before = bar.value()
                 parent.ensureWidgetVisible(widget)
+                self.scrolls += bar.value() != before
         at = QPoint(min(14, widget.width() // 2), widget.height() // 2)
         self.click(widget, at)
 
@@ -302,7 +329,7 @@ class Participant:
         if action.kind == "stance":
             self.think()
             self._press(inspector.loop)
-        if action.limb != "both":
+        if action.limb != limb_of(self.given.project.clips[action.clip].name) and action.layer == "arms":
             self.think()
             self._press(inspector.limb.button(LIMBS.index(action.limb)))
 
@@ -317,7 +344,19 @@ class Participant:
         QTest.keyClick(inspector.when.view(), Qt.Key.Key_Down)
         QTest.keyClick(inspector.when.view(), Qt.Key.Key_Return)
         if at_the_end:
-            self._press(inspector.leaves)
+            self._pick(inspector.exit.way, 1)
+
+    def _pick(self, chooser: Any, row: int) -> None:
+        """Take an entry of a list, by keys."""
+        self.think()
+        steps = row - chooser.currentIndex()
+        self._press(chooser)
+        self.drive.wait(lambda: chooser.view().isVisible())
+        if chooser.currentIndex() < 0:  # it shows "mixed": the first entry comes with the first key
+            steps = row + 1
+        for _ in range(abs(steps)):
+            QTest.keyClick(chooser.view(), Qt.Key.Key_Down if steps > 0 else Qt.Key.Key_Up)
+        QTest.keyClick(chooser.view(), Qt.Key.Key_Return)
 
 
 def bare(drive: Any, given: Task, condition: str) -> None:

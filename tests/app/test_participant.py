@@ -5,6 +5,11 @@ from __future__ import annotations
 import pytest
 
 from metagraph.formats.store import open_project
+from metagraph.study.by_hand import Way
+from metagraph.study.counted_hand import try_way
+from metagraph.study.normal_machine import normal
+from metagraph.study.score import score
+from tests.app.expert import Expert, Reviewer, hidden, without_times
 from tests.app.participant import CONDITIONS, Participant, bare, task
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -41,3 +46,45 @@ def test_clips_are_done_without_a_mistake(drive, sample, condition):
     assert result.score.essential_right == result.score.essential > 0
     assert (result.score.f1 == 1.0 and not result.score.mistakes) or condition == "manual"
     assert result.operators["B"] >= 20 and result.predicted > 0
+
+
+@pytest.mark.parametrize(
+    "way",
+    [
+        Way("many at once", "from aliases", "words", "many at once"),
+        Way("many at once", "from any state", "words", "each"),
+        Way("one by one", "from aliases", "rubber bands", "many at once", named=False),
+        Way("one by one", "from many selected", "clicks", "each"),
+    ],
+    ids=str,
+)
+def test_an_expert_draws_the_reference_in_the_window_as_was_counted_without_it(drive, sample, way):
+    given = task(sample, 12)
+    given = given if way.named else hidden(given)
+    bare(drive, given, "manual")
+    expert = Expert(drive, given)
+    expert.act = lambda _: expert.draw(way)
+    result = expert.do("expert")
+    assert not result.score.mistakes and result.score.f1 == 1.0
+    counted = try_way(way, given.reference)
+    assert not counted.score.mistakes
+    hands = {k: result.operators[k] for k in "KBM"}  # where the pointer is already, P is not recorded
+    print(way, dict(result.operators), dict(counted.operators))
+    for name, count in hands.items():
+        assert abs(count - counted.operators[name]) <= 2 + 0.2 * counted.operators[name], name
+
+
+@pytest.mark.parametrize("look", [False, True])
+@pytest.mark.parametrize("named", [True, False])
+def test_an_expert_goes_through_proposals_without_a_mistake(drive, sample, look, named):
+    given = task(sample, 12)
+    given = given if named else hidden(given)
+    bare(drive, given, "meta")
+    reviewer = Reviewer(drive, given)
+    reviewer.act = lambda _: reviewer.review(look)
+    result = reviewer.do("meta")
+    found = score(normal(without_times(drive.document.project)), normal(given.reference))
+    wrong = [m.words for m in found.mistakes]
+    assert not wrong or (not look and not named)  # unseen and unnamed, what is sure may be wrong
+    assert result.operators["P"] == result.operators["B"] == 0
+    assert (reviewer.looked == 12) == look and (reviewer.watched > 0) == look

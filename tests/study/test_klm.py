@@ -30,5 +30,5 @@ def test_other_people_have_other_times() -> None:
 
 
 def test_an_operator_that_there_is_not_is_named() -> None:
-    with pytest.raises(ValueError, match="'D' is no operator; there are K, P, B, H, M, R"):
+    with pytest.raises(ValueError, match="'D' is no operator; there are K, P, B, H, M, S, R, L"):
         predicted({"D": 1})

@@ -32,6 +32,7 @@ from app.features.labelling.review_fields import ReviewFields, ReviewRow
 from app.features.labelling.review_queue import ReviewQueue
 from app.features.labelling.review_session import Reviewing
 from app.features.labelling.review_stage import ReviewStage
+from app.features.labelling.review_watch import Watching
 from app.look.theme import strengthen, theme
 from app.project.document import Document
 from app.project.jobs import Jobs
@@ -76,7 +77,7 @@ class ReviewDialog(QDialog):
         self.current: str | None = None
         self.row: Field = "kind"
         self.context = True  # the clip plays out of its stance and back, not alone
-        self._trials = 0
+        self._trials = self._seen = 0
         self._bridged: tuple[str, ...] = ()
         if session.transport.playing:
             session.transport.set_playing(False)  # one character at a time
@@ -88,6 +89,8 @@ class ReviewDialog(QDialog):
         self.stage = ReviewStage(session, figures, self)
         self.fields = ReviewFields(session, self)
         self._build()
+        self.watching = Watching(self._watch)
+        self.stage.played.connect(self._played)
         self.queue.picked.connect(self.go_to)
         self.queue.sure_wanted.connect(self.accept_sure)
         self.queue.limit_changed.connect(self._count)
@@ -209,10 +212,38 @@ class ReviewDialog(QDialog):
         self._show()
         self._play()
 
+    def watch(self) -> None:
+        """Watch what waits, one after another; or stop, and accept what was watched."""
+        if self.watching.on:
+            self._accept_watched()
+        elif waiting := self.work.waiting():
+            self.context = False
+            self.watching.begin(self.review, waiting)
+
+    def _played(self) -> None:
+        if self._seen == self._trials:  # not the one before, which plays until this one is planned
+            self.watching.played(self.current)
+
+    def _watch(self, clip: str | None) -> None:
+        self.go_to(clip)
+        self.queue.words.setText(self.watching.words(clip))
+
+    def _accept_watched(self) -> None:
+        clips = self.watching.stop()
+        self.context = True
+        if clips:
+            self._place(clips, f"Label {len(clips)} clips", None)
+        else:
+            self.go_to(self.work.after(None))
+
     def _later(self) -> None:
+        if self.watching.on and self.current is not None:
+            self.watching.skip(self.current)
+            return
         self.go_to(self.work.open_after(self.current))
 
     def _earlier(self) -> None:
+        self.watching.hold()
         self.go_to(self.work.before(self.current))
 
     # --- correcting
@@ -224,6 +255,7 @@ class ReviewDialog(QDialog):
 
     def _tell(self, name: Field, value: Any) -> None:
         if self.current is not None:
+            self.watching.hold()
             self.work.tell(self.current, name, value)
             self._play()
 
@@ -326,8 +358,14 @@ class ReviewDialog(QDialog):
     # --- accepting
 
     def accept_current(self) -> None:
-        """Place the clip as it is shown, and go on; close when nothing is left."""
-        if self.current is None:
+        """Place the clip as it is shown, and go on; close when nothing is left. While clips are watched it
+        only goes on, and after the last all are placed.
+        """
+        if self.watching.on and self.current is not None:
+            self.watching.go_on(self.current)
+        elif self.watching.on:
+            self._accept_watched()
+        elif self.current is None:
             self.close()
         elif self._proposed is None:
             self._later()
@@ -398,6 +436,7 @@ class ReviewDialog(QDialog):
             done = (
                 "<b>Every clip is placed.</b>" if not self.work.aside else review_words.rest(self.work.aside)
             )
+            done = self.watching.words(None) if self.watching.on else done
             self.stage.tell(done if self.work.looked else "Looking at names and motion…")
             return
         if p is None:
@@ -452,6 +491,7 @@ class ReviewDialog(QDialog):
     def _tried(self, made: _Tried) -> None:
         number, times, shown, span = made
         if number == self._trials:
+            self._seen = number
             self.stage.play(shown, span)
             if times is not None:
                 self.work.times_found(times)
@@ -469,6 +509,7 @@ class ReviewDialog(QDialog):
             k.Key_Backspace: self.undo,
             k.Key_A: self.accept_sure,
             k.Key_B: self.bridge,
+            k.Key_W: self.watch,
             k.Key_Up: lambda: self._move(-1),
             k.Key_Down: lambda: self._move(1),
             k.Key_Left: lambda: self._turn(-1),

@@ -105,7 +105,9 @@ class Strip(QWidget):
 
 
 class ReviewStage(QWidget):
-    """Plays what it is given, round and round, until it is given something else."""
+    """Plays what it is given, round and round, until it is given something else. played: it came round."""
+
+    played = Signal()
 
     def __init__(self, session: Session, figures: Figures, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -206,7 +208,11 @@ class ReviewStage(QWidget):
     def _tick(self) -> None:
         elapsed = min(0.25, self._clock.restart() / 1000)
         if self.playing and self.shown is not None and self.isVisible():
-            self._seek((self.seconds + elapsed * self.session.transport.speed) % max(1e-3, self.shown.length))
+            length = max(1e-3, self.shown.length)
+            now = self.seconds + elapsed * self.session.transport.speed
+            self._seek(now % length)
+            if now >= length:
+                self.played.emit()
 
     # --- drawing
 

@@ -27,6 +27,7 @@ KEYS = (
     ("N", "new stance"),
     ("T", "tags"),
     ("A", "accept the sure"),
+    ("W", "watch all"),
     ("B", "bridge stances"),
 )
 ANYWAY = "Left aside; choose what it is to label it all the same."

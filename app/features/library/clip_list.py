@@ -32,7 +32,9 @@ class Search(QLineEdit):
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent, clearButtonEnabled=True)
-        self.setToolTip("Words of a clip's name or path (Ctrl+F); Down goes to the clips")
+        self.setToolTip(
+            "Words of a clip's name or path (Ctrl+F): sit wave, sit -wave, sit | bow; Down goes to the clips"
+        )
         self.setAccessibleName("Search clips")
 
     def event(self, event: QEvent) -> bool:

@@ -18,6 +18,7 @@ from app.project.document import Document
 from app.widgets.mime import mime
 from metagraph.graph.generated import origin
 from metagraph.graph.model import ClipEntry, Project
+from metagraph.graph.name_search import fits
 
 Index = QModelIndex | QPersistentModelIndex
 ENTRY = Qt.ItemDataRole.UserRole
@@ -45,8 +46,7 @@ class Filter:
             for a in project.uses.get(entry.id, ())
         ):
             return False
-        name = f"{entry.name} {entry.path}".lower()
-        return all(word in name for word in self.text.lower().split())
+        return not self.text.strip(" -|") or fits(self.text, f"{entry.name} {entry.path}")
 
 
 class ClipModel(QAbstractListModel):

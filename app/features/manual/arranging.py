@@ -25,8 +25,10 @@ def arranged(manual: Manual) -> Mapping[str, tuple[float, float]]:
         if link.source in joined and link.target in joined and link.source != link.target:
             joined[link.source].append(link.target)
             joined[link.target].append(link.source)
+    group = {s: n for n, a in enumerate(manual.aliases.values()) if not a.every for s in manual.members(a)}
     height: dict[str, float] = {}
     for column in columns:
+        column.sort(key=lambda s: group.get(s, len(group)))  # what an alias stands for stands together
         _stand(column, height)
     for sweep in range(SWEEPS):
         for column in columns if sweep % 2 else reversed(columns):
@@ -51,7 +53,15 @@ def arranged(manual: Manual) -> Mapping[str, tuple[float, float]]:
         x += 60 if len(parts) > 1 else 0
     left = min((y for _, y in out.values()), default=0.0)
     out[ANY] = (0.0, round(left - DOWN))
+    middle = {a.id: _mean([out[s][1] for s in manual.members(a)]) for a in manual.aliases.values()}
+    top = -(len(middle) - 1) / 2 * DOWN
+    for n, ident in enumerate(sorted(middle, key=lambda i: middle[i])):
+        out[ident] = (-ACROSS, round(top + n * DOWN))
     return out
+
+
+def _mean(values: Sequence[float]) -> float:
+    return sum(values) / len(values) if values else 0.0
 
 
 def _columns(manual: Manual) -> list[list[str]]:
@@ -61,12 +71,10 @@ def _columns(manual: Manual) -> list[list[str]]:
     depth: dict[str, int] = {}
     if manual.start in manual.states:
         _walk(manual, manual.start or "", 0, depth)
-    for link in manual.out.get(ANY, ()):
-        _walk(manual, link.target, 1, depth)
     last = max(depth.values(), default=-1) + 1
     for entered in (False, True):  # those that nothing leads to draw the others after them
         for state in manual.states:
-            if entered or not manual.into.get(state):
+            if entered or not manual.entering(state):
                 _walk(manual, state, last, depth)
     columns: list[list[str]] = [[] for _ in range(max(depth.values(), default=-1) + 1)]
     for ident, n in depth.items():
@@ -81,8 +89,8 @@ def _walk(manual: Manual, first: str, at: int, depth: dict[str, int]) -> None:
     depth[first] = at
     queue = [first]
     for state in queue:
-        for link in manual.out.get(state, ()):
-            if link.target in manual.states and link.target not in depth:
+        for link in manual.leaving(state):
+            if link.target not in depth:
                 depth[link.target] = depth[state] + 1
                 queue.append(link.target)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSizeF, Qt, QTimer, Signal
 from PySide6.QtGui import (
@@ -23,6 +24,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QMenu, QToolTip, QWidget
 
 from app.features.manual import manual_commands as commands
+from app.features.manual import manual_many
 from app.features.manual import manual_painter as painter
 from app.features.manual.manual_gestures import Band, DrawLink, ManualPan, Move
 from app.features.manual.manual_overlay import Marks, paint_over, plays
@@ -48,12 +50,13 @@ MAP = QSizeF(168, 104)  # of the map in the corner, pixels
 
 class ManualCanvas(QWidget):
     """The machine of the current layer. files_dropped: (paths, place) to import and then place. refused:
-    words for the status bar. viewed: what is seen has changed.
+    words for the status bar. viewed: what is seen has changed. find_wanted: states are to be searched for.
     """
 
     files_dropped = Signal(object, object)
     refused = Signal(str)
     viewed = Signal()
+    find_wanted = Signal()
 
     def __init__(
         self,
@@ -75,7 +78,13 @@ class ManualCanvas(QWidget):
         self._scene: ManualScene | None = None
         self._dragged: Mapping[str, tuple[float, float]] = {}
         self._band: QRectF | None = None
-        self._link: tuple[str, QPointF, str] = ("", QPointF(), "")  # source, where it ends now, target
+        self._link: tuple[str, QPointF, str, tuple[str, ...]] = (
+            "",
+            QPointF(),
+            "",
+            (),
+        )  # source, where it ends now, target, all sources
+        self._link_words = ""
         self._still: tuple[object, QPixmap] | None = None
         self._fast = False
         self._dropping = ""
@@ -138,9 +147,11 @@ class ManualCanvas(QWidget):
         self._band = band
         self.update()
 
-    def show_link(self, source: str, at: QPointF, target: str) -> None:
-        """Show a link that is being drawn; no source ends it."""
-        self._link = (source, at, target)
+    def show_link(
+        self, source: str, at: QPointF, target: str, sources: tuple[str, ...] = (), words: str = ""
+    ) -> None:
+        """Show a link that is being drawn; no source ends it. words: about it, at the canvas's foot."""
+        self._link, self._link_words = (source, at, target, sources or (source,)), words
         if not source:
             self.unsetCursor()
         self.update()
@@ -240,7 +251,7 @@ class ManualCanvas(QWidget):
             self._turn,
             self.at,
             self.hand.gesture is not None,
-            self._dropping,
+            self._dropping or self._link_words,
             self._map(),
         )
         paint_over(p, look, marks, QRectF(self.rect()))
@@ -303,8 +314,6 @@ class ManualCanvas(QWidget):
         s = self.session
         if hit.area == "edge" and not more:
             self.hand.take(DrawLink(self, hit.ident), at)
-            if hit.ident != ANY and hit.ident not in s.selection.states:
-                s.selection.select_states((hit.ident,))
         elif hit.area in ("node", "edge"):
             if more and hit.ident != ANY:
                 s.selection.select_states(_toggled(s.selection.states, hit.ident), s.selection.links)
@@ -351,9 +360,9 @@ class ManualCanvas(QWidget):
         plain = not event.modifiers() and event.button() == Qt.MouseButton.LeftButton
         if (
             plain
-            and isinstance(gesture, Move)
+            and isinstance(gesture, Move | DrawLink)
             and not gesture.begun
-            and hit.ident == gesture.node
+            and hit.ident == (gesture.node if isinstance(gesture, Move) else gesture.source)
             and hit.ident != ANY
         ):
             self.session.selection.select_states((hit.ident,))
@@ -362,7 +371,11 @@ class ManualCanvas(QWidget):
         if event.button() != Qt.MouseButton.LeftButton:
             return
         hit = self.scene().hit(self.view.back(event.position()), self.view.scale)
-        if hit.area in ("node", "edge", "link") and hit.ident != ANY:
+        alias = self.scene().manual.aliases.get(hit.ident)
+        if alias is not None:
+            self.hand.drop("replaced")
+            self.session.selection.select_states(self.scene().manual.members(alias))
+        elif hit.area in ("node", "edge", "link") and hit.ident != ANY:
             self.hand.drop("replaced")
             self.session.show_context(hit.ident)
 
@@ -400,10 +413,18 @@ class ManualCanvas(QWidget):
             return False
         return True
 
-    def add_link(self, source: str, target: str) -> None:
-        """Draw a link and select it."""
-        layer, before = self.session.place.layer, set(self.scene().manual.links)
-        if self.do("Draw link", lambda p: manual_edits.add_link(p, layer, source, target)):
+    def add_links(self, sources: tuple[str, ...], targets: tuple[str, ...]) -> None:
+        """Draw a link from each source to each target, and select what was drawn."""
+        layer = self.session.place.layer
+        if len(sources) == len(targets) == 1:
+            self.do_links("Draw link", lambda p: manual_edits.add_link(p, layer, sources[0], targets[0]))
+        else:
+            self.do_links("Draw links", lambda p: manual_edits.add_links(p, layer, sources, targets))
+
+    def do_links(self, text: str, edit: Callable[[Project], Project]) -> None:
+        """Make an edit that draws links, and select those."""
+        before = set(self.scene().manual.links)
+        if self.do(text, edit):
             self.session.selection.select_states(
                 (), tuple(i for i in self.scene().manual.links if i not in before)
             )
@@ -420,6 +441,9 @@ class ManualCanvas(QWidget):
                 tuple(i for i in self.scene().manual.states if i not in before)
             )
             self.session.transport.show_plan()
+
+    def find_states(self) -> None:
+        self.find_wanted.emit()
 
     # --- drops
 
@@ -446,6 +470,9 @@ class ManualCanvas(QWidget):
         event.acceptProposedAction()
         if load.clips:
             self.place(load.clips, QPointF(event.position()))
+        elif load.files and all(str(f).lower().endswith(manual_many.SUFFIXES) for f in load.files):
+            for file in load.files:
+                manual_many.import_table(self, Path(file))
         elif load.files:
             self.files_dropped.emit(load.files, QPointF(event.position()))
 

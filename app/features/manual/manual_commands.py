@@ -10,6 +10,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeyEvent, QKeySequence
 from PySide6.QtWidgets import QMenu
 
+from app.features.manual import manual_many
 from app.features.manual.arranging import arranged
 from app.features.manual.manual_host import ManualHost
 from app.features.manual.manual_painter import facts, words_of
@@ -25,10 +26,17 @@ SHIFT = 28.0  # units by which a duplicate stands beside what it is of
 
 
 class Clipboard:
-    """What was copied last: states with the links among them, or the settings of a link."""
+    """What was copied last: states with the links among them, or links, one of which gives its settings to
+    other links.
+    """
 
     piece: manual_edits.CopiedPiece | None = None
-    settings: Link | None = None
+    links: tuple[Link, ...] = ()
+
+    @property
+    def settings(self) -> Link | None:
+        """The settings that are pasted onto links."""
+        return self.links[0] if len(self.links) == 1 else None
 
 
 kept = Clipboard()
@@ -49,19 +57,22 @@ def remove(canvas: ManualHost) -> None:
 
 
 def copy(canvas: ManualHost) -> None:
-    """Keep the selected states, or the settings of the selected link."""
+    """Keep the selected states, or the selected links."""
     s, project = canvas.session, canvas.document.project
     if s.selection.states:
-        kept.piece, kept.settings = manual_edits.copied(project, s.selection.states), None
-    elif len(s.selection.links) == 1:
-        kept.piece, kept.settings = None, project.link(s.selection.links[0])
+        kept.piece, kept.links = manual_edits.copied(project, s.selection.states), ()
+    elif s.selection.links:
+        found = (project.link(i) for i in s.selection.links)
+        kept.piece, kept.links = None, tuple(x for x in found if x is not None)
 
 
 def paste(canvas: ManualHost) -> None:
-    """Paste states where the mouse is, or settings onto the selected links."""
+    """Paste states where the mouse is, settings onto the selected links, or links for the selected states."""
     links, settings = canvas.session.selection.links, kept.settings
     if settings is not None and links:
         canvas.do("Paste link settings", lambda p: manual_edits.paste_settings(p, links, settings))
+    elif kept.links and canvas.session.selection.states:
+        manual_many.paste_links(canvas, kept.links)
     elif kept.piece is not None:
         at = canvas.view.back(canvas.at)
         _paste(canvas, kept.piece, at.x(), at.y(), "Paste")
@@ -115,17 +126,24 @@ def nudge(canvas: ManualHost, x: float, y: float) -> None:
 
 
 def can_paste(canvas: ManualHost) -> bool:
-    return kept.piece is not None or (kept.settings is not None and bool(canvas.session.selection.links))
+    links = kept.settings is not None and bool(canvas.session.selection.links)
+    return kept.piece is not None or links or (bool(kept.links) and bool(canvas.session.selection.states))
 
 
 def for_key(canvas: ManualHost, event: QKeyEvent) -> Run | None:
     """Return what a key does here, None where it is the window's."""
     s = canvas.session
+    control = event.modifiers() == Qt.KeyboardModifier.ControlModifier
+    if event.key() == Qt.Key.Key_G and control and s.selection.states:
+        return lambda: manual_many.make_alias(canvas)
+    if event.key() in (Qt.Key.Key_O, Qt.Key.Key_I) and not event.modifiers() and s.selection.states:
+        into = event.key() == Qt.Key.Key_I
+        return lambda: manual_many.select_links(canvas, into)
     if event.key() == Qt.Key.Key_Escape:
         return (lambda: canvas.hand.drop("escape")) if canvas.hand.gesture is not None else None
-    if (
-        event.key() == Qt.Key.Key_D and event.modifiers() == Qt.KeyboardModifier.ControlModifier
-    ):  # on X11 also a key to delete
+    if event.text() == "/":
+        return canvas.find_states
+    if event.key() == Qt.Key.Key_D and control:  # on X11 also a key to delete
         return lambda: duplicate(canvas)
     for standard, run in (
         (Standard.Delete, remove),
@@ -164,35 +182,62 @@ def fill(out: QMenu, canvas: ManualHost, hit: ManualHit) -> None:
         action.setEnabled(enabled)
 
     node = hit.area in ("node", "edge")
+    others = tuple(i for i in s.selection.states if i in canvas.scene().manual.states)
     if node and hit.ident != ANY and hit.ident not in s.selection.states:
         s.selection.select_states((hit.ident,))
     if hit.area == "link" and hit.ident not in s.selection.links:
         s.selection.select_states((), (hit.ident,))
     if node:
         add("Draw link from here", lambda: canvas.begin_link(hit.ident))
-    if node and hit.ident != ANY:
+    alias = canvas.scene().manual.aliases.get(hit.ident)
+    if alias is not None:
+        _fill_alias(canvas, add, alias.id, others)
+    if node and hit.ident != ANY and alias is None:
+        add("Make alias of selected", lambda: manual_many.make_alias(canvas), "Ctrl+G")
         add(
             "Start here",
             lambda: start_here(canvas, hit.ident),
             enabled=canvas.scene().manual.start != hit.ident,
         )
         add("Play alone", lambda: s.show_context(hit.ident))
+    if node and hit.ident != ANY:
         out.addSeparator()
+        add("Select links out of here", lambda: manual_many.select_links(canvas, False), "O")
+        add("Select links to here", lambda: manual_many.select_links(canvas, True), "I")
+        out.addSeparator()
+        if kept.links:
+            add("Paste links", lambda: paste(canvas), "Ctrl+V")
         add("Copy", lambda: copy(canvas), "Ctrl+C")
         add("Duplicate", lambda: duplicate(canvas), "Ctrl+D")
         add("Remove", lambda: remove(canvas), "Del")
     elif hit.area == "link":
         add("Play link", lambda: s.show_context(hit.ident))
         out.addSeparator()
-        add("Copy settings", lambda: copy(canvas), "Ctrl+C", len(s.selection.links) == 1)
+        add("Copy", lambda: copy(canvas), "Ctrl+C")
         add("Paste settings", lambda: paste(canvas), "Ctrl+V", kept.settings is not None)
         add("Remove", lambda: remove(canvas), "Del")
     elif not node:
         add("Paste", lambda: paste(canvas), "Ctrl+V", kept.piece is not None)
         add("Select all", lambda: select_all(canvas), "Ctrl+A")
         out.addSeparator()
+        chosen = bool(s.selection.states)
+        add("Make alias of selected", lambda: manual_many.make_alias(canvas), "Ctrl+G", chosen)
+        there = bool(canvas.scene().manual.states)
+        add("Make alias of every state", lambda: manual_many.make_alias(canvas, True), enabled=there)
+        add("Paste links from a table", lambda: manual_many.paste_table(canvas), "", manual_many.has_table())
+        add("Copy links as a table", lambda: manual_many.copy_table(canvas), enabled=there)
+        out.addSeparator()
         add("Arrange nodes", lambda: arrange(canvas), enabled=bool(canvas.scene().manual.states))
         add("Show all", lambda: _show_all(canvas), "F")
+
+
+def _fill_alias(canvas: ManualHost, add: Callable[..., None], alias: str, chosen: tuple[str, ...]) -> None:
+    """Offer what can be done with an alias. chosen: the states that were selected before."""
+    add("Select its states", lambda: manual_many.select_members(canvas, alias))
+    if chosen:
+        count = f"{len(chosen)} selected state{'s' if len(chosen) != 1 else ''}"
+        add(f"Add {count}", lambda: manual_many.choose(canvas, alias, chosen))
+        add(f"Take away {count}", lambda: manual_many.choose(canvas, alias, chosen, False))
 
 
 def _show_all(canvas: ManualHost) -> None:
@@ -213,14 +258,21 @@ def tip(canvas: ManualHost, hit: ManualHit) -> str:
     trouble = canvas.troubles.get(hit.ident, "")
     if hit.ident == ANY:
         return "Any state: links from here can be taken from every state\nDrag from its border to a state"
+    if hit.area in ("node", "edge") and hit.ident in manual.aliases:
+        alias = manual.aliases[hit.ident]
+        names = [manual.states[i].name for i in manual.members(alias)]
+        more = f" and {len(names) - 12} more" if len(names) > 12 else ""
+        stands = f"stands for {', '.join(names[:12])}{more}" if names else "stands for no state"
+        help_ = "Drag from its border to draw links from each, double-click to select them"
+        return "\n".join(x for x in (alias.name, stands, trouble, help_) if x)
     if hit.area in ("node", "edge") and hit.ident in manual.states:
         state = manual.states[hit.ident]
         help_ = "Drag to draw a link" if hit.area == "edge" else "Drag to move, double-click to play it alone"
         return "\n".join(x for x in (state.name, facts(canvas.document.project, state), trouble, help_) if x)
     if hit.area == "link" and hit.ident in manual.links:
         link = manual.links[hit.ident]
-        source, target = manual.states.get(link.source), manual.states.get(link.target)
-        names = f"{source.name if source else 'Any state'} → {target.name if target else '?'}"
+        begins = "Any state" if link.source == ANY else manual_edits.name_of(manual, link.source)
+        ends = f"{begins} → {manual_edits.name_of(manual, link.target)}"
         when = (
             "on request: "
             if link.condition.when == "request"
@@ -229,8 +281,6 @@ def tip(canvas: ManualHost, hit: ManualHit) -> str:
             else "at "
         )
         return "\n".join(
-            x
-            for x in (names, f"{when}{words_of(link)}".strip(), f"blends for {link.blend:g} s", trouble)
-            if x
+            x for x in (ends, f"{when}{words_of(link)}".strip(), f"blends for {link.blend:g} s", trouble) if x
         )
     return ""

@@ -4,16 +4,21 @@ shown.
 
 from __future__ import annotations
 
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtCore import QSizeF
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QLineEdit, QToolButton, QVBoxLayout, QWidget
 
 from app.features.manual import manual_commands as commands
+from app.features.manual import manual_many
 from app.features.manual.manual_canvas import ManualCanvas
 from app.features.manual.manual_inspector import Inspector
 from app.look.plural import many
 from app.widgets.form_fields import Chooser
 from app.widgets.making import make_widget
 from metagraph.graph.model import Project
+from metagraph.graph.name_search import fits
 from metagraph.graph.problem import Problem
+
+FIND = "Select the states whose names hold these words (/): sit wave, sit -wave, sit | stand"
 
 
 class ManualEditor(QWidget):
@@ -25,8 +30,21 @@ class ManualEditor(QWidget):
         self.inspector = Inspector(canvas, canvas.performance)
         self.words = QLabel(self)
         self.words.setProperty("dim", True)
+        self.search = make_widget(QLineEdit, self, toolTip=FIND)
+        self.search.setPlaceholderText("Find states")
+        self.search.setAccessibleName("Find states")
+        self.search.setClearButtonEnabled(True)
+        self.search.setMinimumWidth(90)
+        self.search.textEdited.connect(self._find)
+        self.search.returnPressed.connect(self._found)
+        self.table = _button(
+            self,
+            "Import table…",
+            "Draw links from a spreadsheet: from, to, when, trigger, weight, exit, blend",
+        )
+        self.table.clicked.connect(self._choose_table)
         self.trigger = Chooser(self, toolTip="A trigger that links of this layer wait for")
-        self.trigger.setMinimumWidth(150)
+        self.trigger.setMinimumWidth(110)
         self.fire = _button(
             self, "Fire", "Fire it now: the machine goes there over the shortest way of links"
         )
@@ -35,22 +53,31 @@ class ManualEditor(QWidget):
         self.arrange.clicked.connect(lambda: commands.arrange(canvas))
         self.fit = _button(self, "Show all", "Show what is selected, or all (F)")
         self.fit.clicked.connect(canvas.fit)
-        row = QHBoxLayout()
-        row.setContentsMargins(12, 6, 12, 6)
-        row.setSpacing(8)
-        row.addWidget(self.words)
-        row.addStretch(1)
-        for part in (self.trigger, self.fire, self.arrange, self.fit):
-            row.addWidget(part)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
-        layout.addLayout(row)
+        above, below = self._row(6, 0), self._row(2, 6)
+        above.addWidget(self.words, 1)
+        above.addWidget(self.arrange)
+        above.addWidget(self.fit)
+        below.addWidget(self.search, 1)
+        for part in (self.table, self.trigger, self.fire):
+            below.addWidget(part)
+        layout.addLayout(above)
+        layout.addLayout(below)
         layout.addWidget(canvas, 1)
         canvas.document.changed.connect(self._edited)
         canvas.viewed.connect(self.show_words)
+        canvas.find_wanted.connect(self._begin_finding)
         self.session.place.layer_changed.connect(self.show_words)
         self.show_words()
+
+    @staticmethod
+    def _row(top: int, bottom: int) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setContentsMargins(12, top, 12, bottom)
+        row.setSpacing(8)
+        return row
 
     def _edited(self, before: Project, after: Project) -> None:
         if before.manual is not after.manual:
@@ -61,7 +88,8 @@ class ManualEditor(QWidget):
         manual = self.canvas.scene().manual
         zoom = f"{self.canvas.view.scale * 100:.0f} %"
         self.words.setText(
-            f"{many(len(manual.states), 'state')}, {many(len(manual.links), 'link')}    {zoom}"
+            f"{many(len(manual.states), 'state')}, {many(len(manual.links), 'link')} for "
+            f"{many(len(manual.ways), 'connection')}    {zoom}"
         )
         chosen = self.trigger.currentData()
         first = chosen if chosen in manual.triggers else next(iter(manual.triggers), None)
@@ -69,6 +97,32 @@ class ManualEditor(QWidget):
         for part in (self.trigger, self.fire):
             part.setEnabled(bool(manual.triggers))
         self.arrange.setEnabled(bool(manual.states))
+        self.table.setEnabled(bool(manual.states))
+        self.search.setEnabled(bool(manual.states))
+
+    def _find(self, text: str) -> None:
+        """Select the states whose names fit, or where none does the aliases."""
+        manual = self.canvas.scene().manual
+        states = tuple(i for i, s in manual.states.items() if fits(text, s.name))
+        aliases = tuple(i for i, a in manual.aliases.items() if fits(text, a.name))
+        self.session.selection.select_states(states or aliases)
+
+    def _begin_finding(self) -> None:
+        self.search.setFocus()
+        self.search.selectAll()
+
+    def _found(self) -> None:
+        """Give the keys back to the canvas, and show what was found where it is not in sight."""
+        nodes, chosen = self.canvas.scene().nodes, self.session.selection.states
+        seen = self.canvas.view.rect(QSizeF(self.canvas.size()))
+        if chosen:
+            if not all(seen.contains(nodes[i]) for i in chosen if i in nodes):
+                self.canvas.fit()
+            self.canvas.setFocus()
+
+    def _choose_table(self) -> None:
+        folder = self.canvas.document.folder
+        manual_many.choose_table(self.canvas, self, str(folder or ""))
 
     def _fire(self) -> None:
         trigger = self.trigger.currentData()

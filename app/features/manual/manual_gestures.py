@@ -102,13 +102,16 @@ class Band(PressDrag):
 
 
 class DrawLink(PressDrag):
-    """Draws a link from a node to where the mouse is let go. sticky: begun from a menu, it follows the mouse
-    until it is pressed.
+    """Draws a link from a node to where the mouse is let go. From a selected node it draws one from each that
+    is selected; from another one onto a selected node, one to each. sticky: begun from a menu, it follows the
+    mouse until it is pressed.
     """
 
     def __init__(self, host: ManualHost, source: str, sticky: bool = False) -> None:
         super().__init__()
         self.host, self.source, self.sticky = host, source, sticky
+        self.chosen = host.session.selection.states
+        self.sources = self.chosen if source in self.chosen else (source,)
         self.begun = sticky
         self.target = ""
         self.words = ""
@@ -124,7 +127,19 @@ class DrawLink(PressDrag):
             )
             self.target, self.words = (hit.ident, "") if why is None else ("", why)
         self.host.show_cursor(Qt.CursorShape.ForbiddenCursor if self.words else Qt.CursorShape.CrossCursor)
-        self.host.show_link(self.source, at, self.target)
+        self.host.show_link(self.source, at, self.target, self.sources, self._tell())
+
+    @property
+    def targets(self) -> tuple[str, ...]:
+        """What the link leads to where it is let go now: all that is selected, if that is one of it and the
+        link is drawn from elsewhere.
+        """
+        many = self.target in self.chosen and self.source not in self.chosen
+        return self.chosen if many else (self.target,)
+
+    def _tell(self) -> str:
+        count = len(self.sources) * len(self.targets)
+        return f"{count} links at once" if self.target and count > 1 else ""
 
     def finish(self, at: QPointF) -> None:
         self.update(at)
@@ -136,7 +151,7 @@ class DrawLink(PressDrag):
         if self.words:
             self.host.refuse(self.words)
         elif self.target:
-            self.host.add_link(self.source, self.target)
+            self.host.add_links(self.sources, self.targets)
         else:
             self.host.refuse("let a link go on a state")
 

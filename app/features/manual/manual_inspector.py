@@ -22,6 +22,9 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.manual import manual_commands as commands
+from app.features.manual import manual_many
+from app.features.manual.alias_page import AliasPage
+from app.features.manual.exit_row import ExitRow
 from app.features.manual.manual_canvas import ManualCanvas
 from app.features.manual.manual_mask import StateMask
 from app.look.plural import many
@@ -49,7 +52,8 @@ class Inspector(QScrollArea):
         self.setFrameShape(QScrollArea.Shape.NoFrame)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.pages = QStackedWidget(self)
-        for page in (self._machine_page(), self._state_page(), self._link_page()):
+        self.alias = AliasPage(canvas, self)
+        for page in (self._machine_page(), self._state_page(), self._link_page(), self.alias):
             self.pages.addWidget(page)
         self.setWidget(self.pages)
         self.document.changed.connect(self._edited)
@@ -131,6 +135,11 @@ class Inspector(QScrollArea):
         self.alone = QPushButton("Play alone", page)
         self.alone.clicked.connect(lambda: self.session.show_context(self.session.selection.states[0]))
         box.addWidget(_row(page, self.begin, self.alone))
+        self.group = make_widget(
+            QPushButton, "Make alias", page, toolTip="One node that stands for all that is selected (Ctrl+G)"
+        )
+        self.group.clicked.connect(lambda: manual_many.make_alias(self.canvas))
+        box.addWidget(self.group)
         self.state_trouble = QLabel(page, wordWrap=True)
         box.addWidget(self.state_trouble)
         box.addStretch(1)
@@ -157,13 +166,11 @@ class Inspector(QScrollArea):
         )
         self.weight.valueChanged.connect(self._weigh)
         form.addRow("Weight", self.weight)
-        self.leaves = QCheckBox("at", page)
-        self.leaves.setAccessibleName("Has exit time")
-        self.leaves.setToolTip("Whether the source is left at a moment of its clip")
-        self.leaves.clicked.connect(self._leave)
-        self.exit = Seconds(page, "Exit time: seconds of the source's clip at which it may be left")
-        self.exit.valueChanged.connect(lambda v: self._number("Change exit time", "exit_time", v))
-        form.addRow("Exit time", _row(page, self.leaves, self.exit))
+        self.exit = ExitRow(page)
+        self.exit.chosen.connect(self._leave)
+        self.exit.timed.connect(lambda v: self._number("Change exit time", "exit_time", v))
+        self.exit.shared.connect(lambda v: self._number("Change exit time", "exit_part", v))
+        form.addRow("Exit", self.exit)
         self.blend = Seconds(page, "Blend: seconds in which the target takes over")
         self.blend.valueChanged.connect(lambda v: self._number("Change blend", "blend", v))
         form.addRow("Blend", self.blend)
@@ -178,11 +185,17 @@ class Inspector(QScrollArea):
         )
         self.play.clicked.connect(lambda: self.session.show_context(self.session.selection.links[0]))
         box.addWidget(_row(page, self.fire, self.play))
-        self.copy = QPushButton("Copy settings", page)
+        self.copy = make_widget(
+            QPushButton,
+            "Copy",
+            page,
+            toolTip="Copy links: their settings for other links, or all of them for other states",
+        )
         self.copy.clicked.connect(self._copy)
         self.paste = QPushButton("Paste settings", page)
         self.paste.clicked.connect(lambda: commands.paste(self.canvas))
         box.addWidget(_row(page, self.copy, self.paste))
+        self.group.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         for button in (self.fire, self.play, self.copy, self.paste, self.begin, self.alone):
             button.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # after a click the space bar still plays
         self.link_trouble = QLabel(page, wordWrap=True)
@@ -205,7 +218,15 @@ class Inspector(QScrollArea):
     def show_selection(self) -> None:
         """Show what is selected as it is; links come before states, which are selected with them."""
         links, states = self.links(), self.states()
-        self.pages.setCurrentIndex(2 if links and not states else 1 if states else 0)
+        aliases = [
+            a for i in self.session.selection.states if (a := self.document.project.alias(i)) is not None
+        ]
+        lone = bool(aliases) and not states and not links
+        self.pages.setCurrentIndex(3 if lone else 2 if links and not states else 1 if states else 0)
+        if lone:
+            self.alias.show_aliases(aliases)
+            self._trouble(self.alias.trouble, [a.id for a in aliases])
+            return
         if links and not states:
             self._show_links(links)
         elif states:
@@ -222,8 +243,8 @@ class Inspector(QScrollArea):
         manual = self.canvas.scene().manual
         self.title.setText(f"{self.session.place.layer.capitalize()} layer")
         self.words.setText(
-            f"{many(len(manual.states), 'state')}, {many(len(manual.links), 'link')}. Select one to change "
-            "it."
+            f"{many(len(manual.states), 'state')}, {many(len(manual.links), 'link')} for "
+            f"{many(len(manual.ways), 'connection')}. Select one to change it, or many to change all."
         )
         self.start.show_entries(
             [(s.name, s.id) for s in manual.states.values()], manual.start, "no state yet"
@@ -271,7 +292,7 @@ class Inspector(QScrollArea):
 
     def _show_links(self, links: list[Link]) -> None:
         project, one = self.document.project, len(links) == 1
-        source, target = project.state(links[0].source), project.state(links[0].target)
+        source, target = (project.state(i) or project.alias(i) for i in (links[0].source, links[0].target))
         names = f"{escape(source.name) if source else 'Any state'} → {escape(target.name) if target else '?'}"
         self.ends.setText(names if one else many(len(links), "link"))
         when = common([x.condition.when for x in links])
@@ -281,20 +302,11 @@ class Inspector(QScrollArea):
         self.form.setRowVisible(self.trigger, when != "finished")
         self.form.setRowVisible(self.weight, when != "request")
         self.weight.show_value(common([x.condition.weight for x in links]))
-        left = common([x.exit_time is not None for x in links])
-        self.leaves.setTristate(left is Mixed)
-        self.leaves.setCheckState(_check(left))
-        otherwise = {"request": "at once", "finished": "at its end"}.get(str(when), "none")
-        self.leaves.setText("at" if left is not False else otherwise)
-        at = common([x.exit_time for x in links])
-        self.exit.setVisible(left is not False)
-        if at is not None:
-            self.exit.show_value(at)
+        self.exit.show_links(links)
         self.blend.show_value(common([x.blend for x in links]))
         self.fire.setVisible(one and when == "request")
         self.play.setEnabled(one)
-        self.copy.setEnabled(one)
-        self.paste.setEnabled(commands.kept.settings is not None)
+        self.paste.setEnabled(len(commands.kept.links) == 1)
         self._trouble(self.link_trouble, [x.id for x in links])
 
     # --- editing
@@ -358,19 +370,24 @@ class Inspector(QScrollArea):
         else:
             self.show_selection()
 
-    def _leave(self) -> None:
-        """Give links an exit time, at the end of what their source plays, or none."""
-        on, chosen = self.leaves.checkState() != Qt.CheckState.Unchecked, self.session.selection.links
+    def _leave(self, way: str) -> None:
+        """Let links leave otherwise; those that get a time or a share begin at the end of what plays."""
+        chosen = self.session.selection.links
 
         def edit(project: Project) -> Project:
+            if way in ("none", "end"):
+                part = 1.0 if way == "end" else None
+                return manual_edits.update_links(project, chosen, exit_time=None, exit_part=part)
+            if way == "part":
+                return manual_edits.update_links(project, chosen, exit_time=None, exit_part=0.9)
             for ident in chosen:
                 link = project.link(ident)
-                if link is None or (on and link.exit_time is not None):
+                if link is None or link.exit_time is not None:
                     continue
                 source = project.state(link.source)
                 span = project.span(action_of(source)) if source is not None else (0.0, 1.0)
                 at = round(max(span[0], span[1] - link.blend), 3)
-                project = manual_edits.update_links(project, [ident], exit_time=at if on else None)
+                project = manual_edits.update_links(project, [ident], exit_time=at, exit_part=None)
             return project
 
         self._try("Change exit time", edit)

@@ -14,13 +14,14 @@ from app.stage.playback_source import Shown
 from metagraph.graph.model import Layer
 from metagraph.playback.manual_playback import clip_seconds
 
+TOLD = 8  # selected links, up to which each tells what it waits for
 EMPTY = "Drop clips here to make states. Drag from a state's border to draw a link."
 
 
 @dataclass(frozen=True)
 class Marks:
     """dragged: nodes that are, and where they stand now. source, end, target: of a link that is being drawn,
-    no source for none.
+    no source for none. sources: all that it is drawn from.
 
     band: a rubber band. turn: the state that plays, and how far it is, 0..1. at: the mouse. busy: it drags
     something. dropping: words about what is dragged in. map_place: where the map goes.
@@ -31,6 +32,7 @@ class Marks:
     source: str
     end: QPointF
     target: str
+    sources: tuple[str, ...]
     band: QRectF | None
     turn: tuple[str, float]
     at: QPointF
@@ -63,10 +65,10 @@ def paint_over(p: QPainter, look: painter.ManualLook, marks: Marks, rect: QRectF
         painter.paint_link(p, look, links[marks.hover.ident], strong, 1.8)
     for ident in look.links:
         if ident in links:
-            painter.paint_link(p, look, links[ident], strong, 2.4)
+            painter.paint_link(p, look, links[ident], strong, 2.4, told=len(look.links) <= TOLD)
     _nodes(p, look, marks)
-    if marks.source:
-        begin = look.view.to(look.scene.nodes[marks.source].center())
+    for source in marks.sources if marks.source else ():
+        begin = look.view.to(look.scene.nodes[source].center())
         painter.paint_arrow(p, begin, marks.end, look.theme.kind("stance"), 2.2, 1.0)
     if marks.band is not None:
         fill = QColor(look.theme.text)
@@ -95,6 +97,14 @@ def _nodes(p: QPainter, look: painter.ManualLook, marks: Marks) -> None:
                 ident in over,
                 bool(marks.target) and ident == marks.target,
             )
+    for ident in look.states:
+        alias = look.scene.manual.aliases.get(ident)
+        for member in look.scene.manual.members(alias) if alias is not None else ():
+            p.setPen(QPen(QColor(look.theme.kinds["stance"]), 1.6, Qt.PenStyle.DashLine))
+            p.setBrush(Qt.BrushStyle.NoBrush)
+            box = look.scene.nodes[member]
+            place = QRectF(look.view.to(box.topLeft()), look.view.to(box.bottomRight()))
+            p.drawRoundedRect(place.adjusted(-4, -4, 4, 4), 8, 8)
     if marks.turn[0] in look.scene.nodes:
         painter.paint_playing(p, look, *marks.turn)
     if (

@@ -15,7 +15,7 @@ from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, 
 
 from app.features.manual.manual_scene import LOOP, ManualScene, ManualView
 from app.look.theme import Theme
-from metagraph.graph.manual import ANY, Link, State
+from metagraph.graph.manual import ANY, Alias, Link, State
 from metagraph.graph.model import Project
 
 GRID = 24.0
@@ -180,9 +180,10 @@ def paint_arrow(painter: QPainter, a: QPointF, b: QPointF, color: QColor, width:
 
 def words_of(link: Link) -> str:
     """Say in a few words when a link is taken."""
-    if link.condition.when == "request":
-        return link.condition.trigger + (f"  {link.exit_time:g} s" if link.exit_time is not None else "")
-    return "" if link.exit_time is None else f"{link.exit_time:g} s"
+    at = f"{link.exit_time:g} s" if link.exit_time is not None else ""
+    if not at and link.exit_part is not None and (link.exit_part < 1 or link.condition.when == "request"):
+        at = "at the end" if link.exit_part >= 1 else f"at {link.exit_part * 100:g} %"
+    return f"{link.condition.trigger}  {at}".strip() if link.condition.when == "request" else at
 
 
 def _label(painter: QPainter, look: ManualLook, link: Link, color: QColor | None = None) -> None:
@@ -239,6 +240,9 @@ def paint_node(
             painter.setPen(QColor(t.dim))
             painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, "Any state" if view.scale > 0.5 else "Any")
         return
+    if ident in look.scene.manual.aliases:
+        paint_alias(painter, look, look.scene.manual.aliases[ident], rect)
+        return
     state = look.scene.manual.states[ident]
     if rough:
         painter.drawRect(rect)
@@ -262,6 +266,32 @@ def paint_node(
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.drawPolygon(QPolygonF([c + QPointF(0, -5), c + QPointF(5.5, 4.5), c + QPointF(-5.5, 4.5)]))
         painter.drawLine(c + QPointF(0, -1.5), c + QPointF(0, 1.5))
+
+
+def paint_alias(painter: QPainter, look: ManualLook, alias: Alias, rect: QRectF) -> None:
+    """Paint an alias: a shape of two layers, its name, and how many states it stands for."""
+    t, scale, count = look.theme, look.view.scale, len(look.scene.manual.members(alias))
+    painter.drawRoundedRect(rect.translated(4 * scale, -4 * scale), rect.height() / 2, rect.height() / 2)
+    painter.drawRoundedRect(rect, rect.height() / 2, rect.height() / 2)
+    if scale < TINY:
+        return
+    room = 14 * scale if scale >= SMALL else 3
+    inner = rect.adjusted(room, 0, -room, 0)
+    words = "every state" if alias.every else f"{count} state{'' if count == 1 else 's'}"
+    if alias.entry is not None:
+        words += f", enters {look.scene.manual.states[alias.entry].name}"
+    lines = [(alias.name, max(9.5, 12 * scale), True, t.text)]
+    if scale >= SMALL:
+        lines.append((words, max(9.0, 11 * scale), False, t.dim))
+    high = inner.height() / (len(lines) + 0.6)
+    for n, (text, pixels, bold, color) in enumerate(lines):
+        font = _font(look.font.toString(), pixels, bold)
+        painter.setFont(font)
+        painter.setPen(QColor(color))
+        place = QRectF(inner.left(), inner.top() + high * (n + 0.3), inner.width(), high)
+        painter.drawText(
+            place, Qt.AlignmentFlag.AlignCenter, _elided(text, font.toString(), int(place.width()))
+        )
 
 
 def _start(painter: QPainter, look: ManualLook, rect: QRectF) -> None:

@@ -20,6 +20,7 @@ from metagraph.graph.manual import ANY, Link, Manual
 Array = NDArray[Any]
 NODE = QSizeF(196, 64)
 ANY_NODE = QSizeF(112, 34)
+ALIAS_NODE = QSizeF(156, 44)
 APART = 11.0  # units between arrows that join the same two nodes
 LOOP = 13.0  # radius of an arrow that leads back to its own node
 EDGE = 10.0  # pixels at a node's border from which a link is drawn
@@ -68,8 +69,8 @@ def fitted(rect: QRectF, size: QSizeF, most: float = 1.0) -> ManualView:
 
 @dataclass(frozen=True)
 class ManualHit:
-    """What is under a point. "edge" is a node's border, from which links are drawn. ident: a state's or
-    link's id, or ANY.
+    """What is under a point. "edge" is a node's border, from which links are drawn. ident: a state's,
+    alias's or link's id, or ANY.
     """
 
     area: Literal["node", "edge", "link", "nothing"]
@@ -89,6 +90,9 @@ class ManualScene:
         for state in manual.states.values():
             x, y = moved.get(state.id, (state.x, state.y))
             self.nodes[state.id] = QRectF(QPointF(x, y), NODE)
+        for alias in manual.aliases.values():
+            x, y = moved.get(alias.id, (alias.x, alias.y))
+            self.nodes[alias.id] = QRectF(QPointF(x, y), ALIAS_NODE)
         x, y = moved.get(ANY, (manual.any_x, manual.any_y))
         self.nodes[ANY] = QRectF(QPointF(x, y), ANY_NODE)
 

@@ -42,6 +42,7 @@ def described(before: Project, after: Project) -> dict[str, Any]:
             whats |= _items(states, new_states, "place", clips)
             ends: dict[str, None] = {}
             whats |= _items(links, new_links, "link", ends)
+            whats |= _items(one.aliases if one else {}, other.aliases if other else {}, "link", {})
             known = {**states, **new_states}
             clips.update(dict.fromkeys(known[s].clip for s in ends if s in known))
         if len(whats) > count:

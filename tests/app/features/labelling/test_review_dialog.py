@@ -466,3 +466,62 @@ def test_stances_no_clip_leads_to_are_told_after_all_were_accepted_and_bridged_w
     press(dialog, K.Key_Backspace, K.Key_Backspace)
     drive.wait(lambda: not dialog.queue.parted.isVisible())
     dialog.close()
+
+
+def play_through(drive, dialog) -> None:
+    """Let what plays come round once."""
+    drive.wait(lambda: dialog._seen == dialog._trials)
+    dialog.stage.played.emit()
+
+
+def test_all_clips_are_watched_through_a_correction_holds_and_they_are_accepted_together(
+    practice, monkeypatch
+):
+    drive = practice
+    dialog = begun(drive)
+    press(dialog, K.Key_W)
+    assert dialog.watching.on and not dialog.context
+    first = dialog.current
+    play_through(drive, dialog)
+    second = dialog.current
+    assert second != first and not drive.document.project.uses.get(first)
+    assert "Watching 2 of 152" in dialog.queue.words.text()
+    wanted = "fidget" if dialog.review.value(second, "kind") != "fidget" else "gesture"
+    dialog._choose("kind", wanted)
+    play_through(drive, dialog)
+    assert dialog.current == second  # it is held until Enter
+    press(dialog, K.Key_Return)
+    assert dialog.current not in (first, second)
+    press(dialog, K.Key_Backtab)
+    play_through(drive, dialog)
+    held = dialog.current
+    play_through(drive, dialog)
+    assert dialog.current == held
+    for _ in range(400):
+        if dialog.current is None:
+            break
+        press(dialog, K.Key_Return)
+    assert "watched" in dialog.stage.words.text() and dialog.work.waiting()
+    press(dialog, K.Key_Return)
+    assert not dialog.work.waiting() and not dialog.watching.on
+    assert drive.document.project.uses[second][0].kind == wanted
+    press(dialog, K.Key_Backspace)  # one step
+    assert len(dialog.work.waiting()) == 152
+    press(dialog, K.Key_W, K.Key_Return)
+    out = dialog.current
+    press(dialog, K.Key_Tab, K.Key_W)  # ended after one: that is accepted, what was left out is not
+    assert len(dialog.work.waiting()) < 152 and out in dialog.work.waiting()
+
+
+def test_clips_that_are_taken_for_the_same_are_watched_beside_each_other(practice):
+    from itertools import groupby
+
+    from app.features.labelling.review_watch import ordered
+
+    dialog = begun(practice)
+    review = dialog.review
+    order = ordered(review, dialog.work.waiting())
+    signs = [(review.value(c, "layer"), review.value(c, "stance"), review.value(c, "kind")) for c in order]
+    assert len(list(groupby(signs))) == len(set(signs)) < 152 and sorted(order) == sorted(
+        dialog.work.waiting()
+    )

@@ -156,13 +156,15 @@ def test_clips_are_dropped_links_are_dragged_and_all_of_it_plays_is_undone_saved
     # An exit time, typed; one step back, and again.
     back = [*hand.machine.links][1]
     drive.session.selection.select_states((), (back,))
-    QTest.mouseClick(
-        hand.inspector.leaves, Qt.MouseButton.LeftButton, pos=QPoint(8, hand.inspector.leaves.height() // 2)
-    )
-    hand.inspector.exit.setFocus()
-    hand.inspector.exit.selectAll()
-    QTest.keyClicks(hand.inspector.exit, "0.8")
-    QTest.keyClick(hand.inspector.exit, Qt.Key.Key_Return)
+    exits = hand.inspector.exit
+    exits.way.setFocus()
+    QTest.keyClick(exits.way, Qt.Key.Key_End)
+    exits.way.activated.emit(exits.way.currentIndex())
+    assert exits.time.isVisible() and not exits.part.isVisible()
+    exits.time.setFocus()
+    exits.time.selectAll()
+    QTest.keyClicks(exits.time, "0.8")
+    QTest.keyClick(exits.time, Qt.Key.Key_Return)
     assert hand.machine.links[back].exit_time == 0.8
     drive.document.undo()
     assert hand.machine.links[back].exit_time == pytest.approx(0.95)

@@ -1,0 +1,70 @@
+"""When a link leaves its source: at once or at its end, at a share of it, or at a time of its clip."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QHBoxLayout, QWidget
+
+from app.widgets.form_fields import MIXED, Chooser, Mixed, Seconds, common
+from metagraph.graph.manual import Link
+
+Way = Literal["none", "end", "part", "time"]
+WORDS: dict[Way, str] = {
+    "none": "none",
+    "end": "when the source ends",
+    "part": "at a share of it",
+    "time": "at a time of its clip",
+}
+
+
+def way_of(link: Link) -> Way:
+    """Return how a link says when its source is left."""
+    if link.exit_time is not None:
+        return "time"
+    if link.exit_part is None:
+        return "none"
+    return "end" if link.exit_part >= 1 else "part"
+
+
+class ExitRow(QWidget):
+    """chosen: another way. timed: seconds of the clip. shared: a share, 0..1, of what plays."""
+
+    chosen = Signal(str)
+    timed = Signal(float)
+    shared = Signal(float)
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.way = Chooser(
+            self,
+            toolTip="When the source may be left. A loop has no end: asked to leave, it is left at once",
+        )
+        self.way.activated.connect(lambda n: self.chosen.emit(self.way.itemData(n)))
+        self.time = Seconds(self, "Exit time: seconds of the source's clip at which it may be left")
+        self.time.valueChanged.connect(self.timed)
+        self.part = Seconds(
+            self, "The share of what the source plays by which the blend is over", 100, " %", 5, 0
+        )
+        self.part.valueChanged.connect(lambda v: self.shared.emit(v / 100))
+        line = QHBoxLayout(self)
+        line.setContentsMargins(0, 0, 0, 0)
+        line.addWidget(self.way, 3)
+        line.addWidget(self.time, 2)
+        line.addWidget(self.part, 2)
+
+    def show_links(self, links: list[Link]) -> None:
+        """Show what several links have in common."""
+        ways: Any = common([way_of(x) for x in links])
+        when = common([x.condition.when for x in links])
+        none = {"request": "at once", "finished": "at its end"}.get(str(when), "none")
+        entries = [(none if way == "none" else words, way) for way, words in WORDS.items()]
+        self.way.show_entries(entries, None if ways is Mixed else ways, MIXED)
+        self.time.setVisible(ways == "time")
+        self.part.setVisible(ways == "part")
+        if ways == "time":
+            self.time.show_value(common([x.exit_time for x in links]))
+        elif ways == "part":
+            parts = common([x.exit_part for x in links])
+            self.part.show_value(parts if parts is Mixed else parts * 100)

@@ -1,0 +1,121 @@
+"""What the editor does with many at once: aliases, links by their ends, links copied to others, tables."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtWidgets import QApplication, QFileDialog, QWidget
+
+from app.features.manual.manual_host import ManualHost
+from app.look.plural import many
+from metagraph.errors import FileError
+from metagraph.formats import manual_table
+from metagraph.graph import manual_groups
+from metagraph.graph.manual import Link
+from metagraph.graph.model import Project
+
+TABLES = "Tables (*.csv *.tsv *.txt)"
+SUFFIXES = (".csv", ".tsv")
+
+
+def make_alias(canvas: ManualHost, every: bool = False) -> None:
+    """Make an alias of the selected states, or of every state, and select it."""
+    layer, chosen = canvas.session.place.layer, canvas.session.selection.states
+    before = set(canvas.scene().manual.aliases)
+    words = "Make alias of every state" if every else "Make alias"
+    if canvas.do(words, lambda p: manual_groups.add_alias(p, layer, chosen, every)):
+        canvas.session.selection.select_states(
+            tuple(i for i in canvas.scene().manual.aliases if i not in before)
+        )
+
+
+def select_members(canvas: ManualHost, alias: str) -> None:
+    manual = canvas.scene().manual
+    canvas.session.selection.select_states(manual.members(manual.aliases[alias]))
+
+
+def choose(canvas: ManualHost, alias: str, states: tuple[str, ...], on: bool = True) -> None:
+    """Let an alias stand for states as well, or no longer; they stay selected."""
+    kept = canvas.session.selection.states
+    words = "Add to alias" if on else "Take from alias"
+    if canvas.do(words, lambda p: manual_groups.choose(p, alias, states, on)):
+        canvas.session.selection.select_states(kept)
+
+
+def select_links(canvas: ManualHost, into: bool) -> None:
+    """Select the links that leave the selected nodes, or lead to them."""
+    manual, chosen = canvas.scene().manual, canvas.session.selection.states
+    found = manual_groups.links_of(manual, chosen, into)
+    if found:
+        canvas.session.selection.select_states((), found)
+    else:
+        canvas.refuse(f"no link {'leads to' if into else 'leaves'} what is selected")
+
+
+def paste_links(canvas: ManualHost, links: tuple[Link, ...]) -> None:
+    """Draw copied links for the selected states instead."""
+    layer, nodes = canvas.session.place.layer, canvas.session.selection.states
+    canvas.do_links("Paste links", lambda p: manual_groups.paste_links(p, layer, links, nodes))
+
+
+# --- tables
+
+
+def import_table(canvas: ManualHost, path: Path) -> None:
+    """Draw the links of a table; say what could not be read."""
+    try:
+        rows = manual_table.read_table(path)
+    except FileError as error:
+        canvas.refuse(str(error))
+        return
+    _fill(canvas, rows, path.name)
+
+
+def paste_table(canvas: ManualHost) -> None:
+    """Draw the links of the table that was copied in a spreadsheet."""
+    try:
+        rows = manual_table.rows_of(QApplication.clipboard().text())
+    except ValueError as error:
+        canvas.refuse(f"What was copied is no table of links: {error}. {manual_table.REMEDY}")
+        return
+    _fill(canvas, rows, "the clipboard")
+
+
+def has_table() -> bool:
+    """Whether what was copied last looks like a table of links."""
+    first = QApplication.clipboard().text()[:400].partition("\n")[0].lower()
+    return "from" in first and "to" in first and any(c in first for c in ",;\t")
+
+
+def copy_table(canvas: ManualHost) -> None:
+    """Copy every link of the layer as a table."""
+    QApplication.clipboard().setText(manual_table.table_of(canvas.scene().manual))
+
+
+def choose_table(canvas: ManualHost, parent: QWidget, start: str) -> None:
+    name, _ = QFileDialog.getOpenFileName(parent, "Import links from a table", start, TABLES)
+    if name:
+        import_table(canvas, Path(name))
+
+
+def _fill(canvas: ManualHost, rows: list[manual_table.Row], name: str) -> None:
+    layer = canvas.session.place.layer
+    told: list[manual_table.Filled] = []
+
+    def edit(project: Project) -> Project:
+        told[:] = [manual_table.filled(project, layer, rows)]
+        return told[0].project
+
+    canvas.do_links(f"Import links from {name}", edit)
+    for out in told:
+        canvas.refuse(words(out, name))
+
+
+def words(out: manual_table.Filled, name: str) -> str:
+    """Say what came of a table, and of its rows that could not be read the first."""
+    said = f"{many(out.links, 'link')} drawn from {name}"
+    if out.changed:
+        said += f", {out.changed:,} changed"
+    if out.problems:
+        said += f"; {many(len(out.problems), 'row')} left out: {out.problems[0]}"
+    return said

@@ -1,0 +1,248 @@
+"""Links of a manual machine as a table: what a spreadsheet writes, read row by row.
+
+The first row names the columns: `from` and `to`, and as wanted `when` (finished or request), `trigger`,
+`weight`, `exit` (end, at once, 80 %, or seconds) and `blend`; cells that are left empty are as a drawn link
+has them. `from` and `to` are names of states or aliases, `any` for any state, a pattern such as `sitting*`,
+or several of these with | between them. Several states in `from` become an alias.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+from metagraph.errors import FileError
+from metagraph.files import guarded, read_file
+from metagraph.graph import manual_groups
+from metagraph.graph.edits import EditError
+from metagraph.graph.manual import ANY, WHENS, Alias, Link, Manual, State
+from metagraph.graph.manual_edits import add_link, link_refusal, machine, name_of, update_links
+from metagraph.graph.model import Layer, Project
+
+COLUMNS = ("from", "to", "when", "trigger", "weight", "exit", "blend")
+ALSO = {"source": "from", "target": "to", "condition": "when", "exit time": "exit", "duration": "blend"}
+MOST_BYTES = 8_000_000
+MOST_ROWS = 100_000
+MOST_LINKS = 200_000
+REMEDY = "The first row names the columns: from, to, and as wanted when, trigger, weight, exit, blend."
+
+
+@dataclass(frozen=True)
+class Row:
+    """One row. number: of its line in the file, from 1. cells: by column, those that are not empty."""
+
+    number: int
+    cells: dict[str, str]
+
+
+@dataclass(frozen=True)
+class Filled:
+    """What came of a table. links: how many were drawn; changed: how many were there, and are set anew.
+    problems: rows that were left out, in words.
+    """
+
+    project: Project
+    links: int
+    changed: int
+    problems: tuple[str, ...]
+
+
+@guarded
+def read_table(path: str | Path) -> list[Row]:
+    """Read a table from a file: UTF-8, UTF-16 with its mark, or western letters. Raises FileError."""
+    data = read_file(path, MOST_BYTES)
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        text = data.decode("utf-16", "replace")
+    else:
+        try:
+            text = data.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            text = data.decode("cp1252", "replace")
+    try:
+        return rows_of(text)
+    except ValueError as error:
+        raise FileError(path, str(error), remedy=REMEDY) from None
+
+
+def rows_of(text: str) -> list[Row]:
+    """Return the rows of a table with commas, semicolons or tabs between its cells. Raises ValueError with
+    words where it is none.
+    """
+    first = next((line for line in text.splitlines() if line.strip()), "")
+    separator = max(",;\t", key=first.count)
+    lines = csv.reader(StringIO(text, newline=""), delimiter=separator, skipinitialspace=True)
+    names: list[str] | None = None
+    out: list[Row] = []
+    try:
+        for cells in lines:
+            if not any(c.strip() for c in cells):
+                continue
+            if names is None:
+                plain = [" ".join(c.lower().split()) for c in cells]
+                names = [ALSO.get(n, n) for n in plain]
+                check_names(names)
+                continue
+            if len(out) >= MOST_ROWS:
+                raise ValueError(f"it has more than {MOST_ROWS:,} rows")
+            known = {n: c.strip() for n, c in zip(names, cells, strict=False) if n in COLUMNS and c.strip()}
+            out.append(Row(lines.line_num, known))
+    except csv.Error as error:
+        raise ValueError(f"line {lines.line_num} is no row of a table: {error}") from None
+    if names is None:
+        raise ValueError("it is empty")
+    return out
+
+
+def check_names(names: Sequence[str]) -> None:
+    """Raise ValueError where the first row names not both ends of a link, or a column twice."""
+    for name in ("from", "to"):
+        if name not in names:
+            raise ValueError(f"the first row names no column '{name}'")
+    twice = next((n for n in COLUMNS if list(names).count(n) > 1), None)
+    if twice is not None:
+        raise ValueError(f"the first row names the column '{twice}' twice")
+
+
+def filled(project: Project, layer: Layer, rows: Sequence[Row]) -> Filled:
+    """Return the project with the links of a table drawn in a layer's machine. A link that is there between
+    the same two is set as the row says; a row that cannot be read is left out and told.
+    """
+    drawn_count = changed = 0
+    problems: list[str] = []
+    for row in rows:
+        try:
+            settings = _settings(row)
+            after, sources = _nodes(project, layer, row, "from")
+            after, targets = _nodes(after, layer, row, "to")
+            found = machine(after, layer)
+            if len(found.links) + len(sources) * len(targets) > MOST_LINKS:
+                raise ValueError(f"the machine would have more than {MOST_LINKS:,} links")
+            # Links that patterns name lead from no state to itself, as drawn ones do.
+            one = len(sources) == len(targets) == 1
+            pairs = [(a, b) for a in sources for b in targets if a != b or one]
+            project, new, old = _linked(after, layer, pairs, settings)
+            drawn_count, changed = drawn_count + new, changed + old
+        except (ValueError, EditError) as error:
+            problems.append(f"line {row.number}: {error}")
+    return Filled(project, drawn_count, changed, tuple(problems))
+
+
+def _linked(
+    project: Project, layer: Layer, pairs: Sequence[tuple[str, str]], settings: dict[str, Any]
+) -> tuple[Project, int, int]:
+    """Return the project with links drawn and set, how many are new, and how many were changed."""
+    for a, b in pairs:
+        if (why := link_refusal(project, layer, a, b)) is not None:
+            raise EditError(why)
+    there = {(x.source, x.target): x.id for x in machine(project, layer).links.values()}
+    new = 0
+    idents: list[str] = []
+    for pair in pairs:
+        if pair not in there:
+            there[pair] = f"l{project.next_id}"
+            project = add_link(project, layer, *pair)
+            new += 1
+        idents.append(there[pair])
+    project = update_links(project, idents, **settings)
+    return project, new, len(pairs) - new
+
+
+def _nodes(project: Project, layer: Layer, row: Row, column: str) -> tuple[Project, list[str]]:
+    """Return what a cell names, and the project, with an alias more where several states are to be left."""
+    if column not in row.cells:
+        raise ValueError(f"'{column}' is empty")
+    found = machine(project, layer)
+    out: dict[str, None] = {}
+    words = [w.strip() for w in row.cells[column].split("|")]
+    for word in words:
+        named = [*found.states] if (word, column) == ("*", "to") else _named(found, word)
+        if not named:
+            raise ValueError(f"'{column}' names '{word}', which is no state or alias of the {layer} layer")
+        out.update(dict.fromkeys(named))
+    states = tuple(i for i in found.states if i in out)
+    if column == "to" or len(states) < 2:
+        return project, list(out)
+    same = next((a.id for a in found.aliases.values() if a.states == states), None)
+    if same is None:
+        same = f"g{project.next_id}"
+        project = manual_groups.add_alias(project, layer, states)
+        if len(words) == 1 and words[0].strip("*?_- "):
+            project = manual_groups.update_aliases(project, [same], name=words[0].strip("*?_- "))
+    return project, [same, *(i for i in out if i not in states)]
+
+
+def _named(found: Manual, word: str) -> list[str]:
+    """Return the nodes a word names: exactly, then without capitals, then as a pattern."""
+    nodes: list[State | Alias] = [*found.states.values(), *found.aliases.values()]
+    for fold in (str, str.casefold):
+        some = [n.id for n in nodes if fold(n.name) == fold(word)]
+        if some:
+            return some
+    if word.casefold() in ("any", "any state", "*"):
+        return [ANY]
+    if not any(c in word for c in "*?["):
+        return []
+    return [s.id for s in found.states.values() if fnmatchcase(s.name.casefold(), word.casefold())]
+
+
+def _settings(row: Row) -> dict[str, Any]:
+    """Return the fields of a link that a row sets. Raises ValueError."""
+    cells, out = row.cells, dict[str, Any]()
+    condition: dict[str, Any] = {}
+    if "when" in cells:
+        condition["when"] = cells["when"].lower()
+        if condition["when"] not in WHENS:
+            raise ValueError(f"'when' is '{cells['when']}' rather than {' or '.join(WHENS)}")
+    if "trigger" in cells:
+        condition |= {"trigger": cells["trigger"]} | ({"when": "request"} if "when" not in cells else {})
+    if "weight" in cells:
+        condition["weight"] = _number(cells["weight"], "weight", 1e-6)
+    if condition:
+        out["condition"] = condition
+    if "blend" in cells:
+        out["blend"] = _number(cells["blend"], "blend")
+    if "exit" in cells:
+        word = cells["exit"].lower()
+        at_end, once = word == "end", word in ("at once", "none")
+        part = 1.0 if at_end else _number(word[:-1], "exit") / 100 if word.endswith("%") else None
+        if part is not None and part > 1:
+            raise ValueError(f"'exit' is '{cells['exit']}', which is after the end")
+        out["exit_part"] = part
+        out["exit_time"] = None if part is not None or once else _number(word, "exit")
+    return out
+
+
+def _number(word: str, column: str, least: float = 0.0) -> float:
+    try:
+        value = float(word.strip().removesuffix("s").strip().replace(",", "."))
+    except ValueError:
+        raise ValueError(f"'{column}' is '{word}', which is no number") from None
+    if not least <= value <= 1e6:
+        raise ValueError(f"'{column}' is {word}, which is out of range")
+    return value
+
+
+def table_of(manual: Manual) -> str:
+    """Return a machine's links as a table with commas, which `rows_of` reads."""
+    out = StringIO(newline="")
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for x in manual.links.values():
+        ends = ("any" if x.source == ANY else name_of(manual, x.source), name_of(manual, x.target))
+        c = x.condition
+        numbers = (f"{c.weight:g}", _exit_word(x), f"{x.blend:g}")
+        writer.writerow((*ends, c.when, c.trigger if c.when == "request" else "", *numbers))
+    return out.getvalue()
+
+
+def _exit_word(link: Link) -> str:
+    if link.exit_time is not None:
+        return f"{link.exit_time:g}"
+    if link.exit_part is None:
+        return "at once" if link.condition.when == "request" else ""
+    return "end" if link.exit_part >= 1 else f"{link.exit_part * 100:g} %"
