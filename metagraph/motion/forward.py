@@ -1,7 +1,7 @@
 """Forward kinematics: where joints are, from what each does beside its parent; over many poses at once.
 
-Numbers lie with the poses last, so that each step runs along memory, and a depth of the tree is one slice: half
-the time, to the same bit, of `rotation.multiply` and `rotation.rotate` depth after depth.
+Numbers lie with the poses last, so that each step runs along memory, and a depth of the tree is one slice:
+half the time, to the same bit, of `rotation.multiply` and `rotation.rotate` depth after depth.
 """
 
 from __future__ import annotations
