@@ -260,6 +260,7 @@ def run_tests(arguments, ready=lambda: None):
 
     keep_bytecode()
     give_memory_back()
+    one_thread_each()
     lint = [
         [tool("ruff"), "check", "."],
         [tool("ruff"), "format", "--check", "."],
@@ -296,6 +297,15 @@ def give_memory_back():
     """
     for name, value in (("MMAP_THRESHOLD_", 1 << 22), ("TRIM_THRESHOLD_", 1 << 24), ("ARENA_MAX", 2)):
         os.environ.setdefault("MALLOC_" + name, str(value))
+
+
+def one_thread_each():
+    """Have what multiplies matrices and what draws keep to one thread: each core has a process of the tests
+    already, and threads that wait for each other take time from both (a quarter of drawing, two thirds of
+    small matrices). The program itself does so with matrices.
+    """
+    for name in ("OPENBLAS_NUM_THREADS", "LP_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
 
 
 def told(command):

@@ -23,7 +23,7 @@ from tests.conftest import LONG
 ROOT = Path(__file__).resolve().parents[1]
 ENVIRONMENT = ("PYTHONDONTWRITEBYTECODE", "PYTHONPYCACHEPREFIX", *(f"MALLOC_{x}" for x in (
     "MMAP_THRESHOLD_", "TRIM_THRESHOLD_", "ARENA_MAX"
-)))  # fmt: skip
+)), "OPENBLAS_NUM_THREADS", "LP_NUM_THREADS")  # fmt: skip
 
 
 @pytest.fixture
@@ -424,6 +424,15 @@ def test_what_somebody_says_of_memory_stands(run: ModuleType, monkeypatch: pytes
     monkeypatch.delenv("MALLOC_TRIM_THRESHOLD_", raising=False)
     run.give_memory_back()
     assert run.os.environ["MALLOC_ARENA_MAX"] == "7" and int(run.os.environ["MALLOC_TRIM_THRESHOLD_"]) > 0
+
+
+def test_each_process_has_one_thread_for_matrices_and_drawing_unless_somebody_says_otherwise(
+    run: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("LP_NUM_THREADS", "3")
+    monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
+    run.one_thread_each()
+    assert run.os.environ["LP_NUM_THREADS"] == "3" and run.os.environ["OPENBLAS_NUM_THREADS"] == "1"
 
 
 @pytest.mark.parametrize(

@@ -49,13 +49,24 @@ def pose_distance(skeleton: Skeleton, a: Pose, b: Pose, joints: Sequence[int] | 
     """Return `[...]` the largest distance in metres of any of `joints` between poses, both with joint 0 at
     the origin.
     """
-    _, pa = skeleton.globals(a)
-    _, pb = skeleton.globals(b)
+    if a.rotations.ndim == 2 and _alike(a, b):  # one pose costs as much as two
+        both = Pose(np.stack((a.rotations, b.rotations)), np.stack((a.translations, b.translations)))
+        pa, pb = skeleton.globals(both)[1]
+    else:
+        pa, pb = skeleton.globals(a)[1], skeleton.globals(b)[1]
     chosen = list(range(len(skeleton))) if joints is None else list(joints)
     if not chosen:
         return np.zeros(pa.shape[:-2])
     d = (pa - pa[..., :1, :])[..., chosen, :] - (pb - pb[..., :1, :])[..., chosen, :]
     return np.asarray(np.linalg.norm(d, axis=-1).max(axis=-1))
+
+
+def _alike(a: Pose, b: Pose) -> bool:
+    """Whether two poses lie in arrays of the same shapes and types."""
+    return all(
+        x.shape == y.shape and x.dtype == y.dtype
+        for x, y in ((a.rotations, b.rotations), (a.translations, b.translations))
+    )
 
 
 def loop_error(clip: Clip, start: float = 0.0, end: float | None = None) -> float:

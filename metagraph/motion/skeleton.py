@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion import rotation
+from metagraph.motion.forward import Forward
 
 Array = NDArray[Any]
 
@@ -107,6 +108,10 @@ class Skeleton:
         return tuple(np.flatnonzero(depth == d) for d in range(depth.max() + 1))
 
     @cached_property
+    def _forward(self) -> Forward:
+        return Forward(self.parents, self.levels)
+
+    @cached_property
     def children(self) -> tuple[tuple[int, ...], ...]:
         """For each joint, its children's places."""
         out: list[list[int]] = [[] for _ in self.names]
@@ -143,19 +148,9 @@ class Skeleton:
 
     def globals(self, pose: Pose) -> tuple[Array, Array]:
         """Return model-space rotations `[..., J, 4]` and positions `[..., J, 3]` of poses."""
-        local_r, local_t = pose.rotations, pose.translations
-        out_r = np.empty(local_r.shape, local_r.dtype)
-        out_p = np.empty(local_t.shape, local_t.dtype)
-        for level, joints in enumerate(self.levels):
-            if level == 0:
-                out_r[..., joints, :] = local_r[..., joints, :]
-                out_p[..., joints, :] = local_t[..., joints, :]
-                continue
-            parents = self.parents[joints]
-            above = out_r[..., parents, :]
-            out_r[..., joints, :] = rotation.multiply(above, local_r[..., joints, :])
-            out_p[..., joints, :] = out_p[..., parents, :] + rotation.rotate(above, local_t[..., joints, :])
-        return out_r, out_p
+        r, p = pose.rotations, pose.translations
+        turns, places = self._forward(r.reshape(-1, *r.shape[-2:]), p.reshape(-1, *p.shape[-2:]))
+        return turns.reshape(r.shape), places.reshape(p.shape)
 
 
 @dataclass(frozen=True, eq=False)

@@ -51,6 +51,8 @@ class Patterns:
     @cached_property
     def meanings(self) -> Mapping[Field, Meanings]:
         """Field -> phrase -> meaning, defaults and changes together."""
+        if not self.changes and self is not _PLAIN:
+            return _PLAIN.meanings  # thousands of words are put together once
         out: dict[Field, Meanings] = {}
         for name in FIELDS:
             mixed = {**DEFAULTS[name], **self.changes.get(name, {})}
@@ -70,6 +72,8 @@ class Patterns:
     @cached_property
     def vocabulary(self) -> frozenset[str]:
         """Every single word that means something."""
+        if not self.changes and self is not _PLAIN:
+            return _PLAIN.vocabulary
         return frozenset(
             w
             for name in FIELDS
@@ -127,6 +131,9 @@ class Patterns:
                 _check(name, phrase, meaning, f"'{name}', '{phrase}'")
                 changes.setdefault(name, {})[phrase] = meaning
         return Patterns(changes, _learned(data.get("learned", {})))
+
+
+_PLAIN: Final = Patterns()  # what words mean where nobody has changed a thing
 
 
 def _learned(data: Any) -> Learned:

@@ -35,6 +35,7 @@ class SharedWindow:
         self.made = self.taken_back = self.own = 0
         self.spoilt: Counter[str] = Counter()
         self._first: dict[str, str] = {}
+        self._stands: Any = None
 
     def take(self) -> Any:
         """Return the window, shown and as if nothing had been done in it."""
@@ -44,13 +45,13 @@ class SharedWindow:
             self.window = complete_window()
             self.made += 1
             reset(self.window)
-            self._first = state_of(self.window)
+            self._first, self._stands = state_of(self.window), stands(self.window)
         return self.window
 
     def _again(self) -> bool:
         try:
             self.window.show()
-            reset(self.window)
+            reset(self.window, self._stands)
             found = differences(self._first, state_of(self.window))
         except Exception as error:  # whatever a test has left behind
             found = [f"{type(error).__name__}: {error}"]
@@ -147,8 +148,17 @@ def settle(window: Any) -> None:
             timer.setInterval(pause)
 
 
-def reset(window: Any) -> None:
-    """Take a window back to how it begins, on a new project."""
+def stands(window: Any) -> object:
+    """Return how a window's docks stand, to the bit and the pixel."""
+    places, spaces = window.places, window.workspaces
+    chosen = (places.workspace.id, spaces.current, tuple(spaces.tabs), places.alone)
+    return (*places.state(), *chosen, window.size(), window.isFullScreen(), window.isMaximized())
+
+
+def reset(window: Any, stood: object = None) -> None:
+    """Take a window back to how it begins, on a new project. stood: how its docks stood then; where they still
+    do, they are not put there once more, which takes as long as all the rest.
+    """
     shell = window.shell
     services, session = shell.services, shell.stage.session
     services[Files].closed = ""
@@ -175,8 +185,9 @@ def reset(window: Any) -> None:
             window.places.show(panel.id, False)
     reset_panels(window)
     settle(window)
-    window.workspaces.restore()  # there are no settings: as at first
-    window.workspaces.everything()
+    if stands(window) != stood:
+        window.workspaces.restore()  # there are no settings: as at first
+        window.workspaces.everything()
     shell.notice.clear()
     window.statusBar().clearMessage()
     QSettings().clear()

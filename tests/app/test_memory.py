@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import time
+from collections.abc import Callable, Iterator
 from weakref import ref
 
 import pytest
@@ -53,9 +54,19 @@ def tell_all(window: Handles) -> None:
     window.jobs.changed.emit()
 
 
-def test_a_dialog_that_was_closed_is_gone_and_hears_nothing_more(drive, tmp_path):
+@pytest.fixture
+def all_kept() -> Iterator[Callable[[], None]]:
+    """What there is by now stays: a look for rubbish after each of many dialogs is one through what came
+    since.
+    """
+    yield gc.freeze
+    gc.unfreeze()
+
+
+def test_a_dialog_that_was_closed_is_gone_and_hears_nothing_more(drive, tmp_path, all_kept):
     open_sample(drive, drive.wait)
     drive.session.transport.set_playing(False)
+    all_kept()
     for name, open_it in DIALOGS.items():
         seen: list[ref[QDialog]] = []
         for _ in range(TIMES):

@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QSettings
+from PySide6.QtCore import QSettings, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QDialog
 
 from metagraph.graph import edits
-from tests.app.shared_window import SharedWindow, close, complete_window, empty, reset
+from tests.app.shared_window import SharedWindow, close, complete_window, empty, reset, stands
 from tests.app.window_state import differences, state_of
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -77,15 +77,51 @@ def test_a_window_that_was_reset_is_like_one_that_was_just_made(toys, done):
     drive.window.hide()
     other = complete_window()
     reset(other)
-    fresh = state_of(other)
+    fresh, stood = state_of(other), stands(other)
     close(other)
     drive.window.show()
     for do in done:
         drive.document.load(project, None)
         do(drive)
         empty(drive.window)
-        reset(drive.window)
+        reset(drive.window, stood)
         assert not differences(fresh, state_of(drive.window)), do.__name__
+
+
+def moved(drive):
+    drive.docks["timeline"].close()
+
+
+def stretched(drive):
+    drive.window.resizeDocks(
+        [drive.docks["library"]], [drive.docks["library"].width() + 40], Qt.Orientation.Horizontal
+    )
+    drive.workspaces.places.proportions.note()
+
+
+def raised(drive):
+    drive.docks["life"].raise_()
+
+
+def chosen_another(drive):
+    drive.workspaces.choose("talk")
+
+
+def alone(drive):
+    drive.workspaces.places.only("graph")
+
+
+@pytest.mark.parametrize("do", (moved, stretched, raised, chosen_another, alone), ids=lambda do: do.__name__)
+def test_docks_that_a_test_has_moved_do_not_stand_as_they_did_and_are_put_back(toys, do):
+    stood = stands(toys.window)
+    assert stands(toys.window) == stood
+    do(toys)
+    QTest.qWait(20)
+    assert stands(toys.window) != stood
+    empty(toys.window)
+    reset(toys.window, stood)
+    assert toys.workspaces.current == stood[3] and not toys.workspaces.places.alone
+    assert toys.workspaces.places.workspace.id == stood[2]
 
 
 @pytest.mark.parametrize("do", DONE, ids=lambda do: do.__name__)

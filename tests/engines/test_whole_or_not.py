@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import struct
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -19,6 +18,7 @@ from metagraph.errors import FileError
 from metagraph.file_names import folded
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
+from tests import wavs
 
 TARGETS = tuple(registry.targets())
 
@@ -160,19 +160,8 @@ def test_a_record_that_names_files_elsewhere_takes_none_away(small: Project, tmp
 
 
 def wav(path: Path) -> Path:
-    data = bytes(3200)
-    head = struct.pack("<IHHIIHH", 16, 1, 1, 16000, 32000, 2, 16)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(
-        b"RIFF"
-        + struct.pack("<I", 36 + len(data))
-        + b"WAVEfmt "
-        + head
-        + b"data"
-        + struct.pack("<I", len(data))
-        + data
-    )
-    return path
+    """Write a tenth of a second of silence."""
+    return wavs.wav(path, 16000, bytes(3200))
 
 
 def with_lines(project: Project, **sounds: str) -> Project:

@@ -26,6 +26,7 @@ from metagraph.graph.model import Project
 from metagraph.pictures import picture_size
 from metagraph.speech.lines import read_voice, voice_from_phones
 from tests.fuzz.spoiling import packed
+from tests.wavs import wav
 
 MEMORY = 300 << 20  # bytes that a file of kilobytes may cost
 
@@ -68,29 +69,6 @@ def test_a_textgrid_of_a_day_is_no_line(tmp_path: Path, end: float) -> None:
 def test_intervals_over_each_other_cost_no_more_than_in_turn(tmp_path: Path) -> None:
     (tmp_path / "a.TextGrid").write_text(grid(1700, [(n * 1e-3, 1700) for n in range(400)]))
     frugal(voice_from_phones, tmp_path / "a.TextGrid")
-
-
-def wav(path: Path, rate: int, data: bytes, channels: int = 1, kind: int = 1, bits: int = 16) -> Path:
-    head = struct.pack(
-        "<IHHIIHH",
-        16,
-        kind,
-        channels,
-        rate,
-        rate * channels * bits // 8 & 0xFFFFFFFF,
-        channels * bits // 8,
-        bits,
-    )
-    path.write_bytes(
-        b"RIFF"
-        + struct.pack("<I", 36 + len(data))
-        + b"WAVEfmt "
-        + head
-        + b"data"
-        + struct.pack("<I", len(data))
-        + data
-    )
-    return path
 
 
 @pytest.mark.parametrize("rate", [400_000_000, 2_000_000_000, budgets.SOUND_RATES[1] + 1])

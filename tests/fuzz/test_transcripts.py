@@ -168,19 +168,7 @@ def test_any_json_is_read_or_refused(tmp_path: Path, value: object) -> None:
 
 
 @settings(max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
-@given(
-    st.text(max_size=80),
-    st.sampled_from(
-        [
-            "WEBVTT\n\n",
-            "1\n00:00:01,000 --> 00:00:02,000\n",
-            'File type = "ooTextFile"\n',
-            "<",
-            "a 1 0.5 0.2 ",
-            "",
-        ]
-    ),
-)
+@given(st.text(max_size=80), st.sampled_from(HEADS))
 def test_any_text_is_read_or_refused(tmp_path: Path, text: str, head: str) -> None:
     path = tmp_path / "a.txt"
     path.write_text(head + text, encoding="utf-8", errors="replace")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -123,6 +124,7 @@ RECIPES: Mapping[str, Recipe] = {
 }
 
 
+@lru_cache(maxsize=6)  # a set is tens of megabytes; the tests of a file go through few
 def named(name: str) -> MadeSet:
     """Make a set of RECIPES. Raises KeyError where there is none of that name."""
     return make(name, RECIPES[name], 0)

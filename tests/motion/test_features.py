@@ -65,6 +65,18 @@ def test_poses_are_compared_with_their_roots_together() -> None:
     assert features.pose_distance(ARM, a, moved) == pytest.approx(0, abs=1e-6)
 
 
+def test_poses_are_as_far_apart_alone_as_among_others_and_whatever_types_they_have() -> None:
+    clip = turning(np.linspace(0, 2, 5))
+    poses, exact = clip.poses(), ARM.rest
+    found = features.pose_distance(ARM, poses, poses[::-1], [0, 1])
+    assert [features.pose_distance(ARM, poses[n], poses[4 - n], [0, 1]) for n in range(5)] == list(found)
+    for n in range(5):
+        (one,), other = ARM.globals(poses[n : n + 1])[1], ARM.globals(exact)[1]
+        apart = np.linalg.norm((one - one[:1]) - (other - other[:1]), axis=-1).max()
+        assert features.pose_distance(ARM, poses[n], exact) == apart
+        assert features.pose_distance(ARM, exact, poses[n]) == apart
+
+
 def test_positions_start_above_the_origin() -> None:
     where = features.positions(turning(np.zeros(4), travel=1.0))
     assert where[0, 0].tolist() == [0, 0, 0]

@@ -187,3 +187,24 @@ def test_the_command_opens_it(drive: object) -> None:
     (made,) = drive.window.findChildren(PatternsDialog)  # type: ignore[attr-defined]
     assert made.isVisible()
     QTest.keyClick(made, Qt.Key.Key_Escape)
+
+
+@pytest.mark.window
+@pytest.mark.parametrize("column", range(4))
+def test_rows_are_sorted_by_any_column_either_way_and_what_is_selected_stays_so(
+    dialog: PatternsDialog, column: int
+) -> None:
+    dialog.every.click()
+    header = dialog.table.horizontalHeader()
+    for order in (Qt.SortOrder.AscendingOrder, Qt.SortOrder.DescendingOrder):
+        dialog.table.selectRow(3)
+        (kept,) = dialog._selected()
+        header.setSortIndicator(column, order)
+        said = [row[column].lower() for row in shown(dialog)]
+        assert len(said) > 1000
+        assert said == sorted(said, reverse=order == Qt.SortOrder.DescendingOrder)
+        assert dialog._selected() == [kept]
+    few = len(said)
+    dialog.search.setText("WAVE")
+    found = [row[column].lower() for row in shown(dialog)]
+    assert 1 <= len(found) < few and found == sorted(found, reverse=True)
