@@ -1,8 +1,8 @@
 """Linear mixed models of small studies: fixed effects, and deviations of groups (people, sites) about them.
 
 y = X b + sum over k of u_k[group of k] + e. Variances by restricted maximum likelihood (Patterson and
-Thompson 1971), or by maximum likelihood; degrees of freedom of each effect by Satterthwaite's approximation (1946), as
-Fai and Cornelius (1996) compute it.
+Thompson 1971), or by maximum likelihood; degrees of freedom of each effect by Satterthwaite's approximation
+(1946), as Fai and Cornelius (1996) compute it.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from metagraph.study.stats import LEVEL, Estimate
 from metagraph.study.stats_t import t_quantile
 
 Array = NDArray[np.float64]
+EXACTLY = 1e-12  # of all variance, what is left below which rows fit exactly, and nothing can be estimated
 NOTHING = 1e-4  # a deviation beside that of the rest below which a group is told as having none
 
 
@@ -44,7 +45,8 @@ def fit(
     level: float = LEVEL,
 ) -> Mixed | None:
     """Return the model of y `[n]` by effects (name -> `[n]`, the constant among them) and groups (name ->
-    whose each row is, `[n]`). None where there are no more rows than effects. Effects that others already say
+    whose each row is, `[n]`). None where there are no more rows than effects, or
+    where these and the groups say all. Effects that others already say
     are left out, the later one of them; so are groups that have a row each.
     """
     values = np.asarray(y, np.float64)
@@ -61,6 +63,8 @@ def fit(
     model = _Model(values, x, list(codes.values()), restricted)
     ratios = model.best()
     scale, beta, cover, deviance = model.solved(ratios)
+    if scale <= EXACTLY * max(float(values.var()), 1e-300):
+        return None
     there = [k for k, r in zip(codes, ratios, strict=True) if r > NOTHING]
     slim = _Model(values, x, [codes[k] for k in there], restricted)
     freedom = slim.freedom([r for r in ratios.tolist() if r > NOTHING], scale)

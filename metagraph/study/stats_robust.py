@@ -13,9 +13,10 @@ from statistics import NormalDist, median
 
 import numpy as np
 
-from metagraph.study.stats import EXACT, LEVEL, Estimate, mean
+from metagraph.study.stats import LEVEL, Estimate, mean
 from metagraph.study.stats_t import t_quantile
 
+EXACT = 25  # values up to which every way to give ranks signs is counted
 MAD = 1.4826  # what makes the median deviation from the median a standard deviation, of normal values
 FAR = 3.5  # such deviations beyond which a value is odd (Iglewicz and Hoaglin 1993)
 WIDEST = 1000.0  # times the reach of the values beyond which an end of an interval is not known

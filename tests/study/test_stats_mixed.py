@@ -22,6 +22,9 @@ BATCHES = np.repeat(list("ABCDEF"), 5).tolist()
 def test_too_few_rows_give_nothing() -> None:
     assert fit([1.0], {"one": [1]}, {}) is None
     assert fit([], {"one": []}, {"who": []}) is None
+    assert fit([1.0, 2.0, 1.0, 2.0], {"one": [1] * 4, "x": [0, 1, 0, 1]}, {"who": [0, 0, 1, 1]}) is None, (
+        "exactly"
+    )
 
 
 def test_the_textbooks_batches_by_restricted_and_by_plain_likelihood() -> None:
