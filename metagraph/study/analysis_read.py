@@ -7,13 +7,14 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal
 
 from metagraph.errors import FileError
 from metagraph.formats.store import open_project, read_project
 from metagraph.graph.model import Layer, Project
-from metagraph.study.freeze import differences
+from metagraph.study.freeze import changed, differences, listed
 from metagraph.study.gaps import Gap, gaps
 from metagraph.study.klm import USUAL, Times, predicted
 from metagraph.study.log import Log, Standing, TaskRun, read
@@ -219,6 +220,11 @@ def _log(study: Study, participant: str, missing: list[str]) -> Log | None:
     digests = {str(e["study"]) for e in log.events if e["type"] in ("begin", "resumed") and e.get("study")}
     if digests - {study.digest}:
         missing.append(f"{participant}: worked with another version of the study file.")
+    told = [e["digests"] for e in log.events if e["type"] == "frozen" and isinstance(e.get("digests"), dict)]
+    for one, other in pairwise(told):
+        names = changed(one, other)
+        if names:
+            missing.append(f"{participant}: {listed(names)} changed between two parts of the sitting.")
     if log.standing == "withdrawn":
         missing.append(f"{participant}: withdrew; their data is left out.")
     elif log.standing == "declined":

@@ -230,7 +230,7 @@ class Writer:
         self.before = read(self.path) if self.path.exists() else Log(self.path)
         self.n = self.before.following
         self._waiting: list[bytes] = []  # lines that could not be written yet
-        self._closed = False
+        self.closed = False
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
             if self.before.torn:
@@ -299,8 +299,8 @@ class Writer:
 
     def close(self) -> None:
         """Sync and close; nothing more can be added."""
-        if not self._closed:
-            self._closed = True
+        if not self.closed:
+            self.closed = True
             self._disk.end()
             try:
                 self.sync()

@@ -29,6 +29,7 @@ from app.project.jobs import Job
 from metagraph import __version__
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
+from metagraph.study.freeze import manifest
 from metagraph.study.sitting import Phase, Sitting
 from metagraph.study.study_plan import CONDITION_TITLES, Study
 from metagraph.study.task_projects import make, reopen, write
@@ -82,6 +83,7 @@ class Guide(QObject):
         self.bar.pause.clicked.connect(lambda: self.pause())
         self.bar.note.clicked.connect(self.write_note)
         self._enter()
+        shell.jobs.start("What is worked with", lambda job: manifest(study), self.sitting.freeze, quick=True)
 
     # --- the window
 
@@ -143,7 +145,7 @@ class Guide(QObject):
 
     def _page(self, phase: Phase) -> Page:
         if phase.name == "consent":
-            return ConsentPage(phase.title, phase.text, self.go_on, self.shell.widget.close)
+            return ConsentPage(phase.title, phase.text, self.go_on, self.decline)
         if phase.name == "break":
             return BreakPage(phase.minutes or 0, self.go_on)
         if phase.questionnaire is not None:
@@ -194,6 +196,11 @@ class Guide(QObject):
         self._leave()
         self.shell.document.load(Project(), None)
         self.shell.services[Files].opened.emit()
+
+    def decline(self) -> None:
+        """Note that nobody agreed, and end here."""
+        self.sitting.decline()
+        self.shell.widget.close()
 
     # --- work
 
