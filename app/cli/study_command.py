@@ -9,6 +9,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from app.cli.study_people import arguments as people_arguments
 from app.cli.study_run import check as check_study
 from app.cli.study_run import check_arguments, run_arguments
 from app.cli.study_run import run as run_study
@@ -52,6 +53,7 @@ def arguments(parser: ArgumentParser) -> None:
     exported.add_argument(
         "--bids", type=Path, required=True, metavar="OUT", help="a folder for the data in BIDS form"
     )
+    people_arguments(action)
     action("example", "recompute the comparison that was published with the meta-graph", example)
     made = action("simulate", "write a study of simulated participants with known effects", simulate)
     made.add_argument("out", type=Path, help="a folder that is not there yet")
@@ -87,16 +89,17 @@ def run(options: Namespace) -> int:
 
 def report(options: Namespace) -> int:
     from app.cli.command_output import say
+    from app.cli.study_papers import papers_maker
     from metagraph.study.report import summary, write_report
     from metagraph.study.study_plan import read_study
 
     place = options.out or read_study(options.folder).folder / "report"
     results = _results(options)
-    written = write_report(results, place)
-    for words in results.data.missing:
-        print(f"note: {words}", file=sys.stderr)
+    written = write_report(results, place, papers_maker())
+    _tell_missing(results)
     data = {**_facts(results), "written": [str(p) for p in written]}
-    say(options, "\n".join([*summary(results), *(f"- {w}" for w in data["cautions"]), str(written[0])]), data)
+    cautions = [f"- {w}" for w in (*data["cautions"], *data["odd"])]
+    say(options, "\n".join([*summary(results), *cautions, str(written[0])]), data)
     return 0 if results.time is not None else 3
 
 
@@ -107,8 +110,7 @@ def export(options: Namespace) -> int:
 
     results = _results(options)
     written = write_bids(read_study(options.folder), results, options.bids)
-    for words in results.data.missing:
-        print(f"note: {words}", file=sys.stderr)
+    _tell_missing(results)
     say(
         options,
         f"{options.bids}: {len(written)} files",
@@ -154,6 +156,13 @@ def simulate(options: Namespace) -> int:
     return 0
 
 
+def _tell_missing(results: Results) -> None:
+    from metagraph.study.report_cells import gathered
+
+    for words in gathered(results.data.missing):
+        print(f"note: {words}", file=sys.stderr)
+
+
 def _results(options: Namespace) -> Results:
     from metagraph.study.analysis import analyse
     from metagraph.study.analysis_read import collect
@@ -170,7 +179,7 @@ def _results(options: Namespace) -> Results:
 
 
 def _facts(results: Results) -> dict[str, Any]:
-    time = results.time
+    time, found = results.time, results.sensitivity
     return {
         "title": results.data.title,
         "simulated": results.data.simulated,
@@ -178,7 +187,10 @@ def _facts(results: Results) -> dict[str, Any]:
         "tasks_done": sum(1 for r in results.data.rows if r.done),
         "ratio": None if time is None else _estimate(time.ratio),
         "seconds": {} if time is None else {c: _estimate(e) for c, e in time.means.items()},
-        "p": None if time is None else time.test.p,
+        "p": {name: corrected for name, _, corrected in results.together},
+        "otherwise": {} if found is None else {w.name: _estimate(w.ratio) for w in found.ways},
+        "odd": [] if found is None else list(found.odd),
+        "vanished_seconds": {c: v.seconds for c, v in results.vanished.items()},
         "slope": {c: _estimate(x.slope) for c, x in results.curves.items()},
         "second_sitting": None if time is None or time.order is None else _estimate(time.order.second),
         "measures": {

@@ -52,7 +52,7 @@ STYLE = f"""
 }}
 @media print {{
   :root {{ color-scheme: light; --ground: #fff; --card: #fff; --line: #ccc; --text: #000; --dim: #444; --warn: #5c4300;{_LIGHT} }}
-  body {{ max-width: none; padding: 0; font-size: 11px; }} h2, h3 {{ break-after: avoid; }} figure, tr, .card {{ break-inside: avoid; }}
+  body {{ max-width: none; padding: 0; font-size: 11px; }} h2, h3 {{ break-after: avoid; }} figure, table, tr, .card {{ break-inside: avoid; }}
   svg, rect, circle {{ print-color-adjust: exact; -webkit-print-color-adjust: exact; }} .take {{ display: none; }}
 }}
 body {{ margin: 0 auto; max-width: 900px; padding: 28px 24px 60px; background: var(--ground); color: var(--text);
