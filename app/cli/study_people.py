@@ -73,7 +73,7 @@ def delete(options: Namespace) -> int:
     from metagraph.study.withdrawal import mentions
 
     study = read_study(options.study)
-    study.plan.blocks(options.participant)
+    study.plan.known(options.participant)
     folder = study.data(options.participant)
     if not options.yes:
         if options.json or not sys.stdin.isatty():

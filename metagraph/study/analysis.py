@@ -16,6 +16,7 @@ from metagraph.study import stats
 from metagraph.study.analysis_read import TOTALS, AnalysisRow, Data
 from metagraph.study.comparison import ABOVE, BELOW, PAIR, Comparison, compare
 from metagraph.study.gaps import Vanished, vanished
+from metagraph.study.planning import Equivalence, equivalence
 from metagraph.study.score import WORDS, Score, What
 from metagraph.study.sensitivity import Sensitivity, sensitivity
 from metagraph.study.stats import Estimate, Test
@@ -90,6 +91,7 @@ class Results:
     vanished: Mapping[str, Vanished] = field(default_factory=dict)
     others: tuple[Comparison, ...] = ()
     by_site: Mapping[str, Estimate] = field(default_factory=dict)
+    equivalence: Equivalence | None = None
 
 
 def analyse(data: Data) -> Results:
@@ -134,6 +136,7 @@ def analyse(data: Data) -> Results:
         {c: vanished([(r.run.seconds, r.gaps) for r in rows]) for c, rows in by.items()},
         tuple(found for found in others if found is not None),
         {s: e for s in dict.fromkeys(data.sites.values()) if (e := _site(done, data, s)) is not None},
+        equivalence(time.logs, data.smallest) if time is not None and data.smallest is not None else None,
     )
 
 

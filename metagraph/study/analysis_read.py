@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
@@ -22,7 +23,7 @@ from metagraph.study.normal_machine import NormalMachine, normal
 from metagraph.study.questionnaires import BUILT_IN, sus_score, tlx_raw, tlx_weighted
 from metagraph.study.score import TOLERANCE, Score, score
 from metagraph.study.score_jumps import with_jumps
-from metagraph.study.study_plan import Plan, Study, read_study
+from metagraph.study.study_plan import Study, read_study
 from metagraph.study.tasks import Answer
 from metagraph.study.uses import uses
 from metagraph.study.withdrawal import deleted
@@ -84,7 +85,8 @@ class Data:
     """title, conditions and tasks (id -> title): of the plan. participants: all that take part. rows: in the
     order they were done, by participant. missing: what is not there or was left out, in words. unit: what the
     plan lets be compared, None where nobody knows. people: participant -> how far they came and what they
-    were to begin with. sites: participant -> where, of several.
+    were to begin with. sites: participant -> where, of several. smallest: the
+    smallest ratio that matters.
     """
 
     title: str
@@ -100,6 +102,7 @@ class Data:
     unit: Literal["task", "clip"] | None = None
     people: Mapping[str, Taken] = field(default_factory=dict)
     sites: Mapping[str, str] = field(default_factory=dict)
+    smallest: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,13 +140,14 @@ def collect(folder: str | Path, jumps: bool = True, progress: Progress | None = 
     rows: list[AnalysisRow] = []
     answers: list[Answer] = []
     people: dict[str, Taken] = {}
+    orders = _orders(study)
     worked: dict[str, Mapping[str, str] | None] = {}
     gone = deleted(study)
     simulated = False
     for n, participant in enumerate(plan.ids):
         if progress is not None:
             progress(n, len(plan.ids))
-        first = plan.blocks(participant)[0][0]
+        first = orders.get(participant, (("", ()),))[0][0]
         if participant in gone and not study.log(participant).is_file():
             missing.append(f"{participant}: withdrew, and all data was deleted.")
             people[participant] = Taken("deleted", first)
@@ -179,29 +183,35 @@ def collect(folder: str | Path, jumps: bool = True, progress: Progress | None = 
         tuple(dict.fromkeys(missing)),
         plan.tolerance,
         simulated,
-        _unit(plan),
+        _unit(study),
         people,
+        {},
+        plan.smallest,
     )
 
 
-def _unit(plan: Plan) -> Literal["task", "clip"]:
-    """Return what can be compared: tasks, unless the plan gives nobody the same one in two conditions."""
-    for who in plan.ids:
+def _orders(study: Study) -> dict[str, tuple[tuple[str, tuple[str, ...]], ...]]:
+    """Return everybody's conditions with their tasks; not of those for whom none was drawn yet."""
+    out = {}
+    for who in study.plan.ids:
+        with suppress(ValueError):
+            out[who] = study.blocks(who)
+    return out
+
+
+def _unit(study: Study) -> Literal["task", "clip"] | None:
+    """Return what can be compared: tasks, unless the plan gives nobody the same one in two conditions. None
+    where it does not say.
+    """
+    orders = _orders(study)
+    for blocks in orders.values():
         seen: set[str] = set()
-        for _, tasks in plan.blocks(who):
+        for _, tasks in blocks:
             if seen & set(tasks):
                 return "task"
             seen |= set(tasks)
-    return (
-        "task"
-        if len({c for who in plan.ids for c, _ in plan.blocks(who)[:1]}) > 1 and _alone(plan)
-        else "clip"
-    )
-
-
-def _alone(plan: Plan) -> bool:
-    """Return whether everybody has one condition only, so that groups are compared."""
-    return all(len({c for c, _ in plan.blocks(who)}) == 1 for who in plan.ids)
+    groups = all(len({c for c, _ in blocks}) == 1 for blocks in orders.values())
+    return None if groups else "clip"
 
 
 def _log(study: Study, participant: str, missing: list[str]) -> Log | None:

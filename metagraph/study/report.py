@@ -28,6 +28,7 @@ from metagraph.study.report_cells import (
     who,
 )
 from metagraph.study.report_doubts import (
+    equivalence_told,
     flow_figure,
     gaps_told,
     missing_told,
@@ -195,7 +196,7 @@ def _time(results: Results, drawn: Mapping[str, str]) -> str:
     out = "<h2>Time</h2>" + drawn.get("times", "") + drawn.get("ratios", "")
     out += table(("", "value, 95 % interval"), body)
     out += f"<p class='dim'>For a paper: {apa(time)}</p>"
-    return out + others_told(results) + sites_told(results) + _order(time)
+    return out + equivalence_told(results) + others_told(results) + sites_told(results) + _order(time)
 
 
 def _order(time: Comparison) -> str:

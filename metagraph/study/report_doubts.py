@@ -166,3 +166,22 @@ def sites_told(results: Results) -> str:
         return ""
     rows = [[escape(s), interval(e, two), str(e.n)] for s, e in results.by_site.items()]
     return "<h3>Sites</h3>" + table(("", "ratio, 95 % interval", "people"), rows)
+
+
+VERDICTS = {
+    "larger": "the ratio is larger than that: the difference matters",
+    "smaller": "the ratio is smaller than 1 by more than that",
+    "equivalent": "the two are equivalent by that measure",
+    "not told": "these people show neither that the difference matters nor that it does not",
+}
+
+
+def equivalence_told(results: Results) -> str:
+    """Return what the smallest ratio that matters says of the ratio."""
+    found = results.equivalence
+    if found is None or found.interval.low is None or found.interval.high is None:
+        return ""
+    return (
+        f"<p>The smallest ratio that matters was set to {found.smallest:g}. With a 90 % interval of "
+        f"{two(found.interval.low)} to {two(found.interval.high)}, {VERDICTS[found.verdict]}.</p>"
+    )

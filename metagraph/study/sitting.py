@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from metagraph.errors import FileError
+from metagraph.study.allocation import allocate
 from metagraph.study.log import Event, Log, Writer, read
 from metagraph.study.questionnaires import Questionnaire
 from metagraph.study.study_plan import CONDITION_TITLES, Study
@@ -103,7 +104,7 @@ def phases(study: Study, participant: str) -> tuple[Phase, ...]:
         add("consent", plan.title, plan.consent)
     if plan.instructions:
         add("instructions", plan.title, plan.instructions)
-    blocks = plan.blocks(participant)
+    blocks = study.blocks(participant)
     trained: set[str] = set()
     for place, (condition, tasks) in enumerate(blocks):
         editor = CONDITION_TITLES[condition]
@@ -204,6 +205,8 @@ class Sitting:
         self, study: Study, participant: str, machine: dict[str, Any] | None = None, version: str = ""
     ) -> None:
         self.study, self.participant = study, participant
+        if study.plan.order == "concealed":
+            allocate(study, participant)
         self.course = phases(study, participant)
         if study.log(participant).is_file() and read(study.log(participant)).standing == "withdrawn":
             raise SittingError(

@@ -29,7 +29,7 @@ def withdraw(
     was not noted yet. why: in words, of the person who notes it. Raises FileError where there is no log,
     ValueError for a stranger.
     """
-    study.plan.blocks(participant)
+    study.plan.known(participant)
     path = study.log(participant)
     if read(path).standing == "withdrawn":
         return False
@@ -48,7 +48,7 @@ def delete(
     how many files. Return the note. Raises FileError where nothing is kept, or the disk refuses; ValueError
     for a stranger.
     """
-    study.plan.blocks(participant)
+    study.plan.known(participant)
     folder = study.data(participant)
     if not folder.is_dir():
         raise FileError(
