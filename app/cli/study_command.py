@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import sys
 from argparse import ArgumentParser, Namespace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -59,6 +60,9 @@ def arguments(parser: ArgumentParser) -> None:
     action("example", "recompute the comparison that was published with the meta-graph", example)
     made = action("simulate", "write a study of simulated participants with known effects", simulate)
     made.add_argument("out", type=Path, help="a folder that is not there yet")
+    made.add_argument(
+        "--like", type=Path, metavar="STUDY", help="a study of yours: its tasks, orders and questions"
+    )
     made.add_argument("--participants", type=int, default=24, help="how many (default: 24)")
     made.add_argument("--seed", type=int, default=1, help="other people with the same effects (default: 1)")
     made.add_argument("--ratio", type=float, default=7.9, help="times as long by hand (default: 7.9)")
@@ -153,7 +157,15 @@ def simulate(options: Namespace) -> int:
         slips=tuple(options.slips),
         sus=tuple(options.sus),
     )
-    made = write_study(options.out, truth)
+    if options.like is not None:
+        from metagraph.study.simulate_like import write_like
+        from metagraph.study.study_plan import read_study
+
+        mine = read_study(options.like)
+        truth = replace(truth, participants=len(mine.plan.ids))
+        made = write_like(mine, options.out, truth)
+    else:
+        made = write_study(options.out, truth)
     say(options, f"{made.path}: {truth.participants} simulated participants", {"study": str(made.path)})
     return 0
 
