@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from app.cli.study_people import arguments as people_arguments
 from app.cli.study_planning import arguments as plan_arguments
+from app.cli.study_replaying import arguments as replay_arguments
 from app.cli.study_run import check as check_study
 from app.cli.study_run import check_arguments, run_arguments
 from app.cli.study_run import run as run_study
@@ -57,6 +58,7 @@ def arguments(parser: ArgumentParser) -> None:
     )
     people_arguments(action)
     plan_arguments(action)
+    replay_arguments(action)
     action("example", "recompute the comparison that was published with the meta-graph", example)
     made = action("simulate", "write a study of simulated participants with known effects", simulate)
     made.add_argument("out", type=Path, help="a folder that is not there yet")
