@@ -16,6 +16,7 @@ from app.cli.study_replaying import arguments as replay_arguments
 from app.cli.study_run import check as check_study
 from app.cli.study_run import check_arguments, run_arguments
 from app.cli.study_run import run as run_study
+from app.cli.study_watching import arguments as watch_arguments
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.study.analysis import Results
@@ -48,17 +49,18 @@ def arguments(parser: ArgumentParser) -> None:
         "report", "write what a study found: a page (report/report.html) and tables as CSV", report
     )
     folder(reported)
+    reported.add_argument("others", type=Path, nargs="*", help="the same study at other sites")
     reported.add_argument(
         "--out", type=Path, help="where to write it (default: report, in the study's folder)"
     )
     exported = action("export", "write a study's data for other tools", export)
     folder(exported)
-    exported.add_argument(
-        "--bids", type=Path, required=True, metavar="OUT", help="a folder for the data in BIDS form"
-    )
+    exported.add_argument("--bids", type=Path, metavar="OUT", help="a folder for the data in BIDS form")
+    exported.add_argument("--xes", type=Path, metavar="OUT", help="a file for process mining (XES)")
     people_arguments(action)
     plan_arguments(action)
     replay_arguments(action)
+    watch_arguments(action)
     action("example", "recompute the comparison that was published with the meta-graph", example)
     made = action("simulate", "write a study of simulated participants with known effects", simulate)
     made.add_argument("out", type=Path, help="a folder that is not there yet")
@@ -115,15 +117,23 @@ def export(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.study.bids import write_bids
     from metagraph.study.study_plan import read_study
+    from metagraph.study.xes import write_xes
 
-    results = _results(options)
-    written = write_bids(read_study(options.folder), results, options.bids)
-    _tell_missing(results)
-    say(
-        options,
-        f"{options.bids}: {len(written)} files",
-        {"written": [str(p) for p in written], "missing": list(results.data.missing)},
-    )
+    if options.bids is None and options.xes is None:
+        raise ValueError("say what to write: --bids OUT, --xes OUT")
+    study, lines = read_study(options.folder), []
+    data: dict[str, Any] = {}
+    if options.bids is not None:
+        results = _results(options)
+        written = write_bids(study, results, options.bids)
+        _tell_missing(results)
+        lines.append(f"{options.bids}: {len(written)} files")
+        data |= {"written": [str(p) for p in written], "missing": list(results.data.missing)}
+    if options.xes is not None:
+        count = write_xes(study, options.xes)
+        lines.append(f"{options.xes}: {count} tasks")
+        data |= {"xes": str(options.xes), "traces": count}
+    say(options, "\n".join(lines), data)
     return 0
 
 
@@ -182,6 +192,7 @@ def _tell_missing(results: Results) -> None:
 def _results(options: Namespace) -> Results:
     from metagraph.study.analysis import analyse
     from metagraph.study.analysis_read import collect
+    from metagraph.study.sites import merge
 
     show = sys.stderr.isatty() and not options.json
 
@@ -191,6 +202,9 @@ def _results(options: Namespace) -> Results:
                 f"\r{done + 1} of {total} ", end="" if done + 1 < total else "\n", file=sys.stderr, flush=True
             )
 
+    others = getattr(options, "others", ())
+    if others:
+        return analyse(merge([options.folder, *others], not options.no_jumps, progress))
     return analyse(collect(options.folder, not options.no_jumps, progress))
 
 

@@ -90,6 +90,8 @@ PEOPLE: Mapping[str, dict[str, Any]] = {
     "tasks_begun": {"Description": "How many tasks were begun"},
     "tasks_done": {"Description": "How many of them were brought to an end"},
     "site": {"Description": "Where they took part"},
+    "standing": {"Description": "How far they came: done, or broken off"},
+    "first": {"Description": "The condition they were to begin with"},
     **{
         f"{c}_seconds{end}": {
             "Description": f"Active seconds a {unit} {how}, geometric mean",

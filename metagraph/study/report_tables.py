@@ -73,9 +73,12 @@ def participants(results: Results) -> Table:
             for m in ("SUS", "NASA-TLX, raw")
             for c in data.conditions
         ]
+        taken = data.people.get(who)
         out.append(
             (
                 who,
+                taken.standing if taken is not None else None,
+                (taken.first or None) if taken is not None else None,
                 order,
                 len(mine),
                 sum(1 for r in mine if r.done),
@@ -94,6 +97,8 @@ def participants(results: Results) -> Table:
     return (
         "participant",
         *where,
+        "standing",
+        "first",
         "order",
         "tasks_begun",
         "tasks_done",
