@@ -58,6 +58,8 @@ def write_report(results: Results, folder: Path, paper: Paper | None = None) -> 
     content |= {name: text.encode() for name, text in tables(results).items()}
     content |= {f"figures/{name}.svg": text.encode() for name, text in drawn.items()}
     content |= {f"figures/{name}.pdf": made for name, made in papers.items()}
+    notebooks = Path(__file__).with_name("notebooks")
+    content |= {f"notebooks/{n}": (notebooks / n).read_bytes() for n in ("figures.ipynb", "figures.R")}
     for name, data in content.items():
         write_atomically(folder / name, data)
     return [folder / name for name in content]

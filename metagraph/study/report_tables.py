@@ -223,15 +223,15 @@ def estimates(results: Results) -> Table:
     """The ratio as it is reported, by task, and reckoned otherwise."""
     rows: list[tuple[Any, ...]] = []
 
-    def add(sort: str, name: str, e: Estimate) -> None:
-        rows.append((sort, name, e.value, e.low, e.high, e.n))
+    def add(sort: str, name: str, e: Estimate, title: str | None = None) -> None:
+        rows.append((sort, name, e.value, e.low, e.high, e.n, title))
 
     if results.time is not None:
         add("reported", "all tasks", results.time.ratio)
         for c, e in results.time.means.items():
             add("mean seconds", c, e)
     for task, e in results.by_task.items():
-        add("task", task, e)
+        add("task", task, e, results.data.tasks[task])
     for site, e in results.by_site.items():
         add("site", site, e)
     for other in results.others:
@@ -245,7 +245,7 @@ def estimates(results: Results) -> Table:
             add(m.name, c, e)
         if m.difference is not None:
             add(m.name, "difference", m.difference)
-    return ("sort", "name", "value", "low", "high", "n"), rows
+    return ("sort", "name", "value", "low", "high", "n", "title"), rows
 
 
 def spent(data: Data) -> Table:

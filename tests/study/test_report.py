@@ -67,7 +67,7 @@ def test_every_plot_is_drawn_whole(results: Results) -> None:
 def test_the_same_data_give_the_same_bytes(results: Results, tmp_path: Path) -> None:
     for folder in ("one", "two"):
         written = write_report(results, tmp_path / folder)
-        assert len(written) == 8 + 7
+        assert len(written) == 8 + 7 + 2
     for path in written:
         assert path.read_bytes() == (tmp_path / "one" / path.relative_to(tmp_path / "two")).read_bytes()
 

@@ -37,7 +37,7 @@ def test_a_report_is_written_and_told(folder: Path, capsys: pytest.CaptureFixtur
     data = json.loads(capsys.readouterr().out)
     assert data["people"] == 4 and data["simulated"] and data["missing"] == []
     assert data["ratio"]["low"] < 5 < data["ratio"]["high"]
-    assert (folder / "report" / "report.html").is_file() and len(data["written"]) == 8 + 2 * 7
+    assert (folder / "report" / "report.html").is_file() and len(data["written"]) == 8 + 2 * 7 + 2
     assert any("no interval by ranks" in words for words in data["cautions"])
     assert (
         main(["study", "report", str(folder / "study.yaml"), "--no-jumps", "--out", str(folder / "else")])
