@@ -1,4 +1,6 @@
-"""`metagraph study freeze`, `withdraw` and `delete`: what a study is made of, and who is in it no more."""
+"""`metagraph study freeze`, `withdraw`, `delete` and `gaze`: what a study is made of, who is in it no more,
+and where people looked.
+"""
 
 from __future__ import annotations
 
@@ -25,6 +27,16 @@ def arguments(action: Action) -> None:
     deleted = action("delete", "delete all data of a participant, and note that it was done", delete)
     _who(deleted)
     deleted.add_argument("--yes", action="store_true", help="do not ask")
+
+    looked = action("gaze", "say which panels and nodes somebody looked at, from a recording of eyes", gaze)
+    _who(looked)
+    looked.add_argument(
+        "recording", type=Path, help="an export of Tobii Pro Lab, Pupil Player or Pupil Cloud"
+    )
+    looked.add_argument(
+        "--clap", type=float, help="when the recording shows the first clap, seconds of its own"
+    )
+    looked.add_argument("--out", type=Path, help="a table (default: gaze.csv beside the log)")
 
 
 def _who(parser: ArgumentParser) -> None:
@@ -92,3 +104,21 @@ def _told(paths: list[Path]) -> None:
         print(f"note: {path} still names them; write it anew", file=sys.stderr)
     if len(paths) > 10:
         print(f"note: and {len(paths) - 10} more files", file=sys.stderr)
+
+
+def gaze(options: Namespace) -> int:
+    from app.cli.command_output import say
+    from metagraph.formats.atomic import write_atomically
+    from metagraph.study.gaze import dwelt, read_gaze
+    from metagraph.study.log import read
+    from metagraph.study.report_tables import table
+    from metagraph.study.study_plan import read_study
+
+    study = read_study(options.study)
+    study.plan.known(options.participant)
+    found = dwelt(read(study.log(options.participant)), read_gaze(options.recording), options.clap)
+    out = options.out or study.data(options.participant) / "gaze.csv"
+    write_atomically(out, table(*found).encode())
+    lines = [f"{row[2]} ({row[1]}): {row[3]} {row[4]:.1f} s, {row[5]:.0%}" for row in found[1]]
+    say(options, "\n".join([*lines, str(out)]), {"written": str(out), "rows": len(found[1])})
+    return 0

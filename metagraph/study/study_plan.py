@@ -82,10 +82,12 @@ class Plan(Struct, frozen=True, forbid_unknown_fields=True):
     """study: the version of the format. participants: how many, or their pseudonyms. order: `latin`
     counterbalances conditions and tasks, `fixed` keeps to the file, `concealed` draws who gets which of the
     counterbalanced orders when they begin. smallest: the smallest ratio of times that would matter. site:
-    where this copy of the study is run. breaks: minutes after each condition but
-    the last. when: what questionnaires are about that do not say it themselves. tolerance: seconds by which a
-    timing may differ from the reference. allow: `labels` lets proposals be asked for. operators: seconds each
-    operator of the keystroke-level model takes these participants, where it is not as `klm.Times` has it.
+    where this copy of the study is run. claps: each task begins with a flash and a sound, so that
+    recordings of screen, voice and eyes can be brought into the log's time. breaks: minutes after each
+    condition but the last. when: what questionnaires are about that do not say it themselves. tolerance:
+    seconds by which a timing may differ from the reference. allow: `labels` lets proposals be asked for.
+    operators: seconds each operator of the keystroke-level model takes these participants, where it is not
+    as `klm.Times` has it.
     """
 
     study: int
@@ -109,6 +111,7 @@ class Plan(Struct, frozen=True, forbid_unknown_fields=True):
     thanks: str = ""
     smallest: Annotated[float, Meta(gt=1, le=100)] | None = None
     site: str = ""
+    claps: bool = False
 
     @property
     def times(self) -> Times:

@@ -11,6 +11,7 @@ from PySide6.QtCore import QObject, QTimer
 from PySide6.QtWidgets import QDialog
 
 from app.features.study.operator_events import Hands
+from app.features.study.screen_areas import screen_areas
 from app.features.study.study_changes import described
 from app.project.importing import Importing
 from app.stage.problem_watch import ProblemWatch
@@ -44,6 +45,7 @@ class Recorder(QObject):
         self._undone: object = None  # what a redo would do again
         self._edit: dict[str, Any] | None = None  # one that may still be merged with the next
         self._told = d.project  # as the events so far say it is
+        self._areas: dict[str, list[int]] = {}
         self._importing = 0.0  # when the import began that comes next
         self._input_at = monotonic()
         self._sought = self._scroll = 0.0
@@ -242,6 +244,10 @@ class Recorder(QObject):
         self._input_at = now
 
     def _tick(self) -> None:
+        areas = screen_areas(self.shell)
+        if areas != self._areas:
+            self._areas = areas
+            self._view("layout", areas=areas)
         if self._edit is None:
             self._tell_operators()
         for words in self._grave() - self._warned:

@@ -410,3 +410,23 @@ def test_a_window_that_is_killed_loses_nothing(tiny, tmp_path, qapp):
     assert len(project.graphs["head"].stances) in (made, made + 1)
     marks = [(e["index"], e["state"]) for e in read(log).events if e["type"] == "phase"]
     assert marks == [(0, "begin"), (0, "end"), (1, "begin"), (1, "end"), (2, "begin")]
+
+
+def test_tasks_begin_with_a_clap_where_the_study_wants_it(drive, takes_part, tiny):
+    tiny.write_text(tiny.read_text() + "claps: true\n")
+    p = takes_part()
+    consent(p)
+    p.titled("Practice: Meta-graph")
+    p.go()
+    p.working()
+    (clap,) = events(tiny, "marker")
+    assert (clap["name"], clap["number"]) == ("clap", 1)
+    drive.wait(lambda: any(e["what"] == "layout" for e in events(tiny, "view")))
+    areas = next(e["areas"] for e in events(tiny, "view") if e["what"] == "layout")
+    graph, node = areas["graph"], areas["graph gesture"]
+    assert graph[0] <= node[0] and node[0] + node[2] <= graph[0] + graph[2]
+    corner = drive.canvas.mapToGlobal(drive.canvas.rect().topLeft())
+    assert node[:2] == [
+        corner.x() + round(drive.canvas.layout_now().nodes["gesture"].rect.x()),
+        corner.y() + round(drive.canvas.layout_now().nodes["gesture"].rect.y()),
+    ]
