@@ -18,6 +18,7 @@ from metagraph.errors import FileError
 from metagraph.files import read_file
 from metagraph.study.log import Writer, read, wall_time
 from metagraph.study.study_plan import Study
+from metagraph.study.watching import LOCK, is_open
 
 DELETIONS = "deletions.jsonl"
 
@@ -54,6 +55,8 @@ def delete(
         raise FileError(
             folder, "is not there", participant, "There is nothing of this participant to delete."
         )
+    if is_open(folder / LOCK):
+        raise FileError(folder, "a window has this sitting open", participant, "Close it first.")
     files = [p for p in folder.rglob("*") if p.is_file()]
     note: dict[str, object] = {
         "deleted": wall_time(now()),

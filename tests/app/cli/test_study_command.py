@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -140,6 +141,11 @@ def test_who_withdraws_is_left_out_and_who_asks_is_deleted(
     assert main(["study", "delete", str(study), "P02", "--json"]) == 1, "it is asked first"
     assert (study / "data" / "P02").is_dir()
     capsys.readouterr()
+    lock = study / "data" / "P02" / "sitting.lock"
+    lock.write_text(f"{os.getpid()}\n")
+    assert main(["study", "delete", str(study), "P02", "--yes"]) == 1, "a window has it open"
+    assert "has this sitting open" in capsys.readouterr().err
+    lock.unlink()
     assert main(["study", "delete", str(study), "P02", "--yes"]) == 0
     assert not (study / "data" / "P02").exists()
     (note,) = [json.loads(line) for line in (study / "deletions.jsonl").read_text().splitlines()]
