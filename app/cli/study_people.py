@@ -28,6 +28,9 @@ def arguments(action: Action) -> None:
     _who(deleted)
     deleted.add_argument("--yes", action="store_true", help="do not ask")
 
+    brought = action("import", "add a participant's log of tasks done in Unreal, Unity or Godot", bring)
+    _who(brought)
+    brought.add_argument("log", type=Path, help="as the script for the engine wrote it")
     looked = action("gaze", "say which panels and nodes somebody looked at, from a recording of eyes", gaze)
     _who(looked)
     looked.add_argument(
@@ -121,4 +124,17 @@ def gaze(options: Namespace) -> int:
     write_atomically(out, table(*found).encode())
     lines = [f"{row[2]} ({row[1]}): {row[3]} {row[4]:.1f} s, {row[5]:.0%}" for row in found[1]]
     say(options, "\n".join([*lines, str(out)]), {"written": str(out), "rows": len(found[1])})
+    return 0
+
+
+def bring(options: Namespace) -> int:
+    from app.cli.command_output import say
+    from metagraph.study.engine_import import import_engine
+    from metagraph.study.study_plan import read_study
+
+    log, odd = import_engine(read_study(options.study), options.participant, options.log)
+    for words in odd:
+        print(f"note: {words}", file=sys.stderr)
+    lines = [f"{r.task} ({r.condition}): {r.seconds:.0f} s, {r.edits} edits" for r in log.tasks()]
+    say(options, "\n".join(lines), {"tasks": len(lines), "notes": odd})
     return 0

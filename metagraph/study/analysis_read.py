@@ -7,7 +7,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal
@@ -15,6 +15,7 @@ from typing import Any, Literal
 from metagraph.errors import FileError
 from metagraph.formats.store import open_project, read_project
 from metagraph.graph.model import Layer, Project
+from metagraph.study.engine_import import engine_logs
 from metagraph.study.freeze import changed, differences, listed
 from metagraph.study.gaps import Gap, gaps
 from metagraph.study.klm import USUAL, Times, predicted
@@ -34,6 +35,7 @@ SCORED: Mapping[str, tuple[str, Callable[[Mapping[str, Any]], float]]] = {
     "tlx": ("NASA-TLX, raw", tlx_raw),
     "tlx_weighted": ("NASA-TLX, weighted", tlx_weighted),
 }
+AFTER = 1000  # what was done in an engine comes after a sitting's phases
 TOTALS = frozenset(name for name, _ in SCORED.values())  # all from 0 to 100
 
 
@@ -160,6 +162,8 @@ def collect(folder: str | Path, jumps: bool = True, progress: Progress | None = 
             worked[participant] = log.frozen
         simulated |= any(e["type"] == "begin" and e.get("simulated") for e in log.events)
         rows += _rows(study, log, references, missing)
+        for path in engine_logs(study, participant):
+            rows += _engine_rows(study, path, participant, missing)
         answers += log.answers()
     data = study.folder / "data"
     strangers = (
@@ -174,7 +178,7 @@ def collect(folder: str | Path, jumps: bool = True, progress: Progress | None = 
     ratings = _ratings(study, answers, missing)
     return Data(
         plan.title,
-        tuple(plan.conditions),
+        tuple(dict.fromkeys((*plan.conditions, *(r.run.condition for r in rows)))),
         {t.id: t.name for t in plan.tasks},
         plan.ids,
         tuple(rows),
@@ -278,6 +282,31 @@ def _rows(study: Study, log: Log, references: _References, missing: list[str]) -
                 found_uses.get(run.index, {}),
             )
         )
+    return out
+
+
+def _engine_rows(study: Study, path: Path, participant: str, missing: list[str]) -> list[AnalysisRow]:
+    """Return the tasks done in an engine; nobody counts mistakes there."""
+    try:
+        log = read(path)
+    except FileError as error:
+        missing.append(f"{participant}: {error}")
+        return []
+    missing += [f"{participant}, {path.stem}: {words}." for words in log.problems]
+    known, breaks = {t.id: t for t in study.plan.tasks}, gaps(log.events)
+    out = []
+    for run in log.tasks():
+        if run.task not in known:
+            missing.append(
+                f"{participant}, {run.task} ({run.condition}): the study has no such task; it is left out."
+            )
+            continue
+        named = replace(run, participant=participant, index=AFTER + run.index)
+        with suppress(FileError):
+            clips = len(study.clips(known[run.task].clips))
+            out.append(
+                AnalysisRow(named, 3, clips, 0.0, None, breaks.get(run.index, ()), known[run.task].minutes)
+            )
     return out
 
 
