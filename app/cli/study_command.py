@@ -6,12 +6,17 @@ from __future__ import annotations
 
 import sys
 from argparse import ArgumentParser, Namespace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from app.cli.study_people import arguments as people_arguments
+from app.cli.study_planning import arguments as plan_arguments
+from app.cli.study_replaying import arguments as replay_arguments
 from app.cli.study_run import check as check_study
 from app.cli.study_run import check_arguments, run_arguments
 from app.cli.study_run import run as run_study
+from app.cli.study_watching import arguments as watch_arguments
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.study.analysis import Results
@@ -44,17 +49,24 @@ def arguments(parser: ArgumentParser) -> None:
         "report", "write what a study found: a page (report/report.html) and tables as CSV", report
     )
     folder(reported)
+    reported.add_argument("others", type=Path, nargs="*", help="the same study at other sites")
     reported.add_argument(
         "--out", type=Path, help="where to write it (default: report, in the study's folder)"
     )
     exported = action("export", "write a study's data for other tools", export)
     folder(exported)
-    exported.add_argument(
-        "--bids", type=Path, required=True, metavar="OUT", help="a folder for the data in BIDS form"
-    )
+    exported.add_argument("--bids", type=Path, metavar="OUT", help="a folder for the data in BIDS form")
+    exported.add_argument("--xes", type=Path, metavar="OUT", help="a file for process mining (XES)")
+    people_arguments(action)
+    plan_arguments(action)
+    replay_arguments(action)
+    watch_arguments(action)
     action("example", "recompute the comparison that was published with the meta-graph", example)
     made = action("simulate", "write a study of simulated participants with known effects", simulate)
     made.add_argument("out", type=Path, help="a folder that is not there yet")
+    made.add_argument(
+        "--like", type=Path, metavar="STUDY", help="a study of yours: its tasks, orders and questions"
+    )
     made.add_argument("--participants", type=int, default=24, help="how many (default: 24)")
     made.add_argument("--seed", type=int, default=1, help="other people with the same effects (default: 1)")
     made.add_argument("--ratio", type=float, default=7.9, help="times as long by hand (default: 7.9)")
@@ -87,16 +99,17 @@ def run(options: Namespace) -> int:
 
 def report(options: Namespace) -> int:
     from app.cli.command_output import say
+    from app.cli.study_papers import papers_maker
     from metagraph.study.report import summary, write_report
     from metagraph.study.study_plan import read_study
 
     place = options.out or read_study(options.folder).folder / "report"
     results = _results(options)
-    written = write_report(results, place)
-    for words in results.data.missing:
-        print(f"note: {words}", file=sys.stderr)
+    written = write_report(results, place, papers_maker())
+    _tell_missing(results)
     data = {**_facts(results), "written": [str(p) for p in written]}
-    say(options, "\n".join([*summary(results), *(f"- {w}" for w in data["cautions"]), str(written[0])]), data)
+    cautions = [f"- {w}" for w in (*data["cautions"], *data["odd"])]
+    say(options, "\n".join([*summary(results), *cautions, str(written[0])]), data)
     return 0 if results.time is not None else 3
 
 
@@ -104,16 +117,23 @@ def export(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.study.bids import write_bids
     from metagraph.study.study_plan import read_study
+    from metagraph.study.xes import write_xes
 
-    results = _results(options)
-    written = write_bids(read_study(options.folder), results, options.bids)
-    for words in results.data.missing:
-        print(f"note: {words}", file=sys.stderr)
-    say(
-        options,
-        f"{options.bids}: {len(written)} files",
-        {"written": [str(p) for p in written], "missing": list(results.data.missing)},
-    )
+    if options.bids is None and options.xes is None:
+        raise ValueError("say what to write: --bids OUT, --xes OUT")
+    study, lines = read_study(options.folder), []
+    data: dict[str, Any] = {}
+    if options.bids is not None:
+        results = _results(options)
+        written = write_bids(study, results, options.bids)
+        _tell_missing(results)
+        lines.append(f"{options.bids}: {len(written)} files")
+        data |= {"written": [str(p) for p in written], "missing": list(results.data.missing)}
+    if options.xes is not None:
+        count = write_xes(study, options.xes)
+        lines.append(f"{options.xes}: {count} tasks")
+        data |= {"xes": str(options.xes), "traces": count}
+    say(options, "\n".join(lines), data)
     return 0
 
 
@@ -149,14 +169,30 @@ def simulate(options: Namespace) -> int:
         slips=tuple(options.slips),
         sus=tuple(options.sus),
     )
-    made = write_study(options.out, truth)
+    if options.like is not None:
+        from metagraph.study.simulate_like import write_like
+        from metagraph.study.study_plan import read_study
+
+        mine = read_study(options.like)
+        truth = replace(truth, participants=len(mine.plan.ids))
+        made = write_like(mine, options.out, truth)
+    else:
+        made = write_study(options.out, truth)
     say(options, f"{made.path}: {truth.participants} simulated participants", {"study": str(made.path)})
     return 0
+
+
+def _tell_missing(results: Results) -> None:
+    from metagraph.study.report_cells import gathered
+
+    for words in gathered(results.data.missing):
+        print(f"note: {words}", file=sys.stderr)
 
 
 def _results(options: Namespace) -> Results:
     from metagraph.study.analysis import analyse
     from metagraph.study.analysis_read import collect
+    from metagraph.study.sites import merge
 
     show = sys.stderr.isatty() and not options.json
 
@@ -166,11 +202,14 @@ def _results(options: Namespace) -> Results:
                 f"\r{done + 1} of {total} ", end="" if done + 1 < total else "\n", file=sys.stderr, flush=True
             )
 
+    others = getattr(options, "others", ())
+    if others:
+        return analyse(merge([options.folder, *others], not options.no_jumps, progress))
     return analyse(collect(options.folder, not options.no_jumps, progress))
 
 
 def _facts(results: Results) -> dict[str, Any]:
-    time = results.time
+    time, found = results.time, results.sensitivity
     return {
         "title": results.data.title,
         "simulated": results.data.simulated,
@@ -178,7 +217,10 @@ def _facts(results: Results) -> dict[str, Any]:
         "tasks_done": sum(1 for r in results.data.rows if r.done),
         "ratio": None if time is None else _estimate(time.ratio),
         "seconds": {} if time is None else {c: _estimate(e) for c, e in time.means.items()},
-        "p": None if time is None else time.test.p,
+        "p": {name: corrected for name, _, corrected in results.together},
+        "otherwise": {} if found is None else {w.name: _estimate(w.ratio) for w in found.ways},
+        "odd": [] if found is None else list(found.odd),
+        "vanished_seconds": {c: v.seconds for c, v in results.vanished.items()},
         "slope": {c: _estimate(x.slope) for c, x in results.curves.items()},
         "second_sitting": None if time is None or time.order is None else _estimate(time.order.second),
         "measures": {

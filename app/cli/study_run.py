@@ -24,7 +24,7 @@ def run(options: Namespace) -> int:
 
     study = read_study(options.study)
     if options.participant is not None:
-        study.plan.blocks(options.participant)  # a stranger is told before a window is opened
+        study.plan.known(options.participant)  # a stranger is told before a window is opened
     from PySide6.QtCore import QTimer
 
     from app.main import make_window, prepare
@@ -51,8 +51,8 @@ def check(options: Namespace) -> int:
     from metagraph.study.study_plan import read_study
 
     study = read_study(options.study)
-    problems = study.problems()
-    rows = [(who, study.plan.blocks(who), standing(study, who)) for who in study.plan.ids]
+    problems = study.problems() + _promised(study)
+    rows = [(who, _order(study, who), standing(study, who)) for who in study.plan.ids]
     if options.json:
         orders = {
             who: [{"condition": c, "tasks": list(tasks)} for c, tasks in blocks] for who, blocks, _ in rows
@@ -71,7 +71,28 @@ def check(options: Namespace) -> int:
         print(study.plan.title)
         for who, blocks, stands in rows:
             order = "; ".join(f"{condition}: {', '.join(tasks)}" for condition, tasks in blocks)
+            order = order or "drawn when they begin"
             print(f"  {who}  {order}  ({stands})")
         for problem in problems:
             print(f"problem: {problem}")
     return PROBLEMS if problems else 0
+
+
+def _order(study, participant):
+    """Return a participant's conditions with their tasks; nothing where they are not drawn yet."""
+    try:
+        return study.blocks(participant)
+    except ValueError:
+        return ()
+
+
+def _promised(study):
+    """Return in words where the study is not what was frozen, preregistered or drawn."""
+    from metagraph.study import allocation
+    from metagraph.study.freeze import changed, frozen, manifest
+    from metagraph.study.preregistration import unlike
+
+    before = frozen(study)
+    out = [f"{name} is not as it was frozen" for name in changed(before, manifest(study))] if before else []
+    drawn = allocation.problems(study) if study.plan.order == "concealed" else []
+    return [*out, *unlike(study), *drawn]

@@ -42,7 +42,8 @@ class FileDrop:
 
 
 class Importing(QObject):
-    """told: words for the status bar. report: (title, lines) to read. imported: (Imported, what was given
+    """told: words for the status bar. report: (title, lines) to read. begun: files are being
+    read. imported: (Imported, what was given
     with it to place them). ended: an Imported, once nothing is asked about it any more. noticed: (title, ids
     of clips, lines), clips that were repaired; the lines say what else there is to read. drops: who takes
     what is no clip. retarget: asks about clips of other skeletons; without it they are left out. bring:
@@ -51,6 +52,7 @@ class Importing(QObject):
 
     told = Signal(str)
     report = Signal(str, object)
+    begun = Signal()
     imported = Signal(object, object)
     ended = Signal(object)
     noticed = Signal(str, object, object)
@@ -118,6 +120,7 @@ class Importing(QObject):
             remembered = lambda source, target: maps.get((source, target))  # noqa: E731
             return import_files(project, folder, paths, tell, lambda: job.cancelled, "ask", remembered)
 
+        self.begun.emit()
         self.jobs.start("Importing clips", work, done, self.files.show_failure)
 
     def _imported(self, result: Imported, drop: object) -> None:

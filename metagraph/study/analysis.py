@@ -14,49 +14,24 @@ import numpy as np
 
 from metagraph.study import stats
 from metagraph.study.analysis_read import TOTALS, AnalysisRow, Data
+from metagraph.study.comparison import ABOVE, BELOW, PAIR, Comparison, compare
+from metagraph.study.gaps import Vanished, vanished
+from metagraph.study.planning import Equivalence, equivalence
 from metagraph.study.score import WORDS, Score, What
-from metagraph.study.stats import Estimate, PeriodOrder, Test
-from metagraph.study.tasks import SPENT, Spent
+from metagraph.study.sensitivity import Sensitivity, sensitivity
+from metagraph.study.stats import Estimate, Test
+from metagraph.study.tasks import SPENT
+from metagraph.study.uses import USES
 
-ABOVE, BELOW = "manual", "meta"  # the ratio is of the one to the other
-TITLES: Mapping[str, str] = {"meta": "meta-graph", "manual": "state machine by hand"}
+__all__ = ["ABOVE", "BELOW", "MISTAKES", "TITLES", "Comparison", "Measure", "Results", "analyse", "compare"]
 
-
-@dataclass(frozen=True, slots=True)
-class Person:
-    """What one participant took, seconds, geometric mean over the tasks that count. above_first: began with
-    ABOVE.
-    """
-
-    participant: str
-    above: float
-    below: float
-    above_first: bool
-
-    @property
-    def ratio(self) -> float:
-        return self.above / self.below
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """Seconds of ABOVE beside BELOW. unit: `task`, or `clip` where people had other tasks in each. paired:
-    everybody did both; then people are they. means: geometric, by condition. effect: d_z; raw_effect:
-    uncorrected.
-    """
-
-    unit: str
-    paired: bool
-    means: Mapping[str, Estimate]
-    ratio: Estimate
-    test: Test
-    people: tuple[Person, ...] = ()
-    ranked: Test | None = None
-    effect: Estimate | None = None
-    raw_effect: float | None = None
-    biserial: float | None = None
-    order: PeriodOrder | None = None
-    cautions: tuple[str, ...] = ()
+TITLES: Mapping[str, str] = {
+    "meta": "meta-graph",
+    "manual": "state machine by hand",
+    "unreal": "Unreal Engine",
+    "unity": "Unity",
+    "godot": "Godot",
+}
 
 
 @dataclass(frozen=True)
@@ -97,32 +72,35 @@ class Predicted:
 
 @dataclass(frozen=True)
 class Results:
-    """Everything a report tells. by_task: task -> its ratio and its test, and p corrected for how many tasks
-    there are. together: name, test and p corrected for how many questions were asked of the same people.
+    """Everything a report tells. by_task: task -> its ratio. others: further conditions beside the
+    meta-graph. together: what was asked of these people, name, test, and p corrected for how many questions
+    those are (Holm); there are no other p values. vanished: by condition, gaps that no time counts. by_site:
+    site -> its ratio.
     """
 
     data: Data
     time: Comparison | None = None
-    by_task: Mapping[str, tuple[Estimate, Test, float | None]] = field(default_factory=dict)
+    by_task: Mapping[str, Estimate] = field(default_factory=dict)
     curves: Mapping[str, Curve] = field(default_factory=dict)
-    spent: Mapping[str, Mapping[Spent, float]] = field(default_factory=dict)
+    spent: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     predicted: Mapping[str, Predicted] = field(default_factory=dict)
     mistakes: tuple[Measure, ...] = ()
     ratings: tuple[Measure, ...] = ()
     together: tuple[tuple[str, Test, float | None], ...] = ()
+    sensitivity: Sensitivity | None = None
+    vanished: Mapping[str, Vanished] = field(default_factory=dict)
+    others: tuple[Comparison, ...] = ()
+    by_site: Mapping[str, Estimate] = field(default_factory=dict)
+    equivalence: Equivalence | None = None
 
 
 def analyse(data: Data) -> Results:
     """Return what the data show."""
     done = [r for r in data.rows if r.done]
-    time = compare(done)
-    tasks: dict[str, tuple[Estimate, Test]] = {}
-    for task in data.tasks:
-        found = compare([r for r in done if r.run.task == task])
-        if found is not None:
-            tasks[task] = found.ratio, found.test
-    corrected = stats.holm([test.p for _, test in tasks.values()])
+    time = compare(done, data.unit)
+    ratios = {t: compare([r for r in done if r.run.task == t]) for t in data.tasks}
     conditions = [c for c in data.conditions if any(r.run.condition == c for r in done)]
+    by = {c: [r for r in done if r.run.condition == c] for c in conditions}
     mistakes = tuple(
         m
         for name, get in MISTAKES.items()
@@ -136,120 +114,38 @@ def analyse(data: Data) -> Results:
     )
     asked = [("time", time.test)] if time is not None and time.test.p is not None else []
     asked += [
-        (m.name, m.test) for m in (*mistakes[:1], *ratings) if m.test is not None and m.test.p is not None
+        (m.name, m.test)
+        for m in (*mistakes[:1], *(m for m in ratings if m.name in TOTALS))
+        if m.test is not None and m.test.p is not None
     ]
+    others = [compare(done, data.unit, (c, BELOW)) for c in conditions if c not in PAIR]
     return Results(
         data,
         time,
-        {task: (*found, p) for (task, found), p in zip(tasks.items(), corrected, strict=True)},
-        {
-            c: curve
-            for c in conditions
-            if (curve := learning([r for r in done if r.run.condition == c])) is not None
-        },
-        {c: _spent([r for r in done if r.run.condition == c]) for c in conditions},
-        {
-            c: model
-            for c in conditions
-            if (model := _predicted([r for r in done if r.run.condition == c])) is not None
-        },
+        {task: found.ratio for task, found in ratios.items() if found is not None},
+        {c: curve for c, rows in by.items() if (curve := learning(rows)) is not None},
+        {c: _spent(rows) for c, rows in by.items()},
+        {c: model for c, rows in by.items() if (model := _predicted(rows)) is not None},
         mistakes,
         ratings,
         tuple(
             (name, test, p)
             for (name, test), p in zip(asked, stats.holm([t.p for _, t in asked]), strict=True)
         ),
+        sensitivity(done, time, data.sites) if time is not None else None,
+        {c: vanished([(r.run.seconds, r.gaps) for r in rows]) for c, rows in by.items()},
+        tuple(found for found in others if found is not None),
+        {s: e for s in dict.fromkeys(data.sites.values()) if (e := _site(done, data, s)) is not None},
+        equivalence(time.logs, data.smallest) if time is not None and data.smallest is not None else None,
     )
 
 
-# --- time
+def _site(done: Sequence[AnalysisRow], data: Data, site: str) -> Estimate | None:
+    found = compare([r for r in done if data.sites.get(r.run.participant) == site], data.unit)
+    return found.ratio if found is not None else None
 
 
-def compare(rows: Sequence[AnalysisRow]) -> Comparison | None:
-    """Return the comparison of both conditions; None where one of them was never done."""
-    by: dict[str, dict[str, dict[str, AnalysisRow]]] = {}  # participant -> condition -> task
-    for r in rows:
-        by.setdefault(r.run.participant, {}).setdefault(r.run.condition, {})[r.run.task] = r
-    both = {p: c for p, c in by.items() if ABOVE in c and BELOW in c}
-    if not both:
-        return _unpaired(by)
-    same = all(c[ABOVE].keys() & c[BELOW].keys() for c in both.values())
-    people = []
-    for participant, conditions in both.items():
-        tasks = conditions[ABOVE].keys() & conditions[BELOW].keys() if same else None
-        above, below = (_took(conditions[c], tasks) for c in (ABOVE, BELOW))
-        first = min((r for c in conditions.values() for r in c.values()), key=lambda r: r.run.index)
-        people.append(Person(participant, above, below, first.run.condition == ABOVE))
-    a, b = [p.above for p in people], [p.below for p in people]
-    log_a, log_b = stats.logs(a), stats.logs(b)
-    ratio = stats.ratio(a, b)
-    effect = stats.effect_size(log_a, log_b)
-    raw = effect.value / stats.correction(len(people) - 1) if effect is not None else None
-    began = {first: [(p.above, p.below) for p in people if p.above_first is first] for first in (True, False)}
-    cautions = stats.cautions(ratio, raw)
-    alone = len(by) - len(both)
-    if alone:
-        cautions.append(
-            f"{alone} did only one of the two and {'is' if alone == 1 else 'are'} left out of the ratio."
-        )
-    timed_out = sum(1 for r in rows if r.run.timed_out)
-    if timed_out:
-        cautions.append(
-            f"{timed_out} of {len(rows)} tasks were ended by the time limit: their true times are longer "
-            "than those used here."
-        )
-    order = stats.order_effects(began[True], began[False])
-    if order is None and len(people) > 1:
-        cautions.append(
-            "Fewer than 2 people began with one of the conditions, so practice cannot be told from the "
-            "condition."
-        )
-    return Comparison(
-        "task" if same else "clip",
-        True,
-        {ABOVE: stats.geometric_mean(a), BELOW: stats.geometric_mean(b)},
-        ratio,
-        stats.paired_t(log_a, log_b),
-        tuple(people),
-        stats.wilcoxon(log_a, log_b),
-        effect,
-        raw,
-        stats.rank_biserial(log_a, log_b),
-        order,
-        tuple(cautions),
-    )
-
-
-def _took(rows: Mapping[str, AnalysisRow], tasks: set[str] | None) -> float:
-    """Return the geometric mean of seconds: a task, over some tasks, or where tasks is None a clip, over
-    all.
-    """
-    if tasks is None:
-        return exp(np.mean([log(r.run.seconds / max(1, r.clips)) for r in rows.values()]))
-    return exp(np.mean([log(rows[t].run.seconds) for t in sorted(tasks)]))
-
-
-def _unpaired(by: Mapping[str, Mapping[str, Mapping[str, AnalysisRow]]]) -> Comparison | None:
-    groups = {c: [found[c] for found in by.values() if c in found] for c in (ABOVE, BELOW)}
-    if not all(groups.values()):
-        return None
-    tasks = {c: {t for rows in group for t in rows} for c, group in groups.items()}
-    same = tasks[ABOVE] == tasks[BELOW]
-    took = {c: [_took(rows, set(rows) if same else None) for rows in group] for c, group in groups.items()}
-    found, test = stats.welch(stats.logs(took[ABOVE]), stats.logs(took[BELOW]))
-    ratio = found.exp()
-    words = [
-        "No one did both, so people are compared with other people: it takes many more of them than when "
-        "everybody does both."
-    ]
-    if ratio.low is None:
-        words = ["A group of one has no interval: this says nothing about other people."]
-    elif ratio.holds(1.0):
-        words.append(
-            "The interval of the ratio includes 1: these people do not show that either way is faster."
-        )
-    means = {c: stats.geometric_mean(values) for c, values in took.items()}
-    return Comparison("task" if same else "clip", False, means, ratio, test, cautions=tuple(words))
+# --- practice, and what the time went into
 
 
 def learning(rows: Sequence[AnalysisRow]) -> Curve | None:
@@ -269,15 +165,16 @@ def learning(rows: Sequence[AnalysisRow]) -> Curve | None:
     return Curve(slope, first, means)
 
 
-def _spent(rows: Sequence[AnalysisRow]) -> dict[Spent, float]:
+def _spent(rows: Sequence[AnalysisRow]) -> dict[str, float]:
     """Return mean seconds a task by what they went into, each person counting once."""
-    people: dict[str, list[AnalysisRow]] = {}
+    people: dict[str, list[Mapping[str, float]]] = {}
     for r in rows:
-        people.setdefault(r.run.participant, []).append(r)
-    return {
-        s: float(np.mean([np.mean([r.run.spent[s] for r in mine]) for mine in people.values()]))
-        for s in SPENT
+        people.setdefault(r.run.participant, []).append(r.uses or {str(k): v for k, v in r.run.spent.items()})
+    names = dict.fromkeys((*USES, *SPENT))
+    out = {
+        n: float(np.mean([np.mean([m.get(n, 0.0) for m in mine]) for mine in people.values()])) for n in names
     }
+    return {n: seconds for n, seconds in out.items() if seconds > 0}
 
 
 def _predicted(rows: Sequence[AnalysisRow]) -> Predicted | None:
@@ -360,7 +257,7 @@ def _measure(
         return Measure(name, means, None, None)
     a, b = ([each[c][who] for who in both] for c in (ABOVE, BELOW))
     difference = stats.mean([x - y for x, y in zip(a, b, strict=True)])
-    return Measure(name, means, difference, stats.wilcoxon(a, b), stats.effect_size(a, b))
+    return Measure(name, means, difference, stats.paired_t(a, b), stats.effect_size(a, b))
 
 
 def _within(found: Estimate, least: float, most: float) -> Estimate:

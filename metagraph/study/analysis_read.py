@@ -6,21 +6,28 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from metagraph.errors import FileError
 from metagraph.formats.store import open_project, read_project
 from metagraph.graph.model import Layer, Project
+from metagraph.study.engine_import import engine_logs
+from metagraph.study.freeze import changed, differences, listed
+from metagraph.study.gaps import Gap, gaps
 from metagraph.study.klm import USUAL, Times, predicted
-from metagraph.study.log import Log, TaskRun, read
+from metagraph.study.log import Log, Standing, TaskRun, read
 from metagraph.study.normal_machine import NormalMachine, normal
 from metagraph.study.questionnaires import BUILT_IN, sus_score, tlx_raw, tlx_weighted
 from metagraph.study.score import TOLERANCE, Score, score
 from metagraph.study.score_jumps import with_jumps
 from metagraph.study.study_plan import Study, read_study
 from metagraph.study.tasks import Answer
+from metagraph.study.uses import uses
+from metagraph.study.withdrawal import deleted
 
 Progress = Callable[[int, int], None]
 SCORED: Mapping[str, tuple[str, Callable[[Mapping[str, Any]], float]]] = {
@@ -28,6 +35,7 @@ SCORED: Mapping[str, tuple[str, Callable[[Mapping[str, Any]], float]]] = {
     "tlx": ("NASA-TLX, raw", tlx_raw),
     "tlx_weighted": ("NASA-TLX, weighted", tlx_weighted),
 }
+AFTER = 1000  # what was done in an engine comes after a sitting's phases
 TOTALS = frozenset(name for name, _ in SCORED.values())  # all from 0 to 100
 
 
@@ -35,7 +43,7 @@ TOTALS = frozenset(name for name, _ in SCORED.values())  # all from 0 to 100
 class AnalysisRow:
     """A task somebody did. sitting: 1 for the condition they began with, 2 for the next. clips: of the task,
     0 where nobody knows. predicted: seconds by the keystroke-level model. score: None without a reference or
-    a project.
+    a project. gaps: of the log, longer ones. minutes: the task's limit. uses: seconds by what they went into.
     """
 
     run: TaskRun
@@ -43,6 +51,9 @@ class AnalysisRow:
     clips: int
     predicted: float
     score: Score | None = None
+    gaps: tuple[Gap, ...] = ()
+    minutes: float | None = None
+    uses: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def done(self) -> bool:
@@ -50,6 +61,13 @@ class AnalysisRow:
         left.
         """
         return (self.run.finished or self.run.timed_out) and self.run.seconds > 0
+
+    @property
+    def correct(self) -> bool:
+        """Whether it was compared with a reference, and has no mistake; jumps, which are the clips',
+        aside.
+        """
+        return self.score is not None and all(m.what == "jump" for m in self.score.mistakes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +85,10 @@ class Rating:
 @dataclass(frozen=True)
 class Data:
     """title, conditions and tasks (id -> title): of the plan. participants: all that take part. rows: in the
-    order they were done, by participant. missing: what is not there or was left out, in words.
+    order they were done, by participant. missing: what is not there or was left out, in words. unit: what the
+    plan lets be compared, None where nobody knows. people: participant -> how far they came and what they
+    were to begin with. sites: participant -> where, of several. smallest: the
+    smallest ratio that matters.
     """
 
     title: str
@@ -80,6 +101,18 @@ class Data:
     missing: tuple[str, ...] = ()
     tolerance: float = TOLERANCE
     simulated: bool = False
+    unit: Literal["task", "clip"] | None = None
+    people: Mapping[str, Taken] = field(default_factory=dict)
+    sites: Mapping[str, str] = field(default_factory=dict)
+    smallest: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """How a participant took part. first: the condition the plan gives them first."""
+
+    standing: Standing
+    first: str
 
 
 def prediction(run: TaskRun, times: Times = USUAL) -> float:
@@ -108,15 +141,29 @@ def collect(folder: str | Path, jumps: bool = True, progress: Progress | None = 
     references = _References(study, jumps, missing)
     rows: list[AnalysisRow] = []
     answers: list[Answer] = []
+    people: dict[str, Taken] = {}
+    orders = _orders(study)
+    worked: dict[str, Mapping[str, str] | None] = {}
+    gone = deleted(study)
     simulated = False
     for n, participant in enumerate(plan.ids):
         if progress is not None:
             progress(n, len(plan.ids))
-        log = _log(study, participant, missing)
-        if log is None:
+        first = orders.get(participant, (("", ()),))[0][0]
+        if participant in gone and not study.log(participant).is_file():
+            missing.append(f"{participant}: withdrew, and all data was deleted.")
+            people[participant] = Taken("deleted", first)
             continue
+        log = _log(study, participant, missing)
+        people[participant] = Taken(log.standing if log is not None else "not begun", first)
+        if log is None or log.standing == "withdrawn":
+            continue
+        if log.tasks():
+            worked[participant] = log.frozen
         simulated |= any(e["type"] == "begin" and e.get("simulated") for e in log.events)
         rows += _rows(study, log, references, missing)
+        for path in engine_logs(study, participant):
+            rows += _engine_rows(study, path, participant, missing)
         answers += log.answers()
     data = study.folder / "data"
     strangers = (
@@ -127,10 +174,11 @@ def collect(folder: str | Path, jumps: bool = True, progress: Progress | None = 
     missing += [
         f"{name}: a folder of data, but nobody of that name takes part; it is left out." for name in strangers
     ]
+    missing += differences(study, worked, jumps)
     ratings = _ratings(study, answers, missing)
     return Data(
         plan.title,
-        tuple(plan.conditions),
+        tuple(dict.fromkeys((*plan.conditions, *(r.run.condition for r in rows)))),
         {t.id: t.name for t in plan.tasks},
         plan.ids,
         tuple(rows),
@@ -139,7 +187,35 @@ def collect(folder: str | Path, jumps: bool = True, progress: Progress | None = 
         tuple(dict.fromkeys(missing)),
         plan.tolerance,
         simulated,
+        _unit(study),
+        people,
+        {},
+        plan.smallest,
     )
+
+
+def _orders(study: Study) -> dict[str, tuple[tuple[str, tuple[str, ...]], ...]]:
+    """Return everybody's conditions with their tasks; not of those for whom none was drawn yet."""
+    out = {}
+    for who in study.plan.ids:
+        with suppress(ValueError):
+            out[who] = study.blocks(who)
+    return out
+
+
+def _unit(study: Study) -> Literal["task", "clip"] | None:
+    """Return what can be compared: tasks, unless the plan gives nobody the same one in two conditions. None
+    where it does not say.
+    """
+    orders = _orders(study)
+    for blocks in orders.values():
+        seen: set[str] = set()
+        for _, tasks in blocks:
+            if seen & set(tasks):
+                return "task"
+            seen |= set(tasks)
+    groups = all(len({c for c, _ in blocks}) == 1 for blocks in orders.values())
+    return None if groups else "clip"
 
 
 def _log(study: Study, participant: str, missing: list[str]) -> Log | None:
@@ -158,7 +234,16 @@ def _log(study: Study, participant: str, missing: list[str]) -> Log | None:
     digests = {str(e["study"]) for e in log.events if e["type"] in ("begin", "resumed") and e.get("study")}
     if digests - {study.digest}:
         missing.append(f"{participant}: worked with another version of the study file.")
-    if not log.complete:
+    told = [e["digests"] for e in log.events if e["type"] == "frozen" and isinstance(e.get("digests"), dict)]
+    for one, other in pairwise(told):
+        names = changed(one, other)
+        if names:
+            missing.append(f"{participant}: {listed(names)} changed between two parts of the sitting.")
+    if log.standing == "withdrawn":
+        missing.append(f"{participant}: withdrew; their data is left out.")
+    elif log.standing == "declined":
+        missing.append(f"{participant}: declined to take part.")
+    elif not log.complete:
         missing.append(f"{participant}: has not come to the end.")
     return log
 
@@ -166,6 +251,7 @@ def _log(study: Study, participant: str, missing: list[str]) -> Log | None:
 def _rows(study: Study, log: Log, references: _References, missing: list[str]) -> list[AnalysisRow]:
     out: list[AnalysisRow] = []
     order: list[str] = []
+    found_gaps, found_uses = gaps(log.events), uses(log.events)
     for run in log.tasks():
         who = f"{log.participant}, {run.task} ({run.condition})"
         if run.condition not in order:
@@ -191,8 +277,36 @@ def _rows(study: Study, log: Log, references: _References, missing: list[str]) -
                 clips,
                 row.predicted,
                 references.scored(log.path.parent, run, who) if row.done else None,
+                found_gaps.get(run.index, ()),
+                task.minutes,
+                found_uses.get(run.index, {}),
             )
         )
+    return out
+
+
+def _engine_rows(study: Study, path: Path, participant: str, missing: list[str]) -> list[AnalysisRow]:
+    """Return the tasks done in an engine; nobody counts mistakes there."""
+    try:
+        log = read(path)
+    except FileError as error:
+        missing.append(f"{participant}: {error}")
+        return []
+    missing += [f"{participant}, {path.stem}: {words}." for words in log.problems]
+    known, breaks = {t.id: t for t in study.plan.tasks}, gaps(log.events)
+    out = []
+    for run in log.tasks():
+        if run.task not in known:
+            missing.append(
+                f"{participant}, {run.task} ({run.condition}): the study has no such task; it is left out."
+            )
+            continue
+        named = replace(run, participant=participant, index=AFTER + run.index)
+        with suppress(FileError):
+            clips = len(study.clips(known[run.task].clips))
+            out.append(
+                AnalysisRow(named, 3, clips, 0.0, None, breaks.get(run.index, ()), known[run.task].minutes)
+            )
     return out
 
 

@@ -18,7 +18,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import msgspec
 
@@ -26,14 +26,19 @@ from metagraph.budgets import LOG_FILE
 from metagraph.errors import FileError
 from metagraph.files import read_file
 from metagraph.formats.atomic import write_atomically
+from metagraph.study.clocks import clock_problems
 from metagraph.study.tasks import Answer, Event, TaskRun, answers, moment, task_runs
 
 __all__ = ["BOUNDARIES", "NAME", "TYPES", "Answer", "Event", "Log", "TaskRun", "Writer", "read", "wall_time"]
 
 NAME = "log.jsonl"
+Standing = Literal["not begun", "declined", "broken off", "done", "withdrawn", "deleted"]
 TYPES = (
     "begin",
     "resumed",
+    "frozen",
+    "declined",
+    "withdrawn",
     "phase",
     "pause",
     "idle",
@@ -49,12 +54,13 @@ TYPES = (
     "export",
     "ops",
     "note",
+    "marker",
     "answer",
     "artefact",
     "end",
 )
 BOUNDARIES = frozenset(
-    {"begin", "resumed", "phase", "pause", "answer", "artefact", "end"}
+    {"begin", "resumed", "declined", "withdrawn", "phase", "pause", "marker", "answer", "artefact", "end"}
 )  # synced before anything else happens
 SYNC = 0.25  # seconds between syncs to the disk
 
@@ -83,6 +89,24 @@ class Log:
     def complete(self) -> bool:
         """Whether the sitting was gone through to its end."""
         return any(e["type"] == "end" for e in self.events)
+
+    @property
+    def frozen(self) -> dict[str, str] | None:
+        """Return what was worked with, name -> SHA-256, as it was told first; None where it was not."""
+        found = next((e.get("digests") for e in self.events if e["type"] == "frozen"), None)
+        return {str(k): str(v) for k, v in found.items()} if isinstance(found, dict) else None
+
+    @property
+    def standing(self) -> Standing:
+        """Return how far the sitting came, by the log alone."""
+        kinds = [e["type"] for e in self.events]
+        if "withdrawn" in kinds:
+            return "withdrawn"
+        if "end" in kinds:
+            return "done"
+        if "declined" in kinds and "phase" not in kinds[kinds.index("declined") :]:
+            return "declined"
+        return "broken off"
 
     def tasks(self) -> list[TaskRun]:
         """Return the tasks that were begun, in their order."""
@@ -131,6 +155,7 @@ def read(path: str | Path) -> Log:
             problems.append(f"line {number}: time goes backwards")
         expected = event["n"] + 1
         events.append(event)
+    problems += clock_problems(events)
     return Log(path, tuple(events), bool(tail), tuple(problems), expected)
 
 
@@ -205,7 +230,7 @@ class Writer:
         self.before = read(self.path) if self.path.exists() else Log(self.path)
         self.n = self.before.following
         self._waiting: list[bytes] = []  # lines that could not be written yet
-        self._closed = False
+        self.closed = False
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
             if self.before.torn:
@@ -274,8 +299,8 @@ class Writer:
 
     def close(self) -> None:
         """Sync and close; nothing more can be added."""
-        if not self._closed:
-            self._closed = True
+        if not self.closed:
+            self.closed = True
             self._disk.end()
             try:
                 self.sync()

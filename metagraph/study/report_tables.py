@@ -7,11 +7,13 @@ from __future__ import annotations
 import csv
 from collections.abc import Iterable, Mapping, Sequence
 from io import StringIO
+from math import isfinite
 from typing import Any
 
 from metagraph.study.analysis import Results
 from metagraph.study.analysis_read import Data
 from metagraph.study.score import WORDS, Score
+from metagraph.study.stats import Estimate
 from metagraph.study.tasks import OPERATORS, SPENT
 
 MISSING = "n/a"  # as BIDS writes it
@@ -26,6 +28,8 @@ def tables(results: Results) -> dict[str, str]:
         "clips.csv": table(*clips(data)),
         "mistakes.csv": table(*mistakes(data)),
         "questionnaires.csv": table(*questionnaires(data)),
+        "estimates.csv": table(*estimates(results)),
+        "spent.csv": table(*spent(data)),
     }
 
 
@@ -44,6 +48,8 @@ def cell(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
+        if not isfinite(value):
+            return MISSING
         return f"{value:.6f}".rstrip("0").rstrip(".")
     return str(value)
 
@@ -67,9 +73,12 @@ def participants(results: Results) -> Table:
             for m in ("SUS", "NASA-TLX, raw")
             for c in data.conditions
         ]
+        taken = data.people.get(who)
         out.append(
             (
                 who,
+                taken.standing if taken is not None else None,
+                (taken.first or None) if taken is not None else None,
                 order,
                 len(mine),
                 sum(1 for r in mine if r.done),
@@ -80,13 +89,21 @@ def participants(results: Results) -> Table:
             )
         )
     rated = tuple(f"{m}_{c}" for m in ("sus", "tlx") for c in data.conditions)
+    unit = results.time.unit if results.time is not None else data.unit
+    end = "_a_clip" if unit == "clip" else ""  # another unit has another name
+    where = ("site",) if data.sites else ()
+    if where:
+        out = [(*row[:1], data.sites.get(row[0]), *row[1:]) for row in out]
     return (
         "participant",
+        *where,
+        "standing",
+        "first",
         "order",
         "tasks_begun",
         "tasks_done",
-        "meta_seconds",
-        "manual_seconds",
+        f"meta_seconds{end}",
+        f"manual_seconds{end}",
         "ratio",
         *rated,
     ), out
@@ -122,6 +139,7 @@ def tasks(data: Data) -> Table:
         "wall",
         "paused",
         "away",
+        "longest_gap_seconds",
         "clips",
         "predicted_seconds",
         "edits",
@@ -131,6 +149,7 @@ def tasks(data: Data) -> Table:
         "drag_seconds",
         *(f"{s}_seconds" for s in SPENT),
         *SCORES,
+        "correct",
     )
     rows: list[tuple[Any, ...]] = []
     for r in data.rows:
@@ -149,6 +168,7 @@ def tasks(data: Data) -> Table:
                 t.wall,
                 t.paused,
                 t.away,
+                max((g.seconds for g in r.gaps), default=0.0),
                 r.clips,
                 r.predicted,
                 t.edits,
@@ -158,6 +178,7 @@ def tasks(data: Data) -> Table:
                 t.drag_s,
                 *(t.spent[s] for s in SPENT),
                 *_scores(r.score),
+                None if r.score is None else r.correct,
             )
         )
     return columns, rows
@@ -196,3 +217,42 @@ def questionnaires(data: Data) -> Table:
         if r.measure in totals
     ]
     return ("participant", "condition", "task", "questionnaire", "item", "value"), rows
+
+
+def estimates(results: Results) -> Table:
+    """The ratio as it is reported, by task, and reckoned otherwise."""
+    rows: list[tuple[Any, ...]] = []
+
+    def add(sort: str, name: str, e: Estimate, title: str | None = None) -> None:
+        rows.append((sort, name, e.value, e.low, e.high, e.n, title))
+
+    if results.time is not None:
+        add("reported", "all tasks", results.time.ratio)
+        for c, e in results.time.means.items():
+            add("mean seconds", c, e)
+    for task, e in results.by_task.items():
+        add("task", task, e, results.data.tasks[task])
+    for site, e in results.by_site.items():
+        add("site", site, e)
+    for other in results.others:
+        add("condition", other.pair[0], other.ratio)
+    for way in results.sensitivity.ways if results.sensitivity is not None else ():
+        add("otherwise", way.name, way.ratio)
+    for c, curve in results.curves.items():
+        add("practice, slope", c, curve.slope)
+    for m in (*results.mistakes, *results.ratings):
+        for c, e in m.means.items():
+            add(m.name, c, e)
+        if m.difference is not None:
+            add(m.name, "difference", m.difference)
+    return ("sort", "name", "value", "low", "high", "n", "title"), rows
+
+
+def spent(data: Data) -> Table:
+    """What the time of each task went into."""
+    rows: list[tuple[Any, ...]] = [
+        (r.run.participant, r.run.condition, r.run.task, use, seconds)
+        for r in data.rows
+        for use, seconds in r.uses.items()
+    ]
+    return ("participant", "condition", "task", "use", "seconds"), rows

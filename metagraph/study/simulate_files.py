@@ -22,6 +22,7 @@ from metagraph.graph import edits
 from metagraph.graph.model import Layer, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
+from metagraph.study.freeze import manifest
 from metagraph.study.klm import USUAL
 from metagraph.study.log import wall_time
 from metagraph.study.questionnaires import SUS, TLX
@@ -77,8 +78,9 @@ def write_study(folder: Path, truth: Truth) -> Study:
         for task, p in references.items()
         for c in ("meta", "manual")
     }
+    digests = manifest(study)
     for number, person in enumerate(simulated(truth, {t: clips_of(t) for t in TASKS})):
-        _Sitting(study, person, right, truth, number).write()
+        _Sitting(study, person, right, truth, number).write(digests)
     return study
 
 
@@ -196,7 +198,7 @@ class _Sitting:
             }
         )
 
-    def write(self) -> None:
+    def write(self, digests: Mapping[str, str]) -> None:
         works = {(w.condition, w.task): w for w in self.person.works}
         self.add(
             "begin",
@@ -206,6 +208,7 @@ class _Sitting:
             machine={},
             simulated=True,
         )
+        self.add("frozen", digests=digests)
         for phase in phases(self.study, self.person.participant):
             self.add("phase", 1.0, state="begin", **phase.fields)
             if phase.name == "task":

@@ -5,12 +5,13 @@ goes on after any crash.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
 from metagraph.errors import FileError
+from metagraph.study.allocation import allocate
 from metagraph.study.log import Event, Log, Writer, read
 from metagraph.study.questionnaires import Questionnaire
 from metagraph.study.study_plan import CONDITION_TITLES, Study
@@ -103,7 +104,7 @@ def phases(study: Study, participant: str) -> tuple[Phase, ...]:
         add("consent", plan.title, plan.consent)
     if plan.instructions:
         add("instructions", plan.title, plan.instructions)
-    blocks = plan.blocks(participant)
+    blocks = study.blocks(participant)
     trained: set[str] = set()
     for place, (condition, tasks) in enumerate(blocks):
         editor = CONDITION_TITLES[condition]
@@ -185,6 +186,8 @@ def standing(study: Study, participant: str) -> str:
         return "not begun"
     try:
         log = read(study.log(participant))
+        if log.standing in ("declined", "withdrawn"):
+            return log.standing
         now = where(phases(study, participant), log.events)
     except (FileError, ValueError) as error:
         return str(error)
@@ -202,7 +205,13 @@ class Sitting:
         self, study: Study, participant: str, machine: dict[str, Any] | None = None, version: str = ""
     ) -> None:
         self.study, self.participant = study, participant
+        if study.plan.order == "concealed":
+            allocate(study, participant)
         self.course = phases(study, participant)
+        if study.log(participant).is_file() and read(study.log(participant)).standing == "withdrawn":
+            raise SittingError(
+                f"{participant} withdrew; let somebody else take part, under another pseudonym"
+            )
         self.writer = Writer(study.log(participant))
         try:
             self.log: Log = self.writer.before
@@ -247,6 +256,15 @@ class Sitting:
         self.now = Where(None if last else self.course[phase.index + 1])
         if last:
             self.writer.add("end")
+
+    def decline(self) -> None:
+        """Tell that the participant does not agree to take part; the sitting stays where it is."""
+        self.writer.add("declined")
+
+    def freeze(self, digests: Mapping[str, str]) -> None:
+        """Tell what is worked with, name -> SHA-256; nothing where the sitting was left meanwhile."""
+        if not self.writer.closed:
+            self.writer.add("frozen", digests=dict(digests))
 
     def keep(self, why: str = "done") -> None:
         """Tell of the project that was made in the phase, as it is in its file, and end the phase. Raises

@@ -10,17 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from math import exp, inf, isfinite, lgamma, log, sqrt
-from statistics import NormalDist
 
 import numpy as np
 
 from metagraph.study.stats_t import t_noncentral, t_quantile, t_two_sided
 
 LEVEL = 0.95
-EXACT = 25  # pairs up to which the signed-rank test counts every outcome
-FEWEST_RANKED = 6  # pairs below which even a perfect signed-rank result has p > 0.05: 2 / 2^5 = 0.0625
+FEWEST_RANKED = 6  # pairs below which signed ranks give no interval of 95 %: 2 / 2^5 = 0.0625
 MOST_PEOPLE = 10_000  # beyond which no study is planned
 
 
@@ -57,8 +54,8 @@ class Estimate:
 
 @dataclass(frozen=True, slots=True)
 class Test:
-    """A two-sided test. df: degrees of freedom, None for ranks. p: None where it cannot be told. n: pairs, or
-    people of both groups.
+    """A two-sided test. df: degrees of freedom. p: None where it cannot be told. n: pairs, or people of both
+    groups.
     """
 
     name: str
@@ -119,65 +116,6 @@ def welch(a: Sequence[float], b: Sequence[float], level: float = LEVEL) -> tuple
     df = (va + vb) ** 2 / (va**2 / (len(x) - 1) + vb**2 / (len(y) - 1))
     half = t_quantile((1 + level) / 2, df) * error
     return Estimate(d, d - half, d + half, n), Test("Welch's t", d / error, df, t_two_sided(d / error, df), n)
-
-
-# --- ranks
-
-
-def signed_ranks(a: Sequence[float], b: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Return ranks `[n]` of the differences a - b by size, ties sharing their mean, and their signs `[n]`;
-    pairs that do not differ are ranked with the others and then left out (Pratt 1959).
-    """
-    d = np.array(_paired(a, b))
-    # Differences of logs that ought to be alike differ in their last digits.
-    size = np.abs(d)
-    size = np.where(size < 1e-12 * max(1.0, float(size.max(initial=0.0))), 0.0, size)
-    order = np.argsort(size, kind="stable")
-    ranks = np.empty(len(d))
-    edges = [
-        0,
-        *(np.flatnonzero(np.diff(size[order]) > 1e-12 * max(1.0, float(size.max(initial=0.0)))) + 1).tolist(),
-        len(d),
-    ]
-    for i, j in pairwise(edges):
-        ranks[order[i:j]] = (i + 1 + j) / 2
-    there = size > 0
-    return ranks[there], np.sign(d[there])
-
-
-def wilcoxon(a: Sequence[float], b: Sequence[float]) -> Test:
-    """Return Wilcoxon's signed-rank test that a - b lies evenly about 0; the statistic is the sum of the
-    positive ranks.
-
-    Up to EXACT pairs every way to give the ranks signs is counted, ties and all; beyond, by the normal
-    distribution with a correction for continuity.
-    """
-    ranks, signs = signed_ranks(a, b)
-    n = len(ranks)
-    plus = float(ranks[signs > 0].sum())
-    if n == 0:
-        return Test("Wilcoxon signed rank", 0.0, None, 1.0 if len(a) else None, len(a))
-    if n <= EXACT:
-        halves = np.rint(2 * ranks).astype(int)  # twice a rank is whole
-        ways = np.zeros(int(halves.sum()) + 1)
-        ways[0] = 1
-        for r in halves.tolist():
-            ways[r:] += ways[:-r].copy()
-        at = round(2 * plus)
-        p = 2 * min(ways[: at + 1].sum(), ways[at:].sum()) / 2.0**n
-    else:
-        far = abs(plus - float(ranks.sum()) / 2)
-        z = max(0.0, far - 0.5) / (sqrt(float((ranks**2).sum())) / 2)
-        p = 2 * NormalDist().cdf(-z)
-    return Test("Wilcoxon signed rank", plus, None, float(min(1.0, p)), len(a))
-
-
-def rank_biserial(a: Sequence[float], b: Sequence[float]) -> float | None:
-    """Return the matched-pairs rank biserial correlation, -1..1: the share of ranks for a > b less that
-    against (Kerby 2014).
-    """
-    ranks, signs = signed_ranks(a, b)
-    return float((ranks * signs).sum() / ranks.sum()) if len(ranks) else None
 
 
 # --- sizes of effects, and of studies
@@ -316,8 +254,8 @@ def cautions(found: Estimate, effect: float | None) -> list[str]:
     out = []
     if n < FEWEST_RANKED:
         out.append(
-            f"With {n} pairs the signed-rank test cannot reach p = 0.05, whatever they did: it needs at "
-            f"least {FEWEST_RANKED}."
+            f"With {n} pairs there is no interval by ranks, which needs at least {FEWEST_RANKED}: the one "
+            "told here rests on logs of ratios being normal."
         )
     if found.holds(1.0):
         words = "The interval of the ratio includes 1: these people do not show that either way is faster."

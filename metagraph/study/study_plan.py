@@ -25,7 +25,8 @@ from metagraph.formats.text import TextError, parse
 from metagraph.study.klm import Times
 from metagraph.study.log import NAME
 from metagraph.study.order import latin
-from metagraph.study.questionnaires import BUILT_IN, Item, Name, Questionnaire, Scale, When
+from metagraph.study.plan_faults import faults
+from metagraph.study.questionnaires import BUILT_IN, Name, Questionnaire, When
 
 VERSION = 1
 FILE = "study.yaml"
@@ -34,7 +35,13 @@ _CORRECT = "Correct it; docs/studies.md describes every field."
 
 ConditionName = Literal["meta", "manual"]
 Minutes = Annotated[float, Meta(gt=0, le=1440)]
-CONDITION_TITLES: Mapping[str, str] = {"meta": "Meta-graph", "manual": "State machine"}
+CONDITION_TITLES: Mapping[str, str] = {
+    "meta": "Meta-graph",
+    "manual": "State machine",
+    "unreal": "Unreal Engine",  # done there, and imported
+    "unity": "Unity",
+    "godot": "Godot",
+}
 
 
 class Task(Struct, frozen=True, forbid_unknown_fields=True):
@@ -73,10 +80,14 @@ class Given(Struct, frozen=True, forbid_unknown_fields=True):
 
 class Plan(Struct, frozen=True, forbid_unknown_fields=True):
     """study: the version of the format. participants: how many, or their pseudonyms. order: `latin`
-    counterbalances conditions and tasks, `fixed` keeps to the file. breaks: minutes after each condition but
-    the last. when: what questionnaires are about that do not say it themselves. tolerance: seconds by which a
-    timing may differ from the reference. allow: `labels` lets proposals be asked for. operators: seconds each
-    operator of the keystroke-level model takes these participants, where it is not as `klm.Times` has it.
+    counterbalances conditions and tasks, `fixed` keeps to the file, `concealed` draws who gets which of the
+    counterbalanced orders when they begin. smallest: the smallest ratio of times that would matter. site:
+    where this copy of the study is run. claps: each task begins with a flash and a sound, so that
+    recordings of screen, voice and eyes can be brought into the log's time. breaks: minutes after each
+    condition but the last. when: what questionnaires are about that do not say it themselves. tolerance:
+    seconds by which a timing may differ from the reference. allow: `labels` lets proposals be asked for.
+    operators: seconds each operator of the keystroke-level model takes these participants, where it is not
+    as `klm.Times` has it.
     """
 
     study: int
@@ -89,7 +100,7 @@ class Plan(Struct, frozen=True, forbid_unknown_fields=True):
     consent: str = ""
     instructions: str = ""
     training: tuple[Training, ...] = ()
-    order: Literal["latin", "fixed"] | Given = "latin"
+    order: Literal["latin", "fixed", "concealed"] | Given = "latin"
     breaks: Annotated[float, Meta(ge=0, le=1440)] = 0
     questionnaires: tuple[str | Questionnaire, ...] = ()
     when: When = "after_condition"
@@ -98,6 +109,9 @@ class Plan(Struct, frozen=True, forbid_unknown_fields=True):
     operators: dict[Literal["K", "P", "B", "H", "M"], Annotated[float, Meta(ge=0, le=60)]] = {}
     allow: tuple[Literal["labels"], ...] = ()
     thanks: str = ""
+    smallest: Annotated[float, Meta(gt=1, le=100)] | None = None
+    site: str = ""
+    claps: bool = False
 
     @property
     def times(self) -> Times:
@@ -120,19 +134,26 @@ class Plan(Struct, frozen=True, forbid_unknown_fields=True):
         """Return all questionnaires, those that are built in written out."""
         return tuple(BUILT_IN[q] if isinstance(q, str) else q for q in self.questionnaires)
 
-    def blocks(self, participant: str) -> tuple[tuple[str, tuple[str, ...]], ...]:
-        """Return a participant's conditions in order, each with the ids of its tasks in order. Raises
-        ValueError for a stranger.
-        """
+    def known(self, participant: str) -> None:
+        """Raises ValueError for a stranger."""
         if participant not in self.ids:
             raise ValueError(f"'{participant}' does not take part; there are {_listed(self.ids)}")
+
+    def blocks(self, participant: str, drawn: int | None = None) -> tuple[tuple[str, tuple[str, ...]], ...]:
+        """Return a participant's conditions in order, each with the ids of its tasks in order. drawn: the
+        number of the order that was drawn for them, where the order is concealed. Raises ValueError for a
+        stranger, and for one for whom none was drawn yet.
+        """
+        self.known(participant)
         tasks = tuple(t.id for t in self.tasks)
         if self.order == "fixed":
             return tuple((c, tasks) for c in self.conditions)
-        if self.order == "latin":
-            return latin(self.conditions, tasks, self.ids.index(participant), self.seed)
+        if self.order == "concealed" and drawn is None:
+            raise ValueError(f"the order of '{participant}' is concealed, and drawn when they begin")
+        if isinstance(self.order, str):
+            number = self.ids.index(participant) if drawn is None else drawn
+            return latin(self.conditions, tasks, number, self.seed)
         out: list[tuple[str, tuple[str, ...]]] = []
-        assert isinstance(self.order, Given)
         for step in self.order.given[participant]:
             condition, _, task = step.partition("/")
             if task and out and out[-1][0] == condition:
@@ -153,6 +174,15 @@ class Study:
     @property
     def folder(self) -> Path:
         return self.path.parent
+
+    def blocks(self, participant: str) -> tuple[tuple[str, tuple[str, ...]], ...]:
+        """Return a participant's conditions in order, each with its tasks. Raises ValueError as the
+        plan's.
+        """
+        from metagraph.study.allocation import drawn
+
+        found = drawn(self).get(participant) if self.plan.order == "concealed" else None
+        return self.plan.blocks(participant, found)
 
     def data(self, participant: str) -> Path:
         return self.folder / "data" / participant
@@ -267,7 +297,7 @@ def from_text(text: str, path: Path = Path(FILE)) -> Plan:
         raise failure(
             _plain(message), ".".join(filter(None, (where, unknown[1] if unknown else "")))
         ) from None
-    for where, cause in _faults(plan):
+    for where, cause in faults(plan):
         raise failure(cause, where)
     return plan
 
@@ -284,90 +314,6 @@ def _plain(message: str) -> str:
         if re.match(pattern, message):
             return re.sub(pattern, words, message)
     return message[:1].lower() + message[1:]
-
-
-def _faults(plan: Plan) -> list[tuple[str, str]]:
-    """Return what is wrong that the fields' types do not say: (field, cause)."""
-    out: list[tuple[str, str]] = []
-    for field, names in (
-        ("participants", plan.ids),
-        ("conditions", plan.conditions),
-        ("tasks", [t.id for t in plan.tasks]),
-    ):
-        twice = sorted({n for n in names if list(names).count(n) > 1})
-        if twice:
-            out.append((field, f"'{twice[0]}' is there twice"))
-    if len({n.casefold() for n in plan.ids}) < len(plan.ids):
-        out.append(("participants", "two differ only by large and small letters, and would share a folder"))
-    trained = [t.condition for t in plan.training]
-    for n, name in enumerate(trained):
-        if name not in plan.conditions:
-            out.append((f"training[{n}].condition", f"'{name}' is not among the conditions"))
-    for n, task in enumerate(plan.tasks):
-        if task.clips in ("", ()):
-            out.append((f"tasks[{n}].clips", "there are no clips"))
-    ids: list[str] = []
-    for n, found in enumerate(plan.questionnaires):
-        where = f"questionnaires[{n}]"
-        if isinstance(found, str):
-            if found not in BUILT_IN:
-                out.append(
-                    (where, f"there is no questionnaire '{found}' built in; there are {', '.join(BUILT_IN)}")
-                )
-            ids.append(found)
-            continue
-        ids.append(found.id)
-        out += [
-            (f"{where}.items[{k}]", cause)
-            for k, item in enumerate(found.items)
-            for cause in _item_faults(item)
-        ]
-        if len({i.id for i in found.items}) < len(found.items):
-            out.append((f"{where}.items", "two items have the same id"))
-        if found.id in BUILT_IN:
-            out.append((f"{where}.id", f"'{found.id}' is built in; give yours another id"))
-    if len(set(ids)) < len(ids):
-        out.append(("questionnaires", "one is there twice"))
-    if isinstance(plan.order, Given):
-        out += _given_faults(plan, plan.order.given)
-    return out
-
-
-def _item_faults(item: Item) -> list[str]:
-    if (item.scale is not None) + bool(item.choices) + item.words != 1:
-        return ["an item has one of scale, choices and words: true"]
-    scale: Scale | None = item.scale
-    if scale is not None and (scale.highest <= scale.lowest or (scale.highest - scale.lowest) % scale.step):
-        return ["a scale goes up from one number to another, in whole steps"]
-    return (
-        ["there should be two choices at least, no two the same"]
-        if item.choices and len(set(item.choices)) < 2
-        else []
-    )
-
-
-def _given_faults(plan: Plan, given: Mapping[str, tuple[str, ...]]) -> list[tuple[str, str]]:
-    out: list[tuple[str, str]] = []
-    steps: set[str] = set(plan.conditions) | {f"{c}/{t.id}" for c in plan.conditions for t in plan.tasks}
-    for who in plan.ids:
-        if not given.get(who):
-            out.append(("order.given", f"'{who}' is given no order"))
-    for who, order in given.items():
-        where = f"order.given.{who}"
-        odd = [s for s in order if s not in steps]
-        if who not in plan.ids:
-            out.append((where, f"'{who}' does not take part"))
-        elif odd:
-            out.append(
-                (
-                    where,
-                    f"'{odd[0]}' is neither a condition nor a condition and a task, as "
-                    f"'meta/{plan.tasks[0].id}'",
-                )
-            )
-        elif len(set(order)) < len(order) or len({"/" in s for s in order}) > 1:
-            out.append((where, "name each condition once, or each condition with each of its tasks"))
-    return out
 
 
 def _listed(names: tuple[str, ...]) -> str:

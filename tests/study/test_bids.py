@@ -15,9 +15,11 @@ from metagraph.study.analysis import analyse
 from metagraph.study.analysis_read import collect
 from metagraph.study.bids import write_bids
 from metagraph.study.log import read
+from metagraph.study.questionnaires import sus_score
 from metagraph.study.simulate import Truth
 from metagraph.study.simulate_files import write_study
 from metagraph.study.study_plan import FILE, Study, read_study
+from metagraph.study.withdrawal import withdraw
 
 
 @pytest.fixture(scope="module")
@@ -43,25 +45,69 @@ def test_files_are_named_as_bids_names_them(out: Path) -> None:
         "README",
         "participants.tsv",
         "participants.json",
-        "derivatives/clips.csv",
+        "task-small_events.json",
+        "phenotype/sus.tsv",
+        "phenotype/tlx.json",
+        "derivatives/metagraph/dataset_description.json",
+        "derivatives/metagraph/clips.tsv",
+        "derivatives/metagraph/estimates.tsv",
     } <= names
-    events = [n for n in names if n.startswith("sub-")]
-    assert len(events) == 2 * 2 * 2 * 2
+    tasks = [n for n in names if n.startswith("sub-")]
+    assert len(tasks) == 2 * 2 * 2 * 3
     assert all(
-        re.fullmatch(r"(sub-P0\d)/beh/\1_task-(small|large)_acq-(meta|manual)_events\.(tsv|json)", n)
-        for n in events
+        re.fullmatch(
+            r"(sub-P0\d)/beh/\1_task-(small|large)_acq-(meta|manual)_(events.tsv|beh.tsv|beh.json)", n
+        )
+        for n in tasks
     )
+    assert not [n for n in names if n.endswith(".csv")], "tables are TSV"
     assert json.loads((out / "dataset_description.json").read_text())["BIDSVersion"] == "1.9.0"
     assert "simulated" in (out / "README").read_text()
 
 
 def test_every_column_is_described(out: Path) -> None:
-    for path in [*out.rglob("*_events.tsv"), out / "participants.tsv"]:
-        told = json.loads(path.with_suffix(".json").read_text())
+    for path in out.rglob("*.tsv"):
+        own = path.with_suffix(".json")
+        root = out / f"{path.name.split('_acq')[0].split('_')[-1]}_events.json"
+        told = json.loads((own if own.is_file() else root).read_text())
         found = rows(path)
         assert found and set(found[0]) <= set(told), path.name
-    levels = json.loads(next(out.rglob("*_events.json")).read_text())["trial_type"]["Levels"]
+    levels = json.loads((out / "task-small_events.json").read_text())["trial_type"]["Levels"]
     assert {r["trial_type"] for path in out.rglob("*_events.tsv") for r in rows(path)} <= set(levels)
+
+
+def test_what_describes_events_describes_columns_alone(out: Path) -> None:
+    """The older validator takes nothing but objects there: what was asked stands beside the task's figures."""
+    for path in out.rglob("*_events.json"):
+        assert all(isinstance(v, dict) for v in json.loads(path.read_text()).values()), path.name
+    told = json.loads(next(out.rglob("*_task-small_*_beh.json")).read_text())
+    assert (told["TaskName"], told["Instructions"]) == ("9 clips", "Make them play without a jump.")
+    (task,) = rows(next(out.rglob("sub-P01_task-small_acq-meta_beh.tsv")))
+    assert float(task["seconds"]) > 0 and task["finished"] == "yes"
+
+
+def test_questionnaires_have_their_items(study: Study, out: Path) -> None:
+    found = rows(out / "phenotype" / "sus.tsv")
+    assert [r["participant_id"] for r in found] == ["sub-P01", "sub-P02"]
+    answers = {
+        (a.condition, a.item): a.value for a in read(study.log("P01")).answers() if a.questionnaire == "sus"
+    }
+    assert len(answers) == 20
+    for (condition, item), value in answers.items():
+        assert int(found[0][f"{condition}_{item}"]) == value
+    assert float(found[0]["meta_score"]) == sus_score({i: v for (c, i), v in answers.items() if c == "meta"})
+    told = json.loads((out / "phenotype" / "sus.json").read_text())
+    assert "Brooke" in told["MeasurementToolMetadata"]["Description"]
+    assert told["manual_sus1"]["Levels"]["5"] == "Strongly agree"
+    assert told["manual_sus1"]["Description"].startswith("I think that I would like to use this system")
+
+
+def test_who_withdrew_is_in_no_export(study: Study, tmp_path: Path) -> None:
+    shutil.copytree(study.folder, tmp_path / "study")
+    again = read_study(tmp_path / "study")
+    withdraw(again, "P02")
+    written = write_bids(again, analyse(collect(again.folder, jumps=False)), tmp_path / "out")
+    assert not [p for p in written if "P02" in p.as_posix() or b"P02" in p.read_bytes()]
 
 
 def test_onsets_ascend_and_operators_add_up(study: Study, out: Path) -> None:

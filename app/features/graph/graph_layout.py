@@ -91,6 +91,10 @@ class Layout:
     foot: QRectF
     stance: str | None
 
+    def areas(self) -> dict[str, QRectF]:
+        """Return where the nodes lie, by name; widget pixels."""
+        return {"stance": self.card, **{str(kind): node.rect for kind, node in self.nodes.items()}}
+
     def hit(self, at: QPointF, dragging: bool = False) -> GraphHit:
         """Return what lies under a point; `dragging` splits the card into "a new stance" and "another
         loop".

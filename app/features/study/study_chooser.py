@@ -90,7 +90,7 @@ class Chooser(QDialog):
             words = standing(study, who)
             item = QListWidgetItem(f"{who}    {words}", self.list)
             item.setData(Qt.ItemDataRole.UserRole, who)
-            if words == "done":
+            if words in ("done", "withdrawn"):
                 item.setFlags(item.flags() & ~Qt.ItemFlag.ItemIsEnabled)
             elif first is None:
                 first = item

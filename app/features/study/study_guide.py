@@ -17,6 +17,7 @@ from app.features.study.study_bar import StudyBar
 from app.features.study.study_recorder import Recorder
 from app.features.study.study_screen import (
     BreakPage,
+    ClapPage,
     ConsentPage,
     Page,
     QuestionsPage,
@@ -29,12 +30,16 @@ from app.project.jobs import Job
 from metagraph import __version__
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
+from metagraph.study.freeze import manifest
 from metagraph.study.sitting import Phase, Sitting
 from metagraph.study.study_plan import CONDITION_TITLES, Study
 from metagraph.study.task_projects import make, reopen, write
 
 if TYPE_CHECKING:
     from app.shell.context import Shell
+
+
+CLAP = 600  # milliseconds of a flash
 
 
 class Guide(QObject):
@@ -75,6 +80,8 @@ class Guide(QObject):
         self.reserved = ReservedWindow(shell, self.bar, "labels" in study.plan.allow)
         self._resumed = self.sitting.resumed
         self._working = False  # a task is on and not paused
+        self._claps = 0
+        self.over_already = False
         self._elapsed, self._from = 0.0, 0.0  # seconds before the last start of the clock; when that was
         self._second = QTimer(self, interval=500)
         self._second.timeout.connect(self._tick)
@@ -82,6 +89,7 @@ class Guide(QObject):
         self.bar.pause.clicked.connect(lambda: self.pause())
         self.bar.note.clicked.connect(self.write_note)
         self._enter()
+        shell.jobs.start("What is worked with", lambda job: manifest(study), self.sitting.freeze, quick=True)
 
     # --- the window
 
@@ -95,6 +103,7 @@ class Guide(QObject):
 
     def _leave(self) -> None:
         """Give the window back."""
+        self.over_already = True
         self._second.stop()
         self.shell.widget.removeEventFilter(self)
         self.recorder.stop()
@@ -143,7 +152,7 @@ class Guide(QObject):
 
     def _page(self, phase: Phase) -> Page:
         if phase.name == "consent":
-            return ConsentPage(phase.title, phase.text, self.go_on, self.shell.widget.close)
+            return ConsentPage(phase.title, phase.text, self.go_on, self.decline)
         if phase.name == "break":
             return BreakPage(phase.minutes or 0, self.go_on)
         if phase.questionnaire is not None:
@@ -194,6 +203,11 @@ class Guide(QObject):
         self._leave()
         self.shell.document.load(Project(), None)
         self.shell.services[Files].opened.emit()
+
+    def decline(self) -> None:
+        """Note that nobody agreed, and end here."""
+        self.sitting.decline()
+        self.shell.widget.close()
 
     # --- work
 
@@ -250,7 +264,19 @@ class Guide(QObject):
             return
         self._resumed = False
         self.sitting.begin()
-        self._start()
+        if self.study.plan.claps:
+            self._clap()
+        else:
+            self._start()
+
+    def _clap(self) -> None:
+        """Flash and sound, and tell when; the task begins after it."""
+        self._claps += 1
+        self._show(ClapPage(self._claps))
+        self.screen.repaint()
+        QApplication.beep()
+        self.recorder.tell("marker", name="clap", number=self._claps)
+        QTimer.singleShot(CLAP, self, lambda: None if self.over_already else self._start())
 
     def _start(self) -> None:
         """Let the work be seen, and the clock run."""

@@ -11,16 +11,20 @@ from PySide6.QtCore import QObject, QTimer
 from PySide6.QtWidgets import QDialog
 
 from app.features.study.operator_events import Hands
+from app.features.study.screen_areas import screen_areas
 from app.features.study.study_changes import described
 from app.project.importing import Importing
 from app.stage.problem_watch import ProblemWatch
 from metagraph.errors import FileError
 from metagraph.formats.imports import Imported
+from metagraph.formats.journal import changes
+from metagraph.graph.model import Project
 
 if TYPE_CHECKING:
     from app.shell.context import Shell
 
 IDLE = 10.0  # seconds without input that are told
+MOST = 50  # ids of what is selected that are told
 MERGING = 300  # milliseconds after which a run of merged edits, as a drag makes them, is taken to be over
 
 
@@ -40,7 +44,9 @@ class Recorder(QObject):
         self._stack = d.undo_stack
         self._undone: object = None  # what a redo would do again
         self._edit: dict[str, Any] | None = None  # one that may still be merged with the next
-        self._edited: tuple[Any, Any] = (d.project, d.project)
+        self._told = d.project  # as the events so far say it is
+        self._areas: dict[str, list[int]] = {}
+        self._importing = 0.0  # when the import began that comes next
         self._input_at = monotonic()
         self._sought = self._scroll = 0.0
         self._shown: set[int] = set()
@@ -54,18 +60,16 @@ class Recorder(QObject):
             (d.failed, self._document_failed),
             (self._stack.indexChanged, self._moved),
             (s.place.layer_changed, lambda: self._view("layer", layer=s.place.layer)),
-            (s.place.stance_changed, lambda: self._view("stance")),
-            (s.selection.changed, lambda: self._view("select")),
+            (s.place.stance_changed, self._stance),
+            (s.selection.changed, self._selected),
             (s.look.changed, lambda: self._view("theme", theme=s.look.name)),
             (s.onstage.mode_changed, self._other_editor),
-            (s.transport.show_changed, lambda: self.tell("playback", what=s.transport.show)),
-            (
-                s.transport.playing_changed,
-                lambda: self.tell("playback", what="play" if s.transport.playing else "pause"),
-            ),
+            (s.transport.show_changed, self._shows_else),
+            (s.transport.playing_changed, self._plays),
             (s.transport.moved, self._seek),
             (shell.stage.refused, self._refused),
             (shell.stage.scrolled, self._scrolled),
+            (shell.services[Importing].begun, self._import_begins),
             (shell.services[Importing].imported, self._imported),
         ]
         for signal, slot in self._links:
@@ -129,7 +133,15 @@ class Recorder(QObject):
     def _back_or_again(self, kind: str, words: str) -> None:
         self._tell_edit()
         self._tell_operators()
-        self._write(kind, {"words": words})
+        self._write(kind, {"words": words, **self._change(self.shell.document.project)})
+
+    def _change(self, now: Project) -> dict[str, Any]:
+        """Return what makes the project that was told last what it is now, so that the work can be seen
+        again.
+        """
+        before, self._told = self._told, now
+        found = changes(before, now)
+        return {"change": found} if found else {}
 
     def _edit_made(self, index: int) -> None:
         command: Any = self._stack.command(index - 1)
@@ -149,10 +161,12 @@ class Recorder(QObject):
             return
         command, self._edit = self._edit["command"], None
         self._tell_operators()
-        self._write("edit", {**described(command.before, command.after), "words": command.text()})
+        about = described(command.before, command.after)
+        self._write("edit", {**about, "words": command.text(), **self._change(command.after)})
 
     def _loaded(self) -> None:
         self._edit = None
+        self._told = self.shell.document.project
         self._position()
 
     # --- what is looked at
@@ -163,11 +177,31 @@ class Recorder(QObject):
     def _view(self, what: str, **more: Any) -> None:
         self.tell("view", what=what, **more)
 
+    def _stance(self) -> None:
+        place = self.shell.stage.session.place
+        self._view("stance", **{k: v for k, v in (("stance", place.stance()), ("other", place.other())) if v})
+
+    def _selected(self) -> None:
+        found = self.shell.stage.session.selection
+        parts = {k: list(getattr(found, k)[:MOST]) for k in ("clips", "actions", "states", "links")}
+        self._view("select", **{f"selected_{k}": ids for k, ids in parts.items() if ids})
+
+    def _playback(self, what: str) -> None:
+        transport = self.shell.stage.session.transport
+        shown = {"shown": transport.shown} if transport.shown is not None else {}
+        self.tell("playback", what=what, at=round(transport.seconds, 3), **shown)
+
+    def _plays(self) -> None:
+        self._playback("play" if self.shell.stage.session.transport.playing else "pause")
+
+    def _shows_else(self) -> None:
+        self._playback(self.shell.stage.session.transport.show)
+
     def _seek(self, seconds: float) -> None:
         now = monotonic()
         if not self.shell.stage.session.transport.playing and now - self._sought > 1.0:
             self._sought = now
-            self.tell("playback", what="seek")
+            self._playback("seek")
 
     def _scrolled(self) -> None:
         now = monotonic()
@@ -198,8 +232,11 @@ class Recorder(QObject):
         path = self.shell.document.path
         self.tell("save", path=path.name if path is not None else "")
 
+    def _import_begins(self) -> None:
+        self._importing = monotonic()
+
     def _imported(self, result: Imported, drop: object) -> None:
-        self.tell("import", clips=len(result.loaded))
+        self.tell("import", clips=len(result.loaded), seconds=round(monotonic() - self._importing, 3))
 
     def _input(self, now: float) -> None:
         if now - self._input_at > IDLE:
@@ -207,6 +244,10 @@ class Recorder(QObject):
         self._input_at = now
 
     def _tick(self) -> None:
+        areas = screen_areas(self.shell)
+        if areas != self._areas:
+            self._areas = areas
+            self._view("layout", areas=areas)
         if self._edit is None:
             self._tell_operators()
         for words in self._grave() - self._warned:

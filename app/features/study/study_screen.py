@@ -122,6 +122,19 @@ class BreakPage(Page):
         self.clock.setText(clock(self.left) if self.left > 0 else "Go on when you are ready.")
 
 
+class ClapPage(Page):
+    """All white with a black number, to be found in any recording of the screen."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__("")
+        self.mark = QLabel(str(number), self)
+        self.mark.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self.mark.setMinimumHeight(500)
+        self.mark.setStyleSheet("background: #ffffff; color: #000000; font-size: 240px; font-weight: 700")
+        self.column.addWidget(self.mark)
+        self.finish()
+
+
 class QuestionsPage(Page):
     """A questionnaire; what has to be answered and is not is shown when one would go on."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -37,8 +38,8 @@ def test_a_report_is_written_and_told(folder: Path, capsys: pytest.CaptureFixtur
     data = json.loads(capsys.readouterr().out)
     assert data["people"] == 4 and data["simulated"] and data["missing"] == []
     assert data["ratio"]["low"] < 5 < data["ratio"]["high"]
-    assert (folder / "report" / "report.html").is_file() and len(data["written"]) == 6
-    assert any("cannot reach p = 0.05" in words for words in data["cautions"])
+    assert (folder / "report" / "report.html").is_file() and len(data["written"]) == 8 + 2 * 7 + 2
+    assert any("no interval by ranks" in words for words in data["cautions"])
     assert (
         main(["study", "report", str(folder / "study.yaml"), "--no-jumps", "--out", str(folder / "else")])
         == 0
@@ -62,7 +63,10 @@ def test_nothing_to_compare_is_told_by_the_exit_code(
     (tmp_path / "study.yaml").write_text(plan)
     assert main(["study", "report", str(tmp_path)]) == 3
     shown = capsys.readouterr()
-    assert "Nobody has begun a task yet." in shown.out and "note: P01: has not begun." in shown.err
+    assert (
+        "Nobody has begun a task yet." in shown.out
+        and "note: 4 times: has not begun (P01, P02, P03, P04)." in shown.err
+    )
 
 
 def test_the_published_example_is_recomputed(capsys: pytest.CaptureFixture[str]) -> None:
@@ -81,3 +85,73 @@ def test_errors_name_file_cause_and_remedy(
     assert "is not empty" in json.loads(capsys.readouterr().out)["error"]
     assert main(["study", "simulate", str(tmp_path / "new"), "--ratio", "0"]) == 1
     assert "ratio should be greater than 0" in capsys.readouterr().err
+
+
+def copied(folder: Path, tmp_path: Path) -> Path:
+    import shutil
+
+    return Path(
+        shutil.copytree(folder, tmp_path / "study", ignore=shutil.ignore_patterns("report*", "else", "bids"))
+    )
+
+
+def test_figures_of_the_same_data_are_the_same_papers(folder: Path, tmp_path: Path) -> None:
+    for name in ("one", "two"):
+        assert (
+            main(["study", "report", str(folder), "--no-jumps", "--out", str(tmp_path / name), "--json"]) == 0
+        )
+    papers = sorted(p.relative_to(tmp_path / "one") for p in (tmp_path / "one").rglob("*.pdf"))
+    assert len(papers) == 7
+    for path in papers:
+        content = (tmp_path / "one" / path).read_bytes()
+        assert content.startswith(b"%PDF") and content == (tmp_path / "two" / path).read_bytes(), path
+
+
+def test_what_is_frozen_and_changed_is_refused_unless_told_why(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    study = copied(folder, tmp_path)
+    assert main(["study", "freeze", str(study), "--json"]) == 0
+    first = json.loads(capsys.readouterr().out)
+    assert main(["study", "freeze", str(study), "--json"]) == 0, "nothing changed"
+    assert json.loads(capsys.readouterr().out) == first
+    clip = next((study / "clips").iterdir())
+    clip.write_bytes(clip.read_bytes() + b"\n")
+    assert main(["study", "freeze", str(study)]) == 1
+    assert f"clips/{clip.name} is not as it was" in capsys.readouterr().err
+    assert main(["study", "freeze", str(study), "--force", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["seal"] != first["seal"]
+    kept = json.loads((study / "study.frozen.json").read_text())
+    assert kept["earlier"][0]["seal"] == first["seal"]
+    (study / "study.frozen.json").write_text(json.dumps({**kept, "seal": "0"}))
+    assert main(["study", "freeze", str(study)]) == 1
+    assert "was changed by hand" in capsys.readouterr().err
+
+
+def test_who_withdraws_is_left_out_and_who_asks_is_deleted(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    study = copied(folder, tmp_path)
+    assert main(["study", "report", str(study), "--no-jumps"]) == 0
+    assert main(["study", "withdraw", str(study), "P02", "--why", "by mail"]) == 0
+    assert "report.html still names them" in capsys.readouterr().err
+    assert main(["study", "report", str(study), "--no-jumps", "--json"]) == 0
+    shown = capsys.readouterr()
+    assert json.loads(shown.out)["ratio"]["n"] == 3 and "P02: withdrew; their data is left out." in shown.err
+    assert main(["study", "delete", str(study), "P02", "--json"]) == 1, "it is asked first"
+    assert (study / "data" / "P02").is_dir()
+    capsys.readouterr()
+    lock = study / "data" / "P02" / "sitting.lock"
+    lock.write_text(f"{os.getpid()}\n")
+    assert main(["study", "delete", str(study), "P02", "--yes"]) == 1, "a window has it open"
+    assert "has this sitting open" in capsys.readouterr().err
+    lock.unlink()
+    assert main(["study", "delete", str(study), "P02", "--yes"]) == 0
+    assert not (study / "data" / "P02").exists()
+    (note,) = [json.loads(line) for line in (study / "deletions.jsonl").read_text().splitlines()]
+    assert note.keys() == {"deleted", "participant", "files", "version"} and note["participant"] == "P02"
+    assert main(["study", "delete", str(study), "P02", "--yes"]) == 1
+    assert "nothing of this participant to delete" in capsys.readouterr().err
+    assert main(["study", "report", str(study), "--no-jumps"]) == 0
+    assert "P02: withdrew, and all data was deleted." in capsys.readouterr().err
+    assert main(["study", "withdraw", str(study), "nobody"]) == 1

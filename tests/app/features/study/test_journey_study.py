@@ -20,9 +20,12 @@ from app.features.study.reserved_window import ReservedWindow
 from app.shell.actions import Command
 from metagraph.formats.store import open_project, read_project
 from metagraph.graph import edits, manual_edits
+from metagraph.study.analysis_read import collect
 from metagraph.study.log import read
 from metagraph.study.questionnaires import sus_score
+from metagraph.study.sitting import Sitting, standing
 from metagraph.study.study_plan import read_study
+from metagraph.study.withdrawal import withdraw
 from tests.processes import started
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -223,6 +226,37 @@ def test_closing_the_window_keeps_the_work_and_asks_nothing(drive, takes_part, t
     assert events(tiny, "phase")[-1]["state"] == "begin"
 
 
+def test_who_declines_leaves_a_word_and_may_still_agree(drive, takes_part, tiny):
+    p = takes_part()
+    p.titled("A tiny study")
+    drive.wait(lambda: bool(events(tiny, "frozen")))
+    (frozen,) = events(tiny, "frozen")
+    assert "consent" in frozen["digests"] and any(n.endswith("nod_single_01.glb") for n in frozen["digests"])
+    p.press("I do not take part")
+    assert [e["type"] for e in events(tiny, "declined", "phase")] == ["phase", "declined"]
+    study = read_study(tiny)
+    assert standing(study, "P01") == "declined"
+    assert any(words == "P01: declined to take part." for words in collect(tiny, jumps=False).missing)
+    again = Sitting(study, "P01")
+    again.begin()
+    again.end()
+    again.begin()
+    again.close()
+    assert read(study.log("P01")).standing == "broken off"
+
+
+def test_who_withdrew_cannot_go_on(drive, takes_part, tiny, monkeypatch):
+    from app.features.study.study_chooser import begin
+
+    takes_part().guide.leave()
+    study = read_study(tiny)
+    assert withdraw(study, "P01") and not withdraw(study, "P01")
+    told = []
+    monkeypatch.setattr(QMessageBox, "warning", lambda *words: told.append(words[2]))
+    assert begin(drive.shell, study, "P01") is None
+    assert told[0].startswith("P01 withdrew")
+
+
 def test_a_sitting_is_open_once(drive, takes_part, tiny, monkeypatch):
     from app.features.study.study_chooser import begin
 
@@ -326,7 +360,9 @@ app = prepare()
 from app.main import make_window
 from app.features.study.study_chooser import begin
 from metagraph.graph import edits
+from metagraph.study.sitting import Sitting, standing
 from metagraph.study.study_plan import read_study
+from metagraph.study.withdrawal import withdraw
 window = make_window()
 window.show()
 guide = begin(window.shell, read_study(Path(sys.argv[1])), "P01")
@@ -374,3 +410,23 @@ def test_a_window_that_is_killed_loses_nothing(tiny, tmp_path, qapp):
     assert len(project.graphs["head"].stances) in (made, made + 1)
     marks = [(e["index"], e["state"]) for e in read(log).events if e["type"] == "phase"]
     assert marks == [(0, "begin"), (0, "end"), (1, "begin"), (1, "end"), (2, "begin")]
+
+
+def test_tasks_begin_with_a_clap_where_the_study_wants_it(drive, takes_part, tiny):
+    tiny.write_text(tiny.read_text() + "claps: true\n")
+    p = takes_part()
+    consent(p)
+    p.titled("Practice: Meta-graph")
+    p.go()
+    p.working()
+    (clap,) = events(tiny, "marker")
+    assert (clap["name"], clap["number"]) == ("clap", 1)
+    drive.wait(lambda: any(e["what"] == "layout" for e in events(tiny, "view")))
+    areas = next(e["areas"] for e in events(tiny, "view") if e["what"] == "layout")
+    graph, node = areas["graph"], areas["graph gesture"]
+    assert graph[0] <= node[0] and node[0] + node[2] <= graph[0] + graph[2]
+    corner = drive.canvas.mapToGlobal(drive.canvas.rect().topLeft())
+    assert node[:2] == [
+        corner.x() + round(drive.canvas.layout_now().nodes["gesture"].rect.x()),
+        corner.y() + round(drive.canvas.layout_now().nodes["gesture"].rect.y()),
+    ]

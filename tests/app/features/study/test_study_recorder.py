@@ -243,3 +243,34 @@ def test_operators_are_counted_outside_a_study_while_that_is_wanted(toys):
     d.actions["count_operators"].trigger()
     d.wait(lambda: d.window.findChild(Counting) is None)
     assert not d.actions["count_operators"].isChecked()
+
+
+def test_an_import_tells_how_long_it_took(recorded, monkeypatch):
+    from metagraph.formats.imports import Imported
+
+    d, now = recorded, [100.0]
+    monkeypatch.setattr("app.features.study.study_recorder.monotonic", lambda: now[0])
+    d.importing.begun.emit()
+    now[0] = 107.5
+    d.importing.imported.emit(Imported([]), None)
+    assert [(e["clips"], e["seconds"]) for e in d.log.of("import")] == [(0, 7.5)]
+
+
+def test_edits_steps_back_and_looks_say_enough_to_be_seen_again(recorded):
+    from metagraph.formats.data import to_data
+    from metagraph.formats.recovery import Replay
+
+    d = recorded
+    begun = to_data(d.document.project)
+    d.document.edit("New stance", lambda p: edits.add_stance(p, "head", "one"))
+    d.document.edit("Another", lambda p: edits.add_stance(p, "head", "two"))
+    d.document.undo()
+    action = d.action("rest wave rt")
+    d.session.selection.select_actions((action.id,))
+    d.session.transport.set_playing(not d.session.transport.playing)
+    again = Replay(begun)
+    for event in d.log.of("edit", "undo", "redo"):
+        again.apply(event["change"])
+    assert again.data() == to_data(d.document.project)
+    assert d.log.of("view")[-1]["selected_actions"] == [action.id]
+    assert d.log.of("playback")[-1]["what"] in ("play", "pause") and d.log.of("playback")[-1]["at"] >= 0

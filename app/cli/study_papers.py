@@ -1,0 +1,48 @@
+"""Figures of a report as PDF, drawn by Qt without a screen."""
+
+from __future__ import annotations
+
+import os
+import re
+
+EPOCH = b"19700101000000"
+
+
+def papers_maker():
+    """Return what makes a PDF, a page as large as the drawing, of an SVG file's text; the same text gives the
+    same bytes.
+    """
+    if "QT_QPA_PLATFORM" not in os.environ:
+        os.environ["QT_QPA_PLATFORM"] = "offscreen"
+    from PySide6.QtCore import QBuffer, QByteArray, QIODevice, QMarginsF, QRectF, QSizeF
+    from PySide6.QtGui import QGuiApplication, QPageSize, QPainter, QPdfWriter
+    from PySide6.QtSvg import QSvgRenderer
+
+    app = QGuiApplication.instance() or QGuiApplication(["metagraph"])
+
+    def paper(drawing: str) -> bytes:
+        assert app is not None
+        renderer = QSvgRenderer(QByteArray(drawing.encode()))
+        wide, high = (float(v) for v in re.findall(r'(?:width|height)="([\d.]+)mm"', drawing)[:2])
+        buffer = QBuffer()
+        buffer.open(QIODevice.OpenModeFlag.WriteOnly)
+        writer = QPdfWriter(buffer)
+        writer.setResolution(300)
+        writer.setCreator("metagraph")
+        writer.setPageSize(QPageSize(QSizeF(wide, high), QPageSize.Unit.Millimeter, "figure"))
+        writer.setPageMargins(QMarginsF(0, 0, 0, 0))
+        painter = QPainter(writer)
+        renderer.render(painter, QRectF(0, 0, writer.width(), writer.height()))
+        painter.end()
+        return timeless(bytes(buffer.data().data()))
+
+    return paper
+
+
+def timeless(content: bytes) -> bytes:
+    """Return a PDF without when it was made and the numbers drawn by chance, as long as before."""
+    content = re.sub(rb"D:\d{14}", b"D:" + EPOCH, content)
+    content = re.sub(rb"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d", b"1970-01-01T00:00:00", content)
+    blank = lambda m: m[1] + re.sub(rb"[0-9a-fA-F]", b"0", m[2]) + m[3]  # noqa: E731
+    content = re.sub(rb"(/ID \[)([^\]]*)(\])", blank, content)
+    return re.sub(rb"(uuid:)([0-9a-f-]{36})()", blank, content)

@@ -1,0 +1,140 @@
+"""`metagraph study freeze`, `withdraw`, `delete` and `gaze`: what a study is made of, who is in it no more,
+and where people looked.
+"""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentParser, Namespace
+from collections.abc import Callable
+from pathlib import Path
+
+Action = Callable[[str, str, Callable[[Namespace], int]], ArgumentParser]
+
+
+def arguments(action: Action) -> None:
+    """Add the actions."""
+    frozen = action(
+        "freeze", "write down by digest what the study is made of, or see whether it still is", freeze
+    )
+    frozen.add_argument("study", type=Path, help="the study's folder, or its study.yaml")
+    frozen.add_argument("--force", action="store_true", help="freeze anew what has changed since")
+    gone = action(
+        "withdraw", "leave a participant's data out of all reports and exports from now on", withdraw
+    )
+    _who(gone)
+    gone.add_argument("--why", default="", help="in words, kept in the log")
+    deleted = action("delete", "delete all data of a participant, and note that it was done", delete)
+    _who(deleted)
+    deleted.add_argument("--yes", action="store_true", help="do not ask")
+
+    brought = action("import", "add a participant's log of tasks done in Unreal, Unity or Godot", bring)
+    _who(brought)
+    brought.add_argument("log", type=Path, help="as the script for the engine wrote it")
+    looked = action("gaze", "say which panels and nodes somebody looked at, from a recording of eyes", gaze)
+    _who(looked)
+    looked.add_argument(
+        "recording", type=Path, help="an export of Tobii Pro Lab, Pupil Player or Pupil Cloud"
+    )
+    looked.add_argument(
+        "--clap", type=float, help="when the recording shows the first clap, seconds of its own"
+    )
+    looked.add_argument("--out", type=Path, help="a table (default: gaze.csv beside the log)")
+
+
+def _who(parser: ArgumentParser) -> None:
+    parser.add_argument("study", type=Path, help="the study's folder, or its study.yaml")
+    parser.add_argument("participant", help="the pseudonym")
+
+
+def freeze(options: Namespace) -> int:
+    from app.cli.command_output import say
+    from metagraph.study.freeze import freeze as write
+    from metagraph.study.freeze import frozen, seal
+    from metagraph.study.study_plan import read_study
+
+    study = read_study(options.study)
+    path = write(study, options.force)
+    digests = frozen(study) or {}
+    say(
+        options,
+        f"{path}: {len(digests)} digests, together {seal(digests)}",
+        {"written": str(path), "seal": seal(digests), "digests": digests},
+    )
+    return 0
+
+
+def withdraw(options: Namespace) -> int:
+    from app.cli.command_output import say
+    from metagraph.study.study_plan import read_study
+    from metagraph.study.withdrawal import mentions
+    from metagraph.study.withdrawal import withdraw as note
+
+    study = read_study(options.study)
+    new = note(study, options.participant, options.why)
+    say(
+        options,
+        f"{options.participant}: {'left out from now on' if new else 'had withdrawn before'}",
+        {"participant": options.participant, "new": new},
+    )
+    _told(mentions(study, options.participant))
+    return 0
+
+
+def delete(options: Namespace) -> int:
+    from app.cli.command_output import say
+    from metagraph.study.study_plan import read_study
+    from metagraph.study.withdrawal import delete as remove
+    from metagraph.study.withdrawal import mentions
+
+    study = read_study(options.study)
+    study.plan.known(options.participant)
+    folder = study.data(options.participant)
+    if not options.yes:
+        if options.json or not sys.stdin.isatty():
+            raise ValueError(f"deleting {folder} cannot be taken back: say --yes")
+        if input(f"Delete {folder} and all that is in it? It cannot be taken back. [y/N] ").lower() != "y":
+            return 1
+    note = remove(study, options.participant)
+    say(options, f"{options.participant}: {note['files']} files deleted", {"deleted": note})
+    _told(mentions(study, options.participant))
+    return 0
+
+
+def _told(paths: list[Path]) -> None:
+    """Tell what still holds the pseudonym."""
+    for path in paths[:10]:
+        print(f"note: {path} still names them; write it anew", file=sys.stderr)
+    if len(paths) > 10:
+        print(f"note: and {len(paths) - 10} more files", file=sys.stderr)
+
+
+def gaze(options: Namespace) -> int:
+    from app.cli.command_output import say
+    from metagraph.formats.atomic import write_atomically
+    from metagraph.study.gaze import dwelt, read_gaze
+    from metagraph.study.log import read
+    from metagraph.study.report_tables import table
+    from metagraph.study.study_plan import read_study
+
+    study = read_study(options.study)
+    study.plan.known(options.participant)
+    found = dwelt(read(study.log(options.participant)), read_gaze(options.recording), options.clap)
+    out = options.out or study.data(options.participant) / "gaze.csv"
+    write_atomically(out, table(*found).encode())
+    lines = [f"{row[2]} ({row[1]}): {row[3]} {row[4]:.1f} s, {row[5]:.0%}" for row in found[1]]
+    say(options, "\n".join([*lines, str(out)]), {"written": str(out), "rows": len(found[1])})
+    return 0
+
+
+def bring(options: Namespace) -> int:
+    from app.cli.command_output import say
+    from metagraph.study.engine_import import import_engine
+    from metagraph.study.study_plan import read_study
+
+    log, odd = import_engine(read_study(options.study), options.participant, options.log)
+    for words in odd:
+        print(f"note: {words}", file=sys.stderr)
+    lines = [f"{r.task} ({r.condition}): {r.seconds:.0f} s, {r.edits} edits" for r in log.tasks()]
+    say(options, "\n".join(lines), {"tasks": len(lines), "notes": odd})
+    return 0

@@ -1,0 +1,107 @@
+"""`metagraph study plan`: how many people, what is registered beforehand, and the secret that orders are
+drawn from.
+"""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+
+Action = Callable[[str, str, Callable[[Namespace], int]], ArgumentParser]
+SMALLEST = 1.25
+
+
+def arguments(action: Action) -> None:
+    """Add the action."""
+    made = action("plan", "say how many people a study needs; write its preregistration", plan)
+    made.add_argument("study", type=Path, nargs="?", help="the study's folder, or its study.yaml")
+    made.add_argument(
+        "--pilot", type=Path, metavar="FOLDER", help="a study of yours whose people's ratios are taken"
+    )
+    made.add_argument("--ratio", type=float, help="times as long by hand, assumed")
+    made.add_argument(
+        "--spread", type=float, help="standard deviation of the logs of people's ratios, assumed"
+    )
+    made.add_argument(
+        "--smallest",
+        type=float,
+        help=f"the smallest ratio that matters (default: the study's, else {SMALLEST})",
+    )
+    made.add_argument(
+        "--within", type=float, default=1.25, help="how wide the interval may be, a factor (1.25)"
+    )
+    made.add_argument("--chance", type=float, default=0.8, help="of each aim (0.8)")
+    made.add_argument(
+        "--tests", type=int, help="that share 0.05 (default: time, F1 and the study's questionnaires)"
+    )
+    made.add_argument(
+        "--dropouts", type=float, default=0.0, help="the share of people who will not finish (0)"
+    )
+    made.add_argument("--allocate", action="store_true", help="make the secret of a concealed order")
+    made.add_argument("--preregister", action="store_true", help="write the forms of OSF and AsPredicted")
+    made.add_argument("--force", action="store_true", help="write them anew")
+
+
+def plan(options: Namespace) -> int:
+    from math import ceil
+
+    from app.cli.command_output import say
+    from metagraph.study.allocation import prepare
+    from metagraph.study.planning import assumed, sample_size
+    from metagraph.study.preregistration import Aims, preregister
+    from metagraph.study.study_plan import read_study
+
+    study = read_study(options.study) if options.study is not None else None
+    if study is None and (options.allocate or options.preregister):
+        raise ValueError("name the study that is to be preregistered or allocated")
+    if (options.pilot is None) == (options.ratio is None or options.spread is None):
+        raise ValueError("give a --pilot, or assume both --ratio and --spread")
+    if not 0 <= options.dropouts < 1:
+        raise ValueError(f"dropouts are a share from 0 to less than 1, not {options.dropouts:g}")
+    found = _pilot(options.pilot) if options.pilot is not None else assumed(options.ratio, options.spread)
+    smallest = options.smallest or (study.plan.smallest if study is not None else None) or SMALLEST
+    tests = options.tests or (2 + len(study.plan.questions()) if study is not None else 1)
+    needed = sample_size(found, smallest, options.within, options.chance, families=tests)
+    aims = Aims(found, needed, smallest, options.within, options.chance, families=tests)
+    data = {"assumed": asdict(found), "needed": asdict(needed), "smallest": smallest, "tests": tests}
+    lines = [
+        f"ratio {found.ratio:.2f}, deviation of log ratios {found.spread:.2f}, reckoned with "
+        f"{found.worst:.2f} "
+        f"({found.source})",
+        f"people, for a chance of {options.chance:.0%}" + (f", {tests} tests" if tests > 1 else "") + ":",
+    ]
+    for what, count in (
+        (f"to show a ratio of {found.ratio:.2f}", needed.show),
+        (f"to show the smallest that matters, {smallest:g}", needed.smallest),
+        (f"for an interval within {options.within:g} times either way", needed.precise),
+        (f"to show that 1 is equivalent, within {smallest:g} times either way", needed.equivalent),
+    ):
+        more = f", {ceil(count / (1 - options.dropouts))} with dropouts" if count and options.dropouts else ""
+        lines.append(f"  {what}: {count if count is not None else 'more than 10,000'}{more}")
+    lines.append(
+        "Two conditions are balanced for every even number, and each order should have as many people."
+    )
+    if study is not None and options.allocate:
+        data["commitment"] = prepare(study)
+        lines.append(f"SHA-256 of the allocation's secret: {data['commitment']}")
+        if study.plan.order != "concealed":
+            lines.append("The study file does not say 'order: concealed' yet.")
+    if study is not None and options.preregister:
+        secret = prepare(study) if study.plan.order == "concealed" else None
+        written = preregister(study, aims, secret, options.force)
+        data["written"] = [str(p) for p in written]
+        lines += [str(p) for p in written]
+    say(options, "\n".join(lines), data)
+    return 0
+
+
+def _pilot(folder: Path):
+    from metagraph.study.analysis import analyse
+    from metagraph.study.analysis_read import collect
+    from metagraph.study.planning import from_pilot
+
+    time = analyse(collect(folder, jumps=False)).time
+    people = time.people if time is not None else ()
+    return from_pilot([p.ratio for p in people], f"the pilot '{folder.name}'")

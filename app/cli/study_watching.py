@@ -1,0 +1,41 @@
+"""`metagraph study watch`: who is where, on this machine."""
+
+from __future__ import annotations
+
+import sys
+import time
+from argparse import ArgumentParser, Namespace
+from collections.abc import Callable
+from pathlib import Path
+
+Action = Callable[[str, str, Callable[[Namespace], int]], ArgumentParser]
+
+
+def arguments(action: Action) -> None:
+    """Add the action."""
+    made = action("watch", "show who of a study is where just now, on this machine", watch)
+    made.add_argument("study", type=Path, help="the study's folder, or its study.yaml")
+    made.add_argument("--once", action="store_true", help="show it once, and end")
+    made.add_argument("--every", type=float, default=2.0, help="seconds between two looks (2)")
+
+
+def watch(options: Namespace) -> int:
+    from dataclasses import asdict
+
+    from app.cli.command_output import say, until_told_to_stop
+    from metagraph.study.study_plan import read_study
+    from metagraph.study.watching import table
+    from metagraph.study.watching import watch as look
+
+    study = read_study(options.study)
+    if options.once or options.json:
+        found = look(study)
+        say(options, "\n".join(table(found)), {"participants": [asdict(s) for s in found]})
+        return 0
+    with until_told_to_stop():
+        while True:
+            lines = [f"{study.plan.title}   {time.strftime('%H:%M:%S')}   Ctrl+C ends", *table(look(study))]
+            clear = "\x1b[H\x1b[2J" if sys.stdout.isatty() else ""
+            print(clear + "\n".join(lines), flush=True)
+            time.sleep(max(0.2, options.every))
+    return 0
