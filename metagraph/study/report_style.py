@@ -68,7 +68,7 @@ svg {{ display: block; width: 100%; max-width: 680px; height: auto; margin: 0 au
 table {{ border-collapse: collapse; font-size: 13px; width: 100%; margin: 12px 0; font-variant-numeric: tabular-nums; }}
 th {{ text-align: left; color: var(--dim); font-weight: 500; }}
 th, td {{ padding: 5px 10px 5px 0; border-bottom: 1px solid var(--line); vertical-align: top; }}
-td .dim {{ white-space: nowrap; }} td:first-child {{ min-width: 190px; }}
+td .dim, td:has(b) {{ white-space: nowrap; }} td:first-child {{ min-width: 190px; }}
 dt {{ font-weight: 600; margin-top: 8px; }} dd {{ margin: 0 0 4px; color: var(--dim); }}
 text {{ fill: var(--text); }} text.dim {{ fill: var(--dim); }} text.inside {{ fill: var(--inside); font-weight: 600; }}
 line.grid {{ stroke: var(--line); }} line.one {{ stroke: var(--dim); stroke-dasharray: 4 3; }} line.edge {{ stroke: var(--dim); }}

@@ -8,9 +8,9 @@ by one of the window (equation 2).
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from math import sqrt
 from statistics import NormalDist
 from typing import Any, Literal
@@ -93,21 +93,24 @@ def activation(speed: Array, share: float = ACTIVE) -> float:
     return low + share * (high - low)
 
 
-def windows(segments: Sequence[Segment], length: float) -> list[tuple[float, float]]:
+def windows(
+    segments: Sequence[Segment], length: float, every: Sequence[Segment] | None = None
+) -> list[tuple[float, float]]:
     """Return where to look for the movement of each segment, seconds: about its middle, WIDE times as long,
-    trimmed at the middle of the gaps to its neighbours of the same kind, and at the take's ends.
+    trimmed at the middle of the gaps to its neighbours and at the take's ends (figure 3). every: all that is
+    heard, of which neighbours are; the segments themselves where None.
     """
+    ends = sorted({s.end for s in (segments if every is None else every)})
+    starts = sorted({s.start for s in (segments if every is None else every)})
     out = []
-    ordered = sorted(range(len(segments)), key=lambda n: segments[n].start)
-    before = {n: m for m, n in pairwise(ordered)}
-    after = dict(pairwise(ordered))
-    for n, s in enumerate(segments):
+    for s in segments:
         middle, half = (s.start + s.end) / 2, WIDE * (s.end - s.start) / 2
+        before, after = bisect_right(ends, s.start) - 1, bisect_left(starts, s.end)
         low, high = max(0.0, middle - half), min(length, middle + half)
-        if n in before:
-            low = max(low, min(s.start, (segments[before[n]].end + s.start) / 2))
-        if n in after:
-            high = min(high, max(s.end, (s.end + segments[after[n]].start) / 2))
+        if before >= 0:
+            low = max(low, (ends[before] + s.start) / 2)
+        if after < len(starts):
+            high = min(high, (s.end + starts[after]) / 2)
         out.append((low, high))
     return out
 
@@ -166,19 +169,36 @@ def _matches(
     """
     matched = total = 0
     for number, (clip, speed, segments) in enumerate(found):
-        mine = [s for s in segments if s.kind == kind]
         if not any(part in speed for part in parts):
             continue
+        every = list(segments)
         if shift is not None:
             by = float(shift[number]) * clip.duration
-            mine = [_turned(s, by, clip.duration) for s in mine]
+            every = [_turned(s, by, clip.duration) for s in every]
+        mine = sorted((s for s in every if s.kind == kind), key=lambda s: s.start)
         idle = {part: activation(speed[part]) for part in parts if part in speed}
-        for window in windows(mine, clip.duration):
+        seen = dict.fromkeys(idle, 0.0)  # a movement counts once: the next window begins after it
+        for low, high in windows(mine, clip.duration, every):
             total += 1
-            matched += any(
-                movement(speed[part], clip.fps, window, least) is not None for part, least in idle.items()
-            )
+            there = False
+            for part, least in idle.items():
+                moved = movement(speed[part], clip.fps, (max(low, seen[part]), high), least)
+                if moved is not None:
+                    there, seen[part] = True, _over(speed[part], clip.fps, moved[1], least)
+            matched += there
     return matched, total
+
+
+def _over(speed: Array, fps: float, at: float, idle: float) -> float:
+    """Return when a movement that is going on at a moment is over, seconds: at rest, or slowest before it is
+    faster again.
+    """
+    frame, last = round(at * fps), len(speed) - 1
+    while frame < last and speed[frame + 1] >= speed[frame]:
+        frame += 1
+    while frame < last and idle <= speed[frame + 1] <= speed[frame]:
+        frame += 1
+    return (frame + 1) / fps
 
 
 def _turned(s: Segment, by: float, length: float) -> Segment:

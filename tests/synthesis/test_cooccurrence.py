@@ -16,7 +16,7 @@ from metagraph.graph.conversation import Segment
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
-from metagraph.synthesis.cooccurrence import activation, movement, speeds, table, wilson, windows
+from metagraph.synthesis.cooccurrence import _matches, activation, movement, speeds, table, wilson, windows
 
 CLIPS = Path(__file__).resolve().parents[2] / "sample_clips" / "clips"
 FPS = 30.0
@@ -86,6 +86,23 @@ def test_a_window_holds_its_segment_where_none_overlap(spans: list[tuple[float, 
         at += gap + length
     for s, (low, high) in zip(segments, windows(segments, at + 1), strict=True):
         assert low <= s.start + 1e-9 and high >= s.end - 1e-9
+
+
+def test_windows_are_trimmed_at_neighbours_of_any_kind() -> None:
+    clause, response = Segment("clause", 1.0, 2.0), Segment("response", 2.2, 2.6)
+    assert windows([clause], 9.0) == [(0.5, 2.5)]
+    assert windows([clause], 9.0, [clause, response]) == [(0.5, pytest.approx(2.1))]
+    assert windows([response], 9.0, [clause, response]) == [(pytest.approx(2.1), pytest.approx(2.8))]
+
+
+def test_a_movement_that_spans_two_clauses_counts_once(base: Clip) -> None:
+    two = [Segment("clause", 2.0, 3.0, 2.5), Segment("clause", 3.0, 4.0, 3.5)]
+    clip, t = moving(base, 8, []), np.arange(round(8 * FPS)) / FPS
+    once = np.exp(-(((t - 2.95) / 0.25) ** 2))  # fastest before the second begins, and over after that
+    twice = once + np.exp(-(((t - 3.7) / 0.1) ** 2))
+    for speed, count in ((once, 1), (twice, 2)):
+        found = [(clip, {"right_hand": speed}, two)]
+        assert _matches(found, "clause", ("right_hand",), None) == (count, 2)
 
 
 def test_a_turn_of_the_whole_body_moves_no_hand_and_no_head(base: Clip) -> None:
