@@ -26,8 +26,8 @@ from metagraph.playback.life.wanted import GazeTarget, modes_between, targets_be
 BLOCK = 8.0  # seconds drawn at a time, so that a running plan need not draw at every tick
 RECALL = 4.0  # seconds of looks kept when the past is forgotten: longer than any turn of the head takes
 
-# Blinks (Borer et al.): on stressed syllables at least so many seconds after the last; of themselves 2 to 5 s
-# after it at 17 a minute: the factors are of the mean gap.
+# Blinks (Yang et al., section 7.3): on stressed syllables at least so many seconds after the last; of
+# themselves 2 to 5 s after it at 17 a minute: the factors are of the mean gap.
 AFTER_BLINK = 1.0
 BLINK_GAPS = (0.57, 0.845)  # the shortest gap, and what chance adds to it
 # Saccades: fixations last 0.2 s and more; sizes fall off as in "Eyes Alive", small ones only: the eyes stay
