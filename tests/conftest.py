@@ -132,6 +132,14 @@ def memory() -> float:
 
 
 @pytest.fixture(scope="session")
+def qapp() -> object:
+    """The application as the program makes it, so that windows can be opened later in this process, too."""
+    from app.main import prepare
+
+    return prepare()
+
+
+@pytest.fixture(scope="session")
 def shared_data() -> Path:
     """The folder of real clips made by others; tests that need it skip where it is not."""
     folder = ROOT.parent / "shared" / "data"

@@ -19,6 +19,9 @@ from app.cli.parser import main
 from metagraph.formats.store import from_text
 from metagraph.study.study_plan import from_text as study_from_text
 
+# Papers are drawn by Qt; whoever opens windows later in this process needs its application.
+pytestmark = pytest.mark.usefixtures("qapp")
+
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [
     ROOT / "README.md",

@@ -17,7 +17,7 @@ from msgspec import Meta, Struct
 from metagraph.graph.words import Layer, Limb, Mode
 
 LONGEST_NAME = 200  # letters of a performance's name
-LONGEST_PERFORMANCE = 36000.0  # seconds
+LONGEST_PERFORMANCE = 36000  # seconds; whole, since schemas show it
 Id = Annotated[str, Meta(min_length=1, max_length=200)]
 Seconds = Annotated[float, Meta(ge=0, le=1e6, description="seconds")]
 # Of any length by type, since msgspec mistakes a text of limited length beside a tuple of fixed length, and

@@ -230,6 +230,7 @@ class Writer:
         self.before = read(self.path) if self.path.exists() else Log(self.path)
         self.n = self.before.following
         self._waiting: list[bytes] = []  # lines that could not be written yet
+        self.listeners: list[Callable[[Event], None]] = []  # told of each event that is in the log
         self.closed = False
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
@@ -272,6 +273,8 @@ class Writer:
         self.n += 1
         self._waiting.append(line)
         self._flush()
+        for listener in self.listeners:
+            listener(event)
         if kind in BOUNDARIES:
             self.sync()
         else:

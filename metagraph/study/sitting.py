@@ -13,6 +13,7 @@ from typing import Any, Literal
 from metagraph.errors import FileError
 from metagraph.study.allocation import allocate
 from metagraph.study.log import Event, Log, Writer, read
+from metagraph.study.lsl_markers import MarkersError, outlet
 from metagraph.study.questionnaires import Questionnaire
 from metagraph.study.study_plan import CONDITION_TITLES, Study
 from metagraph.study.tasks import steps
@@ -212,7 +213,14 @@ class Sitting:
             raise SittingError(
                 f"{participant} withdrew; let somebody else take part, under another pseudonym"
             )
+        send = None
+        if study.plan.lsl:
+            try:
+                send = outlet(participant)
+            except MarkersError as error:
+                raise SittingError(str(error)) from None
         self.writer = Writer(study.log(participant))
+        self.writer.listeners += [send] if send is not None else []
         try:
             self.log: Log = self.writer.before
             self.now = where(self.course, self.log.events)

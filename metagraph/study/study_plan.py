@@ -83,7 +83,8 @@ class Plan(Struct, frozen=True, forbid_unknown_fields=True):
     counterbalances conditions and tasks, `fixed` keeps to the file, `concealed` draws who gets which of the
     counterbalanced orders when they begin. smallest: the smallest ratio of times that would matter. site:
     where this copy of the study is run. claps: each task begins with a flash and a sound, so that
-    recordings of screen, voice and eyes can be brought into the log's time. breaks: minutes after each
+    recordings of screen, voice and eyes can be brought into the log's time. lsl: its events are sent as
+    markers of the Lab Streaming Layer. breaks: minutes after each
     condition but the last. when: what questionnaires are about that do not say it themselves. tolerance:
     seconds by which a timing may differ from the reference. allow: `labels` lets proposals be asked for.
     operators: seconds each operator of the keystroke-level model takes these participants, where it is not
@@ -112,6 +113,7 @@ class Plan(Struct, frozen=True, forbid_unknown_fields=True):
     smallest: Annotated[float, Meta(gt=1, le=100)] | None = None
     site: str = ""
     claps: bool = False
+    lsl: bool = False
 
     @property
     def times(self) -> Times:

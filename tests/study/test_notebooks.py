@@ -18,6 +18,9 @@ from metagraph.study.report import figures, write_report
 from metagraph.study.simulate import Truth
 from metagraph.study.simulate_files import write_study
 
+# Papers are drawn by Qt; whoever opens windows later in this process needs its application.
+pytestmark = pytest.mark.usefixtures("qapp")
+
 ROOT = Path(__file__).resolve().parents[2]
 
 

@@ -6,13 +6,14 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer, Signal
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QPushButton, QSlider, QToolBar, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QToolBar, QWidget
 
 from app.features.study.reserved_window import ReservedWindow
 from app.features.study.study_screen import clock
 from app.project.files import Files
 from app.project.opening import with_motion_of
 from app.widgets.making import make_widget
+from app.widgets.quiet_fields import ComboBox, Slider
 from metagraph.errors import FileError
 from metagraph.graph.model import LAYERS, Project
 from metagraph.study.log import read
@@ -37,14 +38,14 @@ class ReplayBar(QToolBar):
         row = QHBoxLayout(inner)
         row.setContentsMargins(6, 2, 6, 2)
         row.setSpacing(8)
-        self.part = QComboBox(inner)
+        self.part = ComboBox(inner)
         self.part.setAccessibleName("Part of the sitting")
         self.play = make_widget(QPushButton, inner, text="Play", checkable=True)
-        self.speed = QComboBox(inner)
+        self.speed = ComboBox(inner)
         self.speed.setAccessibleName("Speed")
         for value in SPEEDS:
             self.speed.addItem(f"{value:g} ×", value)
-        self.slider = QSlider(Qt.Orientation.Horizontal, inner)
+        self.slider = Slider(Qt.Orientation.Horizontal, inner)
         self.slider.setAccessibleName("Moment")
         self.slider.setMinimumWidth(160)
         self.time = QLabel(inner)

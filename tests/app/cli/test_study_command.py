@@ -10,6 +10,9 @@ import pytest
 
 from app.cli.parser import main
 
+# Papers are drawn by Qt; whoever opens windows later in this process needs its application.
+pytestmark = pytest.mark.usefixtures("qapp")
+
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
