@@ -19,6 +19,7 @@ from metagraph.graph.requests import Line, Performance
 from metagraph.motion import rotation
 from metagraph.playback.life.voice import Voice
 from metagraph.playback.plan import Plan
+from metagraph.speech.delivered import Delivered, delivered
 from metagraph.speech.drive import drive
 from metagraph.speech.lines import read_spoken
 
@@ -47,12 +48,15 @@ class Stand:
 
 @dataclass(frozen=True)
 class DuetPart:
-    """One of the two. project: its graph, with its voice among the lines. performance: what it is asked."""
+    """One of the two. project: its graph, with its voice among the lines. performance: what it is asked.
+    told: what becomes of its rates.
+    """
 
     project: Project
     performance: Performance
     plan: Plan
     stand: Stand
+    told: tuple[Delivered, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -110,7 +114,8 @@ def duet(
             )
         head = (0.0, round(heads[1 - n], 3), conversation.distance)
         performance, plan = drive(conversation, n, project, line, head)
-        parts.append(DuetPart(project, performance, plan, stand))
+        told = delivered(conversation, n, project, plan)
+        parts.append(DuetPart(project, performance, plan, stand, told))
     return Duet((parts[0], parts[1]), conversation.length)
 
 

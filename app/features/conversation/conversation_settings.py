@@ -26,6 +26,8 @@ from PySide6.QtWidgets import (
 from app.look.theme import SOUND_MARKS, strengthen
 from app.project.document import Document
 from app.project.speech_files import SOUNDS, channels_of
+from app.stage.performance import Performance
+from app.stage.playback_source import Shown
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.formats.store import SUFFIX, relative
@@ -162,10 +164,33 @@ class WordsDialog(SettingDialog):
         return conversation_edits.set_word_lists(project, self.ident, *self.lists.lists())
 
 
+def delivered_words(shown: Shown, conversation: Conversation) -> str:
+    """Return what becomes of both sides' rates in what is shown, a line for each; empty where nothing is."""
+    return "\n".join(
+        f"{side_name(conversation, one.side)}: {told.words()}"
+        for one in shown.both
+        for told in one.told
+        if told.count
+    )
+
+
 class RatesDialog(SettingDialog):
-    """How often each of the two moves with what is said."""
+    """How often each of the two moves with what is said, and what becomes of it on stage."""
 
     title, text = "Rates", "Change rates"
+
+    def __init__(
+        self,
+        document: Document,
+        ident: str,
+        conversation: Conversation,
+        performance: Performance,
+        parent: QWidget,
+    ) -> None:
+        self.performance = performance
+        super().__init__(document, ident, conversation, parent)
+        performance.changed.connect(self.refresh)
+        self.refresh()
 
     def build(self, layout: QVBoxLayout) -> None:
         layout.addWidget(
@@ -212,7 +237,14 @@ class RatesDialog(SettingDialog):
                 row_of.addWidget(button)
             grid.addLayout(row_of, 4, 1 + side)
         layout.addLayout(grid)
+        self.delivered = caption("", self, True)
+        layout.addWidget(self.delivered)
         layout.addStretch(1)
+
+    def refresh(self) -> None:
+        """Say what becomes of the rates as they are."""
+        self.delivered.setText(delivered_words(self.performance.shown, self.conversation))
+        self.delivered.setVisible(bool(self.delivered.text()))
 
     def take(self, side: int, rates: Rates) -> None:
         for name, field in self.fields[side].items():
