@@ -17,6 +17,7 @@ from metagraph.graph.model import Action, Layer, Mode, Project
 from metagraph.graph.requests import (
     AnyRequest,
     Behave,
+    Blink,
     Change,
     Fidget,
     Gesture,
@@ -33,6 +34,7 @@ from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan
 from metagraph.playback.running_plan import perform
 from metagraph.speech.gesture_choice import Clause, choose
+from metagraph.speech.peak_blinks import peak_blinks
 
 PARTNER = "partner"  # the named point where the other's head is
 TOLERANCE = 0.1  # seconds a stroke may be off its peak (section 7.2)
@@ -69,6 +71,10 @@ def asks_of(
     out += [
         Behave(id=f"mode {n}", at=at, mode=mode) for n, (at, mode) in enumerate(_modes(conversation, side))
     ]
+    if conversation.blinks == "peaks":
+        peaks = [s.peak for s in conversation.sides[side].segments if s.peak is not None]
+        found = peak_blinks(peaks, conversation.length, conversation.seed, str(side))
+        out += [Blink(id=f"blink {n}", at=at) for n, at in enumerate(found)]
     kinds = {layer: {kind for _, kind in project.graphs[layer].index} for layer in project.graphs}
     nods = "gesture" in kinds["head"]
     heard, said = heard_by(conversation, side), _meanings(project)

@@ -8,6 +8,7 @@ from math import cos, pi, sin
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -109,8 +110,14 @@ def duet(
         side, project, voice, line = conversation.sides[n], projects[n], heard[n], None
         if voice is not None:
             line = _free_id(ident, n, project)
+            peaks = [s.peak for s in side.segments if s.kind == "clause" and s.peak is not None]
+            voice = replace(voice, stresses=np.array(peaks)) if peaks else voice
             project = replace(
                 project, lines={**project.lines, line: line_of(side)}, voices={**project.voices, line: voice}
+            )
+        if conversation.blinks == "peaks":  # and no others
+            project = replace(
+                project, life=msgspec.structs.replace(project.life, blinks=0.0, accent_blinks=0.0)
             )
         head = (0.0, round(heads[1 - n], 3), conversation.distance)
         performance, plan = drive(conversation, n, project, line, head)

@@ -41,6 +41,14 @@ RATES = {
     "response": ("nods with its own responses", "How often the head nods with a “yeah” or “mm-hmm”"),
     "hesitation": ("nods when the other hesitates", "How often the head nods while the partner says “er”"),
 }
+BLINKS = {
+    "life": ("As in Life, and on stresses", "The life layer's blinks, and one on many of the clauses' peaks"),
+    "peaks": (
+        "On stresses, and after 5 s without",
+        "On a clause's peak if the last blink is a second ago, and once in each five seconds without: what "
+        "Yang et al. keyed (section 7.3)",
+    ),
+}
 ACTORS = {"female": "the woman", "male": "the man"}
 
 
@@ -237,6 +245,17 @@ class RatesDialog(SettingDialog):
                 row_of.addWidget(button)
             grid.addLayout(row_of, 4, 1 + side)
         layout.addLayout(grid)
+        row_of = QHBoxLayout()
+        row_of.addWidget(QLabel("Blinks", self))
+        self.blinks = ComboBox(self)
+        self.blinks.setAccessibleName("Blinks")
+        for value, (words, tip) in BLINKS.items():
+            self.blinks.addItem(words, value)
+            self.blinks.setItemData(self.blinks.count() - 1, tip, Qt.ItemDataRole.ToolTipRole)
+        self.blinks.setCurrentIndex(list(BLINKS).index(self.conversation.blinks))
+        row_of.addWidget(self.blinks)
+        row_of.addStretch(1)
+        layout.addLayout(row_of)
         self.delivered = caption("", self, True)
         layout.addWidget(self.delivered)
         layout.addStretch(1)
@@ -254,7 +273,7 @@ class RatesDialog(SettingDialog):
         for side in (0, 1):
             values = {name: round(field.value() / 100, 4) for name, field in self.fields[side].items()}
             project = conversation_edits.set_rates(project, self.ident, side, **values)
-        return project
+        return conversation_edits.change_conversation(project, self.ident, blinks=self.blinks.currentData())
 
 
 class SidesDialog(SettingDialog):

@@ -16,7 +16,7 @@ from app.features.conversation.conversation_dialog import ImportDialog
 from app.features.conversation.conversation_settings import RatesDialog
 from app.features.render.render_dialog import RenderDialog
 from app.project.files import SAMPLE
-from metagraph.graph.requests import Gesture, Play
+from metagraph.graph.requests import Blink, Gesture, Play
 from metagraph.speech.drive import strokes
 from tests.speech.talk import make_conversation
 
@@ -51,6 +51,15 @@ def test_dropped_seen_heard_and_written(drive: Any, tmp_path: Path) -> None:
     rates.fields[0]["clause"].setValue(0)
     QTest.mouseClick(rates.go, Qt.MouseButton.LeftButton)
     drive.wait(lambda: "0 % and" in drive.conversation.title.words)
+    drive.actions["rates"].trigger()
+    rates = next(d for d in drive.window.findChildren(RatesDialog) if d.isVisible())
+    rates.blinks.setCurrentIndex(1)
+    QTest.mouseClick(rates.go, Qt.MouseButton.LeftButton)
+    drive.wait(lambda: any(isinstance(a, Blink) for a in drive.performance.shown.asks))
+    one = drive.performance.shown.both[0]
+    blinks = one.plan.life.blinks.starts.tolist()
+    assert blinks == pytest.approx([a.at for a in one.asks if isinstance(a, Blink)], abs=1e-6)
+    drive.actions["undo"].trigger()
     drive.actions["undo"].trigger()
     drive.wait(lambda: "75 % and 75 %" in drive.conversation.title.words)
 
