@@ -28,7 +28,7 @@ def arguments(parser: ArgumentParser) -> None:
     """Add the actions of `motion-graph`, each with its options."""
     actions = parser.add_subparsers(dest="action", metavar="action", required=True)
 
-    def action(name: str, words: str, run: Any, speech: bool = False) -> ArgumentParser:
+    def action(name: str, words: str, run: Any, speech: bool | None = False) -> ArgumentParser:
         out = actions.add_parser(name, help=words, description=words[:1].upper() + words[1:] + ".")
         out.add_argument(
             "takes",
@@ -37,12 +37,13 @@ def arguments(parser: ArgumentParser) -> None:
             help="clip files, folders of them, or projects; all of one skeleton",
         )
         out.add_argument("--json", action="store_true", help="print what a program can read")
-        if speech:
+        if speech is not False:  # None: it may be given, and then its changes are key states too
             out.add_argument(
                 "--speech",
                 type=Path,
                 nargs="+",
-                required=True,
+                required=bool(speech),
+                default=[],
                 metavar="FILE",
                 help="what was said in each: .eaf, .TextGrid or a conversation's .json, called as the "
                 "take is",
@@ -79,7 +80,7 @@ def arguments(parser: ArgumentParser) -> None:
             "--most", type=int, help="keep only so many of the cheapest transitions of a frame (default: all)"
         )
 
-    built = action("build", "build the graph of takes, and tell what is in it", build)
+    built = action("build", "build the graph of takes, and tell what is in it", build, speech=None)
     graph(built)
     built.add_argument(
         "--keep",
@@ -92,6 +93,7 @@ def arguments(parser: ArgumentParser) -> None:
             "table",
             "compare graphs for k = 2, 3 and 4, before and after their loose parts are cut away",
             table,
+            speech=None,
         ),
         k=False,
     )
@@ -266,6 +268,17 @@ def _paired(options: Namespace) -> tuple[list[Clip], list[tuple[Segment, ...]], 
     )
 
 
+def _heard(options: Namespace) -> tuple[States, list[int]]:
+    """Return the states of takes, and those where what is heard changes; none without speech."""
+    from metagraph.synthesis.constraints import changes
+
+    if not options.speech:
+        return _states([c for _, c in _takes(options.takes)]), []
+    clips, speech, _ = _paired(options)
+    states = _states(clips)
+    return states, list(changes(states, speech))
+
+
 def _telling(options: Namespace, what: str) -> Callable[[int, int], None]:
     show = sys.stderr.isatty() and not options.json
 
@@ -324,18 +337,19 @@ def build(options: Namespace) -> int:
     from time import perf_counter
 
     from app.cli.command_output import say
+    from metagraph.suggest.fits import fits
     from metagraph.synthesis.graph import build as build_graph
     from metagraph.synthesis.graph import largest, threshold
     from metagraph.synthesis.states import key_states
 
     _checked(options)
-    states = _states([c for _, c in _takes(options.takes)])
+    states, heard = _heard(options)
     limit = threshold(states, options.k, options.level)
     begun = perf_counter()
     whole = build_graph(
         states,
         limit,
-        key_states(states, options.keys),
+        key_states(states, options.keys, heard),
         options.most,
         False,
         _telling(options, "key states"),
@@ -347,12 +361,15 @@ def build(options: Namespace) -> int:
         "takes": len(states.starts) - 1,
         "seconds": round(perf_counter() - begun, 3),
         **_limits(limit),
+        "fits": [asdict(f) for f in fits(limit.costs, limit.level)],
     }
+    others = ", ".join(f"{f['name']} {f['limit']:.4g} m ({f['distance']:.3f})" for f in facts["fits"])
     words = (
         f"{facts['takes']} takes, {facts['states']:,} states, {facts['keys']:,} of them key states\n"
         f"threshold at k = {limit.k}, {limit.level:.0%}: {limit.limit:.4g} m by {facts['by']}, "
         f"{limit.observed:.4g} m observed\n"
-        f"{facts['transitions']:,} transitions; in the largest component {facts['kept']:,} states "
+        + (f"by distribution, nearest first (greatest difference of shares): {others}\n" if others else "")
+        + f"{facts['transitions']:,} transitions; in the largest component {facts['kept']:,} states "
         f"({facts['kept'] / facts['states']:.0%}) "
         f"and {facts['kept_transitions']:,} transitions\nbuilt in {facts['seconds']:.2f} s"
     )
@@ -386,8 +403,8 @@ def table(options: Namespace) -> int:
     from metagraph.synthesis.states import SynthesisError, key_states
 
     _checked(options)
-    states = _states([c for _, c in _takes(options.takes)])
-    keys = key_states(states, options.keys)
+    states, heard = _heard(options)
+    keys = key_states(states, options.keys, heard)
     rows, lines = (
         [],
         [

@@ -55,6 +55,15 @@ LOADING = (
 )
 
 
+def fits_words(limit: Any) -> str:
+    """Return what distributions say a transition may cost, the nearest first, and how far off each is."""
+    from metagraph.suggest.fits import fits
+
+    found = fits(limit.costs, limit.level)
+    rows = "\n".join(f"{f.name}: {f.limit:.3g} m, off by {100 * f.distance:.1f} % at most" for f in found)
+    return f"What other distributions of these costs say, the nearest first:\n{rows}" if found else ""
+
+
 class MotionGraphDialog(QDialog):
     """Stays open beside the window."""
 
@@ -251,6 +260,7 @@ class MotionGraphDialog(QDialog):
         )
         off = abs(limit.limit - limit.observed) / max(limit.observed, 1e-9)
         beside = f" ({off:.0%} off)".replace("%", " %") if off > 0.05 else ""
+        self.words.setToolTip(fits_words(limit))
         self.words.setText(
             f"{fitted} {limit.limit:.3g} m, summed over joints. Dotted: the costs themselves say "
             f"{limit.observed:.3g} m{beside}."

@@ -180,11 +180,12 @@ def table(
     """Return for each k: states, transitions, then both after the states were removed that lead nowhere (the
     paper's table 2).
     """
+    from metagraph.synthesis.constraints import changes
     from metagraph.synthesis.graph import build, threshold
     from metagraph.synthesis.states import key_states, states_of
 
     states = states_of(takes.clips)
-    keys = key_states(states)
+    keys = key_states(states, changes=changes(states, takes.speech))
     out = {}
     for n, k in enumerate(ks):
         progress(n, len(ks))

@@ -64,6 +64,10 @@ def test_a_graph_is_built_and_told(folder: Path, capsys: pytest.CaptureFixture[s
     again = json.loads(
         run(capsys, "build", takes, "--json", "--k", "4", "--most", "9", "--keep", str(tmp_path / "kept"))
     )
+    assert {f["name"] for f in data["fits"]} == {"Johnson S_B", "log-normal", "Weibull", "gamma", "beta"}
+    plain, heard = (json.loads(run(capsys, "build", takes, *x, "--json")) for x in ([], said(folder)))
+    assert heard["keys"] == plain["keys"]  # as many, but others: also those where what is heard changes
+    assert heard["transitions"] != plain["transitions"]
     assert {**again, "seconds": 0} == {**data, "seconds": 0} and len(list((tmp_path / "kept").iterdir())) == 1
 
 
