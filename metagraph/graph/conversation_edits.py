@@ -8,7 +8,6 @@ it is labelled: labelled back, nothing is lost.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
@@ -18,6 +17,7 @@ import msgspec
 from metagraph.graph.conversation import SHORTEST, SPOKEN, Conversation, Rates, Segment, Side, Sound, Word
 from metagraph.graph.edits import EditError, free_name
 from metagraph.graph.model import Project
+from metagraph.graph.vocabulary import kinds_of_words, tokens
 
 _DIGITS = 3  # of seconds: what is dragged lands on milliseconds
 Place = tuple[int, int]  # side, and the place among its segments
@@ -82,7 +82,7 @@ def set_word_lists(
     lists = _listed(responses), _listed(hesitations)
 
     def anew(segment: Segment) -> Segment:
-        if not spoken_words(segment.text):
+        if not tokens(segment.text):
             return segment
         before, after = kind_of(segment.text, of.responses, of.hesitations), kind_of(segment.text, *lists)
         return msgspec.structs.replace(segment, kind=after) if segment.kind == before != after else segment
@@ -95,27 +95,11 @@ def kind_of(text: str, responses: Collection[str], hesitations: Collection[str])
     """Return what words are by two lists: a hesitation or a response where nothing else is said, else a
     clause. Said of both, it is a response: the partner is answered.
     """
-    words = spoken_words(text)
-    answers, pauses = ({spoken_words(x) for x in some} - {()} for some in (responses, hesitations))
-    if not words or not _made_of(words, answers | pauses):
+    words = [tokens(text)]
+    answers, pauses, either, _ = kinds_of_words(tuple(responses), tuple(hesitations))
+    if not either.made_of(words):
         return "clause"
-    return "hesitation" if _made_of(words, pauses) else "response"
-
-
-def spoken_words(text: str) -> tuple[str, ...]:
-    """Return words as they are compared: without case, hyphens and punctuation; "%" of "%hesitation"
-    stays.
-    """
-    return tuple(x for x in (re.sub(r"[^\w%']", "", w) for w in re.split(r"[\s\-‐‑]+", text.casefold())) if x)
-
-
-def _made_of(words: tuple[str, ...], phrases: Collection[tuple[str, ...]]) -> bool:
-    """Whether words are nothing but some of the phrases, one after another."""
-    reached = {0}
-    for n in range(len(words)):
-        if n in reached:
-            reached |= {n + len(p) for p in phrases if words[n : n + len(p)] == p}
-    return len(words) in reached
+    return "hesitation" if pauses.made_of(words) and not answers.made_of(words) else "response"
 
 
 def _listed(words: Iterable[str]) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from metagraph.graph.conversation import HESITATIONS, RESPONSES, Segment, Side, 
 from metagraph.speech.clauses import in_order, segments
 from metagraph.speech.pitch import Pitch, pitch
 from metagraph.speech.sound import HeardSound, hear
-from metagraph.speech.vocabulary import Vocabulary, tokens
+from metagraph.graph.vocabulary import Vocabulary, tokens
 from tests.speech import talk
 
 HEARD = hear(0.001 * np.random.default_rng(0).standard_normal(16000 * 30), 16000)
