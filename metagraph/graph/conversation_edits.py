@@ -14,12 +14,24 @@ from typing import Any
 
 import msgspec
 
-from metagraph.graph.conversation import SHORTEST, SPOKEN, Conversation, Rates, Segment, Side, Sound, Word
+from metagraph.graph.conversation import (
+    AUTO,
+    SHORTEST,
+    SPOKEN,
+    Conversation,
+    Rates,
+    Segment,
+    Side,
+    Sound,
+    Word,
+    lists_of,
+)
 from metagraph.graph.edits import EditError, free_name
 from metagraph.graph.model import Project
 from metagraph.graph.vocabulary import kinds_of_words, tokens
 
 _DIGITS = 3  # of seconds: what is dragged lands on milliseconds
+Lists = tuple[tuple[str, ...], tuple[str, ...]]  # responses and hesitations
 Place = tuple[int, int]  # side, and the place among its segments
 
 
@@ -71,24 +83,46 @@ def set_rates(project: Project, ident: str, side: int, **rates: float) -> Projec
 
 
 def set_word_lists(
-    project: Project, ident: str, responses: Iterable[str], hesitations: Iterable[str]
+    project: Project,
+    ident: str,
+    responses: Iterable[str],
+    hesitations: Iterable[str],
+    side: int | None = None,
+    language: str | None = None,
 ) -> Project:
     """Set which words make a segment a response or a hesitation, and label the segments anew by them.
 
-    What was labelled otherwise than the lists before would, was labelled by hand, and stays as it is; so does
-    what has no words. Only whole segments are labelled: none is parted or joined.
+    side: the one whose own lists they are; None: the lists of both, which have none of their own then.
+    language: the code of what they are of, None to leave it. What was labelled otherwise than the lists
+    before would, was labelled by hand, and stays as it is; so does what has no words. Only whole segments are
+    labelled: none is parted or joined. Raises EditError.
     """
     of = _conversation(project, ident)
     lists = _listed(responses), _listed(hesitations)
+    changes: dict[str, Any] = {} if language is None else {"language": language}
+    sides = list(of.sides)
+    for n, one in enumerate(of.sides):
+        if side not in (None, n):
+            continue
+        before = lists_of(of, n)
+        own = dict(zip(("responses", "hesitations"), (None, None) if side is None else lists, strict=True))
+        segments = tuple(_labelled(s, before, lists) for s in one.segments)
+        sides[n] = _valid(one, {**own, **changes}, segments=segments)
+    both = {"responses": lists[0], "hesitations": lists[1]} if side is None else {}
+    return _with(project, ident, _valid(of, both, sides=tuple(sides)))
 
-    def anew(segment: Segment) -> Segment:
-        if not tokens(segment.text):
-            return segment
-        before, after = kind_of(segment.text, of.responses, of.hesitations), kind_of(segment.text, *lists)
-        return msgspec.structs.replace(segment, kind=after) if segment.kind == before != after else segment
 
-    sides = tuple(msgspec.structs.replace(s, segments=tuple(map(anew, s.segments))) for s in of.sides)
-    return _with(project, ident, _valid(of, {"responses": lists[0], "hesitations": lists[1]}, sides=sides))
+def _labelled(segment: Segment, before: Lists, after: Lists) -> Segment:
+    """Return a segment as other lists label it, if it is what the lists before said."""
+    if not tokens(segment.text):
+        return segment
+    was, now = kind_of(segment.text, *before), kind_of(segment.text, *after)
+    return msgspec.structs.replace(segment, kind=now) if segment.kind == was != now else segment
+
+
+def set_language(project: Project, language: str) -> Project:
+    """Set what conversations are read in: a code, or `AUTO`."""
+    return replace(project, language=_clean(language) or AUTO)
 
 
 def kind_of(text: str, responses: Collection[str], hesitations: Collection[str]) -> Sound:

@@ -1,6 +1,6 @@
-"""How words of any writing are compared: without case, punctuation and hyphens ("Uh-huh." = "uh huh"), in one
-Unicode form, however they are parted ("d'accord" = "d' accord", そう です = そうです), drawn out ("jaaa" = "ja")
-or left without accents ("si" for "sí").
+"""How words of any writing are compared: without case, punctuation and hyphens ("Uh-huh." = "uh huh"), in
+one Unicode form, however they are parted ("d'accord" = "d' accord", そう です = そうです), drawn out
+("jaaa" = "ja") or left without accents ("si" for "sí").
 """
 
 from __future__ import annotations

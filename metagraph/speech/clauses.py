@@ -201,7 +201,7 @@ def _parts(
 def _amid(words: Sequence[Word], first: int, last: int) -> bool:
     """Whether the same speaker spoke shortly before words and goes on shortly after them."""
     return (
-        0 < first
+        first > 0
         and last < len(words)
         and words[first].start - words[first - 1].end <= HOLDS
         and words[last].start - words[last - 1].end <= HOLDS

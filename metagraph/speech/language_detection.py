@@ -1,5 +1,5 @@
-"""Which language somebody speaks, by their words: by small words, answers and hesitations, and by letters that
-a language does not have.
+"""Which language somebody speaks, by their words: by small words, answers and hesitations, and by letters
+that a language does not have.
 """
 
 from __future__ import annotations
@@ -57,7 +57,8 @@ def language_spoken(words: Iterable[str], languages: Collection[Language]) -> Sp
     known = sum(size for _, size in found[best])
     covered = (known - sum(_strange(t, best) for t in said)) / units
     if covered < COVERED:
-        return Spoken(None, "unknown" if len(set(said)) >= ENOUGH or unspaced >= 2 * ENOUGH else "undecided", units, known, best)
+        strange = len(set(said)) >= ENOUGH or unspaced >= 2 * ENOUGH
+        return Spoken(None, "unknown" if strange else "undecided", units, known, best)
     if score < FEWEST or score - second < APART * (score + max(second, 0.0)) ** 0.5 * 0.5:
         return Spoken(None, "undecided", units, known, best)
     return Spoken(best, "sure", units, known, best)
@@ -85,7 +86,8 @@ def _within(token: str, language: Language) -> list[tuple[str, int]]:
     """Return the words of a language in writing without blanks, the longest first from the left."""
     out, at = [], 0
     while at < len(token):
-        size = next((n for n in range(min(6, len(token) - at), 0, -1) if token[at : at + n] in language.known), 0)
+        sizes = range(min(6, len(token) - at), 0, -1)
+        size = next((n for n in sizes if token[at : at + n] in language.known), 0)
         if size:
             out.append((token[at : at + size], size))
         at += size or 1

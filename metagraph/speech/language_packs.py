@@ -28,9 +28,9 @@ _Text = Annotated[str, Meta(max_length=2000)]
 class PackFile(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
     """A pack as it is written. Lists: texts with commas between the words, or one such text.
 
-    code: of ISO 639, small letters ("de", "pt-br"). name, own: in English, and what it calls itself. rests_on:
-    sources. sure: how sure the lists are. spaced: whether blanks part its words; letters_a_word: how many
-    letters a word has, where not. letters: those beyond a-z that its Latin spelling has. responses,
+    code: of ISO 639, small letters ("de", "pt-br"). name, own: in English, and what it calls itself.
+    rests_on: sources. sure: how sure the lists are. spaced: whether blanks part its words; letters_a_word:
+    how many letters a word has, where not. letters: those beyond a-z that its Latin spelling has. responses,
     hesitations: words and phrases. lexical: those that mean something, too, and hesitate only where speech
     stops. small: words hardly ever stressed, which clauses begin with; joining: a new thought begins with
     them; trailing: they rather end what is before; inside: they go on with it; closing: a clause ends well
@@ -109,7 +109,9 @@ class Language:
         return tuple(out)
 
     def is_small(self, token: str) -> bool:
-        """Whether a token is hardly ever stressed; where writing has no blanks, also one made of such words."""
+        """Whether a token is hardly ever stressed; where writing has no blanks, also one made of such
+        words.
+        """
         if self.spaced or token in self.small:
             return token in self.small
         return _made_of(token, self.small)
