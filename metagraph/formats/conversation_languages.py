@@ -69,7 +69,9 @@ def languages_of(
         as_partner = partner.language if partner is not None else None
         if found is None:  # no words: nothing to read, but the lists are the partner's
             out.append(as_partner or speaking.usual)
-        elif found.how == "unknown":
+        elif found.how == "unknown" or (
+            found.language is None and partner is not None and partner.how == "unknown"
+        ):
             out.append(None)
         else:
             out.append(found.language or as_partner or speaking.usual)
@@ -88,14 +90,18 @@ def _spoken(told: Told, speaking: Speaking) -> Spoken | None:
 def _told(
     name: str, found: Spoken, read: Language | None, partner: Spoken | None, speaking: Speaking
 ) -> list[str]:
-    if found.how == "unknown":
+    if read is None and found.how != "unknown":
+        return [
+            f"{name}: {count(found.words, 'word')} do not tell the language; as the other's is not known, "
+            "sound tells clauses and short answers here, too."
+        ]
+    if read is None:
         known = ", ".join(speaking.packs)
         return [
             f"{name}: its words are of no language that there are lists for ({known}), so sound tells "
             "clauses and short answers, and no word is taken for a response or a hesitation. Choose the "
             "language, or give a list of its words."
         ]
-    assert read is not None
     if found.how == "sure":
         if read.code == ENGLISH:
             return []

@@ -28,7 +28,7 @@ from metagraph.graph.conversation import (
 )
 from metagraph.graph.edits import EditError, free_name
 from metagraph.graph.model import Project
-from metagraph.graph.vocabulary import kinds_of_words, tokens
+from metagraph.graph.vocabulary import joined, kinds_of_words, tokens
 
 _DIGITS = 3  # of seconds: what is dragged lands on milliseconds
 Lists = tuple[tuple[str, ...], tuple[str, ...]]  # responses and hesitations
@@ -220,7 +220,7 @@ def merge_segments(project: Project, ident: str, side: int, first: int, last: in
         raise EditError("there is no segment after this one to merge it with")
     kind: Sound = "clause" if any(s.kind == "clause" for s in some) else some[0].kind
     peaks = [s.peak for s in sorted(some, key=lambda s: s.kind != "clause") if s.peak is not None]
-    text = " ".join(s.text for s in some if s.text)
+    text = joined(s.text for s in some if s.text)
     made = Segment(kind, some[0].start, some[-1].end, peaks[0] if peaks else None, text)
     return _replaced(project, ident, side, first, last + 1, (made,))
 
@@ -303,7 +303,7 @@ def _spoken(kind: Sound) -> None:
 
 def _text(words: Sequence[Word], start: float, end: float) -> str:
     """Return the words whose middles lie in a stretch."""
-    return " ".join(w.text for w in words if start <= (w.start + w.end) / 2 < end)
+    return joined(w.text for w in words if start <= (w.start + w.end) / 2 < end)
 
 
 def _clean(words: str) -> str:

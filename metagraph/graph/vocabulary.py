@@ -18,6 +18,7 @@ _RUN = re.compile(r"(.)\1+")
 _HIRAGANA = {c: c - 0x60 for c in range(0x30A1, 0x30F7)}  # ハイ is はい
 _ACCENTS = frozenset("\u0300\u0301\u0302\u0303\u0327")  # those that typists leave out; ä, ö, ü are letters
 _HELD = "ーっ"  # そうですねー, はいっ
+_STOPS = "、。，！？；：「」『』（）…・"
 _LONGEST = 200  # letters that are looked at as phrases alone
 
 
@@ -54,6 +55,15 @@ def is_unspaced(c: str) -> bool:
     )
 
 
+def joined(texts: Iterable[str]) -> str:
+    """Return words as one text: blanks between them, but where writing has none."""
+    out = ""
+    for text in texts:
+        close = out[-1:] and text and all(is_unspaced(c) or c in _STOPS for c in (out[-1], text[0]))
+        out += text if close or not out else f" {text}"
+    return out
+
+
 @lru_cache(maxsize=1 << 15)
 def _key(token: str) -> str:
     """Return a token's letters as phrases are made of them: no apostrophes, katakana as hiragana."""
@@ -87,6 +97,10 @@ class Vocabulary:
 
     def __contains__(self, words: tuple[str, ...]) -> bool:
         return self._has(key_of(words), len(words))
+
+    def is_plainly(self, words: tuple[str, ...]) -> bool:
+        """Whether tokens are a phrase, not drawn out: あの, not あのー."""
+        return key_of(words) in self._keys
 
     def _has(self, key: str, count: int) -> bool:
         """Whether the letters of so many tokens are a phrase, as they are or drawn out. "E R" is no "er"."""

@@ -9,7 +9,7 @@ and where one speaks on a little later; parts of about four words are preferred.
 A response is a turn, pauses around it, that is made of response words alone: a "yes" within a sentence is
 part of the sentence. Hesitation words are hesitations wherever they stand; those that also mean something
 ("well", "like", "you know") only where they stand alone, next to another hesitation, or before a pause after
-which the same speaker goes on. What is both ("mh", 嗯) hesitates where the same speaker goes on around it.
+which the same speaker goes on. What is both ("mh", 嗯) hesitates where the same speaker soon goes on.
 
 Which words these are, a language pack says (`language_packs`); where the language is not known, sound tells.
 """
@@ -26,7 +26,7 @@ from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from metagraph.graph.conversation import SHORTEST, Segment, Spoken, Word
-from metagraph.graph.vocabulary import Vocabulary, kinds_of_words, tokens
+from metagraph.graph.vocabulary import Vocabulary, joined, kinds_of_words, tokens
 from metagraph.speech.activity import PAUSE, Stretch, activity
 from metagraph.speech.language_packs import Language, english
 from metagraph.speech.pitch import Pitch, peaks, smooth
@@ -36,6 +36,7 @@ from metagraph.speech.stress import CLOSED, parted, stresses
 Array = NDArray[Any]
 
 HOLDS = 1.5  # seconds within which one who hesitates goes on
+SOON = 0.8  # seconds within which what one says goes on as if without a pause
 LONGEST_RESPONSE = 2.5  # seconds a response lasts at most
 BURST = 0.6  # seconds: a sound so short while the partner talks is a response, where there are no words
 AROUND = 0.5  # seconds of one's own silence before and behind it
@@ -95,7 +96,7 @@ def by_sound(
     found = _by_loudness(pitch, tones, heard, partner) if partner is not None or not words else ()
     if found or not words:
         return tuple(
-            replace(s, text=" ".join(w.text for w in words if s.start <= (w.start + w.end) / 2 < s.end))
+            replace(s, text=joined(w.text for w in words if s.start <= (w.start + w.end) / 2 < s.end))
             for s in found
         )
     said = [tokens(w.text) for w in words]
@@ -152,7 +153,7 @@ def _segment(kind: Spoken, words: Sequence[Word], pitch: Pitch, tones: Array, he
         start,
         end,
         peak_of(pitch, tones, heard, start, end) if kind == "clause" else None,
-        " ".join(w.text for w in words),
+        joined(w.text for w in words),
     )
 
 
@@ -189,7 +190,7 @@ def _parts(
     out: list[_Part] = []
     for first, last in _turns(words):
         answers = responses.made_of(said[first:last]) and _answers(words, first, last)
-        if answers and _amid(words, first, last) and both.made_of(said[first:last]):
+        if answers and _goes_on(words, first, last) and both.made_of(said[first:last]):
             out.append(_Part("hesitation", first, last))
         elif answers:
             out.append(_Part("response", first, last))
@@ -198,14 +199,11 @@ def _parts(
     return out
 
 
-def _amid(words: Sequence[Word], first: int, last: int) -> bool:
-    """Whether the same speaker spoke shortly before words and goes on shortly after them."""
-    return (
-        first > 0
-        and last < len(words)
-        and words[first].start - words[first - 1].end <= HOLDS
-        and words[last].start - words[last - 1].end <= HOLDS
-    )
+def _goes_on(words: Sequence[Word], first: int, last: int) -> bool:
+    """Whether the same speaker goes on at once after words, or after a while having spoken just before."""
+    after = words[last].start - words[last - 1].end if last < len(words) else np.inf
+    before = words[first].start - words[first - 1].end if first else np.inf
+    return bool(after <= SOON or max(before, after) <= HOLDS)
 
 
 def _turns(words: Sequence[Word]) -> list[tuple[int, int]]:
@@ -241,7 +239,7 @@ def _hesitating(
         size = marks[n - first]
         if (
             size
-            and tuple(t for w in said[n : n + size] for t in w) in lexical
+            and lexical.is_plainly(tuple(t for w in said[n : n + size] for t in w))
             and not _hangs(words, n, size, first, last, marks)
         ):
             marks[n - first] = 0
