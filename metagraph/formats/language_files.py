@@ -32,7 +32,7 @@ def read_pack(path: str | Path) -> Language:
     if not isinstance(data, dict):
         raise FileError(path, "holds no fields", "its beginning", REMEDY)
     try:
-        return language_of(msgspec.convert(data, PackFile))
+        return language_of(msgspec.convert(data, PackFile), languages())
     except msgspec.ValidationError as error:
         field, _, cause = words_of(error).rpartition(": ")
         raise FileError(path, cause, _place(field, lines), REMEDY) from None

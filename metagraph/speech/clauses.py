@@ -190,7 +190,9 @@ def _parts(
     out: list[_Part] = []
     for first, last in _turns(words):
         answers = responses.made_of(said[first:last]) and _answers(words, first, last)
-        if answers and _goes_on(words, first, last) and both.made_of(said[first:last]):
+        whole = tuple(t for w in said[first:last] for t in w)
+        unsure = answers and (whole in hesitations or both.made_of(said[first:last]))
+        if unsure and _goes_on(words, first, last):
             out.append(_Part("hesitation", first, last))
         elif answers:
             out.append(_Part("response", first, last))

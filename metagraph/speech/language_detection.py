@@ -55,13 +55,23 @@ def language_spoken(words: Iterable[str], languages: Collection[Language]) -> Sp
     best, score = order[0], alone[order[0]]
     second = alone[order[1]] if len(order) > 1 else 0.0
     known = sum(size for _, size in found[best])
-    covered = (known - sum(_strange(t, best) for t in said)) / units
+    # What is said in a writing it does not have may be another language's, as long as that is the less.
+    scripts = {_script(t) for t, _ in found[best]}
+    own = sum(_units(t) for t in said if _script(t) in scripts)
+    covered = (known - sum(_strange(t, best) for t in said)) / max(own, units / 2)
     if covered < COVERED:
         strange = len(set(said)) >= ENOUGH or unspaced >= 2 * ENOUGH
         return Spoken(None, "unknown" if strange else "undecided", units, known, best)
     if score < FEWEST or score - second < APART * (score + max(second, 0.0)) ** 0.5 * 0.5:
         return Spoken(None, "undecided", units, known, best)
     return Spoken(best, "sure", units, known, best)
+
+
+@lru_cache(maxsize=1 << 14)
+def _script(token: str) -> str:
+    """Return what a token is written in."""
+    letter = next((c for c in token if c.isalpha()), token[0])
+    return "unspaced" if is_unspaced(letter) else unicodedata.name(letter, "").split(" ")[0]
 
 
 def _units(token: str) -> int:

@@ -15,7 +15,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta, Struct
 
-from metagraph.graph.vocabulary import Vocabulary, is_unspaced, tokens
+from metagraph.graph.vocabulary import Vocabulary, is_unspaced, key_of, tokens
 
 FOLDER = Path(__file__).parent / "languages"
 ENGLISH = "en"
@@ -30,8 +30,8 @@ class PackFile(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unk
 
     code: of ISO 639, small letters ("de", "pt-br"). name, own: in English, and what it calls itself.
     rests_on: sources. sure: how sure the lists are. spaced: whether blanks part its words; letters_a_word:
-    how many letters a word has, where not. letters: those beyond a-z that its Latin spelling has. responses,
-    hesitations: words and phrases. lexical: those that mean something, too, and hesitate only where speech
+    how many letters a word has, where not. letters: those beyond a-z that its Latin spelling has. borrows:
+    codes of languages that are answered with, too. responses, hesitations: words and phrases. lexical: those that mean something, too, and hesitate only where speech
     stops. small: words hardly ever stressed, which clauses begin with; joining: a new thought begins with
     them; trailing: they rather end what is before; inside: they go on with it; closing: a clause ends well
     behind them; elided: what loses its vowel before an apostrophe.
@@ -45,6 +45,7 @@ class PackFile(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unk
     spaced: bool = True
     letters: Annotated[str, Meta(max_length=500)] = ""
     letters_a_word: Annotated[float, Meta(ge=1, le=20)] = 1.0
+    borrows: tuple[Annotated[str, Meta(max_length=40)], ...] = ()
     elided: _Words = ()
     responses: _Words = ()
     hesitations: _Words = ()
@@ -141,8 +142,10 @@ def listed(words: str | Collection[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(w for w in each if w))
 
 
-def language_of(pack: PackFile) -> Language:
-    """Return a pack as it is used. Raises PackError naming the field that is wrong."""
+def language_of(pack: PackFile, others: Mapping[str, Language]) -> Language:
+    """Return a pack as it is used. others: those it may borrow from, by code. Raises PackError naming the
+    field that is wrong.
+    """
     lists = {name: listed(getattr(pack, name)) for name in _LISTS}
     for name, words in lists.items():
         if len(words) > MOST:
@@ -159,6 +162,12 @@ def language_of(pack: PackFile) -> Language:
     sets = {
         name: frozenset(tokens(w)[0] for w in words) for name, words in lists.items() if name not in _PHRASES
     }
+    own = {key_of(tokens(w)) for words in lists.values() for w in words}
+    borrowed: list[str] = []
+    for code in pack.borrows:
+        if code not in others:
+            raise PackError("borrows", f"there are no words of '{code}': known are {', '.join(others)}")
+        borrowed += (w for w in others[code].responses if key_of(tokens(w)) not in own)
     said = {t for name in ("responses", "hesitations") for w in lists[name] for t in tokens(w)}
     return Language(
         pack.code,
@@ -169,7 +178,7 @@ def language_of(pack: PackFile) -> Language:
         pack.spaced,
         frozenset(tokens_letters(pack.letters)),
         pack.letters_a_word,
-        lists["responses"],
+        tuple(dict.fromkeys((*lists["responses"], *borrowed))),
         lists["hesitations"],
         Vocabulary(lists["lexical"]),
         known=frozenset().union(said, *sets.values()),
@@ -189,9 +198,9 @@ def tokens_letters(letters: str) -> str:
 @cache
 def languages() -> Mapping[str, Language]:
     """Return the packs that come with the program, by code, English first."""
-    out = {}
+    out: dict[str, Language] = {}
     for path in sorted(FOLDER.glob("*.json"), key=lambda p: (p.stem != ENGLISH, p.stem)):
-        pack = language_of(msgspec.json.decode(path.read_bytes(), type=PackFile))
+        pack = language_of(msgspec.json.decode(path.read_bytes(), type=PackFile), out)
         out[pack.code] = pack
     return out
 
