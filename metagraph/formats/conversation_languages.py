@@ -13,6 +13,10 @@ from metagraph.graph.conversation import AUTO
 from metagraph.speech.language_detection import Spoken, language_spoken
 from metagraph.speech.language_packs import ENGLISH, Language, languages
 
+_BY_LISTS = (
+    "responses, hesitations and clauses go by that language's lists, lips by its letters as English spells. "
+    "Choose another language if that is wrong."
+)
 Lists = tuple[tuple[str, ...], tuple[str, ...]]  # responses and hesitations
 
 
@@ -75,10 +79,22 @@ def languages_of(
             out.append(None)
         else:
             out.append(found.language or as_partner or speaking.usual)
+    first, second = spoken
+    if first is not None and second is not None and first.language is second.language is not None:
+        notes += _both(first, second) if any(t.segments is None for t in told) else []
+        return out[0], out[1]
     for n, (name, found) in enumerate(zip(called, spoken, strict=True)):
         if found is not None and told[n].segments is None:
             notes += _told(name, found, out[n], spoken[1 - n], speaking)
     return out[0], out[1]
+
+
+def _both(first: Spoken, second: Spoken) -> list[str]:
+    assert first.language is not None
+    if first.language.code == ENGLISH:
+        return []
+    of = f"{first.known:,} of {first.words:,} and {second.known:,} of {second.words:,}"
+    return [f"Both speak {first.language.called}, as {of} words tell; {_BY_LISTS}"]
 
 
 def _spoken(told: Told, speaking: Speaking) -> Spoken | None:
@@ -106,9 +122,7 @@ def _told(
         if read.code == ENGLISH:
             return []
         return [
-            f"{name}: its words are {read.called}, as {found.known:,} of {found.words:,} tell; responses, "
-            "hesitations and clauses go by that language's lists, lips by its letters as English spells. "
-            "Choose another language if that is wrong."
+            f"{name}: its words are {read.called}, as {found.known:,} of {found.words:,} tell; {_BY_LISTS}"
         ]
     if partner is not None and partner.language is read:
         why = "as the other's are"

@@ -1,8 +1,8 @@
 """Conversations in ten languages and some others, written by hand: who says what, what of it is a response
 and what a hesitation.
 
-A line is a turn: who, ":" or "=" for one that is nothing but a response, and words; <words> hesitate, "|" is a
-pause of 0.4 s. Japanese and Chinese are parted as recognisers part them. The next turn starts 0.6 s later.
+A line is a turn: who, ":" or "=" for one that is nothing but a response, and words; <words> hesitate, "|" is
+a pause of 0.4 s. Japanese and Chinese are parted as recognisers part them. The next turn starts 0.6 s later.
 """
 
 from __future__ import annotations
@@ -10,9 +10,13 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 from metagraph.graph.conversation import Segment, Word
 from metagraph.graph.vocabulary import is_unspaced
+from tests.speech import talk
 
 TALKS = {
     "en": """
@@ -318,6 +322,40 @@ def written(text: str, form: str = "NFC", letters: bool = False, each: float = 0
     return Written(out.words, out.responses, out.hesitations, at)
 
 
+def spoken(text: str, voice: str) -> tuple[Any, Written]:
+    """Return a conversation as eSpeak NG says it, samples `[2, N]` at `talk.RATE`, with the times of its
+    words. Skips the test where it is not installed.
+    """
+    out = Written(([], []), ([], []), ([], []), 0.0)
+    sounds: list[tuple[int, float, Any]] = []
+    at = 0.5
+    for line in unicodedata.normalize("NFC", text).strip().splitlines():
+        side, answers, start = "AB".index(line[0]), line[1] == "=", at
+        for part in line[2:].split("|"):
+            pieces = part.split()
+            marked = " ".join(f"<mark name='w'/>{p.strip('<>')}" for p in pieces)
+            samples, starts, end = talk.synthesise(marked, f"{voice}+f3" if side else voice, 40 + 20 * side, 165)
+            assert len(starts) == len(pieces), part
+            edges = talk.maker._apart(starts, end, pieces)
+            sounds.append((side, at, samples))
+            for piece, a, b in zip(pieces, edges, edges[1:], strict=False):
+                if piece[0] == "<":
+                    begun = at + a
+                word = Word(text=piece.strip("<>"), start=round(at + a, 3), end=round(at + b, 3))
+                out.words[side].append(word)
+                if piece[-1] == ">":
+                    out.hesitations[side].append((begun, at + b))
+            at += end + 0.4
+        if answers:
+            out.responses[side].append((start, at - 0.4))
+        at += 0.2
+    samples = 0.0006 * np.random.default_rng(7).standard_normal((2, round((at + 0.5) * talk.RATE)))
+    for side, begin, own in sounds:
+        first = round(begin * talk.RATE)
+        samples[side, first : first + len(own)] += 0.6 * own
+    return samples, Written(out.words, out.responses, out.hesitations, at)
+
+
 @dataclass
 class Score:
     """How many responses and hesitations were written, how many of them found, and what was found that is
@@ -331,8 +369,8 @@ class Score:
     found_hesitations: int = 0
     false_hesitations: int = 0
 
-    def add(self, talk: Written, side: int, segments: Sequence[Segment]) -> None:
-        for kind, spans in (("response", talk.responses[side]), ("hesitation", talk.hesitations[side])):
+    def add(self, of: Written, side: int, segments: Sequence[Segment]) -> None:
+        for kind, spans in (("response", of.responses[side]), ("hesitation", of.hesitations[side])):
             got = [s for s in segments if s.kind == kind]
             hit = sum(any(s.start < (a + b) / 2 < s.end for s in got) for a, b in spans)
             wrong = sum(not any(a < (s.start + s.end) / 2 < b for a, b in spans) for s in got)
