@@ -14,7 +14,7 @@ from metagraph.graph.vocabulary import is_unspaced, tokens
 from metagraph.speech.language_packs import Language
 
 FEWEST = 3.0  # words of one language alone that tell it
-ENOUGH = 18  # different words from which on a language that is not known can be told
+ENOUGH = 15  # different words from which on a language that is not known can be told
 COVERED = 0.35  # share of what is said that a language's own words make at least
 APART = 1.5  # deviations by which one stands out from the next
 
@@ -60,7 +60,9 @@ def language_spoken(words: Iterable[str], languages: Collection[Language]) -> Sp
     own = sum(_units(t) for t in said if _script(t) in scripts)
     covered = (known - sum(_strange(t, best) for t in said)) / max(own, units / 2)
     if covered < COVERED:
-        strange = len(set(said)) >= ENOUGH or unspaced >= 2 * ENOUGH
+        read = {_script(t) for one in languages for t in one.known}
+        foreign = sum(_units(t) for t in said if _script(t) not in read)  # in a writing of no language
+        strange = len(set(said)) >= ENOUGH or unspaced >= 2 * ENOUGH or (units >= 3 and 2 * foreign > units)
         return Spoken(None, "unknown" if strange else "undecided", units, known, best)
     if score < FEWEST or score - second < APART * (score + max(second, 0.0)) ** 0.5 * 0.5:
         return Spoken(None, "undecided", units, known, best)

@@ -334,7 +334,9 @@ def spoken(text: str, voice: str) -> tuple[Any, Written]:
         for part in line[2:].split("|"):
             pieces = part.split()
             marked = " ".join(f"<mark name='w'/>{p.strip('<>')}" for p in pieces)
-            samples, starts, end = talk.synthesise(marked, f"{voice}+f3" if side else voice, 40 + 20 * side, 165)
+            samples, starts, end = talk.synthesise(
+                marked, f"{voice}+f3" if side else voice, 40 + 20 * side, 165
+            )
             assert len(starts) == len(pieces), part
             edges = talk.maker._apart(starts, end, pieces)
             sounds.append((side, at, samples))

@@ -1,5 +1,5 @@
-"""Language packs: what comes with the program is whole and says what it rests on; words are found however they
-are written; what is wrong with a pack is said.
+"""Language packs: what comes with the program is whole and says what it rests on; words are found however
+they are written; what is wrong with a pack is said.
 """
 
 from __future__ import annotations
