@@ -31,10 +31,11 @@ class PackFile(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unk
     code: of ISO 639, small letters ("de", "pt-br"). name, own: in English, and what it calls itself.
     rests_on: sources. sure: how sure the lists are. spaced: whether blanks part its words; letters_a_word:
     how many letters a word has, where not. letters: those beyond a-z that its Latin spelling has. borrows:
-    codes of languages that are answered with, too. responses, hesitations: words and phrases. lexical: those that mean something, too, and hesitate only where speech
-    stops. small: words hardly ever stressed, which clauses begin with; joining: a new thought begins with
-    them; trailing: they rather end what is before; inside: they go on with it; closing: a clause ends well
-    behind them; elided: what loses its vowel before an apostrophe.
+    codes of languages that are answered with, too. responses, hesitations: words and phrases. lexical: those
+    that mean something, too, and hesitate only where speech stops. small: words hardly ever stressed, which
+    clauses begin with; joining: a new thought begins with them; trailing: they rather end what is before;
+    inside: they go on with it; closing: a clause ends well behind them; elided: what loses its vowel before
+    an apostrophe.
     """
 
     code: Annotated[str, Meta(pattern=r"^[a-z]{2,3}(-[a-z0-9]{2,8})*$")]
