@@ -290,6 +290,7 @@ class ImportDialog(QDialog):
                 of = read.sides[side]
                 label.setText(f"{side_name(read, side)}: {language_name(of.language) or 'no words'}")
             label.setVisible(apart)
+            lists.set_low(apart)
         self.others.setVisible(apart)
 
     def _typed(self) -> None:

@@ -26,6 +26,7 @@ from metagraph.speech.language_detection import language_spoken
 from metagraph.speech.language_packs import languages
 
 Lists = tuple[tuple[str, ...], tuple[str, ...]]  # responses and hesitations
+LOW = 84  # pixels
 
 
 def language_name(code: str) -> str:
@@ -101,6 +102,11 @@ class WordLists(QWidget):
                 with QSignalBlocker(edit):
                     edit.setPlainText(text)
 
+    def set_low(self, low: bool) -> None:
+        """Be low beside another pair of lists, or as high as there is room."""
+        for edit in self.edits:
+            edit.setMaximumHeight(LOW if low else 16777215)
+
     def lists(self) -> Lists:
         return asked(self.edits[0].toPlainText()), asked(self.edits[1].toPlainText())
 
@@ -111,7 +117,6 @@ class WordsDialog(SettingDialog):
     title, text = "Word lists", "Change word lists"
 
     def build(self, layout: QVBoxLayout) -> None:
-        self.resize(620, 420)
         layout.addWidget(
             caption(
                 "Segments made of nothing but these words are labelled so; what you labelled yourself stays.",
@@ -145,10 +150,14 @@ class WordsDialog(SettingDialog):
             )
             name.setText(side_name(of, side) if self.apart.isChecked() else "Both")
         self.lists = self.rows[0][2]
-        self.rows[1][0].setVisible(self.apart.isChecked())
-        self.apart.toggled.connect(self.rows[1][0].setVisible)
+        self._show_other(self.apart.isChecked())
+        self.apart.toggled.connect(self._show_other)
         layout.addWidget(self.apart)
         self.lists.edits[0].setFocus()
+
+    def _show_other(self, on: bool) -> None:
+        self.rows[1][0].setVisible(on)
+        self.resize(620, 580 if on else 420)
 
     def _take_language(self, n: int) -> None:
         """Show the lists of the language that was chosen; Automatic is what the words tell."""
