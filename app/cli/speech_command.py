@@ -97,8 +97,10 @@ def run(options: Namespace) -> int:
 
 
 def _row(n: int, side: Side) -> dict[str, Any]:
+    from bisect import bisect_left
     from statistics import fmean, pstdev
 
+    middles = [(w.start + w.end) / 2 for w in side.words]
     out: dict[str, Any] = {
         "name": side.name or f"speaker {n + 1}",
         "audio": side.audio,
@@ -108,7 +110,11 @@ def _row(n: int, side: Side) -> dict[str, Any]:
     }
     for kind in ("clause", "response", "hesitation"):
         some = [s for s in side.segments if s.kind == kind]
-        sizes = [len(s.text.split()) for s in some if s.text]
+        sizes = [  # a text without blanks has as many words as were transcribed
+            max(len(s.text.split()), bisect_left(middles, s.end) - bisect_left(middles, s.start))
+            for s in some
+            if s.text
+        ]
         out[kind] = {
             "count": len(some),
             "seconds": round(sum(s.end - s.start for s in some), 3),
