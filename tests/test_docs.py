@@ -16,6 +16,7 @@ from pathlib import Path
 import pytest
 
 from app.cli.parser import main
+from metagraph.formats.language_files import read_pack
 from metagraph.formats.store import from_text
 from metagraph.study.study_plan import from_text as study_from_text
 
@@ -107,8 +108,12 @@ def test_commands_in_the_pages_run(
 
 
 @pytest.mark.parametrize(("page", "n"), of("yaml"))
-def test_project_and_study_files_in_the_pages_can_be_read(page: Path, n: int) -> None:
+def test_project_and_study_files_in_the_pages_can_be_read(page: Path, n: int, tmp_path: Path) -> None:
     text = blocks(page)[n][1]
+    if text.startswith("code:"):
+        (tmp_path / "pack.yaml").write_text(text, encoding="utf-8")
+        assert read_pack(tmp_path / "pack.yaml").small
+        return
     if text.startswith("study:"):
         assert study_from_text(text).tasks
         return

@@ -24,6 +24,8 @@ def model_argument(parser: ArgumentParser) -> None:
 
 def speech_arguments(parser: ArgumentParser, needed: bool) -> None:
     """Add the options that say what is heard, and how motion is made of it."""
+    from app.cli.language_options import language_arguments
+
     more = "" if needed else " (default: planted speech)"
     parser.add_argument(
         "--speech",
@@ -41,6 +43,7 @@ def speech_arguments(parser: ArgumentParser, needed: bool) -> None:
         help="what is said: TextGrid, ELAN, WebVTT, SRT, JSON or CTM (default: as the sound is called, "
         "else by loudness)",
     )
+    language_arguments(parser)
     parser.add_argument("--side", type=int, choices=(1, 2), default=1, help="whose motion (default: 1)")
     parser.add_argument("--seed", type=int, default=1, help="another take (default: 1)")
     parser.add_argument("--temperature", type=float, default=1.0, help="0 to 1.2 (default: 1)")
@@ -88,6 +91,7 @@ def heard_of(options: Namespace, tracks: int) -> Heard:
     """Return what is heard. Raises FileError, ValueError."""
     import numpy as np
 
+    from app.cli.language_options import speaking_of
     from metagraph.errors import FileError
     from metagraph.formats.conversations import SOUNDS
     from metagraph.formats.transcript_words import SUFFIXES as TRANSCRIPTS
@@ -126,7 +130,7 @@ def heard_of(options: Namespace, tracks: int) -> Heard:
         files = TakeFiles(
             paths[0], sounds, tuple(words), options.side - 1 if len(sounds) == 1 or words else 0
         )
-        speech, name = read_speech(files), paths[0].stem
+        speech, name = read_speech(files, speaking_of(options)), paths[0].stem
     for note in speech.notes:
         print(f"note: {note}", file=sys.stderr)
     samples = np.atleast_2d(speech.samples)

@@ -29,6 +29,8 @@ def takes_arguments(parser: ArgumentParser) -> None:
 
 
 def speech_argument(parser: ArgumentParser) -> None:
+    from app.cli.language_options import language_arguments
+
     parser.add_argument(
         "--speech",
         type=Path,
@@ -37,6 +39,7 @@ def speech_argument(parser: ArgumentParser) -> None:
         metavar="FILE",
         help="sounds and words that lie elsewhere, or folders of them (default: beside the clips)",
     )
+    language_arguments(parser)
 
 
 def telling(options: Namespace, what: str) -> Any:
@@ -54,6 +57,7 @@ def read_all(options: Namespace, rig: PoseRig | None = None, tracks: int = 1) ->
     """Read the takes that are asked for, and say what there is to know of them. Raises ValueError where none
     can be used.
     """
+    from app.cli.language_options import speaking_of
     from metagraph.errors import FileError
     from metagraph.generation.take_files import find_takes, read_takes
 
@@ -64,7 +68,10 @@ def read_all(options: Namespace, rig: PoseRig | None = None, tracks: int = 1) ->
     single = [p.parent for p in options.speech if p.is_file()]
     files, without = find_takes(options.takes, list(dict.fromkeys((*speech, *single))))
     show = telling(options, "takes")
-    batch = read_takes(files, rig, tracks=tracks, progress=lambda n, _: show(n, len(files)))
+    speaking = speaking_of(options)
+    batch = read_takes(
+        files, rig, tracks=tracks, progress=lambda n, _: show(n, len(files)), speaking=speaking
+    )
     failures = (*without, *batch.failures)
     for words in failures:
         print(f"left out: {words}", file=sys.stderr)

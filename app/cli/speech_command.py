@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.formats.conversations import Read
     from metagraph.graph.conversation import Side
+    from metagraph.graph.model import Project
     from metagraph.speech.delivered import Delivered
 
 OUT = (".eaf", ".TextGrid", ".json")
@@ -20,6 +21,8 @@ OUT = (".eaf", ".TextGrid", ".json")
 
 def arguments(parser: ArgumentParser) -> None:
     """Add the command's options."""
+    from app.cli.language_options import language_arguments
+
     parser.add_argument(
         "audio",
         type=Path,
@@ -37,13 +40,15 @@ def arguments(parser: ArgumentParser) -> None:
         "(default: loudness tells)",
     )
     parser.add_argument("-o", "--out", type=Path, help=f"write words, segments and peaks ({', '.join(OUT)})")
+    language_arguments(parser, "as the project is set to, else auto")
     parser.add_argument("--project", type=Path, help="keep it in this project")
     parser.add_argument("--name", help="what the conversation is called (default: as the sound)")
 
 
 def run(options: Namespace) -> int:
     """Read a conversation, tell what is in it; with `out` write it, with `project` keep it there."""
-    from app.cli.command_output import say
+    from app.cli.command_output import opened, say
+    from app.cli.language_options import speaking_of
     from metagraph.formats.conversations import read_conversation
 
     words = [path for some in options.words for path in some]
@@ -53,8 +58,10 @@ def run(options: Namespace) -> int:
     if out is not None and out.suffix.casefold() not in [s.casefold() for s in OUT]:
         raise ValueError(f"it is written as {', '.join(OUT)}, not as '{out.suffix or out.name}'")
     folder = options.project.resolve().parent if options.project is not None else None
-    read = read_conversation(options.audio, words, folder, options.name)
-    ident = _keep(options.project, read) if options.project is not None else None
+    project = opened(options.project) if options.project is not None else None
+    speaking = speaking_of(options, project.language) if project is not None else speaking_of(options)
+    read = read_conversation(options.audio, words, folder, options.name, speaking=speaking)
+    ident = _keep(options.project, project, read) if project is not None else None
     if out is not None:
         _write(out, read, folder)
     for note in read.notes:
@@ -62,7 +69,8 @@ def run(options: Namespace) -> int:
     rows = [_row(n, side) for n, side in enumerate(read.conversation.sides)]
     lines = [f"{read.conversation.name}: {read.conversation.length:.1f} s"]
     for row in rows:
-        lines.append(f"  {row['name']}: {row['words']} words")
+        language = f", {row['language']}" if row["language"] else ""
+        lines.append(f"  {row['name']}: {row['words']} words{language}")
         for kind in ("clause", "response", "hesitation"):
             found = row[kind]
             more = (
@@ -96,17 +104,24 @@ def run(options: Namespace) -> int:
 
 
 def _row(n: int, side: Side) -> dict[str, Any]:
+    from bisect import bisect_left
     from statistics import fmean, pstdev
 
+    middles = [(w.start + w.end) / 2 for w in side.words]
     out: dict[str, Any] = {
         "name": side.name or f"speaker {n + 1}",
         "audio": side.audio,
         "channel": side.channel,
         "words": len(side.words),
+        "language": side.language or None,
     }
     for kind in ("clause", "response", "hesitation"):
         some = [s for s in side.segments if s.kind == kind]
-        sizes = [len(s.text.split()) for s in some if s.text]
+        sizes = [  # a text without blanks has as many words as were transcribed
+            max(len(s.text.split()), bisect_left(middles, s.end) - bisect_left(middles, s.start))
+            for s in some
+            if s.text
+        ]
         out[kind] = {
             "count": len(some),
             "seconds": round(sum(s.end - s.start for s in some), 3),
@@ -116,12 +131,11 @@ def _row(n: int, side: Side) -> dict[str, Any]:
     return out
 
 
-def _keep(path: Path, read: Read) -> str:
-    from app.cli.command_output import opened
+def _keep(path: Path, project: Project, read: Read) -> str:
     from metagraph.formats.store import save_project
     from metagraph.graph.conversation_edits import add_conversation
 
-    project, ident = add_conversation(opened(path), read.conversation)
+    project, ident = add_conversation(project, read.conversation)
     save_project(project, path, path)
     return ident
 

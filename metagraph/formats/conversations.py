@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,13 +14,15 @@ from numpy.typing import NDArray
 
 from metagraph.budgets import CONVERSATION_SECONDS as LONGEST
 from metagraph.errors import FileError
+from metagraph.formats.conversation_languages import Lists, Speaking, languages_of
 from metagraph.formats.conversation_words import Told, Voice, sides_of, tell_unheard, within
 from metagraph.formats.store import kept_path
 from metagraph.formats.transcript_words import count
 from metagraph.formats.transcripts import read_transcript
-from metagraph.graph.conversation import HESITATIONS, RESPONSES, SHORTEST, Conversation, Segment, Side
+from metagraph.graph.conversation import SHORTEST, UNKNOWN, Conversation, Segment, Side
 from metagraph.speech.activity import HUSH, LEAST, activity
-from metagraph.speech.clauses import peak_of, segments
+from metagraph.speech.clauses import by_sound, peak_of, segments
+from metagraph.speech.language_packs import Language
 from metagraph.speech.pitch import pitch, smooth
 from metagraph.speech.sound import hear, read_recording
 
@@ -57,17 +59,17 @@ def read_conversation(
     transcripts: Sequence[Path] = (),
     folder: Path | None = None,
     name: str | None = None,
-    responses: Collection[str] = RESPONSES,
-    hesitations: Collection[str] = HESITATIONS,
     cancelled: Callable[[], bool] | None = None,
+    speaking: Speaking | None = None,
 ) -> Read:
     """Read a conversation of two.
 
     audio: one file with two channels, the left one side 0's; or two files, one a side; or one with both
     mixed, when a transcript names the speakers. transcripts: one for both sides, or one a side, in the sides'
     order; without any, what is loud tells clauses and pauses. folder: what paths are kept relative to, None
-    for absolute ones. name: the conversation's, else the first file's. responses, hesitations: words and
-    phrases that make a segment one. Where a transcript holds segments, as our exports do, those are kept.
+    for absolute ones. name: the conversation's, else the first file's. speaking: which language, and which
+    words make a segment a response or a hesitation; None for what the words tell. Where a transcript holds
+    segments, as our exports do, those are kept.
 
     Raises FileError, and CancelledError once `cancelled` says so.
     """
@@ -82,14 +84,25 @@ def read_conversation(
     voices = _voices(reading, list(audio), bool(told))
     length = max(_length(v) for v in voices)
     sides = sides_of(reading.notes, voices, told)
-    made = tuple(_side(reading, n, voices, sides[n], folder, responses, hesitations) for n in (0, 1))
+    speaking = speaking if speaking is not None else Speaking()
+    spoken = languages_of(
+        reading.notes, [_called(v, s) for v, s in zip(voices, sides, strict=True)], sides, speaking
+    )
+    lists = tuple(speaking.lists_for(n, spoken[n]) for n in (0, 1))
+    shared = (
+        0 if spoken[0] is not None or spoken[1] is None else 1
+    )  # the side whose lists are the conversation's
+    made = tuple(
+        _side(reading, n, voices, sides[n], folder, spoken[n], lists[n], lists[n] != lists[shared])
+        for n in (0, 1)
+    )
     title = name or Path(audio[0]).stem
     made_of = Conversation(
         name=title[:200],
         length=max(length, SHORTEST),
         sides=made,
-        responses=tuple(responses),
-        hesitations=tuple(hesitations),
+        responses=lists[shared][0],
+        hesitations=lists[shared][1],
     )
     return Read(made_of, tuple(dict.fromkeys(reading.notes)))
 
@@ -239,20 +252,24 @@ def _side(
     voices: Sequence[Voice],
     told: Told,
     folder: Path | None,
-    responses: Collection[str],
-    hesitations: Collection[str],
+    language: Language | None,
+    lists: Lists,
+    own: bool,
 ) -> Side:
+    """own: whether the lists are not those of the conversation."""
     reading.go_on()
     voice, other = voices[n], voices[1 - n]
     mixed = voice is other
-    called = f"{told.name} ({voice.called})" if told.name else voice.called
+    called = _called(voice, told)
     words = within(reading.notes, called, told, _length(voice))
     if told.segments is not None:
         found = _kept(reading, called, told.segments, voice)
     elif words or not mixed:
-        found = segments(
-            words, voice.pitch, voice.heard, responses, hesitations, None if mixed else other.heard
-        )
+        partner = None if mixed else other.heard
+        if language is not None:
+            found = segments(words, voice.pitch, voice.heard, *lists, partner, language)
+        else:
+            found = by_sound(words, voice.pitch, voice.heard, partner)
     else:
         found = ()
     if not words and told.segments is None:
@@ -260,7 +277,20 @@ def _side(
     elif words and not mixed and told.segments is None:
         tell_unheard(reading.notes, called, words, voice, other)
     path = kept_path(voice.path, folder)
-    return Side(name=told.name, audio=path, channel=voice.channel, words=tuple(words), segments=found)
+    return Side(
+        name=told.name,
+        audio=path,
+        channel=voice.channel,
+        language="" if not (words or told.segments) else language.code if language is not None else UNKNOWN,
+        responses=lists[0] if own else None,
+        hesitations=lists[1] if own else None,
+        words=tuple(words),
+        segments=found,
+    )
+
+
+def _called(voice: Voice, told: Told) -> str:
+    return f"{told.name} ({voice.called})" if told.name else voice.called
 
 
 def _kept(reading: _Reading, called: str, given: Sequence[Segment], voice: Voice) -> tuple[Segment, ...]:

@@ -32,7 +32,7 @@ from metagraph.formats.fields import (
 from metagraph.formats.manual_data import manual_data, manual_from
 from metagraph.formats.takes import REPAIRS
 from metagraph.formats.text import as_text
-from metagraph.graph.conversation import Conversation, Segment, Side, Word
+from metagraph.graph.conversation import AUTO, Conversation, Segment, Side, Word
 from metagraph.graph.model import (
     KINDS,
     LAYERS,
@@ -136,6 +136,7 @@ def to_data(project: Project) -> Data:
         "name": project.name,
         "character": project.character,
         **({"hidden": list(project.hidden)} if project.hidden else {}),
+        **({"language": project.language} if project.language != AUTO else {}),
         "next_id": project.next_id,
         "base": sparse(project.base),
         "settings": sparse(project.settings),
@@ -386,6 +387,7 @@ def from_data(data: Any, notes: list[str] | None = None) -> Project:
         manual=manual,
         character=get(data, "character", str, "", None),
         hidden=texts(data, "hidden"),
+        language=get(data, "language", str, "", AUTO),
         next_id=max(get(data, "next_id", int, "", 1), above(*clips, *stance_ids, *action_ids, *manual_ids)),
     )
 

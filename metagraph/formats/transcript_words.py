@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import re
+import unicodedata
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -39,6 +40,10 @@ _SILENT = frozenset(
     )
 )
 _NOISE = re.compile(r"[\[(<{*♪#].*[\])>}*♪#]|[♪♫\W_]+")  # [laughter], (coughs), <noise>: no words
+
+
+# Where writing has no blanks, its stops part what is said: えーと、それは -> えーと、 それは
+_STOPPED = re.compile(r"(?<=[、。，！？；：])(?=[^\s、。，！？；：」』）’”])")
 
 
 @dataclass(frozen=True)
@@ -80,7 +85,7 @@ class Collected:
         if not (abs(start) <= LATEST and abs(end) <= LATEST):
             raise self.fail(f"a word's time is {start:g} to {end:g} s", where)
         words = self.speakers.setdefault(speaker[:200], [])
-        texts = [" ".join(text.split())] if whole else text.split()
+        texts = [" ".join(text.split())] if whole else _STOPPED.sub(" ", text).split()
         texts = [t for t in texts if not is_silent(t)] if not is_silent(text) else []
         if not texts:
             return
@@ -130,7 +135,7 @@ def count(number: int, what: str) -> str:
 
 def is_silent(text: str) -> bool:
     """Whether a label stands for silence or noise, not for a word."""
-    bare = text.strip().casefold()
+    bare = unicodedata.normalize("NFKC", text).strip().casefold()  # （笑）is (笑)
     return bare in _SILENT or (bare != "%hesitation" and _NOISE.fullmatch(bare) is not None)
 
 

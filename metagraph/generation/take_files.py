@@ -22,6 +22,7 @@ from metagraph.budgets import CONVERSATION_SECONDS as LONGEST
 from metagraph.errors import FileError
 from metagraph.files import unforeseen
 from metagraph.formats.clips import digest, find_clip_files, read_clips
+from metagraph.formats.conversation_languages import Speaking
 from metagraph.formats.conversations import SOUNDS, read_conversation
 from metagraph.formats.transcript_words import SUFFIXES as TRANSCRIPTS
 from metagraph.generation.features import RATE, at_rate
@@ -130,10 +131,12 @@ def read_takes(
     tracks: int = 1,
     progress: Callable[[int, Path], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
+    speaking: Speaking | None = None,
 ) -> Batch:
     """Read takes; a bad one fails alone. rig: whose joints count; None: of the skeleton that most of them
     have. roles: of that skeleton, as found unless given. progress: called before each with how many are
-    done. Raises CancelledError once `cancelled` says so.
+    done. speaking: what their words are read in; None for what they tell. Raises CancelledError once
+    `cancelled` says so.
     """
     failures: list[str] = []
     read: list[tuple[TakeFiles, Clip]] = []
@@ -168,7 +171,7 @@ def read_takes(
             progress(done, each.clip)
         assert rig is not None
         try:
-            take = _take(rig, each, clip, tracks, licences)
+            take = _take(rig, each, clip, tracks, licences, speaking)
         except TakeError as error:
             failures.append(str(error))
             continue
@@ -182,8 +185,15 @@ def read_takes(
     return Batch(rig, tuple(takes), tuple(clips), tuple(failures), tuple(dict.fromkeys(notes)))
 
 
-def _take(rig: PoseRig, files: TakeFiles, clip: Clip, tracks: int, licences: dict[Path, str]) -> Take:
-    speech = read_speech(files)
+def _take(
+    rig: PoseRig,
+    files: TakeFiles,
+    clip: Clip,
+    tracks: int,
+    licences: dict[Path, str],
+    speaking: Speaking | None,
+) -> Take:
+    speech = read_speech(files, speaking)
     digests = tuple(digest(p) for p in (files.clip, *files.sounds))
     folder = files.clip.parent
     if folder not in licences:
@@ -195,22 +205,29 @@ def _take(rig: PoseRig, files: TakeFiles, clip: Clip, tracks: int, licences: dic
     return replace(take, notes=(*speech.notes, *take.notes))
 
 
-def read_speech(files: TakeFiles) -> Speech:
-    """Return what is heard with a take. Raises FileError."""
+def read_speech(files: TakeFiles, speaking: Speaking | None = None) -> Speech:
+    """Return what is heard with a take. speaking: what its words are read in; None for what they tell. Raises
+    FileError.
+    """
     stamps = tuple(p.stat().st_mtime_ns for p in (*files.sounds, *files.transcripts) if p.exists())
-    speech = _speech(files.sounds, files.transcripts, stamps)
+    speech = _speech(files.sounds, files.transcripts, stamps, speaking)
     if len(speech.samples) == 2 and files.side == 1:
         return replace(speech, samples=speech.samples[::-1], clipped=speech.clipped[::-1])
     return speech
 
 
 @lru_cache(maxsize=1)  # both sides of a conversation are read one after the other
-def _speech(sounds: tuple[Path, ...], transcripts: tuple[Path, ...], stamps: tuple[int, ...]) -> Speech:
+def _speech(
+    sounds: tuple[Path, ...],
+    transcripts: tuple[Path, ...],
+    stamps: tuple[int, ...],
+    speaking: Speaking | None,
+) -> Speech:
     """stamps: when the files were written."""
     conversation: Conversation | None = None
     notes: tuple[str, ...] = ()
     if transcripts:
-        read = read_conversation(sounds, transcripts)
+        read = read_conversation(sounds, transcripts, speaking=speaking)
         conversation, notes = read.conversation, read.notes
     recordings = [read_recording(p, LONGEST) for p in sounds]
     if len(recordings) > 1:

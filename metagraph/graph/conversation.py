@@ -62,7 +62,9 @@ class Side(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
     channels is its own, from 0; None for all of them mixed. project: path of another project whose graph
     moves this side, None for this one. take: id of the clip that was recorded along with it, from the same
     moment. motion: id of the clip it moves with from the beginning on, instead of a graph: new motion of a
-    motion graph. words: as transcribed, by start. segments: of its own speech, by start, never overlapping,
+    motion graph. language: the code of what it was read in ("de"); "und" where nobody knows, "" where it was
+    never said. responses, hesitations: its own lists, where the two speak different languages; None for the
+    conversation's. words: as transcribed, by start. segments: of its own speech, by start, never overlapping,
     none idle.
     """
 
@@ -72,6 +74,9 @@ class Side(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
     project: str | None = None
     take: str | None = None
     motion: str | None = None
+    language: Annotated[str, Meta(max_length=40)] = ""
+    responses: tuple[_Name, ...] | None = None
+    hesitations: tuple[_Name, ...] | None = None
     words: tuple[Word, ...] = ()
     segments: tuple[Segment, ...] = ()
     rates: Rates = Rates()
@@ -91,8 +96,10 @@ class Side(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
             end = s.end
 
 
-# What short sounds mean; compared without case and punctuation. "%hesitation" is what IBM's transcripts
-# write.
+AUTO = "auto"  # what the words tell
+UNKNOWN = "und"  # the code of a language that nobody knows
+# What short sounds mean where a project says nothing else: the English lists; compared without case and
+# punctuation. "%hesitation" is what IBM's transcripts write.
 RESPONSES = (
     "yes",
     "yeah",
@@ -162,6 +169,15 @@ class Conversation(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid
     distance: Annotated[float, Meta(ge=0.2, le=20)] = 1.3
     seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)] = 1
     blinks: Literal["life", "peaks"] = "life"
+
+
+def lists_of(conversation: Conversation, side: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return a side's responses and hesitations: its own, else the conversation's."""
+    of = conversation.sides[side]
+    return (
+        conversation.responses if of.responses is None else of.responses,
+        conversation.hesitations if of.hesitations is None else of.hesitations,
+    )
 
 
 def side_name(conversation: Conversation, side: int) -> str:

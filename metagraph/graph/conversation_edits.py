@@ -8,18 +8,30 @@ it is labelled: labelled back, nothing is lost.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
 import msgspec
 
-from metagraph.graph.conversation import SHORTEST, SPOKEN, Conversation, Rates, Segment, Side, Sound, Word
+from metagraph.graph.conversation import (
+    AUTO,
+    SHORTEST,
+    SPOKEN,
+    Conversation,
+    Rates,
+    Segment,
+    Side,
+    Sound,
+    Word,
+    lists_of,
+)
 from metagraph.graph.edits import EditError, free_name
 from metagraph.graph.model import Project
+from metagraph.graph.vocabulary import joined, kinds_of_words, tokens
 
 _DIGITS = 3  # of seconds: what is dragged lands on milliseconds
+Lists = tuple[tuple[str, ...], tuple[str, ...]]  # responses and hesitations
 Place = tuple[int, int]  # side, and the place among its segments
 
 
@@ -73,51 +85,57 @@ def set_rates(project: Project, ident: str, side: int, **rates: float) -> Projec
 
 
 def set_word_lists(
-    project: Project, ident: str, responses: Iterable[str], hesitations: Iterable[str]
+    project: Project,
+    ident: str,
+    responses: Iterable[str],
+    hesitations: Iterable[str],
+    side: int | None = None,
+    language: str | None = None,
 ) -> Project:
     """Set which words make a segment a response or a hesitation, and label the segments anew by them.
 
-    What was labelled otherwise than the lists before would, was labelled by hand, and stays as it is; so does
-    what has no words. Only whole segments are labelled: none is parted or joined.
+    side: the one whose own lists they are; None: the lists of both, which have none of their own then.
+    language: the code of what they are of, None to leave it. What was labelled otherwise than the lists
+    before would, was labelled by hand, and stays as it is; so does what has no words. Only whole segments are
+    labelled: none is parted or joined. Raises EditError.
     """
     of = _conversation(project, ident)
     lists = _listed(responses), _listed(hesitations)
+    changes: dict[str, Any] = {} if language is None else {"language": language}
+    sides = list(of.sides)
+    for n, one in enumerate(of.sides):
+        if side not in (None, n):
+            continue
+        before = lists_of(of, n)
+        own = dict(zip(("responses", "hesitations"), (None, None) if side is None else lists, strict=True))
+        segments = tuple(_labelled(s, before, lists) for s in one.segments)
+        sides[n] = _valid(one, {**own, **changes}, segments=segments)
+    both = {"responses": lists[0], "hesitations": lists[1]} if side is None else {}
+    return _with(project, ident, _valid(of, both, sides=tuple(sides)))
 
-    def anew(segment: Segment) -> Segment:
-        if not spoken_words(segment.text):
-            return segment
-        before, after = kind_of(segment.text, of.responses, of.hesitations), kind_of(segment.text, *lists)
-        return msgspec.structs.replace(segment, kind=after) if segment.kind == before != after else segment
 
-    sides = tuple(msgspec.structs.replace(s, segments=tuple(map(anew, s.segments))) for s in of.sides)
-    return _with(project, ident, _valid(of, {"responses": lists[0], "hesitations": lists[1]}, sides=sides))
+def _labelled(segment: Segment, before: Lists, after: Lists) -> Segment:
+    """Return a segment as other lists label it, if it is what the lists before said."""
+    if not tokens(segment.text):
+        return segment
+    was, now = kind_of(segment.text, *before), kind_of(segment.text, *after)
+    return msgspec.structs.replace(segment, kind=now) if segment.kind == was != now else segment
+
+
+def set_language(project: Project, language: str) -> Project:
+    """Set what conversations are read in: a code, or `AUTO`."""
+    return replace(project, language=_clean(language) or AUTO)
 
 
 def kind_of(text: str, responses: Collection[str], hesitations: Collection[str]) -> Sound:
     """Return what words are by two lists: a hesitation or a response where nothing else is said, else a
     clause. Said of both, it is a response: the partner is answered.
     """
-    words = spoken_words(text)
-    answers, pauses = ({spoken_words(x) for x in some} - {()} for some in (responses, hesitations))
-    if not words or not _made_of(words, answers | pauses):
+    words = [tokens(text)]
+    answers, pauses, either, _ = kinds_of_words(tuple(responses), tuple(hesitations))
+    if not either.made_of(words):
         return "clause"
-    return "hesitation" if _made_of(words, pauses) else "response"
-
-
-def spoken_words(text: str) -> tuple[str, ...]:
-    """Return words as they are compared: without case, hyphens and punctuation; "%" of "%hesitation"
-    stays.
-    """
-    return tuple(x for x in (re.sub(r"[^\w%']", "", w) for w in re.split(r"[\s\-‐‑]+", text.casefold())) if x)
-
-
-def _made_of(words: tuple[str, ...], phrases: Collection[tuple[str, ...]]) -> bool:
-    """Whether words are nothing but some of the phrases, one after another."""
-    reached = {0}
-    for n in range(len(words)):
-        if n in reached:
-            reached |= {n + len(p) for p in phrases if words[n : n + len(p)] == p}
-    return len(words) in reached
+    return "hesitation" if pauses.made_of(words) and not answers.made_of(words) else "response"
 
 
 def _listed(words: Iterable[str]) -> tuple[str, ...]:
@@ -204,7 +222,7 @@ def merge_segments(project: Project, ident: str, side: int, first: int, last: in
         raise EditError("there is no segment after this one to merge it with")
     kind: Sound = "clause" if any(s.kind == "clause" for s in some) else some[0].kind
     peaks = [s.peak for s in sorted(some, key=lambda s: s.kind != "clause") if s.peak is not None]
-    text = " ".join(s.text for s in some if s.text)
+    text = joined(s.text for s in some if s.text)
     made = Segment(kind, some[0].start, some[-1].end, peaks[0] if peaks else None, text)
     return _replaced(project, ident, side, first, last + 1, (made,))
 
@@ -287,7 +305,7 @@ def _spoken(kind: Sound) -> None:
 
 def _text(words: Sequence[Word], start: float, end: float) -> str:
     """Return the words whose middles lie in a stretch."""
-    return " ".join(w.text for w in words if start <= (w.start + w.end) / 2 < end)
+    return joined(w.text for w in words if start <= (w.start + w.end) / 2 < end)
 
 
 def _clean(words: str) -> str:

@@ -28,6 +28,7 @@ _REST = (
     "parts",
     "markov",
     "settings",
+    "language",
     "life",
     "face",
     "tiers",

@@ -11,7 +11,7 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
-from metagraph.graph.conversation import Conversation
+from metagraph.graph.conversation import AUTO, Conversation
 from metagraph.graph.life import Face, Life
 from metagraph.graph.manual import Alias, Link, Manual, State
 from metagraph.graph.requests import Line, Performance, Point
@@ -360,7 +360,8 @@ class Project:
     named places to look at, metres. lines: the dialogue an agent calls by id. performances, conversations:
     those kept, by id. tiers: annotation tier -> what it was last read as. notes: to read, by the id of the
     action they are on, "" for the project's own. joint_maps: how clips of other
-    skeletons are retargeted, by `joint_map.fingerprint` of theirs. manual: state machines drawn by hand, of
+    skeletons are retargeted, by `joint_map.fingerprint` of theirs. language: what conversations are read in,
+    a code ("de"), or "auto" for what their words tell. manual: state machines drawn by hand, of
     the layers that have one. voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as
     read; never saved. body: what of it breathes and looks (`playback.life.body.Body`) as an export says; None
     to find it. Never saved.
@@ -383,6 +384,7 @@ class Project:
     lines: Mapping[str, Line] = field(default_factory=dict)
     performances: Mapping[str, Performance] = field(default_factory=dict)
     conversations: Mapping[str, Conversation] = field(default_factory=dict)
+    language: str = AUTO
     tiers: Mapping[str, str] = field(default_factory=dict)
     labels: Mapping[str, str] = field(default_factory=dict)
     notes: Mapping[str, str] = field(default_factory=dict)

@@ -8,8 +8,10 @@ and where one speaks on a little later; parts of about four words are preferred.
 
 A response is a turn, pauses around it, that is made of response words alone: a "yes" within a sentence is
 part of the sentence. Hesitation words are hesitations wherever they stand; those that also mean something
-(`vocabulary.LEXICAL`: "well", "like", "you know") only where they stand alone, next to another hesitation, or
-before a pause after which the same speaker goes on.
+("well", "like", "you know") only where they stand alone, next to another hesitation, or before a pause after
+which the same speaker goes on. What is both ("mh", 嗯) hesitates where the same speaker soon goes on.
+
+Which words these are, a language pack says (`language_packs`); where the language is not known, sound tells.
 """
 
 from __future__ import annotations
@@ -20,23 +22,26 @@ from itertools import pairwise, zip_longest
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace
 from numpy.typing import NDArray
 
-from metagraph.graph.conversation import HESITATIONS, RESPONSES, SHORTEST, Segment, Spoken, Word
+from metagraph.graph.conversation import SHORTEST, Segment, Spoken, Word
+from metagraph.graph.vocabulary import Vocabulary, joined, kinds_of_words, tokens
 from metagraph.speech.activity import PAUSE, Stretch, activity
+from metagraph.speech.language_packs import Language, english
 from metagraph.speech.pitch import Pitch, peaks, smooth
 from metagraph.speech.sound import HeardSound
-from metagraph.speech.stress import parted, stresses
-from metagraph.speech.vocabulary import LEXICAL_PHRASES, Vocabulary, tokens
+from metagraph.speech.stress import CLOSED, parted, stresses
 
 Array = NDArray[Any]
 
 HOLDS = 1.5  # seconds within which one who hesitates goes on
+SOON = 0.8  # seconds within which what one says goes on as if without a pause
 LONGEST_RESPONSE = 2.5  # seconds a response lasts at most
 BURST = 0.6  # seconds: a sound so short while the partner talks is a response, where there are no words
 AROUND = 0.5  # seconds of one's own silence before and behind it
 LONGEST_CLAUSE = 3.5  # seconds: where there are no words, longer ones are parted at their softest
-_ENDS = (".", "?", "!", ";", ":", "…")
+_ASKED = (".", "?", "!", "。", "？", "！", "।", "؟", "．")
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,26 +57,70 @@ def segments(
     words: Sequence[Word],
     pitch: Pitch,
     heard: HeardSound,
-    responses: Collection[str] = RESPONSES,
-    hesitations: Collection[str] = HESITATIONS,
+    responses: Collection[str] | None = None,
+    hesitations: Collection[str] | None = None,
     partner: HeardSound | None = None,
+    language: Language | None = None,
 ) -> tuple[Segment, ...]:
     """Return one side's clauses, responses and hesitations, by start, never overlapping.
 
     words: as transcribed, by start. pitch, heard: of the side's own channel. partner: of the other's, where
-    that is another. Without words, what is loud tells (`activity.activity`): what pauses part is a clause, a
-    short sound while the partner talks a response; hesitations are not found then.
+    that is another. responses, hesitations: instead of the language's own lists. language: None for English.
+    Without words, `by_sound` tells.
     """
     words = in_order(words, heard.duration)
-    tones = smooth(pitch)
     if not words:
-        return _by_loudness(pitch, tones, heard, partner)
+        return by_sound(words, pitch, heard, partner)
+    spoken = language if language is not None else english()
+    lists = [
+        tuple(own if some is None else some)
+        for own, some in ((spoken.responses, responses), (spoken.hesitations, hesitations))
+    ]
+    answers, pauses, _, both = kinds_of_words(lists[0], lists[1])
+    tones = smooth(pitch)
     said = [tokens(w.text) for w in words]
+    found = _parts(words, said, answers, pauses, both, spoken.lexical)
+    return _segments(words, said, found, pitch, tones, heard, spoken)
+
+
+def by_sound(
+    words: Sequence[Word], pitch: Pitch, heard: HeardSound, partner: HeardSound | None
+) -> tuple[Segment, ...]:
+    """Return one side's clauses and responses without understanding a word: there are none, or nobody knows
+    their language. Hesitations are not found then.
+
+    What is loud tells (`activity.activity`): what pauses part is a clause, a short sound while the partner
+    talks a response. Where a channel is shared or nothing stands out of it, words tell when is spoken.
+    """
+    words, tones = in_order(words, heard.duration), smooth(pitch)
+    found = _by_loudness(pitch, tones, heard, partner) if partner is not None or not words else ()
+    if found or not words:
+        return tuple(
+            replace(s, text=joined(w.text for w in words if s.start <= (w.start + w.end) / 2 < s.end))
+            for s in found
+        )
+    said = [tokens(w.text) for w in words]
+    return _segments(
+        words, said, [_Part("clause", a, b) for a, b in _turns(words)], pitch, tones, heard, None
+    )
+
+
+def _segments(
+    words: Sequence[Word],
+    said: Sequence[tuple[str, ...]],
+    parts: Sequence[_Part],
+    pitch: Pitch,
+    tones: Array,
+    heard: HeardSound,
+    language: Language | None,
+) -> tuple[Segment, ...]:
+    """Return parts as segments, clauses parted further by stress."""
+    stress = stresses(words, said, tones, heard, language)
     out: list[Segment] = []
-    for part in _parts(words, said, Vocabulary(responses), Vocabulary(hesitations)):
+    for part in parts:
         groups = [(part.first, part.last)]
         if part.kind == "clause":
-            groups = parted(words, said, stresses(words, said, tones, heard), part.first, part.last)
+            groups = parted(words, said, stress, part.first, part.last, language)
         for first, last in groups:
             out.append(_segment(part.kind, words[first:last], pitch, tones, heard))
     return tuple(out)
@@ -104,7 +153,7 @@ def _segment(kind: Spoken, words: Sequence[Word], pitch: Pitch, tones: Array, he
         start,
         end,
         peak_of(pitch, tones, heard, start, end) if kind == "clause" else None,
-        " ".join(w.text for w in words),
+        joined(w.text for w in words),
     )
 
 
@@ -128,38 +177,41 @@ def peak_of(pitch: Pitch, tones: Array, heard: HeardSound, start: float, end: fl
 
 
 def _parts(
-    words: Sequence[Word], said: Sequence[tuple[str, ...]], responses: Vocabulary, hesitations: Vocabulary
+    words: Sequence[Word],
+    said: Sequence[tuple[str, ...]],
+    responses: Vocabulary,
+    hesitations: Vocabulary,
+    both: Vocabulary,
+    lexical: Vocabulary,
 ) -> list[_Part]:
     """Return the words in responses, hesitations and runs between pauses that clauses are made of, in
     order.
     """
     out: list[_Part] = []
     for first, last in _turns(words):
-        if (
-            _all_of(said, first, last, responses)
-            and words[last - 1].end - words[first].start <= LONGEST_RESPONSE
-        ):
+        answers = responses.made_of(said[first:last]) and _answers(words, first, last)
+        whole = tuple(t for w in said[first:last] for t in w)
+        unsure = answers and (whole in hesitations or both.made_of(said[first:last]))
+        if unsure and _goes_on(words, first, last):
+            out.append(_Part("hesitation", first, last))
+        elif answers:
             out.append(_Part("response", first, last))
         else:
-            out += _hesitating(words, said, first, last, responses, hesitations)
+            out += _hesitating(words, said, first, last, responses, hesitations, lexical)
     return out
+
+
+def _goes_on(words: Sequence[Word], first: int, last: int) -> bool:
+    """Whether the same speaker goes on at once after words, or after a while having spoken just before."""
+    after = words[last].start - words[last - 1].end if last < len(words) else np.inf
+    before = words[first].start - words[first - 1].end if first else np.inf
+    return bool(after <= SOON or max(before, after) <= HOLDS)
 
 
 def _turns(words: Sequence[Word]) -> list[tuple[int, int]]:
     """Return runs of words without a pause between them."""
     edges = [0, *(n for n in range(1, len(words)) if words[n].start - words[n - 1].end >= PAUSE), len(words)]
     return [(a, b) for a, b in pairwise(edges) if a < b]
-
-
-def _all_of(said: Sequence[tuple[str, ...]], first: int, last: int, phrases: Vocabulary) -> bool:
-    """Return whether words are phrases and nothing else."""
-    n = first
-    while n < last:
-        size = phrases.at(said[:last], n)
-        if not size:
-            return False
-        n += size
-    return last > first
 
 
 def _hesitating(
@@ -169,6 +221,7 @@ def _hesitating(
     last: int,
     responses: Vocabulary,
     hesitations: Vocabulary,
+    lexical: Vocabulary,
 ) -> list[_Part]:
     """Return a turn in hesitations and what is between them; what is between, if it is response words alone,
     is a response.
@@ -188,7 +241,7 @@ def _hesitating(
         size = marks[n - first]
         if (
             size
-            and tuple(t for w in said[n : n + size] for t in w) in LEXICAL_PHRASES
+            and lexical.is_plainly(tuple(t for w in said[n : n + size] for t in w))
             and not _hangs(words, n, size, first, last, marks)
         ):
             marks[n - first] = 0
@@ -200,7 +253,7 @@ def _hesitating(
             n += 1
             continue
         if n > begin:
-            alone = _all_of(said, begin, n, responses) and (n < last or begin > first)
+            alone = responses.made_of(said[begin:n]) and (n < last or begin > first)
             out.append(_Part("response" if alone and _answers(words, begin, n) else "clause", begin, n))
         if n < last:
             if out and out[-1].kind == "hesitation" and out[-1].last == n:
@@ -218,7 +271,7 @@ def _hangs(words: Sequence[Word], n: int, size: int, first: int, last: int, mark
     begins, ends = n == first, n + size == last
     leans = not ends and marks[n + size - first] > 0
     goes_on = n + size < len(words) and words[n + size].start - words[n + size - 1].end <= HOLDS
-    asked = words[n + size - 1].text.rstrip("\"')”»").endswith(_ENDS[:3])
+    asked = words[n + size - 1].text.rstrip(CLOSED).endswith(_ASKED)
     if begins and ends:
         return True
     return (

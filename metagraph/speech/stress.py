@@ -1,4 +1,6 @@
-"""Which words are stressed, and how a run of words is parted so that each part has one that is."""
+"""Which words are stressed, and how a run of words is parted so that each part has one that is. What a
+language's small words are, its pack says; of an unknown one, all are alike.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.conversation import Word
+from metagraph.speech.language_packs import Language
 from metagraph.speech.sound import HeardSound
 
 Array = NDArray[Any]
@@ -18,28 +21,9 @@ MOST = 9  # words of a clause
 EACH = 0.5  # what a clause costs by itself: rather fewer than more
 
 
-def _set(text: str) -> frozenset[str]:
-    return frozenset(text.split())
-
-
-# Words that are hardly ever stressed; clauses begin with them, and do not end with them.
-SMALL = _set("""
-    a an the i you he she it we they me him her us them my your his its our their this that these those there here who which what
-    and or but so if as than then because when while where though until since before after of in on at to for from with by about into
-    over up out off down through is am are was were be been being do does did have has had can could will would shall should may might
-    must not just it's i'm you're he's she's we're they're that's i've you've we've they've i'll you'll he'll she'll we'll they'll i'd
-    don't doesn't didn't isn't wasn't can't couldn't won't
-""")
-# What a new thought begins with.
-_JOINING = _set("""
-    and or but so because when while where though although unless whether until since before after if that which who i he she we they it
-    there from for
-""")
-# Small words that rather end what is before them than begin what follows.
-_TRAILING = _set("me him her us them there here up out off down not")
-_INSIDE = _set(
-    "of than is was are were be been do does did have has had can could will would"
-)  # of what is under way already
+ENDS = (".", "?", "!", ";", ":", "…", "—", "。", "？", "！", "；", "：", "।", "؟", "．")  # of a sentence
+PAUSED = (",", "–", "-", "、", "，", "،")
+CLOSED = "\"')”»’」』）"  # what may stand behind them
 STRONG = 1.6  # how stressed a word is that stands out
 _CONTENT = (
     1.2  # how much a word that means something outweighs a small one, in deviations of loudness or pitch
@@ -47,7 +31,11 @@ _CONTENT = (
 
 
 def stresses(
-    words: Sequence[Word], said: Sequence[tuple[str, ...]], tones: Array, heard: HeardSound
+    words: Sequence[Word],
+    said: Sequence[tuple[str, ...]],
+    tones: Array,
+    heard: HeardSound,
+    language: Language | None,
 ) -> Array:
     """Return how strongly each word is stressed `[W]`, about -3..5: its F0 peak and loudness, each compared
     with the side's other words, how long it lasts, and whether it is one that usually is. tones: semitones
@@ -63,7 +51,9 @@ def stresses(
         if len(heard.level[part]):
             loudest[n] = heard.level[part].max()
     length = np.log([max(w.end - w.start, 0.02) for w in words])
-    meant = np.array([any(t not in SMALL for t in s) for s in said], float)
+    meant = np.array(
+        [language is None or any(not language.is_small(t) for t in language.parted(s)) for s in said], float
+    )
     return np.asarray(
         0.8 * _standing(highest) + 0.6 * _standing(loudest) + 0.5 * _standing(length) + _CONTENT * meant
     )
@@ -80,20 +70,30 @@ def _standing(values: Array) -> Array:
 
 
 def parted(
-    words: Sequence[Word], said: Sequence[tuple[str, ...]], stress: Array, first: int, last: int
+    words: Sequence[Word],
+    said: Sequence[tuple[str, ...]],
+    stress: Array,
+    first: int,
+    last: int,
+    language: Language | None,
 ) -> list[tuple[int, int]]:
     """Return the words from `first` to before `last` in clauses (from, to before): the cheapest way to part
     them so that each has one stressed word and about `USUAL` words, found exactly.
     """
     count = last - first
+    parts = [language.parted(s) if language is not None else s for s in said[first:last]]
+    sizes = [language.size(s) if language is not None else 1.0 for s in parts]
     best = [0.0] + [np.inf] * count  # cost of the words up to here
     came = [0] * (count + 1)
+    low = 0
     for end in range(1, count + 1):
-        for begin in range(max(0, end - MOST), end):
+        while low < end - 1 and sum(sizes[low:end]) > MOST:
+            low += 1
+        for begin in range(low, end):
             cost = (
                 best[begin]
-                + _cost(stress[first + begin : first + end])
-                - (_break(words, said, first + begin) if begin else 0.0)
+                + _cost(stress[first + begin : first + end], sum(sizes[begin:end]))
+                - (_break(words, parts, first, begin, language) if begin else 0.0)
             )
             if cost < best[end]:
                 best[end], came[end] = cost, begin
@@ -105,31 +105,39 @@ def parted(
     return out[::-1]
 
 
-def _cost(stress: Array) -> float:
+def _cost(stress: Array, size: float) -> float:
     """Return what a clause costs: an unusual length, a second stress as strong as the first, no stress at
     all.
     """
     ordered = np.sort(stress)[::-1]
     second = float(np.maximum(ordered[1:4] - max(STRONG, ordered[0] - 1.0), 0).sum())
     none = max(0.0, 1.0 - float(ordered[0]))
-    return float(EACH + ((len(stress) - USUAL) / SPREAD) ** 2 + 0.5 * second + 0.8 * none)
+    return float(EACH + ((size - USUAL) / SPREAD) ** 2 + 0.5 * second + 0.8 * none)
 
 
-def _break(words: Sequence[Word], said: Sequence[tuple[str, ...]], n: int) -> float:
-    """Return how well a clause begins at word n; below 0, rather not."""
-    before, gap = words[n - 1], words[n].start - words[n - 1].end
+def _break(
+    words: Sequence[Word],
+    parts: Sequence[tuple[str, ...]],
+    first: int,
+    n: int,
+    language: Language | None,
+) -> float:
+    """Return how well a clause begins at the n-th of the parts, words from `first` on; below 0, rather not."""
+    before, gap = words[first + n - 1], words[first + n].start - words[first + n - 1].end
     out = min(gap / 0.12, 2.0)
-    if (text := before.text.rstrip("\"')”»")).endswith((".", "?", "!", ";", ":", "…", "—")):
+    if (text := before.text.rstrip(CLOSED)).endswith(ENDS):
         return out + 3.0
-    if text.endswith((",", "–", "-")):
+    if text.endswith(PAUSED):
         return out + 1.8
-    last, first = said[n - 1][-1:], said[n][:1]
-    if not last or not first:
+    if language is None or not parts[n - 1] or not parts[n]:
         return out
-    if last[0] in SMALL and last[0] not in _TRAILING:
-        return out - (1.0 if first[0] in _JOINING else 2.0)  # "of | the house"
-    if first[0] in _TRAILING:
+    last, now = parts[n - 1][-1], parts[n][0]
+    if last in language.closing:
+        out += 1.0
+    if last in language.small and last not in language.trailing:
+        return out - (1.0 if now in language.joining else 2.0)  # "of | the house"
+    if now in language.trailing:
         return out - 1.5  # "told | him"
-    if first[0] in _INSIDE:
+    if now in language.inside:
         return out - 0.4
-    return out + (1.3 if first[0] in _JOINING else 0.5 if first[0] in SMALL else -0.9)
+    return out + (1.3 if now in language.joining else 0.5 if now in language.small else -0.9)

@@ -22,6 +22,7 @@ import numpy as np  # noqa: E402
 from msgspec.structs import replace as changed  # noqa: E402
 
 from app.cli.command_output import opened  # noqa: E402
+from metagraph.formats.conversation_languages import Speaking  # noqa: E402
 from metagraph.formats.conversations import read_conversation  # noqa: E402
 from metagraph.generation.evaluation import Manner, generated  # noqa: E402
 from metagraph.generation.features import conversation_activity, features, frames_of  # noqa: E402
@@ -89,7 +90,9 @@ def takes(model: Model, folder: Path) -> tuple[list[Take], list[Take]]:
         sound, said = folder / f"{language}.wav", folder / f"{language}.json"
         maker.write_sound(sound, talk.samples, talk.rate)
         maker.write_words(said, talk)
-        read = changed(read_conversation([sound], [said], folder, language).conversation, seed=n)
+        read = changed(
+            read_conversation([sound], [said], folder, language, speaking=Speaking("en")).conversation, seed=n
+        )
         for side in (0, 1):
             samples, _ = side_sound(read, side, folder)
             count = frames_of(samples.shape[1])

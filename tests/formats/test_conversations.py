@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from metagraph.errors import FileError
+from metagraph.formats.conversation_languages import Speaking
 from metagraph.formats.conversation_writers import write_elan, write_json, write_textgrid
 from metagraph.formats.conversations import Read, read_conversation
 from metagraph.graph.conversation import Segment, Side
@@ -143,7 +144,9 @@ def test_one_speakers_words_leave_the_other_to_loudness(files: tuple[Path, Path]
 
 
 def test_the_lists_are_kept_with_the_conversation(files: tuple[Path, Path]) -> None:
-    made = read_conversation([files[0]], [files[1]], responses=("wow",), hesitations=()).conversation
+    made = read_conversation(
+        [files[0]], [files[1]], speaking=Speaking(lists=((("wow",), ()),) * 2)
+    ).conversation
     assert (made.responses, made.hesitations) == (("wow",), ()) and counts(made.sides[1])["response"] == 1
 
 

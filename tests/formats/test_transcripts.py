@@ -248,6 +248,26 @@ def test_srt_names_before_colons_are_speakers(read: Reader) -> None:
     assert rows(found) == {"ANN": [("Hi", 1, 2)], "Ben": [("Yes", 2.5, 3)]}
 
 
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [("王：", "李："), ("田中: ", "鈴木: "), ("प्रिया: ", "रवि: "), ("Zoe\u0301: ", "I\u00f1igo: ")],
+)
+def test_names_in_any_writing_are_speakers(read: Reader, first: str, second: str) -> None:
+    cues = [
+        f"{n}\n00:00:0{n},000 --> 00:00:0{n},900\n{(first, second)[n % 2]}えーと、それは\n" for n in range(4)
+    ]
+    got = read("\n".join(cues))
+    assert set(got.speakers) == {first.strip(" ：:"), second.strip(" ：:")}
+    assert [w.text for w in got.speakers[second.strip(" ：:")]] == ["えーと、", "それは"] * 2
+
+
+def test_stops_part_what_has_no_blanks_and_wide_brackets_hold_noise(read: Reader) -> None:
+    text = (
+        "1\n00:00:01,000 --> 00:00:03,000\n那个，我觉得还不错。\n\n2\n00:00:04,000 --> 00:00:05,000\n（笑）\n"
+    )
+    assert [t for t, *_ in rows(read(text))[""]] == ["那个，", "我觉得还不错。"]
+
+
 def test_one_colon_makes_no_speaker(read: Reader) -> None:
     found = read("1\n00:00:01,000 --> 00:00:02,000\nNote: this\n2\n00:00:03,000 --> 00:00:04,000\nis all\n")
     assert [w.text for w in found.speakers[""]] == ["Note:", "this", "is", "all"]

@@ -189,6 +189,7 @@ def _readers() -> dict[str, Fuzzed]:
     from metagraph.formats.fbx import read_fbx_clips
     from metagraph.formats.gltf import has_skinned_mesh, morph_targets, read_character, vrm_roles
     from metagraph.formats.keypoints import read_keypoints
+    from metagraph.formats.language_files import read_pack
     from metagraph.formats.recovery import read_journal
     from metagraph.formats.store import read_project
     from metagraph.formats.transcripts import read_transcript
@@ -267,6 +268,7 @@ def _readers() -> dict[str, Fuzzed]:
         "elan": Fuzzed(read_elan, _only(".eaf"), XML, spoilt_words),
         "subtitles": Fuzzed(read_transcript, _only(".vtt", ".srt", ".ctm"), (b" --> ", b"<v Ann>", b"WEBVTT"), spoilt_words),
         "transcript": Fuzzed(read_transcript, _only(".json", ".whisper", ".ibm"), JSON, spoilt_json),
+        "words": Fuzzed(read_pack, _fixed(sv_yaml=b"code: sv\nname: x\nresponses: [ja, 'n\xc3\xa5']\nsmall: i, den\n"), (b"&a", b"{", b"- ", b", "), spoilt_words),
         "sound": Fuzzed(read_voice, _wav, (b"RIFF", b"fmt ", b"data", b"OggS", b"fLaC"), None),
         "keypoints": Fuzzed(read_keypoints, _keypoints, JSON, spoilt_json),
         "project": Fuzzed(read_project, _project, (b"&a", b"*a", b"!!x", b"{", b"[", b"- ", b"? "), spoilt_words),

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.graph import conversation_edits as c
-from metagraph.graph.conversation import SHORTEST, SPOKEN, Conversation, Segment, Side, Word
+from metagraph.graph.conversation import SHORTEST, SPOKEN, Conversation, Segment, Side, Word, lists_of
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
 
@@ -162,6 +162,32 @@ def test_word_lists_label_anew_but_not_what_was_labelled_by_hand() -> None:
         "clause",
         "response",
     ]
+
+
+def test_each_side_may_have_lists_and_a_language_of_its_own() -> None:
+    before, ident = project()
+    after = c.set_word_lists(before, ident, ["ja"], ["yeah"], 1, "de")
+    of = after.conversations[ident]
+    assert lists_of(of, 1) == (("ja",), ("yeah",)) and lists_of(of, 0) == lists_of(
+        before.conversations[ident], 0
+    )
+    assert [s.language for s in of.sides] == ["", "de"] and segments(after, ident, 1)[0].kind == "hesitation"
+    assert segments(after, ident) == segments(before, ident)
+    both = c.set_word_lists(after, ident, ["yeah"], ["um"], None, "en")
+    assert [lists_of(both.conversations[ident], n) for n in (0, 1)] == [(("yeah",), ("um",))] * 2
+    assert segments(both, ident, 1)[0].kind == "response"
+    with pytest.raises(EditError):
+        c.set_word_lists(before, ident, ["x" * 201], [], 0)
+
+
+def test_what_is_said_of_both_lists_answers() -> None:
+    assert c.kind_of("嗯", ["嗯", "对"], ["嗯", "呃"]) == "response"
+    assert c.kind_of("हाँ।", ["हाँ"], []) == "response" and c.kind_of("ह", ["हाँ"], []) == "clause"
+
+
+def test_the_language_conversations_are_read_in_is_kept() -> None:
+    assert Project().language == "auto" and c.set_language(Project(), "de").language == "de"
+    assert c.set_language(Project(), " ").language == "auto"
 
 
 def test_words_are_compared_without_case_hyphens_and_punctuation() -> None:

@@ -12,10 +12,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph.conversation import HESITATIONS, RESPONSES, Segment, Side, Word
+from metagraph.graph.vocabulary import Vocabulary, tokens
 from metagraph.speech.clauses import in_order, segments
 from metagraph.speech.pitch import Pitch, pitch
 from metagraph.speech.sound import HeardSound, hear
-from metagraph.speech.vocabulary import Vocabulary, tokens
 from tests.speech import talk
 
 HEARD = hear(0.001 * np.random.default_rng(0).standard_normal(16000 * 30), 16000)

@@ -108,7 +108,7 @@ def graph_again(shell: Shell) -> None:
 def word_lists(shell: Shell) -> None:
     found = on_stage(shell)
     if found is not None:
-        from app.features.conversation.conversation_settings import WordsDialog
+        from app.features.conversation.word_lists import WordsDialog
 
         WordsDialog(shell.document, *found, shell.widget).open()
 

@@ -16,8 +16,6 @@ from PySide6.QtWidgets import (
     QDialog,
     QDialogButtonBox,
     QFileDialog,
-    QFrame,
-    QGridLayout,
     QHBoxLayout,
     QLabel,
     QLineEdit,
@@ -28,10 +26,10 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.conversation.conversation_panel import PLURALS
-from app.features.conversation.conversation_settings import WordLists, caption
-from app.look.plural import many
-from app.look.theme import SOUND_MARKS, strengthen, theme
+from app.features.conversation.conversation_settings import caption
+from app.features.conversation.speaker_card import Card
+from app.features.conversation.word_lists import LanguageBox, Lists, WordLists, language_name
+from app.look.theme import strengthen, theme
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.project.speech_files import TRANSCRIPTS, facts_of
@@ -39,7 +37,7 @@ from app.stage.session import Session
 from app.widgets.act_strip import clock
 from app.widgets.making import make_widget
 from metagraph.graph import conversation_edits
-from metagraph.graph.conversation import HESITATIONS, RESPONSES, SPOKEN, Conversation, Side
+from metagraph.graph.conversation import AUTO, Conversation, Side, lists_of, side_name
 from metagraph.graph.model import Project
 
 if TYPE_CHECKING:
@@ -48,46 +46,6 @@ if TYPE_CHECKING:
 TYPED = 700  # milliseconds of quiet after a word list was typed in before the sound is read by it
 NUMBERED = re.compile(r"speaker[ _-]?\d+", re.IGNORECASE)  # names a program gave; ours are as good
 MOST = 6  # notes that are shown; more of them do not help
-
-
-class Card(QFrame):
-    """One of the two: name, sound, words, and how many segments."""
-
-    def __init__(self, title: str, parent: QWidget) -> None:
-        super().__init__(parent)
-        self.setObjectName("card")
-        grid = QGridLayout(self)
-        grid.setContentsMargins(14, 10, 14, 12)
-        grid.setHorizontalSpacing(12)
-        grid.setVerticalSpacing(6)
-        grid.setColumnStretch(1, 1)
-        grid.addWidget(caption(title, self), 0, 0, 1, 2)
-        self.name = QLineEdit(self)
-        self.name.setPlaceholderText(title)
-        self.name.setAccessibleName(f"Name of the {title.lower()}")
-        self.sound, self.words, self.segments = QLabel(self), QLabel(self), QLabel(self)
-        for row, (words, widget) in enumerate(
-            (("Name", self.name), ("Sound", self.sound), ("Words", self.words), ("Segments", self.segments)),
-            1,
-        ):
-            grid.addWidget(caption(words, self, True), row, 0)
-            grid.addWidget(widget, row, 1)
-            if isinstance(widget, QLabel):
-                widget.setTextFormat(Qt.TextFormat.PlainText)
-
-    def show_side(self, side: Side | None) -> None:
-        """Show what was read of it; None while that is not known."""
-        if side is None:
-            for label in (self.sound, self.words, self.segments):
-                label.setText("…")
-            return
-        sound = Path(side.audio).name if side.audio else "none"
-        self.sound.setText(f"{sound}, channel {side.channel + 1}" if side.channel is not None else sound)
-        self.words.setText(many(len(side.words), "word") if side.words else "none: told by its loudness")
-        counts = {k: sum(s.kind == k for s in side.segments) for k in SPOKEN}
-        self.segments.setText(
-            "   ".join(f"{SOUND_MARKS[k]} {n:,} {PLURALS[k] if n != 1 else k}" for k, n in counts.items())
-        )
 
 
 class ImportDialog(QDialog):
@@ -111,6 +69,7 @@ class ImportDialog(QDialog):
         self.sounds, self.transcripts = tuple(sounds), tuple(transcripts)[:2]
         self.facts = tuple(facts_of(p) for p in self.sounds)
         self.read: Read | None = None
+        self.typed: list[Lists | None] = [None, None]  # lists that were typed, by the sides as they are read
         self.swapped = False  # the second of what was read is the first of the two
         self.job: Job | None = None
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
@@ -134,6 +93,11 @@ class ImportDialog(QDialog):
         self.name = QLineEdit(self.sounds[0].stem, self)
         self.name.setAccessibleName("Name of the conversation")
         row.addWidget(self.name, 1)
+        row.addWidget(caption("Language", self, True))
+        self.language = LanguageBox(self)
+        self.language.show_code(self.document.project.language)
+        self.language.activated.connect(self.take_language)
+        row.addWidget(self.language)
         layout.addLayout(row)
         layout.addLayout(self._found())
         row = QHBoxLayout()
@@ -151,10 +115,14 @@ class ImportDialog(QDialog):
         row.addWidget(self.swap)
         row.addWidget(self.cards[1], 1)
         layout.addLayout(row)
-        self.lists = WordLists(self)
-        self.lists.show_lists(RESPONSES, HESITATIONS)
-        self.lists.changed.connect(self._soon.start)
-        layout.addWidget(self.lists, 1)
+        # Both sides' lists, or the first one's and the second one's where they speak different languages.
+        self.whose = caption("", self), caption("", self)
+        self.lists, self.others = WordLists(self), WordLists(self)
+        for label, lists in zip(self.whose, (self.lists, self.others), strict=True):
+            lists.changed.connect(self._typed)
+            layout.addWidget(label)
+            layout.addWidget(lists, 1)
+        self._show_lists()
         self.notes = QLabel(self, wordWrap=True)
         self.notes.setTextFormat(Qt.TextFormat.PlainText)
         self.notes.hide()
@@ -231,18 +199,22 @@ class ImportDialog(QDialog):
         self._end_job()
         self.read = None
         sounds, transcripts, folder = self.sounds, self.transcripts, self.document.folder
-        responses, hesitations = self.lists.lists()
+        language, usual = str(self.language.currentData()), self.document.project.language
+        lists = self.typed[0], self.typed[1]
 
         def work(job: Job) -> Any:
+            from metagraph.formats.conversation_languages import Speaking
             from metagraph.formats.conversations import read_conversation
+            from metagraph.speech.language_packs import languages
+
+            chosen = language if language in languages() else AUTO  # one's own list is not at hand
 
             return read_conversation(
                 sounds,
                 transcripts,
                 folder=folder,
-                responses=responses,
-                hesitations=hesitations,
                 cancelled=lambda: job.cancelled,
+                speaking=Speaking(chosen, usual, lists=lists),
             )
 
         self.job = self.jobs.start("Reading the conversation", work, self._came, self._failed)
@@ -264,6 +236,7 @@ class ImportDialog(QDialog):
         for card, side in zip(self.cards, self.sides(), strict=True):
             if not card.name.isModified():
                 card.name.setText("" if NUMBERED.fullmatch(side.name) else side.name)
+        self._show_lists()
         minutes = clock(round(read.conversation.length))
         self._show(f"Read {minutes} of conversation.")
 
@@ -302,6 +275,35 @@ class ImportDialog(QDialog):
             layout.activate()
             self.resize(self.width(), max(self.height(), layout.totalHeightForWidth(self.width())))
 
+    def _show_lists(self) -> None:
+        """Show whose words are what, as far as they were not typed."""
+        read = self.read.conversation if self.read is not None else None
+        order = (1, 0) if self.swapped else (0, 1)
+        apart = read is not None and lists_of(read, 0) != lists_of(read, 1)
+        for label, lists, side in zip(self.whose, (self.lists, self.others), order, strict=True):
+            if read is None:
+                lists.show_lists(lists.usual)
+            elif self.typed[side] is None:
+                code = read.sides[side].language
+                lists.show_lists(lists_of(read, side), code)
+            if apart and read is not None:
+                of = read.sides[side]
+                label.setText(f"{side_name(read, side)}: {language_name(of.language) or 'no words'}")
+            label.setVisible(apart)
+            lists.set_low(apart)
+        self.others.setVisible(apart)
+
+    def _typed(self) -> None:
+        """Read by the lists that are typed, after a while."""
+        for lists, side in zip((self.lists, self.others), (1, 0) if self.swapped else (0, 1), strict=True):
+            self.typed[side] = (lists if self.others.isVisible() else self.lists).lists()
+        self._soon.start()
+
+    def take_language(self) -> None:
+        """Read by the language that is chosen, and by its lists."""
+        self.typed = [None, None]
+        self.start()
+
     def sides(self) -> tuple[Side, ...]:
         """Return the two as they were read, the first first."""
         assert self.read is not None
@@ -318,6 +320,7 @@ class ImportDialog(QDialog):
         for card, (name, typed) in zip(self.cards, names, strict=True):
             card.name.setText(name)
             card.name.setModified(typed)
+        self._show_lists()
         self._show(self.told.text())
 
     def swap_words(self) -> None:
@@ -357,7 +360,7 @@ class ImportDialog(QDialog):
         def edit(project: Project) -> Project:
             nonlocal ident
             project, ident = conversation_edits.add_conversation(project, conversation)
-            return project
+            return conversation_edits.set_language(project, str(self.language.currentData()))
 
         self.document.edit("Add conversation", edit)
         self.session.onstage.set_conversation(ident)

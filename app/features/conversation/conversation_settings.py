@@ -1,12 +1,12 @@
-"""Small dialogs about a conversation: how often each of the two moves with what is said, which words are
-what, whose sound is whose.
+"""Small dialogs about a conversation: how often each of the two moves with what is said, whose sound is
+whose.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
     QComboBox,
     QDialog,
@@ -17,13 +17,12 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QLineEdit,
-    QPlainTextEdit,
     QToolButton,
     QVBoxLayout,
     QWidget,
 )
 
-from app.look.theme import SOUND_MARKS, strengthen
+from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.speech_files import SOUNDS, channels_of
 from app.stage.performance import Performance
@@ -32,7 +31,7 @@ from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.formats.store import SUFFIX, relative
 from metagraph.graph import conversation_edits
-from metagraph.graph.conversation import HESITATIONS, RESPONSES, Conversation, Rates, side_name
+from metagraph.graph.conversation import Conversation, Rates, side_name
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
 
@@ -63,47 +62,6 @@ def caption(words: str, parent: QWidget, dim: bool = False) -> QLabel:
     out = QLabel(words, parent, wordWrap=dim)
     out.setProperty("dim" if dim else "title", True)
     return out
-
-
-class WordLists(QWidget):
-    """The two lists of words, beside each other. changed: something was typed."""
-
-    changed = Signal()
-
-    def __init__(self, parent: QWidget) -> None:
-        super().__init__(parent)
-        grid = QGridLayout(self)
-        grid.setContentsMargins(0, 0, 0, 0)
-        grid.setHorizontalSpacing(16)
-        grid.setVerticalSpacing(4)
-        self.edits: list[QPlainTextEdit] = []
-        for column, (title, kind, usual) in enumerate(
-            (("Listener responses", "response", RESPONSES), ("Hesitations", "hesitation", HESITATIONS))
-        ):
-            row = QHBoxLayout()
-            row.addWidget(caption(f"{SOUND_MARKS[kind]}  {title}", self), 1)
-            reset = make_widget(
-                QToolButton, self, text="Usual", toolTip="The list as it comes with the program"
-            )
-            reset.clicked.connect(
-                lambda _=False, n=column, words=usual: self.edits[n].setPlainText(", ".join(words))
-            )
-            row.addWidget(reset)
-            edit = QPlainTextEdit(self)
-            edit.setAccessibleName(title)
-            edit.setTabChangesFocus(True)
-            edit.setMinimumHeight(72)
-            edit.textChanged.connect(self.changed)
-            grid.addLayout(row, 0, column)
-            grid.addWidget(edit, 1, column)
-            self.edits.append(edit)
-
-    def show_lists(self, responses: tuple[str, ...], hesitations: tuple[str, ...]) -> None:
-        for edit, words in zip(self.edits, (responses, hesitations), strict=True):
-            edit.setPlainText(", ".join(words))
-
-    def lists(self) -> tuple[tuple[str, ...], tuple[str, ...]]:
-        return asked(self.edits[0].toPlainText()), asked(self.edits[1].toPlainText())
 
 
 class SettingDialog(QDialog):
@@ -147,29 +105,6 @@ class SettingDialog(QDialog):
             self.said.show()
             return
         super().accept()
-
-
-class WordsDialog(SettingDialog):
-    """Which words make a segment a response or a hesitation."""
-
-    title, text = "Word lists", "Change word lists"
-
-    def build(self, layout: QVBoxLayout) -> None:
-        self.resize(620, 380)
-        layout.addWidget(
-            caption(
-                "Segments made of nothing but these words are labelled so; what you labelled yourself stays.",
-                self,
-                True,
-            )
-        )
-        self.lists = WordLists(self)
-        self.lists.show_lists(self.conversation.responses, self.conversation.hesitations)
-        layout.addWidget(self.lists, 1)
-        self.lists.edits[0].setFocus()
-
-    def change(self, project: Project) -> Project:
-        return conversation_edits.set_word_lists(project, self.ident, *self.lists.lists())
 
 
 def delivered_words(shown: Shown, conversation: Conversation) -> str:

@@ -94,3 +94,41 @@ def test_bad_usage_says_what_is_right(
     assert "one or two sounds" in capsys.readouterr().err
     assert main(["speech", str(tmp_path / "gone.wav")]) == 1
     assert "there is no such sound file" in capsys.readouterr().err
+
+
+def test_a_language_can_be_chosen_brought_or_is_what_the_project_says(
+    files: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    given = (files[0], "--words", files[1])
+    code, data, error = run(capsys, *given, "--language", "DE")
+    assert code == 0 and [s["language"] for s in data["sides"]] == ["de", "de"]
+    assert "look English (en); they are read as German (de), as was chosen" in error
+    own = tmp_path / "own.yaml"
+    own.write_text("code: xx\nname: Own\nresponses: did you run away\nhesitations: no")
+    code, data, _ = run(capsys, *given, "--words-list", own)
+    assert [s["language"] for s in data["sides"]] == ["xx", "xx"] and data["sides"][1]["response"][
+        "count"
+    ] == 1
+    code, data, error = run(capsys, *given, "--words-list", own, "--language", "auto")
+    assert [s["language"] for s in data["sides"]] == ["en", "en"] and not error
+    project = tmp_path / "sample.metagraph.yaml"
+    shutil.copy(SAMPLE / "sample.metagraph.yaml", project)
+    project.write_text(project.read_text(encoding="utf-8") + "language: fr\n", encoding="utf-8")
+    code, data, error = run(capsys, *given, "--project", project)
+    assert [s["language"] for s in data["sides"]] == ["fr", "fr"] and "as was chosen" in error
+    kept = open_project(project).project
+    assert kept.language == "fr" and kept.conversations[data["kept"]].sides[0].language == "fr"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--language", "klingon"), "no words of 'klingon'"),
+        (("--words-list", "nowhere.yaml"), "nowhere.yaml"),
+    ],
+)
+def test_a_language_that_is_not_there_is_told(
+    files: tuple[Path, Path], capsys: pytest.CaptureFixture[str], words: tuple[str, ...], said: str
+) -> None:
+    assert main(["speech", str(files[0]), *words]) == 1
+    assert said in capsys.readouterr().err

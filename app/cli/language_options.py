@@ -1,0 +1,46 @@
+"""What the commands that read words share: which language they are in."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # reading a command line must not wait for arrays
+    from metagraph.formats.conversation_languages import Speaking
+
+
+def language_arguments(parser: ArgumentParser, usual: str = "auto") -> None:
+    """Add the options. usual: what is said of the default."""
+    parser.add_argument(
+        "--language",
+        metavar="CODE",
+        help="what is spoken, by whose lists words are responses and hesitations: en, de, fr, es, it, pt, "
+        f"nl, ja, zh, hi, or auto for what the words tell (default: {usual})",
+    )
+    parser.add_argument(
+        "--words-list",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="a pack of words of your own, YAML or JSON, that is then the language unless --language says "
+        "so; may be given for several",
+    )
+
+
+def speaking_of(options: Namespace, project: str = "auto") -> Speaking:
+    """Return what to read words by. project: what the project is set to. Raises FileError, ValueError."""
+    from metagraph.formats.conversation_languages import Speaking
+    from metagraph.formats.language_files import packs_with, read_pack
+    from metagraph.graph.conversation import AUTO
+
+    packs = packs_with(options.words_list)
+    asked: str | None = options.language
+    if asked is not None:
+        asked = asked.casefold()
+    elif len(options.words_list) == 1:
+        asked = read_pack(options.words_list[0]).code
+    elif project in packs:
+        asked = project
+    return Speaking(asked or AUTO, project, packs)

@@ -1,0 +1,188 @@
+"""Which words are responses and hesitations, and in which language: fields, and the dialog that changes them
+of a conversation.
+"""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QGridLayout,
+    QHBoxLayout,
+    QPlainTextEdit,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.conversation.conversation_settings import SettingDialog, asked, caption
+from app.look.theme import SOUND_MARKS
+from app.widgets.making import make_widget
+from app.widgets.quiet_fields import ComboBox
+from metagraph.graph import conversation_edits
+from metagraph.graph.conversation import AUTO, Conversation, lists_of, side_name
+from metagraph.graph.model import Project
+from metagraph.speech.language_detection import language_spoken
+from metagraph.speech.language_packs import languages
+
+Lists = tuple[tuple[str, ...], tuple[str, ...]]  # responses and hesitations
+LOW = 84  # pixels
+
+
+def language_name(code: str) -> str:
+    """Return what the language of a code is called; "" of none."""
+    pack = languages().get(code)
+    return pack.name if pack is not None else {"": "", "und": "language not known"}.get(code, f"'{code}'")
+
+
+class LanguageBox(ComboBox):
+    """Automatic first, then the languages there are lists of."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.addItem("Automatic", AUTO)
+        for pack in languages().values():
+            self.addItem(pack.name if pack.name == pack.own else f"{pack.name} · {pack.own}", pack.code)
+        self.setAccessibleName("Language")
+        self.setToolTip("By whose lists words are responses and hesitations; Automatic: as the words tell")
+
+    def show_code(self, code: str) -> None:
+        """Show a code without telling of it; of a list of one's own it is only named."""
+        with QSignalBlocker(self):
+            if code and self.findData(code) < 0:
+                self.addItem(language_name(code).capitalize(), code)
+            self.setCurrentIndex(max(0, self.findData(code)))
+
+
+class WordLists(QWidget):
+    """The two lists of words, beside each other. changed: something was typed. usual: the lists of the
+    language, to go back to.
+    """
+
+    changed = Signal()
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        grid = QGridLayout(self)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setHorizontalSpacing(16)
+        grid.setVerticalSpacing(4)
+        english = languages()["en"]
+        self.usual: Lists = (english.responses, english.hesitations)
+        self.edits: list[QPlainTextEdit] = []
+        for column, (title, kind) in enumerate(
+            (("Listener responses", "response"), ("Hesitations", "hesitation"))
+        ):
+            row = QHBoxLayout()
+            row.addWidget(caption(f"{SOUND_MARKS[kind]}  {title}", self), 1)
+            reset = make_widget(
+                QToolButton, self, text="Usual", toolTip="The language's list as it comes with the program"
+            )
+            reset.clicked.connect(
+                lambda _=False, n=column: self.edits[n].setPlainText(", ".join(self.usual[n]))
+            )
+            row.addWidget(reset)
+            edit = QPlainTextEdit(self)
+            edit.setAccessibleName(title)
+            edit.setTabChangesFocus(True)
+            edit.setMinimumHeight(72)
+            edit.textChanged.connect(self.changed)
+            grid.addLayout(row, 0, column)
+            grid.addWidget(edit, 1, column)
+            self.edits.append(edit)
+
+    def show_lists(self, lists: Lists, code: str = "") -> None:
+        """Show lists without telling of it. code: the language whose usual lists there are to go back to."""
+        pack = languages().get(code)
+        if pack is not None:
+            self.usual = (pack.responses, pack.hesitations)
+        for edit, words in zip(self.edits, lists, strict=True):
+            text = ", ".join(words)
+            if edit.toPlainText() != text:
+                with QSignalBlocker(edit):
+                    edit.setPlainText(text)
+
+    def set_low(self, low: bool) -> None:
+        """Be low beside another pair of lists, or as high as there is room."""
+        for edit in self.edits:
+            edit.setMaximumHeight(LOW if low else 16777215)
+
+    def lists(self) -> Lists:
+        return asked(self.edits[0].toPlainText()), asked(self.edits[1].toPlainText())
+
+
+class WordsDialog(SettingDialog):
+    """Which words make a segment a response or a hesitation, of both or of each."""
+
+    title, text = "Word lists", "Change word lists"
+
+    def build(self, layout: QVBoxLayout) -> None:
+        layout.addWidget(
+            caption(
+                "Segments made of nothing but these words are labelled so; what you labelled yourself stays.",
+                self,
+                True,
+            )
+        )
+        of = self.conversation
+        self.apart = QCheckBox("Each has lists of its own", self)
+        self.apart.setChecked(lists_of(of, 0) != lists_of(of, 1))
+        self.rows: list[tuple[QWidget, LanguageBox, WordLists]] = []
+        for side in (0, 1):
+            whole = QWidget(self)
+            column = QVBoxLayout(whole)
+            column.setContentsMargins(0, 0, 0, 0)
+            row = QHBoxLayout()
+            row.setSpacing(10)
+            name, box, lists = caption("", whole), LanguageBox(whole), WordLists(whole)
+            box.show_code(of.sides[side].language or "en")
+            box.activated.connect(lambda _, n=side: self._take_language(n))
+            lists.show_lists(lists_of(of, side), of.sides[side].language)
+            row.addWidget(name, 1)
+            row.addWidget(caption("Language", whole, True))
+            row.addWidget(box)
+            column.addLayout(row)
+            column.addWidget(lists, 1)
+            layout.addWidget(whole, 1)
+            self.rows.append((whole, box, lists))
+            self.apart.toggled.connect(
+                lambda on, label=name, n=side: label.setText(side_name(of, n) if on else "Both")
+            )
+            name.setText(side_name(of, side) if self.apart.isChecked() else "Both")
+        self.lists = self.rows[0][2]
+        self._show_other(self.apart.isChecked())
+        self.apart.toggled.connect(self._show_other)
+        layout.addWidget(self.apart)
+        self.lists.edits[0].setFocus()
+
+    def _show_other(self, on: bool) -> None:
+        self.rows[1][0].setVisible(on)
+        self.resize(620, 580 if on else 420)
+
+    def _take_language(self, n: int) -> None:
+        """Show the lists of the language that was chosen; Automatic is what the words tell."""
+        _, box, lists = self.rows[n]
+        code = str(box.currentData())
+        if code == AUTO:
+            code = _spoken_by(self.conversation, (n,) if self.apart.isChecked() else (0, 1))
+            box.show_code(code)
+        pack = languages().get(code)
+        if pack is not None:
+            lists.show_lists((pack.responses, pack.hesitations), code)
+
+    def change(self, project: Project) -> Project:
+        sides: tuple[int | None, ...] = (0, 1) if self.apart.isChecked() else (None,)
+        for side in sides:
+            _, box, lists = self.rows[side or 0]
+            code = str(box.currentData())
+            if code == (self.conversation.sides[side or 0].language or "en"):
+                code = self.conversation.sides[side or 0].language  # as it was; nothing said stays so
+            project = conversation_edits.set_word_lists(project, self.ident, *lists.lists(), side, code)
+        return project
+
+
+def _spoken_by(conversation: Conversation, sides: tuple[int, ...]) -> str:
+    """Return the code of what sides' words tell; English where they tell nothing."""
+    words = [w.text for side in sides for w in conversation.sides[side].words]
+    found = language_spoken(words, tuple(languages().values())).language
+    return found.code if found is not None else "en"
