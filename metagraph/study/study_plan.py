@@ -297,14 +297,14 @@ def from_text(text: str, path: Path = Path(FILE)) -> Plan:
         where = where.rstrip("`").lstrip(".").replace("[...]", "")
         unknown = re.search(r"unknown field `(\w+)`", message)
         raise failure(
-            _plain(message), ".".join(filter(None, (where, unknown[1] if unknown else "")))
+            plain_words(message), ".".join(filter(None, (where, unknown[1] if unknown else "")))
         ) from None
     for where, cause in faults(plan):
         raise failure(cause, where)
     return plan
 
 
-def _plain(message: str) -> str:
+def plain_words(message: str) -> str:
     """Return msgspec's words as ours."""
     for pattern, words in (
         (r"Object contains unknown field `(\w+)`", r"there is no field '\1'"),
