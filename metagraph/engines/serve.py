@@ -23,7 +23,7 @@ WAIT = 10.0  # seconds for a request to be sent
 AT_ONCE = 64  # requests
 
 
-class _Quiet(SimpleHTTPRequestHandler):
+class Quiet(SimpleHTTPRequestHandler):
     # Said here, since a system's own table may call scripts plain text, and browsers then refuse modules.
     extensions_map = {  # noqa: RUF012 - the base class has it so
         **SimpleHTTPRequestHandler.extensions_map,
@@ -44,13 +44,16 @@ class _Quiet(SimpleHTTPRequestHandler):
         self.send_header("Cross-Origin-Resource-Policy", "same-origin")
         super().end_headers()
 
+    def is_asked_by_name(self) -> bool:
+        """Return whether a request is to the address that is listened on, by its own name."""
+        address, port = self.connection.getsockname()[:2]
+        names = dict.fromkeys((address, "127.0.0.1", "localhost") if address.startswith("127.") else (address,))
+        hosts = self.headers.get_all("Host") or []
+        return [h.strip().lower() for h in hosts] in [[f"{name}:{port}"] for name in names]
+
     def send_head(self) -> BytesIO | BinaryIO | None:
         """Send what comes before a file, or why there is none."""
-        port = self.connection.getsockname()[1]
-        hosts = self.headers.get_all("Host") or []
-        if [h.strip().lower() for h in hosts] not in [
-            [f"{name}:{port}"] for name in ("127.0.0.1", "localhost")
-        ]:
+        if not self.is_asked_by_name():
             self.send_error(HTTPStatus.FORBIDDEN, "This page is for this machine alone")
             return None
         path, root = Path(self.translate_path(self.path)), Path(self.directory)
@@ -93,11 +96,19 @@ class _Server(ThreadingHTTPServer):
 class Served:
     """A folder being served on the loopback, until `close` or the program's end. url: its address."""
 
-    def __init__(self, folder: str | Path, port: int = 0) -> None:
-        """port: 0 for any that is free. Raises OSError when it is taken."""
+    def __init__(
+        self,
+        folder: str | Path,
+        port: int = 0,
+        address: str = "127.0.0.1",
+        handler: type[Quiet] = Quiet,
+    ) -> None:
+        """port: 0 for any that is free. address: of the interface that is listened on, IPv4. handler: what
+        answers requests. Raises OSError when the port is taken or there is no such address.
+        """
         self.folder = Path(folder).resolve()
-        self._server = _Server(("127.0.0.1", port), functools.partial(_Quiet, directory=str(self.folder)))
-        self.url = f"http://127.0.0.1:{self._server.server_address[1]}/"
+        self._server = _Server((address, port), functools.partial(handler, directory=str(self.folder)))
+        self.url = f"http://{address}:{self._server.server_address[1]}/"
         self._thread = threading.Thread(
             target=self._server.serve_forever, args=(0.1,), name="web page", daemon=True
         )

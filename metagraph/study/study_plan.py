@@ -186,6 +186,10 @@ class Study:
         found = drawn(self).get(participant) if self.plan.order == "concealed" else None
         return self.plan.blocks(participant, found)
 
+    def known(self, participant: str) -> None:
+        """Raises ValueError for a stranger."""
+        self.plan.known(participant)
+
     def data(self, participant: str) -> Path:
         return self.folder / "data" / participant
 

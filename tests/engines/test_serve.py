@@ -80,7 +80,7 @@ def test_links_that_lead_elsewhere_and_pipes_are_not_followed(shown: Served) -> 
 def test_who_says_nothing_takes_no_room_from_others_for_long(
     shown: Served, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(serve._Quiet, "timeout", 0.2)
+    monkeypatch.setattr(serve.Quiet, "timeout", 0.2)
     port = int(shown.url.rstrip("/").rpartition(":")[2])
     silent = [socket.create_connection(("127.0.0.1", port)) for _ in range(serve.AT_ONCE)]
     for line in silent:

@@ -81,7 +81,7 @@ def fit(
     first = next(iter(out.values()))
     total = float(np.hypot(*spread))
     assert first.low is not None and first.high is not None
-    share = Estimate(*(overall(v, total) for v in (first.value, first.low, first.high)), len(y))
+    share = Estimate(overall(first.value, total), overall(first.low, total), overall(first.high, total), len(y))
     return Crossed(
         out,
         {name: sqrt(float(cover[n, n])) for n, name in enumerate(effects)},
@@ -173,7 +173,7 @@ class _Model:
         """Return covariances of the effects; None where the likelihood is flat."""
         _, curved = _slopes(self.deviance, at, free)
         try:
-            out = 2 * np.linalg.inv(curved)
+            out = np.asarray(2 * np.linalg.inv(curved), np.float64)
         except np.linalg.LinAlgError:
             return None
         size = self.x.shape[1]

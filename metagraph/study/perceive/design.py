@@ -213,7 +213,8 @@ def _ratings(plan: PerceivePlan, draw: Draw, number: int) -> list[tuple[str, str
 
 def _apart(shown: Sequence[tuple[str, str, str]]) -> list[tuple[str, str, str]]:
     """Return the same in nearly the same order, an item never twice in a row where that can be."""
-    left, out = list(shown), []
+    left = list(shown)
+    out: list[tuple[str, str, str]] = []
     while left:
         counts: dict[str, int] = {}
         for item, _, _ in left:
