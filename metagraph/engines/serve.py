@@ -47,7 +47,9 @@ class Quiet(SimpleHTTPRequestHandler):
     def is_asked_by_name(self) -> bool:
         """Return whether a request is to the address that is listened on, by its own name."""
         address, port = self.connection.getsockname()[:2]
-        names = dict.fromkeys((address, "127.0.0.1", "localhost") if address.startswith("127.") else (address,))
+        names = dict.fromkeys(
+            (address, "127.0.0.1", "localhost") if address.startswith("127.") else (address,)
+        )
         hosts = self.headers.get_all("Host") or []
         return [h.strip().lower() for h in hosts] in [[f"{name}:{port}"] for name in names]
 

@@ -55,8 +55,7 @@ class PageEvent(Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=T
 
 
 class Sheet(Struct, frozen=True, forbid_unknown_fields=True):
-    """What a page sends, or saves. design: the digest of what it showed. run: of this person in this browser.
-    """
+    """What a page sends, or saves. design: the digest of what it showed. run: of this person in this browser."""
 
     perceive: Literal[1]
     design: Annotated[str, Meta(pattern="^[0-9a-f]{64}$")]

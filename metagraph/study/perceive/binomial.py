@@ -69,7 +69,7 @@ def power(n: int, share: float, alpha: float = 0.05) -> float:
         return 0.0
     half = np.exp(_logs(n, 0.5))
     below = np.cumsum(half)
-    out = np.flatnonzero(2 * below * CLOSE ** -1 <= alpha)  # a half is symmetric: twice the lower tail
+    out = np.flatnonzero(2 * below * CLOSE**-1 <= alpha)  # a half is symmetric: twice the lower tail
     if not len(out):
         return 0.0
     edge = int(out[-1])

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from math import inf, isfinite, lgamma, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.study.perceive.binomial import logistic
 from metagraph.study.stats import LEVEL, Estimate
 from metagraph.study.stats_t import t_quantile, t_two_sided
 
@@ -81,7 +81,9 @@ def fit(
     first = next(iter(out.values()))
     total = float(np.hypot(*spread))
     assert first.low is not None and first.high is not None
-    share = Estimate(overall(first.value, total), overall(first.low, total), overall(first.high, total), len(y))
+    share = Estimate(
+        overall(first.value, total), overall(first.low, total), overall(first.high, total), len(y)
+    )
     return Crossed(
         out,
         {name: sqrt(float(cover[n, n])) for n, name in enumerate(effects)},
@@ -96,9 +98,14 @@ def fit(
 
 def overall(value: float, spread: float) -> float:
     """Return the share of all together where log odds are normal about a value (Gauss and Hermite)."""
+    nodes, weights = _nodes()
+    return float((weights / (1 + np.exp(-(value + spread * nodes)))).sum() / weights.sum())
+
+
+@lru_cache(maxsize=1)
+def _nodes() -> tuple[Array, Array]:
     nodes, weights = np.polynomial.hermite_e.hermegauss(40)
-    each = [logistic(value + spread * z) for z in nodes.tolist()]
-    return float((weights * each).sum() / weights.sum())
+    return np.asarray(nodes, np.float64), np.asarray(weights, np.float64)
 
 
 class _Model:

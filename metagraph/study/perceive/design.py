@@ -181,7 +181,8 @@ def _choices(plan: PerceivePlan, draw: Draw, number: int) -> list[tuple[str, str
     if plan.choice is None:
         return []
     rows = [
-        sorted(((i.id, n) for i in plan.items), key=lambda s: draw("item", *s)) for n in range(len(plan.pairs))
+        sorted(((i.id, n) for i in plan.items), key=lambda s: draw("item", *s))
+        for n in range(len(plan.pairs))
     ]
     # Comparisons take turns, each with its items from another place on, so that a stretch repeats few items.
     ring = [

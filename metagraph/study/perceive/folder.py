@@ -75,8 +75,7 @@ class Perceived:
 
 
 def write_folder(folder: Path, plan: PerceivePlan, text: bytes, made: Design) -> Perceived:
-    """Write all of a study but its videos, which are there; freeze it. text: the plan's file. Raises FileError.
-    """
+    """Write all of a study but its videos, which are there; freeze it. text: the plan's file. Raises FileError."""
     page = files(__package__).joinpath("page.html").read_text("utf-8")
     # Nothing in a text may end the script that holds it.
     told = json.dumps(made.public, ensure_ascii=True, separators=(",", ":")).replace("<", "\\u003c")
@@ -102,7 +101,12 @@ def write_folder(folder: Path, plan: PerceivePlan, text: bytes, made: Design) ->
 
 def manifest(folder: Path) -> dict[str, str]:
     """Return name -> SHA-256 of the plan, the key, the page and the videos."""
-    paths = [folder / FILE, folder / KEY, folder / SHOW / PAGE, *sorted((folder / SHOW / "videos").glob("*.mp4"))]
+    paths = [
+        folder / FILE,
+        folder / KEY,
+        folder / SHOW / PAGE,
+        *sorted((folder / SHOW / "videos").glob("*.mp4")),
+    ]
     return {p.relative_to(folder).as_posix(): digest(p) for p in paths if p.is_file()}
 
 
@@ -115,7 +119,10 @@ def _frozen(folder: Path) -> Mapping[str, str]:
             raise KeyError("seal")
     except (msgspec.DecodeError, KeyError, TypeError, AttributeError, RecursionError):
         raise FileError(
-            path, "is damaged, or was changed by hand", "digests", "Take it from a copy, or make the study anew."
+            path,
+            "is damaged, or was changed by hand",
+            "digests",
+            "Take it from a copy, or make the study anew.",
         ) from None
     return found
 

@@ -200,9 +200,11 @@ def faults(plan: PerceivePlan) -> list[tuple[str, str]]:
     out: list[tuple[str, str]] = []
     for field, names in (("participants", plan.ids), ("items", [i.id for i in plan.items])):
         folded = [n.casefold() for n in names]
-        twice = next((n for n in names if folded.count(n.casefold()) > 1), None) if len(set(folded)) < len(
-            folded
-        ) else None
+        twice = (
+            next((n for n in names if folded.count(n.casefold()) > 1), None)
+            if len(set(folded)) < len(folded)
+            else None
+        )
         if twice is not None:
             out.append((field, f"'{twice}' is there twice, large and small letters being the same"))
     for name, condition in plan.conditions.items():

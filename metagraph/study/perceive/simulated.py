@@ -40,7 +40,9 @@ class Raters:
     def __post_init__(self) -> None:
         for name in ("people", "items"):
             if not 0 <= getattr(self, name) <= 10:
-                raise ValueError(f"{name} should be a deviation of 0 to 10 log odds, not {getattr(self, name):g}")
+                raise ValueError(
+                    f"{name} should be a deviation of 0 to 10 log odds, not {getattr(self, name):g}"
+                )
         for name in ("lapses", "careless", "unfinished"):
             if not 0 <= getattr(self, name) <= 1:
                 raise ValueError(f"{name} is a share of 0 to 1, not {getattr(self, name):g}")
@@ -64,9 +66,7 @@ def simulate(study: Perceived, raters: Raters) -> int:
     for who, session in study.key.sessions.items():
         own = {c: rng.normal(0, raters.people / np.sqrt(2)) for c in conditions}
         careless, stops = rng.random() < raters.careless, rng.random() < raters.unfinished
-        liking = {
-            (i, c): raters.liked.get(c, 0.0) + own[c] + float(by_item[i, c]) for i, c in by_item
-        }
+        liking = {(i, c): raters.liked.get(c, 0.0) + own[c] + float(by_item[i, c]) for i, c in by_item}
         run = f"{int(rng.integers(1 << 62)):016x}"
         trials = session.trials[: max(1, len(session.trials) // 2)] if stops else session.trials
         events = [PageEvent(0, "begin", agent="nobody")]

@@ -1,5 +1,5 @@
 // node browser.mjs FOLDER STEPS.json: serves a folder on the loopback, opens it in headless Chromium, and runs steps in the page.
-// STEPS: [{"url": path}, {"run": "JavaScript whose value is printed"}, {"wait": ms}, {"shot": "file.png"}, {"click": selector}, ...]
+// STEPS: [{"url": path}, {"run": "JavaScript whose value is printed"}, {"wait": ms}, {"shot": "file.png"}, {"click": selector}, {"press": key}, {"download": [selector, "file"]}, ...]
 import fs from "node:fs";
 import http from "node:http";
 import path from "node:path";
@@ -27,6 +27,8 @@ try {
     if (step.run) console.log(JSON.stringify({ value: await page.evaluate(step.run) ?? null }));
     if (step.click) await page.click(step.click);
     if (step.fill) await page.fill(...step.fill);
+    if (step.press) await page.keyboard.press(step.press);
+    if (step.download) await (await Promise.all([page.waitForEvent("download"), page.click(step.download[0])]))[0].saveAs(step.download[1]);
     if (step.wait) await page.waitForTimeout(step.wait);
     if (step.shot) await page.screenshot({ path: step.shot });
   }
