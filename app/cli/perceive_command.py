@@ -212,7 +212,8 @@ def report(options: Namespace) -> int:
         "simulated": results.answers.simulated,
         "written": [str(p) for p in written],
     }
-    said = [*summary(results), *(f"- {w}" for w in results.cautions), str(written[0])]
+    fake = ["Nobody took part: these answers were simulated."] if results.answers.simulated else []
+    said = [*fake, *summary(results), *(f"- {w}" for w in results.cautions), str(written[0])]
     say(options, "\n".join(said), data)
     return 0 if results.answers.counting else NOTHING
 
@@ -226,7 +227,8 @@ def withdraw(options: Namespace) -> int:
     new = note(study, options.participant, options.why)
     say(
         options,
-        f"{options.participant}: {'left out from now on' if new else 'had withdrawn before'}; write the report anew",
+        f"{options.participant}: {'left out from now on' if new else 'had withdrawn before'}; "
+        "write the report anew",
         {"participant": options.participant, "new": new},
     )
     return 0

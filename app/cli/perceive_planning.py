@@ -1,4 +1,6 @@
-"""`metagraph study perceive plan` and `simulate`: how many people a forced choice needs, and a study to try."""
+"""`metagraph study perceive plan` and `simulate`: how many people a forced choice needs, and a study to
+try.
+"""
 
 from __future__ import annotations
 
@@ -93,7 +95,7 @@ def plan(options: Namespace) -> int:
             f"{_count(data['equivalent'])}",
         ]
     lines.append(
-        f"answers of one person are alike: {data['design_effect']:.2f} times as many for {each} of each person"
+        f"answers of one person are alike: {data['design_effect']:.2f} times as many for {each} of each"
     )
     rest = (options.items, each)
     if options.participants is not None:

@@ -42,8 +42,8 @@ class Source:
 
 
 class Stimuli:
-    """Reads what conditions show, each thing once. Raises FileError for what cannot be shown, naming condition
-    and item.
+    """Reads what conditions show, each thing once. Raises FileError for what cannot be shown, naming
+    condition and item.
     """
 
     def __init__(self, path: Path, plan: PerceivePlan) -> None:
@@ -230,7 +230,7 @@ class Stimuli:
                 path,
                 "is of another skeleton than the project",
                 f"conditions.{name}",
-                "Import it into the project and name it as a clip, or leave 'project' out for a stick figure.",
+                "Import it and name it as a clip, or leave 'project' out for a stick figure.",
             )
         return clip
 

@@ -1,4 +1,6 @@
-"""How loud a sound is, as people hear it: ITU-R BS.1770-4, one channel, and sounds made as loud as each other."""
+"""How loud a sound is, as people hear it: ITU-R BS.1770-4, one channel, and sounds made as loud as each
+other.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +18,8 @@ OFFSET = -0.691  # of the standard
 
 
 def loudness(samples: Array, rate: int) -> float | None:
-    """Return the integrated loudness of samples `[N]`, -1..1, in LUFS; None for silence, and for sounds shorter
-    than a block.
+    """Return the integrated loudness of samples `[N]`, -1..1, in LUFS; None for silence, and for sounds
+    shorter than a block.
     """
     size, hop = round(BLOCK * rate), round(STEP * rate)
     if len(samples) < size:

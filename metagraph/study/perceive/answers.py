@@ -1,5 +1,5 @@
-"""Answers as the page gives them, in a file or over the loopback, and where they are kept: a log a person, the
-same kind that sittings have, appended and synced before anything is acknowledged.
+"""Answers as the page gives them, in a file or over the loopback, and where they are kept: a log a person,
+the same kind that sittings have, appended and synced before anything is acknowledged.
 """
 
 from __future__ import annotations
@@ -55,7 +55,9 @@ class PageEvent(Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=T
 
 
 class Sheet(Struct, frozen=True, forbid_unknown_fields=True):
-    """What a page sends, or saves. design: the digest of what it showed. run: of this person in this browser."""
+    """What a page sends, or saves. design: the digest of what it showed. run: of this person in this
+    browser.
+    """
 
     perceive: Literal[1]
     design: Annotated[str, Meta(pattern="^[0-9a-f]{64}$")]
@@ -99,8 +101,8 @@ class Kept:
 
 
 def keep(study: Perceived, sheet: Sheet) -> Kept:
-    """Add what is new of a sheet to its person's log; it is on the disk afterwards. Raises SheetError where it
-    is another study's, a stranger's, or of somebody whose code was begun elsewhere; FileError.
+    """Add what is new of a sheet to its person's log; it is on the disk afterwards. Raises SheetError where
+    it is another study's, a stranger's, or of somebody whose code was begun elsewhere; FileError.
     """
     if sheet.design != study.key.design:
         raise SheetError("these answers are of another study, or of one that was made anew since")

@@ -27,9 +27,9 @@ FARTHEST = 12.0  # log odds beyond which a share is 0 or 1, and no model has an 
 @dataclass(frozen=True)
 class Crossed:
     """What was fitted. effects: by name, on log odds, with intervals; errors: their standard errors by the
-    likelihood's curvature alone; p: of each being 0, two-sided; df: degrees of freedom. deviations: of participants and items, standard deviations of log odds. share: what the
-    first effect says of all participants and items together, 0..1. deviance: minus twice the log likelihood.
-    n: rows.
+    likelihood's curvature alone; p: of each being 0, two-sided; df: degrees of freedom. deviations: of
+    participants and items, standard deviations of log odds. share: what the first effect says of all
+    participants and items together, 0..1. deviance: minus twice the log likelihood. n: rows.
     """
 
     effects: Mapping[str, Estimate]
@@ -187,9 +187,9 @@ class _Model:
         return out[:size, :size] if bool((np.diag(out)[:size] > 0).all()) else None
 
     def freedom(self, column: Array, variance: float, spread: Array) -> tuple[float, float]:
-        """Return an effect's variance and degrees of freedom. It is made of what participants, items and single
-        answers do, each known from as many as there are; the likelihood takes the first two for smaller than
-        they are, by one of their number. What changes within a group alone owes it nothing.
+        """Return an effect's variance and degrees of freedom. It is made of what participants, items and
+        single answers do, each known from as many as there are; the likelihood takes the first two for
+        smaller than they are, by one of their number. What changes within a group alone owes it nothing.
         """
         parts: list[tuple[float, float]] = []
         for code, count, s in zip(self.codes, self.sizes, spread.tolist(), strict=True):

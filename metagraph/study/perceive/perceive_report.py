@@ -12,7 +12,7 @@ from metagraph.formats.atomic import write_atomically
 from metagraph.study.figure_files import standalone
 from metagraph.study.perceive.perceive_analysis import Compared, PerceiveResults
 from metagraph.study.perceive.perceive_figures import figures
-from metagraph.study.report_cells import chance, figure, interval, table
+from metagraph.study.report_cells import chance, figure, interval, table, two
 from metagraph.study.report_style import STYLE
 from metagraph.study.report_tables import Table
 from metagraph.study.report_tables import table as csv_of
@@ -21,20 +21,23 @@ from metagraph.study.stats import Estimate
 NAME = "report.html"
 
 METHODS = """<dl>
-<dt>Exact binomial</dt><dd>All answers to a pair against a half; two-sided, by what is at most as likely; intervals by Clopper and Pearson
-(1934). It takes answers for independent. Those of one person, and about one item, are not: where people or items differ it claims too
-much.</dd>
-<dt>People</dt><dd>Each counts once, for what they chose more often; who chose both as often is left out (sign test).</dd>
-<dt>Mixed model</dt><dd>Log odds of a choice by a preference and by the side, with deviations of people and items that cross; likelihood by
-Laplace's approximation, intervals from its curvature, degrees of freedom by Satterthwaite's formula. Its share is that of all people and
-items together. This is what is judged by, where there is a model.</dd>
-<dt>Ratings</dt><dd>Differences of the same person's ratings of the same item in two conditions, by a linear mixed model with deviations of
-people and items that cross (restricted maximum likelihood); without one, by people's means.</dd>
+<dt>Exact binomial</dt><dd>All answers to a pair against a half; two-sided, by what is at most as likely;
+intervals by Clopper and Pearson (1934). It takes answers for independent. Those of one person, and about one
+item, are not: where people or items differ it claims too much.</dd>
+<dt>People</dt><dd>Each counts once, for what they chose more often; who chose both as often is left out
+(sign test).</dd>
+<dt>Mixed model</dt><dd>Log odds of a choice by a preference and by the side, with deviations of people and
+items that cross; likelihood by Laplace's approximation, intervals from its curvature, degrees of freedom by
+Satterthwaite's formula. Its share is that of all people and items together. This is what is judged by, where
+there is a model.</dd>
+<dt>Ratings</dt><dd>Differences of the same person's ratings of the same item in two conditions, by a linear
+mixed model with deviations of people and items that cross (restricted maximum likelihood); without one, by
+people's means.</dd>
 <dt>Tests</dt><dd>One for each pair, of choices and of each question; Holm's correction over all of them.</dd>
-<dt>Order</dt><dd>Shares in the first and in the second half of each person's session, compared by Fisher's exact test. Sides: all choices
-of the left one against a half.</dd>
-<dt>Who counts</dt><dd>Who came to the end and missed no more checks than the plan allows. What would come of it with nobody excluded, but
-without those who withdrew, is told beside.</dd></dl>"""
+<dt>Order</dt><dd>Shares in the first and in the second half of each person's session, compared by Fisher's
+exact test. Sides: all choices of the left one against a half.</dd>
+<dt>Who counts</dt><dd>Who came to the end and missed no more checks than the plan allows. What would come of
+it with nobody excluded, but without those who withdrew, is told beside.</dd></dl>"""
 
 
 def write_report(results: PerceiveResults, folder: Path) -> list[Path]:
@@ -117,7 +120,8 @@ def page(results: PerceiveResults) -> str:
         f"<h2>How it was reckoned</h2>{METHODS}",
     ]
     head = (
-        "<meta charset='utf-8'><meta name='viewport' content='width=device-width'><link rel='icon' href='data:,'>"
+        "<meta charset='utf-8'><meta name='viewport' content='width=device-width'>"
+        "<link rel='icon' href='data:,'>"
         f"<title>{escape(plan.title)}: report</title><style>{STYLE}</style>"
     )
     body = "\n".join(filter(None, parts))
@@ -138,7 +142,7 @@ def _choices(results: PerceiveResults, drawn: Mapping[str, str]) -> str:
     if not results.pairs:
         return ""
     plan = results.answers.study.plan
-    rows, more, items = [], [], []
+    rows, people, models, items = [], [], [], []
     for n, c in enumerate(results.pairs):
         names = escape(f"{plan.name(c.pair[0])} / {plan.name(c.pair[1])}")
         count = "" if c.share is None else f"{round(c.share.value * c.share.n)} of {c.share.n}"
@@ -157,16 +161,21 @@ def _choices(results: PerceiveResults, drawn: Mapping[str, str]) -> str:
             d = c.model.deviations
             spread = f"people {d['participants']:.2f}, items {d['items']:.2f}"
         side = c.model.effects.get("side") if c.model else None
-        more.append(
+        people.append(
             [
                 names,
                 interval(c.people, _percent)
                 + (f" of {c.people.n}, {chance(c.people_p)}" if c.people else ""),
-                interval(c.model.effects["preference"] if c.model else None, lambda v: f"{v:.2f}"),
-                spread,
-                interval(side, lambda v: f"{v:.2f}"),
                 f"{c.halves[0].value:.0%}, {c.halves[1].value:.0%}; {chance(c.halves_p)}" if c.halves else "",
                 interval(c.unfiltered, _percent),
+            ]
+        )
+        models.append(
+            [
+                names,
+                interval(c.model.effects["preference"] if c.model else None, two),
+                spread,
+                interval(side, two),
             ]
         )
         items.append(drawn.get(f"items-{n + 1}", ""))
@@ -183,17 +192,9 @@ def _choices(results: PerceiveResults, drawn: Mapping[str, str]) -> str:
         rows,
     )
     out += table(
-        (
-            "",
-            "people who chose the first more often",
-            "log odds",
-            "deviations",
-            "gain of the left side",
-            "first, second half",
-            "nobody excluded",
-        ),
-        more,
+        ("", "people who chose the first more often", "first, second half", "nobody excluded"), people
     )
+    out += table(("mixed model", "log odds", "deviations", "gain of the left side"), models)
     return out + "<h3>By item</h3>" + "".join(items)
 
 
@@ -248,11 +249,11 @@ def _people(results: PerceiveResults, drawn: Mapping[str, str]) -> str:
 def _claims(results: PerceiveResults) -> str:
     plan = results.answers.study.plan
     can = [
-        f"Which of two conditions people of this kind prefer, in {len(plan.items)} stretches of motion like these, "
-        "shown like this, when asked this question: with the intervals above."
+        f"Which of two conditions people of this kind prefer, in {len(plan.items)} stretches of motion "
+        "like these, shown like this, when asked this question: with the intervals above."
     ]
     cannot = [
-        "That there is no difference, where none was shown: an interval that includes a half includes others, too."
+        "That there is no difference, where none was shown: an interval with a half in it has others in it, too."
         + ("" if plan.smallest else " 'smallest' in the plan lets the report say it where it can be said."),
         "Why one is preferred: conditions may differ in more than what they are called after.",
         "Anything about other characters, cameras, voices, lengths or questions.",

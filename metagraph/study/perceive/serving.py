@@ -1,5 +1,6 @@
 """The page of a perceptual study served, and what it sends kept. Everything that holds for exported web pages
-holds here (`engines.serve`): this machine's own names alone unless told, no lists, no links out of the folder.
+holds here (`engines.serve`): this machine's own names alone unless told, no lists, no links out of the
+folder.
 """
 
 from __future__ import annotations
