@@ -125,9 +125,7 @@ def keep(study: Perceived, sheet: Sheet) -> Kept:
         if new:
             writer = Writer(path)
             try:
-                for event in new:
-                    writer.add(event.type, **_fields(sheet, event))
-                writer.sync()
+                writer.extend((event.type, _fields(sheet, event)) for event in new)
             finally:
                 writer.close()
     return Kept(have + len(new), len(new))

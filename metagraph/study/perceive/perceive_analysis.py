@@ -21,9 +21,7 @@ from metagraph.study.stats import LEVEL, Estimate
 from metagraph.study.stats_t import t_quantile, t_two_sided
 
 FEW_PEOPLE, FEW_ITEMS = 12, 8  # below which deviations are hardly known
-MOST_ROWS = (
-    1200  # of differences, beyond which people's means are compared instead: the model takes cubes of them
-)
+MOST_ROWS = 50_000  # of differences, beyond which people's means are compared instead
 Verdict = Literal["preferred", "not preferred", "no difference that matters", "not told", "no answers"]
 
 

@@ -280,8 +280,8 @@ def _choice_faults(plan: PerceivePlan, choice: Choice) -> list[tuple[str, str]]:
         out.append(("choice", f"a person would choose more than {MOST_TRIALS} times: give 'each'"))
     if choice.present == "together":
         for n, (a, b) in enumerate(plan.pairs):
-            one, other = plan.conditions[a], plan.conditions[b]
-            if one.sound != other.sound:
+            one, other = plan.conditions.get(a), plan.conditions.get(b)
+            if one is not None and other is not None and one.sound != other.sound:
                 out.append(
                     (
                         f"compare[{n}]" if plan.compare else "choice.present",

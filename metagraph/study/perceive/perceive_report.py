@@ -253,7 +253,7 @@ def _claims(results: PerceiveResults) -> str:
         "like these, shown like this, when asked this question: with the intervals above."
     ]
     cannot = [
-        "That there is no difference, where none was shown: an interval with a half in it has others in it, too."
+        "That there is no difference, where none was shown: an interval with a half in it has others, too."
         + ("" if plan.smallest else " 'smallest' in the plan lets the report say it where it can be said."),
         "Why one is preferred: conditions may differ in more than what they are called after.",
         "Anything about other characters, cameras, voices, lengths or questions.",
