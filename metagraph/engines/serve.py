@@ -8,6 +8,8 @@ or what a link leads to elsewhere.
 from __future__ import annotations
 
 import functools
+import os
+import re
 import socket
 import threading
 from collections.abc import Callable
@@ -21,6 +23,8 @@ from metagraph.files import is_file, is_inside
 
 WAIT = 10.0  # seconds for a request to be sent
 AT_ONCE = 64  # requests
+MOST_AT_ONCE = 8 << 20  # bytes of a part of a file
+_RANGE = re.compile(r"bytes=([0-9]{0,15})-([0-9]{0,15})")
 
 
 class Quiet(SimpleHTTPRequestHandler):
@@ -39,6 +43,7 @@ class Quiet(SimpleHTTPRequestHandler):
         """Say nothing: requests of one's own browser are not news."""
 
     def end_headers(self) -> None:
+        self.send_header("Accept-Ranges", "bytes")
         self.send_header("Cache-Control", "no-cache")  # exporting again must show
         self.send_header("X-Content-Type-Options", "nosniff")
         self.send_header("Cross-Origin-Resource-Policy", "same-origin")
@@ -64,7 +69,37 @@ class Quiet(SimpleHTTPRequestHandler):
         if not inside or any(p.startswith(".") for p in path.relative_to(root).parts) or not is_file(path):
             self.send_error(HTTPStatus.NOT_FOUND)
             return None
-        return super().send_head()
+        wanted = _RANGE.fullmatch(self.headers.get("Range", ""))
+        return (
+            super().send_head()
+            if wanted is None or wanted[0] == "bytes=-"
+            else self._part(path, *wanted.groups())
+        )
+
+    def _part(self, path: Path, first: str, last: str) -> BytesIO | None:
+        """Send what comes before a part of a file, which browsers ask for to play a video again."""
+        try:
+            with path.open("rb") as file:
+                size = os.fstat(file.fileno()).st_size
+                begin = int(first) if first else max(0, size - int(last))
+                end = min(int(last) if first and last else size - 1, size - 1, begin + MOST_AT_ONCE - 1)
+                file.seek(begin)
+                content = file.read(max(0, end - begin + 1))
+        except OSError:
+            self.send_error(HTTPStatus.NOT_FOUND)
+            return None
+        if not content:
+            self.send_response(HTTPStatus.REQUESTED_RANGE_NOT_SATISFIABLE)
+            self.send_header("Content-Range", f"bytes */{size}")
+            self.send_header("Content-Length", "0")
+            self.end_headers()
+            return None
+        self.send_response(HTTPStatus.PARTIAL_CONTENT)
+        self.send_header("Content-Type", self.guess_type(str(path)))
+        self.send_header("Content-Range", f"bytes {begin}-{begin + len(content) - 1}/{size}")
+        self.send_header("Content-Length", str(len(content)))
+        self.end_headers()
+        return BytesIO(content)
 
     def list_directory(self, path: Any) -> None:
         """Show nobody what lies in a folder."""
