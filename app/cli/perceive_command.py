@@ -78,6 +78,7 @@ def make(options: Namespace) -> int:
     secret = make_secret(options.into)
     made = design(plan, secret)
     items = {i.id: i for i in plan.items}
+    apart = plan.choice is None or plan.choice.present == "after"  # else one sound is heard of both
     cameras: dict[str, Any] = {}
     shown: dict[tuple[str, str], str] = {}
     tellable = sys.stderr.isatty() and not options.json
@@ -88,7 +89,7 @@ def make(options: Namespace) -> int:
         if tellable:
             print(f"\r{n + 1} of {len(made.key.stimuli)} videos ", end="", file=sys.stderr, flush=True)
         heard = sounds[condition, ident]
-        content = hashlib.sha256(b"" if heard is None else heard.tobytes())
+        content = hashlib.sha256(b"" if heard is None or not apart else heard.tobytes())
         frames = _digested(stimuli.pictures(condition, item, cameras[ident]), content)
         look = plan.video
         sound = None if heard is None else (heard, RATE)

@@ -266,7 +266,7 @@ class Writer:
         return event
 
     def extend(self, events: Iterable[tuple[str, Mapping[str, Any]]]) -> None:
-        """Append several events, (kind, fields) each; they are on the disk afterwards. Raises as `add` does."""
+        """Append several events, (kind, fields) each; all are on the disk afterwards. Raises as `add`."""
         for kind, fields in events:
             self._append(kind, fields)
         self.sync()
