@@ -17,6 +17,7 @@ from app.cli.render_command import bounds_of, figure_of, pictures, sound_of
 from app.stage.conversation_plans import ConversationPlans
 from app.stage.playback_source import ASIDE, Shown, alone
 from metagraph.errors import FileError
+from metagraph.formats.gltf import has_skinned_mesh
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.motion.clip import Clip
 from metagraph.speech.loudness import levelled
@@ -218,13 +219,27 @@ class Stimuli:
             clip = self._clip(name, path, project)
         else:
             clip, folder = self._clip(name, path, None), path.parent
-            project = Project(skeleton=clip.skeleton)
+            own = path if path.is_file() else Path(str(path).partition("#")[0])
+            drawn = own.suffix.lower() in (".glb", ".gltf", ".vrm") and has_skinned_mesh(own)
+            project = Project(skeleton=clip.skeleton, character=own.name if drawn else None)
         return alone(with_clip(project, NEW.format(0), clip), NEW.format(0)), folder
 
     def _clip(self, name: str, path: Path, project: Project | None) -> Clip:
         from metagraph.formats.clips import read_clips
 
-        clip = read_clips(path)[0]
+        named, _, take = str(path).partition("#")
+        path = path if path.is_file() else Path(named)
+        found = read_clips(path)
+        clips = [c for c in found if not take or c.name == take]
+        if len(clips) != 1:
+            kept = ", ".join(f"'{c.name}'" for c in found[:8])
+            raise FileError(
+                path,
+                f"holds no take '{take}'" if take else f"holds {len(found)} takes",
+                f"conditions.{name}",
+                f"Name one behind '#', as {path.name}#{found[0].name}; there are {kept}.",
+            )
+        clip = clips[0]
         if project is not None and clip.skeleton != project.skeleton:
             raise FileError(
                 path,
