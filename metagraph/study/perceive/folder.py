@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib.resources import files
@@ -84,6 +85,8 @@ def write_folder(folder: Path, plan: PerceivePlan, text: bytes, made: Design) ->
     write_atomically(folder / SHOW / PAGE, page.replace(PLACE, told).encode())
     write_atomically(folder / FILE, text)
     write_atomically(folder / KEY, msgspec.json.format(msgspec.json.encode(made.key), indent=1) + b"\n")
+    with suppress(OSError):  # some disks know no rights
+        (folder / KEY).chmod(0o600)
     log = folder / allocation.LOG
     if not log.is_file():
         at = datetime.now(UTC).isoformat(timespec="seconds")
