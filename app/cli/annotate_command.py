@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from app.cli.kept_options import kept_name
-from app.project.annotation_reading import Reading, begin, into, told
+from app.project.annotation_reading import Reading, begin, into, replayed, told
 from app.project.opening import open_whole
 from metagraph.errors import FileError
 from metagraph.formats.elan import read_elan
@@ -91,6 +91,7 @@ def run(options: Namespace) -> int:
         "layers": models,
         "learned": list(made.learned),
         "performance": made.performance,
+        "replayed": replayed(made.project, made.performance) if made.performance is not None else {},
         "saved": saved,
         "notes": notes,
     }
@@ -175,6 +176,9 @@ def _lines(data: Mapping[str, Any], reading: Reading, path: Path) -> Iterable[st
         yield f"learned: {', '.join(data['learned'])}"
     if data["performance"]:
         yield f"kept as a performance: {data['performance']}"
+        for layer, n in data["replayed"].items():
+            other = f", {n['other_limb']} of them with another limb than was seen" if n["other_limb"] else ""
+            yield f"  {layer}: {n['played']} of {n['asked']} acts play{other}"
     yield (
         f"saved {path}"
         if data["saved"]

@@ -499,12 +499,15 @@ def synthesize(options: Namespace) -> int:
         "frames": clip.frames,
         "transitions": len(path.jumps),
         "cost": path.cost,
+        "price": path.price,
         "takes": len({states.take(int(s)) for s in path.states}),
         "given_up": list(found.given_up),
         "misses": [asdict(m) for m in found.misses],
+        "distinct": looks.distinct,
         "repeated": looks.repeated,
         "rest": looks.frozen,
         "rest_of_takes": looks.source,
+        "stands_still": looks.stands_still,
     }
     say(
         options,

@@ -6,12 +6,14 @@ from __future__ import annotations
 
 import sys
 from argparse import ArgumentParser, Namespace
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.formats.conversations import Read
     from metagraph.graph.conversation import Side
+    from metagraph.speech.delivered import Delivered
 
 OUT = (".eaf", ".TextGrid", ".json")
 
@@ -72,7 +74,11 @@ def run(options: Namespace) -> int:
                 f"    {found['count']:4} {kind}{'s' if found['count'] != 1 else ' '} {found['seconds']:7.1f} "
                 f"s{more}"
             )
+    told: tuple[tuple[Delivered, ...], ...] = ()
     if ident is not None:
+        told = _delivered(options.project, ident)
+        for row, of in zip(rows, told, strict=True):
+            lines += [f"  {row['name']}: {t.words()}" for t in of if t.count]
         lines.append(f"kept in {options.project} as {ident}")
     if out is not None:
         lines.append(f"written to {out}")
@@ -82,6 +88,7 @@ def run(options: Namespace) -> int:
         "sides": rows,
         "notes": list(read.notes),
         "kept": ident,
+        "delivered": [[asdict(t) for t in of] for of in told],
         "written": str(out) if out is not None else None,
     }
     say(options, "\n".join(lines), data)
@@ -117,6 +124,18 @@ def _keep(path: Path, read: Read) -> str:
     project, ident = add_conversation(opened(path), read.conversation)
     save_project(project, path, path)
     return ident
+
+
+def _delivered(path: Path, ident: str) -> tuple[tuple[Delivered, ...], ...]:
+    """Return what becomes of both sides' rates, where the project's graph moves both."""
+    from app.cli.command_output import opened
+    from metagraph.speech.delivered import delivered
+    from metagraph.speech.drive import drive
+
+    project = opened(path)
+    conversation = project.conversations[ident]
+    plans = [drive(conversation, side, project)[1] for side in (0, 1)]
+    return tuple(delivered(conversation, side, project, plan) for side, plan in enumerate(plans))
 
 
 def _write(out: Path, read: Read, folder: Path | None) -> None:

@@ -12,6 +12,7 @@ from metagraph.graph import edits, performance_edits
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.annotation import Annotation, Label, guess_roles, labels
 from metagraph.playback.learn import Act, learn, performance, sequences
+from metagraph.playback.running_plan import perform
 
 FEW = 30  # acts below which a model is a rough one
 
@@ -87,6 +88,26 @@ def into(
             project, performance(name, reading.observed, reading.annotation.end)
         )
     return Made(project, tuple(done), kept)
+
+
+def replayed(project: Project, ident: str) -> dict[Layer, dict[str, int]]:
+    """Return layer -> how many acts a kept performance asks for, how many of them play, and how many of those
+    with another limb than was seen.
+    """
+    kept = project.performances[ident]
+    plan = perform(project, kept.asks, kept.length, kept.seed, dict(kept.stances), kept.idle)
+    out: dict[Layer, dict[str, int]] = {}
+    for layer in LAYERS:
+        asked = {ask.id for ask in kept.asks if getattr(ask, "layer", None) == layer}
+        played = {cue.meta.partition("+")[0] for cue in plan.layers[layer].cues}
+        other = {r.request for r in plan.reports if r.layer == layer and r.outcome == "other-limb"}
+        if asked:
+            out[layer] = {
+                "asked": len(asked),
+                "played": len(asked & played),
+                "other_limb": len(asked & played & other),
+            }
+    return out
 
 
 def remember(project: Project, reading: Reading) -> Project:

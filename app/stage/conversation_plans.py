@@ -58,6 +58,7 @@ class ConversationPlans:
                 side=n,
                 stand=p.stand,
                 motion=moved[n],
+                told=p.told if moved[n] is None else (),
                 asks=p.performance.asks,
                 notes=(*notes, *told),
                 folder=folder if s.project is None else (folder / s.project).parent,

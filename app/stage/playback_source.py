@@ -33,6 +33,7 @@ from metagraph.playback.player import morphs_at, pose_at
 
 if TYPE_CHECKING:
     from metagraph.playback.overlay import Overlay
+    from metagraph.speech.delivered import Delivered
     from metagraph.speech.duet import Stand
 
 ASIDE = (
@@ -49,7 +50,8 @@ class Shown:
     Of a conversation: partner: the other one. side: 0 or 1, which of the two this is. stand: where it stands.
     asks: what it is asked. notes: what could not be read. folder: what paths in its project begin at. motion:
     the clip it moves with instead of its plan, which still says where it looks and what it says; of one that
-    was generated, what is above the hips. over: what generated motion lays over the plan at a time, live.
+    was generated, what is above the hips. told: what becomes of its rates, where a plan moves it. over: what
+    generated motion lays over the plan at a time, live.
     """
 
     project: Project
@@ -64,6 +66,7 @@ class Shown:
     notes: tuple[str, ...] = ()
     folder: Path | None = None
     motion: str | None = None
+    told: tuple[Delivered, ...] = ()
     over: Callable[[float], Overlay | None] | None = None
 
     @property

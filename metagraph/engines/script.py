@@ -130,7 +130,7 @@ def _requests(project: Project) -> Iterator[Case]:
             _ask(f"l{limb}", "gesture", 10.0 + 3 * n, layer=layer, limb=limb)
             for n, limb in enumerate(("left", "right", "both"))
         ]
-        yield _once(f"{layer}: tags and limbs", "all tags must be there; the limb is an order", asks, 24.0)
+        yield _once(f"{layer}: tags and limbs", "all tags must be there; the limb is a wish", asks, 24.0)
         asks = [
             _ask("early", "gesture", layer=layer, stroke=0.05),
             _ask("stroke", "gesture", layer=layer, stroke=6.0),

@@ -76,6 +76,18 @@ def replace_file(path: Path, content: bytes, sync: bool = True) -> None:
         sync_folder(path.parent)
 
 
+def append_line(path: Path, line: str) -> None:
+    """Add a line to the end of a file, safely on the disk when it returns. A line that was cut off before it
+    stays a line of its own. Raises OSError.
+    """
+    with path.open("a+b") as file:
+        if file.tell() and file.seek(-1, os.SEEK_END) >= 0 and file.read(1) != b"\n":
+            line = f"\n{line}"
+        file.write(f"{line}\n".encode())
+        file.flush()
+        os.fsync(file.fileno())
+
+
 def write_all(handle: int, content: bytes) -> None:
     """Write all of it, however little the system takes at once. Raises OSError."""
     rest = memoryview(content)

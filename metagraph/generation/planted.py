@@ -61,7 +61,7 @@ def talk_of(planted: Planted, n: int) -> Spoken:
 
 def performed(project: Project, conversation: Conversation, side: int) -> Clip:
     """Return how a side moves, FPS frames a second. Raises ValueError where the project has no skeleton."""
-    _, plan = drive(conversation, side, project)
+    _, plan = drive(conversation, side, project, together=False)
     return bake(plan, project, conversation.length, FPS)
 
 

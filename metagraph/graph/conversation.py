@@ -150,7 +150,8 @@ HESITATIONS = (
 class Conversation(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
     """Two who talk with each other. length: seconds. responses, hesitations: words and short phrases that
     make a segment one. distance: metres between the two, who face each other. seed: of which clauses get a
-    gesture.
+    gesture. blinks: by the project's life layer, or, "peaks", on clauses' peaks and where five seconds pass
+    without (Yang et al., section 7.3).
     """
 
     name: _Name
@@ -160,6 +161,7 @@ class Conversation(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid
     hesitations: tuple[_Name, ...] = HESITATIONS
     distance: Annotated[float, Meta(ge=0.2, le=20)] = 1.3
     seed: Annotated[int, Meta(ge=0, le=0xFFFFFFFF)] = 1
+    blinks: Literal["life", "peaks"] = "life"
 
 
 def side_name(conversation: Conversation, side: int) -> str:

@@ -44,7 +44,9 @@ def remove_conversation(project: Project, ident: str) -> Project:
 
 
 def change_conversation(project: Project, ident: str, **changes: Any) -> Project:
-    """Set fields of a conversation: name, distance, seed. Raises EditError, also for values out of range."""
+    """Set fields of a conversation: name, distance, seed, blinks. Raises EditError, also for values out of
+    range.
+    """
     if "name" in changes:
         changes["name"] = _clean(str(changes["name"]))
         if not changes["name"]:

@@ -45,7 +45,8 @@ class Request(
 
 
 class Gesture(Request, frozen=True, tag="gesture"):
-    """A gesture of the stance the layer is in. tags: all of them must fit. duration: how long the activity is
+    """A gesture of the stance the layer is in. tags: all of them must fit. limb: a wish; another
+    plays where the stance has none such, and the report tells. duration: how long the activity is
     wanted. stroke: when its most telling moment should come, instead of `at`. hold: seconds its hold should
     last. prepare: whether the preparation plays. resume: whether its rest goes on after something more
     important has cut it.

@@ -150,6 +150,7 @@ Outcome = Literal[
     "covered",
     "no-room",
     "no-candidate",
+    "other-limb",
     "no-way",
     "no-stance",
     "unknown-action",

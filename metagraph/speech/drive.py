@@ -3,19 +3,21 @@ responses and hesitations.
 
 Which segments get one is drawn with the rates that were observed (Yang et al., table 1), each by a key of its
 own: changing one segment leaves the others' draws as they were. A gesture's stroke is asked for at its
-clause's F0 peak.
+clause's F0 peak, and which gestures those are is chosen together (`gesture_choice`), so that as many are
+performed as are drawn.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from metagraph.graph.conversation import Conversation, Segment, heard_by
-from metagraph.graph.model import Layer, Mode, Project
+from metagraph.graph.model import Action, Layer, Mode, Project
 from metagraph.graph.requests import (
     AnyRequest,
     Behave,
+    Blink,
     Change,
     Fidget,
     Gesture,
@@ -23,6 +25,7 @@ from metagraph.graph.requests import (
     Nod,
     Performance,
     Place,
+    Play,
     Point,
     Say,
 )
@@ -30,6 +33,8 @@ from metagraph.playback.choice import uniform
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan
 from metagraph.playback.running_plan import perform
+from metagraph.speech.gesture_choice import Clause, choose
+from metagraph.speech.peak_blinks import peak_blinks
 
 PARTNER = "partner"  # the named point where the other's head is
 TOLERANCE = 0.1  # seconds a stroke may be off its peak (section 7.2)
@@ -51,9 +56,11 @@ def asks_of(
     project: Project,
     line: str | None = None,
     head: Point = (0.0, 1.6, 1.3),
+    together: bool = True,
 ) -> list[AnyRequest]:
     """Return what a side is asked to do. project: whose graph moves it. line: the project's line with its
-    voice. head: where the partner's head is, metres, in this side's space.
+    voice. head: where the partner's head is, metres, in this side's space. together: gestures are chosen so
+    that all have room; else each is asked for by itself, and many come to nothing.
     """
     out: list[AnyRequest] = [
         Place(id=PARTNER, at=0.0, name=PARTNER, point=head),
@@ -64,22 +71,28 @@ def asks_of(
     out += [
         Behave(id=f"mode {n}", at=at, mode=mode) for n, (at, mode) in enumerate(_modes(conversation, side))
     ]
-    rates = conversation.sides[side].rates
+    if conversation.blinks == "peaks":
+        peaks = [s.peak for s in conversation.sides[side].segments if s.peak is not None]
+        found = peak_blinks(peaks, conversation.length, conversation.seed, str(side))
+        out += [Blink(id=f"blink {n}", at=at) for n, at in enumerate(found)]
     kinds = {layer: {kind for _, kind in project.graphs[layer].index} for layer in project.graphs}
     nods = "gesture" in kinds["head"]
     heard, said = heard_by(conversation, side), _meanings(project)
     busy = [(s.start, s.end) for s in conversation.sides[side].segments]
-    for key, s in _keyed(heard):
-        drawn = uniform(conversation.seed, str(side), key)
-        if s.kind == "clause" and "gesture" in kinds["arms"] and drawn < rates.clause:
-            stroke = (s.start + s.end) / 2 if s.peak is None else s.peak
-            tags = _tags(said, s.text, uniform(conversation.seed, str(side), key, "tags"))
-            out.append(Gesture(id=key, at=s.start, stroke=stroke, tags=tags, priority=CLAUSE))
-        elif (
-            s.kind in ("response", "hesitation")
-            and nods
-            and drawn < (rates.response if s.kind == "response" else rates.hesitation)
-        ):
+    drawn = drawn_of(conversation, side)
+    tags = {
+        key: _tags(said, s.text, uniform(conversation.seed, str(side), key, "tags"))
+        for key, s in keyed(heard)
+        if s.kind == "clause"
+    }
+    if together and "gesture" in kinds["arms"]:
+        out += _chosen(conversation, side, project, drawn, tags)
+    for key, s in keyed(heard):
+        if key not in drawn:
+            continue
+        if s.kind == "clause" and "gesture" in kinds["arms"] and not together:
+            out.append(Gesture(id=key, at=s.start, stroke=peak_of(s), tags=tags[key], priority=CLAUSE))
+        elif s.kind != "clause" and nods:
             out.append(Nod(id=key, at=s.start, priority=ANSWER))
             busy.append((s.start, s.end + 1.0))
     if "transition" in kinds["body"]:
@@ -97,6 +110,57 @@ def asks_of(
             )
             out.append(Fidget(id=f"fidget {n}", at=round(at, 3), layer=layer, priority=FILL))
     return out
+
+
+def drawn_of(conversation: Conversation, side: int) -> frozenset[str]:
+    """Return the keys of the segments that are drawn to get a movement, by the side's rates."""
+    rates = conversation.sides[side].rates
+    return frozenset(
+        key
+        for key, s in keyed(heard_by(conversation, side))
+        if s.kind != "idle" and uniform(conversation.seed, str(side), key) < getattr(rates, s.kind)
+    )
+
+
+def peak_of(segment: Segment) -> float:
+    """Return where a clause's stress is, its middle where that is not known."""
+    return (segment.start + segment.end) / 2 if segment.peak is None else segment.peak
+
+
+def _chosen(
+    conversation: Conversation,
+    side: int,
+    project: Project,
+    drawn: Collection[str],
+    tags: Mapping[str, tuple[str, ...]],
+) -> Iterator[AnyRequest]:
+    """Yield the gestures that go with a side's clauses: by what they should mean where any such has room,
+    else by name.
+    """
+    graph = project.graphs["arms"]
+    stance = graph.start if graph.start is not None else next(iter(graph.stances), "")
+    every = [a for a in graph.of(stance, "gesture") if a.likelihood > 0]
+    every = [a for a in every if a.cooldown <= 0] or every
+    said = [(key, s) for key, s in keyed(heard_by(conversation, side)) if s.kind == "clause"]
+    clauses = [Clause(key, peak_of(s), key in drawn, _fitting(every, tags[key])) for key, s in said]
+    for one in choose(project, clauses, conversation.seed, conversation.length):
+        (key, s), clause = said[one.clause], clauses[one.clause]
+        if one.free and clause.wanted:
+            meant = tags[key] if set(tags[key]) - set(PLAIN) else one.action.tags
+            meant = tuple(tag for tag in meant if tag in (*PLAIN, *tags[key]))[:1]
+            yield Gesture(id=key, at=s.start, stroke=clause.peak, tags=meant, priority=CLAUSE)
+        else:
+            yield Play(
+                id=key, at=s.start, layer="arms", action=one.action.id, stroke=clause.peak, hold=one.hold,
+                priority=CLAUSE,
+            )  # fmt: skip
+
+
+def _fitting(every: Sequence[Action], tags: Collection[str]) -> Sequence[Action]:
+    """Return the gestures with a meaning; of plain ones all, whichever way they are plain."""
+    if set(tags) <= set(PLAIN):
+        return [a for a in every if set(PLAIN) & set(a.tags)] or every
+    return [a for a in every if set(tags) <= set(a.tags)] or every
 
 
 def _meanings(project: Project) -> Counter[str]:
@@ -129,13 +193,14 @@ def drive(
     project: Project,
     line: str | None = None,
     head: Point = (0.0, 1.6, 1.3),
+    together: bool = True,
 ) -> tuple[Performance, Plan]:
     """Return what a side performs, and its plan: gestures whose stroke would miss its peak, since another
-    still plays, are taken back.
+    still plays, are taken back. Arguments as for `asks_of`.
 
     The same asks performed again give the same plan.
     """
-    asks = asks_of(conversation, side, project, line, head)
+    asks = asks_of(conversation, side, project, line, head, together)
     plan = Plan(conversation.seed, 0.0)
     for _ in range(ROUNDS):
         plan = perform(project, asks, conversation.length, conversation.seed, idle=False)
@@ -165,7 +230,7 @@ def _missed(project: Project, plan: Plan, asks: list[AnyRequest]) -> set[str]:
     found = strokes(project, plan)
     out: set[str] = set()
     before = False
-    for ask in sorted((a for a in asks if isinstance(a, Gesture)), key=lambda a: a.stroke or 0.0):
+    for ask in sorted((a for a in asks if isinstance(a, Gesture | Play)), key=lambda a: a.stroke or 0.0):
         at = found.get(ask.id)
         missed = at is None or abs(at - (ask.stroke or 0.0)) > TOLERANCE
         if missed and not before:
@@ -174,15 +239,17 @@ def _missed(project: Project, plan: Plan, asks: list[AnyRequest]) -> set[str]:
     return out
 
 
-def _keyed(segments: tuple[Segment, ...]) -> Iterator[tuple[str, Segment]]:
-    """Yield a key of each segment that stays when others change: its kind and words, and how many such came
-    before.
+def keyed(segments: tuple[Segment, ...]) -> list[tuple[str, Segment]]:
+    """Return segments with a key of each that stays when others change: its kind and words, and how many such
+    came before.
     """
     seen: Counter[str] = Counter()
+    out = []
     for s in segments:
         word = f"{s.kind} {s.text[:60]}".strip()
         seen[word] += 1
-        yield (f"{word} {seen[word]}" if seen[word] > 1 or not s.text else word), s
+        out.append((f"{word} {seen[word]}" if seen[word] > 1 or not s.text else word, s))
+    return out
 
 
 def _modes(conversation: Conversation, side: int) -> Iterator[tuple[float, Mode]]:

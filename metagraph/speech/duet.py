@@ -8,6 +8,7 @@ from math import cos, pi, sin
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,6 +20,7 @@ from metagraph.graph.requests import Line, Performance
 from metagraph.motion import rotation
 from metagraph.playback.life.voice import Voice
 from metagraph.playback.plan import Plan
+from metagraph.speech.delivered import Delivered, delivered
 from metagraph.speech.drive import drive
 from metagraph.speech.lines import read_spoken
 
@@ -47,12 +49,15 @@ class Stand:
 
 @dataclass(frozen=True)
 class DuetPart:
-    """One of the two. project: its graph, with its voice among the lines. performance: what it is asked."""
+    """One of the two. project: its graph, with its voice among the lines. performance: what it is asked.
+    told: what becomes of its rates.
+    """
 
     project: Project
     performance: Performance
     plan: Plan
     stand: Stand
+    told: tuple[Delivered, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -105,12 +110,19 @@ def duet(
         side, project, voice, line = conversation.sides[n], projects[n], heard[n], None
         if voice is not None:
             line = _free_id(ident, n, project)
+            peaks = [s.peak for s in side.segments if s.kind == "clause" and s.peak is not None]
+            voice = replace(voice, stresses=np.array(peaks)) if peaks else voice
             project = replace(
                 project, lines={**project.lines, line: line_of(side)}, voices={**project.voices, line: voice}
             )
+        if conversation.blinks == "peaks":  # and no others
+            project = replace(
+                project, life=msgspec.structs.replace(project.life, blinks=0.0, accent_blinks=0.0)
+            )
         head = (0.0, round(heads[1 - n], 3), conversation.distance)
         performance, plan = drive(conversation, n, project, line, head)
-        parts.append(DuetPart(project, performance, plan, stand))
+        told = delivered(conversation, n, project, plan)
+        parts.append(DuetPart(project, performance, plan, stand, told))
     return Duet((parts[0], parts[1]), conversation.length)
 
 

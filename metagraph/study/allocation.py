@@ -22,7 +22,7 @@ import msgspec
 from metagraph.budgets import LOG_FILE
 from metagraph.errors import FileError
 from metagraph.files import read_file
-from metagraph.formats.atomic import write_atomically
+from metagraph.formats.atomic import append_line, write_atomically
 from metagraph.study.order import williams
 
 if TYPE_CHECKING:
@@ -132,10 +132,7 @@ def append_durably(path: Path, note: dict[str, Any], where: str = "") -> None:
     FileError.
     """
     try:
-        with path.open("a", encoding="utf-8") as file:
-            file.write(json.dumps(note) + "\n")
-            file.flush()
-            os.fsync(file.fileno())
+        append_line(path, json.dumps(note))
     except OSError as error:
         raise FileError(
             path,

@@ -17,6 +17,7 @@ from metagraph import __version__
 from metagraph.budgets import LOG_FILE
 from metagraph.errors import FileError
 from metagraph.files import read_file
+from metagraph.formats.atomic import append_line
 from metagraph.study.log import Writer, read, wall_time
 from metagraph.study.watching import LOCK, is_open
 
@@ -88,8 +89,7 @@ def delete(
     path = study.folder / DELETIONS
     try:
         shutil.rmtree(folder)
-        with path.open("a", encoding="utf-8") as out:
-            out.write(json.dumps(note) + "\n")
+        append_line(path, json.dumps(note))
     except OSError as error:
         raise FileError(
             Path(error.filename or folder),

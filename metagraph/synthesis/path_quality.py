@@ -24,7 +24,8 @@ LEAST = 1.0  # seconds: a rest as short as that is never too long
 
 @dataclass(frozen=True)
 class PathQuality:
-    """jumps: a second. distinct: how many frames of the takes it shows, of its own. repeated: share of frames
+    """jumps: a second. distinct: share of frames that show what it did not show
+    before. repeated: share of frames
     that were shown within RECENT seconds before. frozen: seconds of the longest rest, in which no joint moves
     faster than STILL; source: the same of the takes it is made of.
     """

@@ -92,10 +92,7 @@ def find_path(
     all that keep to them ("exact"), or a cheap one, other with other seeds ("greedy"). Raises SynthesisError
     where there is none.
     """
-    known = _RULED.get(graph)
-    if known is None or known[0] != rules:
-        known = _RULED[graph] = rules, ruled(graph, rules)
-    allowed = known[1]
+    allowed = _allowed(graph, rules)
     try:
         if search == "exact":
             path = best(allowed, heard, wanted, cancelled, rules.frames)
@@ -106,6 +103,16 @@ def find_path(
             raise
         raise SynthesisError(f"{error}, or let it jump as often as it likes") from error
     return replace(path, cost=_looks(graph, path), price=path.cost)
+
+
+def _allowed(graph: MotionGraph, rules: JumpRules) -> MotionGraph:
+    """Return `ruled`, made once a graph. Without rules that is the graph: kept, it would keep itself."""
+    if rules == FREE:
+        return graph
+    known = _RULED.get(graph)
+    if known is None or known[0] != rules:
+        known = _RULED[graph] = rules, ruled(graph, rules)
+    return known[1]
 
 
 def _looks(graph: MotionGraph, path: Path) -> float:

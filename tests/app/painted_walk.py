@@ -10,6 +10,7 @@ from PySide6.QtTest import QTest
 from app.shell.workspaces import WORKSPACES
 from app.stage.gl_view import ImageView
 from tests.app.painted_text import faults, without
+from tests.app.shared_window import settle
 
 
 def walk(drive: Any, width: int, height: int) -> dict[str, list[str]]:
@@ -25,11 +26,8 @@ def walk(drive: Any, width: int, height: int) -> dict[str, list[str]]:
             )
             drive.session.jump(action=action.id)
             drive.session.transport.set_playing(False)
-            QTest.qWait(60)
-            for _ in range(200):  # a sound is read
-                if not drive.jobs.running:
-                    break
-                QTest.qWait(50)
-            QTest.qWait(30)  # what was read is counted and laid out
+            settle(drive.window)  # sounds are read, what was read is counted
+            QTest.qWait(30)  # and laid out
+            settle(drive.window)
             out[workspace.id] = faults(drive.window)
     return {k: v for k, v in out.items() if v}

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from metagraph.formats import atomic
-from metagraph.formats.atomic import FORSAKEN, sweep, write_atomically
+from metagraph.formats.atomic import FORSAKEN, append_line, sweep, write_atomically
 from metagraph.formats.locking import process_mark
 from tests.processes import started
 from tests.sittings import ended
@@ -105,3 +105,22 @@ def test_after_kills_nothing_stays_but_the_file(tmp_path: Path) -> None:
             child.wait()
     sweep(tmp_path)
     assert {p.name for p in tmp_path.iterdir()} <= {"file"}
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        (None, '{"a": "é"}\n'),
+        ("", '{"a": "é"}\n'),
+        ("one\n", 'one\n{"a": "é"}\n'),
+        ('{"cu', '{"cu\n{"a": "é"}\n'),
+    ],
+)
+def test_a_line_is_added_whole_whatever_a_crash_left_before_it(
+    tmp_path: Path, before: str | None, after: str
+) -> None:
+    path = tmp_path / "log.jsonl"
+    if before is not None:
+        path.write_bytes(before.encode())
+    append_line(path, '{"a": "é"}')
+    assert path.read_bytes().decode() == after

@@ -92,8 +92,10 @@ def test_what_is_not_there_is_reported_with_where_there_is_one(project: Project,
     )
     assert (
         arms(project, ask("r", 1, limb="right", kind="fidget"))[1].reports[0].message
-        == "stance 'rest' has no right fidget"
+        == "stance 'rest' has no right fidget; another will do"
     )
+    made, told = arms(project, ask("r", 1, limb="right", kind="fidget"))
+    assert [c.action.kind for c in made.cues] == ["fidget"] and told.reports[0].played
 
 
 def test_an_action_of_no_likelihood_is_never_drawn_but_may_be_asked_for(project: Project, toy: Any) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from dataclasses import replace
 
 import numpy as np
@@ -117,3 +119,13 @@ def test_a_clause_does_not_begin_with_the_middle_of_another() -> None:
         find_path(graph, spoken, asked, rules=FREE)
     loose = wanted([Segment("clause", 0.7, 2.7, 1.3)], 2.5, edges=False)
     assert find_path(graph, spoken, loose, rules=FREE).jumps.tolist() == [21]
+
+
+@pytest.mark.parametrize("rules", [FREE, JUMP_RULES])
+def test_a_graph_that_was_searched_is_let_go(rules: JumpRules) -> None:
+    graph = moving(200, [0, 200], {(n, (n + 90) % 200): 0.2 for n in range(0, 200, 5)})
+    find_path(graph, anything(graph), wanted([], 2.0, use=()), rules=rules)
+    gone = weakref.ref(graph)
+    del graph
+    gc.collect()
+    assert gone() is None

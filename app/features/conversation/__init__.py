@@ -44,7 +44,7 @@ def contribute(shell: Shell) -> Contribution:
     def make() -> QWidget:
         from app.features.conversation.conversation_panel import ConversationPanel
 
-        panel = ConversationPanel(shell.document, session, shell.jobs, shell.widget)
+        panel = ConversationPanel(shell.document, session, shell.jobs, shell.stage.performance, shell.widget)
         panel.files_dropped.connect(converse)
         panel.add.clicked.connect(lambda: converse())
         panel.more_menu.addActions(shell.actions.of_menu("conversation"))

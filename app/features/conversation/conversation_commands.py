@@ -89,7 +89,7 @@ def rates(shell: Shell) -> None:
     if found is not None:
         from app.features.conversation.conversation_settings import RatesDialog
 
-        RatesDialog(shell.document, *found, shell.widget).open()
+        RatesDialog(shell.document, *found, shell.stage.performance, shell.widget).open()
 
 
 def graph_again(shell: Shell) -> None:

@@ -14,6 +14,7 @@ from app.look.plural import many
 from app.look.theme import SOUND_MARKS, theme
 from app.project.document import Document
 from app.project.jobs import Jobs
+from app.stage.performance import Performance
 from app.stage.session import Session
 from app.widgets.making import make_widget
 from app.widgets.mime import sounds_of
@@ -34,10 +35,15 @@ class ConversationPanel(QWidget):
     files_dropped = Signal(object)
 
     def __init__(
-        self, document: Document, session: Session, jobs: Jobs, parent: QWidget | None = None
+        self,
+        document: Document,
+        session: Session,
+        jobs: Jobs,
+        performance: Performance,
+        parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
-        self.document, self.session = document, session
+        self.document, self.session, self.performance = document, session, performance
         self.sounds = Sounds(document, session, jobs, self)
         self.editing = Editing(document, session, self.sounds, self)
         self.setAcceptDrops(True)
@@ -54,6 +60,7 @@ class ConversationPanel(QWidget):
         session.look.changed.connect(self._soon.start)
         session.onstage.mode_changed.connect(self._soon.start)
         self.editing.changed.connect(self._soon.start)
+        performance.changed.connect(self._soon.start)
         self._restage()
 
     def _header(self) -> QHBoxLayout:
@@ -133,7 +140,16 @@ class ConversationPanel(QWidget):
         else:
             minutes, seconds = divmod(round(of.length), 60)
             both = " and ".join(side_name(of, side) for side in (0, 1))
-            self.title.say(f"{both}, {minutes}:{seconds:02d}")
+            self.title.say(f"{both}, {minutes}:{seconds:02d}{self._delivered()}")
+
+    def _delivered(self) -> str:
+        """Say how many clauses get a gesture, beside how many were asked for."""
+        told = [t for one in self.performance.shown.both for t in one.told[:1] if t.count]
+        done, asked = (
+            " and ".join(f"{100 * share:.0f} %" for share in shares)
+            for shares in ([t.performed / t.count for t in told], [t.asked for t in told])
+        )
+        return f". Gestures go with {done} of the clauses, {asked} were asked for" if told else ""
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)

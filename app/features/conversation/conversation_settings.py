@@ -26,6 +26,8 @@ from PySide6.QtWidgets import (
 from app.look.theme import SOUND_MARKS, strengthen
 from app.project.document import Document
 from app.project.speech_files import SOUNDS, channels_of
+from app.stage.performance import Performance
+from app.stage.playback_source import Shown
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.formats.store import SUFFIX, relative
@@ -38,6 +40,14 @@ RATES = {
     "clause": ("gestures with its own clauses", "How often the hands move with a clause"),
     "response": ("nods with its own responses", "How often the head nods with a “yeah” or “mm-hmm”"),
     "hesitation": ("nods when the other hesitates", "How often the head nods while the partner says “er”"),
+}
+BLINKS = {
+    "life": ("As in Life, and on stresses", "The life layer's blinks, and one on many of the clauses' peaks"),
+    "peaks": (
+        "On stresses, and after 5 s without",
+        "On a clause's peak if the last blink is a second ago, and once in each five seconds without: what "
+        "Yang et al. keyed (section 7.3)",
+    ),
 }
 ACTORS = {"female": "the woman", "male": "the man"}
 
@@ -162,10 +172,33 @@ class WordsDialog(SettingDialog):
         return conversation_edits.set_word_lists(project, self.ident, *self.lists.lists())
 
 
+def delivered_words(shown: Shown, conversation: Conversation) -> str:
+    """Return what becomes of both sides' rates in what is shown, a line for each; empty where nothing is."""
+    return "\n".join(
+        f"{side_name(conversation, one.side)}: {told.words()}"
+        for one in shown.both
+        for told in one.told
+        if told.count
+    )
+
+
 class RatesDialog(SettingDialog):
-    """How often each of the two moves with what is said."""
+    """How often each of the two moves with what is said, and what becomes of it on stage."""
 
     title, text = "Rates", "Change rates"
+
+    def __init__(
+        self,
+        document: Document,
+        ident: str,
+        conversation: Conversation,
+        performance: Performance,
+        parent: QWidget,
+    ) -> None:
+        self.performance = performance
+        super().__init__(document, ident, conversation, parent)
+        performance.changed.connect(self.refresh)
+        self.refresh()
 
     def build(self, layout: QVBoxLayout) -> None:
         layout.addWidget(
@@ -212,7 +245,25 @@ class RatesDialog(SettingDialog):
                 row_of.addWidget(button)
             grid.addLayout(row_of, 4, 1 + side)
         layout.addLayout(grid)
+        row_of = QHBoxLayout()
+        row_of.addWidget(QLabel("Blinks", self))
+        self.blinks = ComboBox(self)
+        self.blinks.setAccessibleName("Blinks")
+        for value, (words, tip) in BLINKS.items():
+            self.blinks.addItem(words, value)
+            self.blinks.setItemData(self.blinks.count() - 1, tip, Qt.ItemDataRole.ToolTipRole)
+        self.blinks.setCurrentIndex(list(BLINKS).index(self.conversation.blinks))
+        row_of.addWidget(self.blinks)
+        row_of.addStretch(1)
+        layout.addLayout(row_of)
+        self.delivered = caption("", self, True)
+        layout.addWidget(self.delivered)
         layout.addStretch(1)
+
+    def refresh(self) -> None:
+        """Say what becomes of the rates as they are."""
+        self.delivered.setText(delivered_words(self.performance.shown, self.conversation))
+        self.delivered.setVisible(bool(self.delivered.text()))
 
     def take(self, side: int, rates: Rates) -> None:
         for name, field in self.fields[side].items():
@@ -222,7 +273,7 @@ class RatesDialog(SettingDialog):
         for side in (0, 1):
             values = {name: round(field.value() / 100, 4) for name, field in self.fields[side].items()}
             project = conversation_edits.set_rates(project, self.ident, side, **values)
-        return project
+        return conversation_edits.change_conversation(project, self.ident, blinks=self.blinks.currentData())
 
 
 class SidesDialog(SettingDialog):

@@ -93,7 +93,7 @@ def draw_card(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -
         painter.setFont(font)
         painter.drawText(
             card.adjusted(14, 14, -14, -14), Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap,
-            "Drop a resting clip here\nto make the first stance\nof this layer:\nhands at the sides, say.",
+            "Drop a resting clip here to make the first stance of this layer: hands at the sides, say.",
         )  # fmt: skip
     else:
         head = _card_name(painter, card, plain(stance.name), bold(font), look)

@@ -30,7 +30,8 @@ ACCENT = (
 class Voice:
     """One line, analysed. duration: seconds. peaks: times of its loudness peaks, a syllable each `[P]`. times
     `[K]`, weights `[K, 15]`: how much of each of `VISEMES` the mouth shows, 0..1, linear between the times.
-    strengths: how loud the peaks are `[P]`, 0..1; empty where that is not known.
+    strengths: how loud the peaks are `[P]`, 0..1; empty where that is not known. stresses: times of the
+    stressed syllables `[S]`, ascending, where they are known: the peaks of pitch of a conversation's clauses.
     """
 
     duration: float
@@ -38,12 +39,16 @@ class Voice:
     times: Array
     weights: Array
     strengths: Array = field(default_factory=lambda: np.zeros(0))
+    stresses: Array | None = None
 
     @cached_property
     def accents(self) -> Array:
-        """Times of the stressed syllables `[A]`: the first peak, then the loudest ones that have no louder
-        one within `ACCENT` seconds. People blink and gesture on these, not on every syllable.
+        """Times of the stressed syllables `[A]`: those that are known; else the first peak, then the loudest
+        ones that have no louder one within `ACCENT` seconds. People blink and gesture on these, not on every
+        syllable.
         """
+        if self.stresses is not None:
+            return self.stresses
         count = len(self.peaks)
         loud = self.strengths if len(self.strengths) == count else np.ones(count)
         taken: list[float] = []

@@ -53,6 +53,8 @@ def test_models_are_learned_and_a_performance_kept(project: Path, capsys: pytest
     saved = open_project(project).project
     assert saved.markov["head"].tags == ("positive", "negative", "")
     assert saved.performances[data["performance"]].name == "casual talk"
+    arms = data["replayed"]["arms"]
+    assert arms["asked"] == arms["played"] == 52 and 0 < arms["other_limb"] < 26
     assert saved.tiers["Right arm"] == "right arm"
     code, data, _ = run(capsys, "annotate", project, EAF, "--learn", "--shares")
     assert code == 0 and open_project(project).project.markov["head"].tags == ()

@@ -80,6 +80,8 @@ def test_it_keeps_a_conversation_in_a_project(
     code, data, _ = run(capsys, files[0], "--words", files[1], "--project", project, "--name", "Dogs")
     kept = open_project(project).project.conversations
     assert code == 0 and list(kept)[-1] == data["kept"] and data["kept"].startswith("v")
+    clauses = data["delivered"][0][0]  # what becomes of the rates
+    assert clauses["asked"] == 0.75 and clauses["count"] >= clauses["performed"] >= clauses["strokes"] > 0
     assert kept[data["kept"]].name == "Dogs" and kept[data["kept"]].sides[0].audio == "talk.wav"
 
 

@@ -131,7 +131,10 @@ export class Performer {
     }
     if (exact.length) return [{ candidates: exact, hop: "" }];
     const asked = [request.limb ?? "", ...request.tags, request.kind].filter(Boolean).join(" ");
-    return this.tell(meta, "no-candidate", `stance '${graph.stances.get(this.stance).name}' has no ${asked}`);
+    const lacks = `stance '${graph.stances.get(this.stance).name}' has no ${asked}`;
+    if (!found.length) return this.tell(meta, "no-candidate", lacks);
+    this.tell(meta, "other-limb", `${lacks}; another will do`, true); // a limb is a wish, too
+    return [{ candidates: found, hop: "" }];
   }
 
   /** Return the transitions hop by hop from the current stance to `goal`. */

@@ -188,6 +188,7 @@ def test_rates_lists_names_and_the_stage(talk: Any) -> None:
     drive = talk.drive
     drive.actions["rates"].trigger()
     dialog = drive.window.findChild(RatesDialog)
+    assert not dialog.delivered.isVisible()  # nobody moves
     dialog.take(1, type(talk.conversation.sides[1].rates)(clause=0.62, response=0.53, hesitation=0.35))
     QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
     assert talk.conversation.sides[1].rates.clause == 0.62

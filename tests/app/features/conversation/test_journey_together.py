@@ -13,9 +13,10 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from app.features.conversation.conversation_dialog import ImportDialog
+from app.features.conversation.conversation_settings import RatesDialog
 from app.features.render.render_dialog import RenderDialog
 from app.project.files import SAMPLE
-from metagraph.graph.requests import Gesture
+from metagraph.graph.requests import Blink, Gesture, Play
 from metagraph.speech.drive import strokes
 from tests.speech.talk import make_conversation
 
@@ -38,11 +39,29 @@ def test_dropped_seen_heard_and_written(drive: Any, tmp_path: Path) -> None:
     for one in drive.performance.shown.both:
         peaks = [s.peak for s in talk.sides[one.side].segments if s.kind == "clause"]
         found = strokes(one.project, one.plan)
-        asked = [a for a in one.asks if isinstance(a, Gesture)]
+        asked = [a for a in one.asks if isinstance(a, Gesture | Play)]
         assert len(asked) >= 2
         assert all(a.stroke in peaks and abs(found[a.id] - a.stroke) <= 0.1 for a in asked)
         nods += len(one.plan.layers["head"].cues)
     assert nods >= 2
+    drive.wait(lambda: "75 % and 75 % were asked for" in drive.conversation.title.words)
+    drive.actions["rates"].trigger()
+    rates = drive.window.findChild(RatesDialog)
+    assert rates.delivered.isVisible() and rates.delivered.text().count("asked 75 %, drawn") == 2
+    rates.fields[0]["clause"].setValue(0)
+    QTest.mouseClick(rates.go, Qt.MouseButton.LeftButton)
+    drive.wait(lambda: "0 % and" in drive.conversation.title.words)
+    drive.actions["rates"].trigger()
+    rates = next(d for d in drive.window.findChildren(RatesDialog) if d.isVisible())
+    rates.blinks.setCurrentIndex(1)
+    QTest.mouseClick(rates.go, Qt.MouseButton.LeftButton)
+    drive.wait(lambda: any(isinstance(a, Blink) for a in drive.performance.shown.asks))
+    one = drive.performance.shown.both[0]
+    blinks = one.plan.life.blinks.starts.tolist()
+    assert blinks == pytest.approx([a.at for a in one.asks if isinstance(a, Blink)], abs=1e-6)
+    drive.actions["undo"].trigger()
+    drive.actions["undo"].trigger()
+    drive.wait(lambda: "75 % and 75 %" in drive.conversation.title.words)
 
     drive.wait(lambda: len(drive.sound.parts) == 2, 60)
     frames = drive.preview.frames

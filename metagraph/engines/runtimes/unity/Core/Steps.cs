@@ -68,7 +68,13 @@ namespace Metagraph
             {
                 string[] words = new[] { request.Limb ?? "" }.Concat(request.Tags).Concat(new[] { request.Kind }).ToArray();
                 string wanted = string.Join(" ", words.Where(word => word.Length > 0).ToArray());
-                Tell(meta, "no-candidate", "stance '" + graph.NameOf(past.Stance) + "' has no " + wanted);
+                string lacks = "stance '" + graph.NameOf(past.Stance) + "' has no " + wanted;
+                if (found.Count > 0) // whose limb is a wish, too
+                {
+                    Tell(meta, "other-limb", lacks + "; another will do", true);
+                    return new List<Step> { new Step { Candidates = found } };
+                }
+                Tell(meta, "no-candidate", lacks);
                 return null;
             }
             return new List<Step> { new Step { Candidates = exact } };

@@ -167,8 +167,12 @@ func _steps(meta):
 	if meta.written:  # the model's limb and tags are wishes, not orders, nor worth playing the same again
 		exact = _first_other([exact, found, every])
 	if exact.size() == 0:
-		_tell(meta, "no-candidate", "stance '%s' has no such %s" % [of.stances[stance], request.kind])
-		return null
+		var lacks = "stance '%s' has no such %s" % [of.stances[stance], request.kind]
+		if found.size() == 0:
+			_tell(meta, "no-candidate", lacks)
+			return null
+		_tell(meta, "other-limb", lacks + " of that limb; another will do", true)  # a limb is a wish, too
+		exact = found
 	return [{candidates = exact, hop = ""}]
 
 

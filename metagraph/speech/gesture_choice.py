@@ -1,0 +1,279 @@
+"""Which gestures go with the clauses of a turn, chosen together: one by one most would come while the one
+before still plays.
+
+A gesture's stroke is on its clause's peak. What there is too little time for is shortened as people do
+(Kendon; McNeill, Hand and Mind, 1992, chapter 3): the preparation is cut, the hold hurried; or a hold is kept
+over the next clause, which then needs no stroke of its own. The best choice of all is found exactly, by
+dynamic programming over the clauses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import inf, log
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph.model import Action, Project
+from metagraph.playback.choice import uniform
+from metagraph.playback.phases import phases
+from metagraph.playback.sampling import HURRY
+
+Array = NDArray[Any]
+
+STROKE, HELD = 1.0, 0.6  # what a stroke on a clause's peak is worth, and a hold over it
+UNASKED = (-0.5, -0.2, 0.1, 0.4)  # of that where none was drawn for the clause; more where too few have room
+APART = 5.0  # seconds between the peaks of two clauses that do not hinder each other
+CUT, HURRIED, KEPT = (
+    0.15,
+    0.1,
+    0.1,
+)  # what a cut preparation and a hurried hold cost, and a second of longer hold
+AGAIN = 0.4  # what the same gesture twice in a row costs
+CHANCE = 0.06  # how much chance, and by it likelihoods, weigh
+LONGEST_HOLD = 1.6  # seconds a hold is kept up at most
+AFTER = 0.1  # seconds a hold goes on after a peak it is kept for
+CHOICES = 10  # gestures tried for a clause, beside the shortest
+SHORT = 2  # of the shortest
+BACK = 12  # clauses that a gesture may reach over, at most
+
+
+@dataclass(frozen=True, slots=True)
+class Clause:
+    """A clause that may get a gesture. key: of its draws. peak: seconds. wanted: whether one was drawn for
+    it. actions: those that go with its words.
+    """
+
+    key: str
+    peak: float
+    wanted: bool
+    actions: Sequence[Action]
+
+
+@dataclass(frozen=True, slots=True)
+class ChosenGesture:
+    """clause, last: the number of the clause its stroke is in, and of the last its hold is over. hold:
+    seconds, None for as it was made. start, end: seconds it plays, as late and as early as can be. free:
+    whether every gesture of the clause, as it was made, would have fitted as well.
+    """
+
+    clause: int
+    last: int
+    action: Action
+    hold: float | None
+    start: float
+    end: float
+    free: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class _Lengths:
+    """Seconds of a gesture: before its stroke, as made and at least; from the stroke to the hold's beginning,
+    its hold, and what comes after it.
+    """
+
+    lead: float
+    least: float
+    telling: float
+    hold: float
+    back: float
+
+    def end(self, hold: float | None) -> float:
+        """Return how long after the stroke it ends."""
+        return self.telling + (self.hold if hold is None else hold) + self.back
+
+    @property
+    def shortest(self) -> float:
+        return self.least + self.end(self.hold / HURRY)
+
+
+def choose(
+    project: Project, clauses: Sequence[Clause], seed: int, length: float = inf
+) -> list[ChosenGesture]:
+    """Return the gestures of one who says these clauses, by time; peaks ascend. length: seconds that there
+    are. The arms stay in one stance.
+    """
+    known: dict[str, _Lengths] = {}
+    out: list[ChosenGesture] = []
+    first = 0
+    for n in range(1, len(clauses) + 1):
+        if n == len(clauses) or clauses[n].peak - clauses[n - 1].peak >= APART:
+            out += _of_turn(project, clauses, first, n, seed, length, known, out[-1] if out else None)
+            first = n
+    return _freed(project, clauses, out, known)
+
+
+def _of_turn(
+    project: Project, clauses: Sequence[Clause], first: int, last: int, seed: int, length: float,
+    known: dict[str, _Lengths], before: ChosenGesture | None,
+) -> list[ChosenGesture]:  # fmt: skip
+    """Return the gestures of clauses that nothing parts, first to last (exclusive): where too few of those
+    that were drawn have room, others make up for them.
+    """
+    turn = clauses[first:last]
+    drawn = sum(c.wanted for c in turn)
+    best: list[ChosenGesture] = []
+    tried = [_tried(project, clause, seed, known) for clause in turn]
+    for unasked in UNASKED:
+        options: list[ChosenGesture] = []
+        worth: list[float] = []
+        firsts = [0]
+        for n, actions in enumerate(tried):
+            for action in actions:
+                for option, value in _options(turn, n, action, known[action.id], seed, length, unasked):
+                    again = n == 0 and before is not None and before.action.id == action.id
+                    options.append(option)
+                    worth.append(value - AGAIN * again)
+            firsts.append(len(options))
+        if not options:
+            break
+        begun = 0.0 if before is None else before.end + project.settings.rest
+        places = _best(options, np.array(worth), firsts, known, turn, project.settings.rest, begun)
+        found = [options[o] for o in places]
+        if sum(o.last - o.clause + 1 for o in found) > sum(o.last - o.clause + 1 for o in best):
+            best = found
+        if sum(o.last - o.clause + 1 for o in best) >= drawn:
+            break
+    return [replace(o, clause=o.clause + first, last=o.last + first) for o in best]
+
+
+def _lengths(project: Project, action: Action) -> _Lengths:
+    found = phases(project, action)
+    return _Lengths(
+        found.stroke - found.start,
+        found.stroke - found.skip(action.timing.blend_in),
+        found.stroke_end - found.stroke,
+        found.relax - found.stroke_end,
+        found.end - found.relax,
+    )
+
+
+def _tried(project: Project, clause: Clause, seed: int, known: dict[str, _Lengths]) -> list[Action]:
+    """Return the actions to try for a clause: drawn by likelihood, and the shortest."""
+    for action in clause.actions:
+        if action.id not in known:
+            known[action.id] = _lengths(project, action)
+    usable = [a for a in clause.actions if a.likelihood > 0]
+    drawn = sorted(usable, key=lambda a: log(uniform(seed, clause.key, "gesture", a.id)) / a.likelihood)[::-1]
+    short = sorted(usable, key=lambda a: known[a.id].shortest)[:SHORT]
+    return list({a.id: a for a in (*drawn[:CHOICES], *short)}.values())
+
+
+def _options(
+    clauses: Sequence[Clause],
+    n: int,
+    action: Action,
+    lengths: _Lengths,
+    seed: int,
+    length: float,
+    unasked: float = UNASKED[0],
+) -> Iterable[tuple[ChosenGesture, float]]:
+    """Yield the ways to play an action with its stroke on a clause, and what each is worth by itself."""
+    clause = clauses[n]
+    holds: list[float | None] = [None]
+    if lengths.hold > 0:
+        holds.append(lengths.hold / HURRY)
+    if n + 1 < len(clauses):
+        kept = clauses[n + 1].peak + AFTER - clause.peak - lengths.telling
+        if lengths.hold < kept <= max(LONGEST_HOLD, lengths.hold):
+            holds.append(round(kept, 3))
+    chance = CHANCE * (log(action.likelihood) - log(-log(uniform(seed, clause.key, "chance", action.id))))
+    for hold in holds:
+        until = clause.peak + lengths.telling + (lengths.hold if hold is None else hold)
+        end = clause.peak + lengths.end(hold)
+        last = n
+        while last + 1 < len(clauses) and clauses[last + 1].peak <= until + AFTER / 2:
+            last += 1
+        late = n + BACK < len(clauses) and end > clauses[n + BACK].peak
+        if late or end > length or clause.peak - lengths.least < 0:
+            continue
+        value = STROKE * (1 if clause.wanted else unasked) + chance
+        value += sum(HELD * (1 if c.wanted else unasked) for c in clauses[n + 1 : last + 1])
+        if hold is not None:
+            value -= HURRIED if hold < lengths.hold else KEPT * (hold - lengths.hold)
+        yield ChosenGesture(n, last, action, hold, clause.peak - lengths.lead, end), value
+
+
+def _best(
+    options: Sequence[ChosenGesture],
+    worth: Array,
+    firsts: Sequence[int],
+    known: Mapping[str, _Lengths],
+    clauses: Sequence[Clause],
+    rest: float,
+    begun: float,
+) -> list[int]:
+    """Return the options that are worth most together, by time; none may play while another does, nor before
+    begun seconds.
+    """
+    peaks = np.array([clauses[o.clause].peak for o in options])
+    lead = np.array([known[o.action.id].lead for o in options])
+    least = np.array([known[o.action.id].least for o in options])
+    ready = np.array([o.end + rest for o in options])
+    last = np.array([o.last for o in options])
+    names = {a: n for n, a in enumerate(dict.fromkeys(o.action.id for o in options))}
+    name = np.array([names[o.action.id] for o in options])
+    total, before = worth.copy(), np.full(len(options), -1)
+    long_ago: tuple[float, int] = (0.0, -1)  # the best of what ended before what is looked back on
+    for n in range(len(clauses)):
+        here = slice(firsts[n], firsts[n + 1])
+        if here.start == here.stop:
+            continue
+        begin = firsts[max(0, n - BACK)]
+        if n - BACK > 0:
+            old = slice(firsts[n - BACK - 1], begin)
+            if old.stop > old.start and total[old].max() > long_ago[0]:
+                long_ago = float(total[old].max()), old.start + int(total[old].argmax())
+        gain, chosen = (
+            np.full(here.stop - here.start, long_ago[0]),
+            np.full(here.stop - here.start, long_ago[1]),
+        )
+        if begin < here.start:
+            back = slice(begin, here.start)
+            room = peaks[here, None] - ready[None, back]  # seconds for what comes before the stroke
+            spare = np.maximum(lead[here] - least[here], 1e-9)[:, None]
+            cut = np.clip((lead[here, None] - room) / spare, 0, 1)
+            value = total[back] - CUT * cut - AGAIN * (name[here, None] == name[None, back])
+            value[(room < least[here, None]) | (last[None, back] >= n)] = -inf
+            place = value.argmax(1)
+            best = value[np.arange(len(place)), place]
+            better = best > gain
+            gain[better], chosen[better] = best[better], begin + place[better]
+        room = peaks[here] - begun
+        cut = np.clip((lead[here] - room) / np.maximum(lead[here] - least[here], 1e-9), 0, 1)
+        alone = np.where(room < least[here], -inf, gain - CUT * cut)
+        total[here] += np.where(chosen < 0, alone, gain)
+        before[here] = chosen
+    out: list[int] = []
+    at = int(total.argmax()) if total.max() > 0 else -1
+    while at >= 0:
+        out.append(at)
+        at = int(before[at])
+    return out[::-1]
+
+
+def _freed(
+    project: Project, clauses: Sequence[Clause], found: list[ChosenGesture], known: dict[str, _Lengths]
+) -> list[ChosenGesture]:
+    """Tell of each gesture whether any other of its clause would have done."""
+    rest, out = project.settings.rest, []
+    ends = [-inf]
+    for n, one in enumerate(found):
+        clause = clauses[one.clause]
+        every = [known[a.id] for a in clause.actions if a.likelihood > 0]
+        starts = clause.peak - max(x.lead for x in every)
+        after = found[n + 1] if n + 1 < len(found) else None
+        end = clause.peak + max(x.end(None) for x in every)
+        until = inf if after is None else clauses[after.clause].peak - known[after.action.id].lead - rest
+        free = (
+            one.hold is None
+            and one.last == one.clause
+            and starts >= max(0.0, ends[-1] + rest)
+            and end <= until
+        )
+        ends.append(end if free else one.end)
+        out.append(ChosenGesture(one.clause, one.last, one.action, one.hold, one.start, one.end, free))
+    return out
