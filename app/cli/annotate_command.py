@@ -17,7 +17,7 @@ from metagraph.errors import FileError
 from metagraph.formats.elan import read_elan
 from metagraph.formats.store import save_project
 from metagraph.graph.model import LAYERS, Layer
-from metagraph.playback.annotation import IGNORE, MEANINGS, ROLES, Annotation, is_meaning, label_of
+from metagraph.playback.annotation import IGNORE, MEANINGS, ROLES, SPEECH, Annotation, is_meaning, label_of
 from metagraph.playback.compare import compare
 from metagraph.playback.learn import Act, learn, state_words, states_of
 
@@ -30,7 +30,8 @@ def arguments(parser: ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME=ROLE",
-        help="what a tier stands for: left arm, right arm, arms, head action, head stance, body, ignore",
+        help="what a tier stands for: left arm, right arm, arms, head action, head stance, body, speech, "
+        "partner's speech, ignore",
     )
     parser.add_argument(
         "--label",
@@ -107,8 +108,8 @@ def _reading(
     names = [tier.name for tier in annotation.tiers]
     roles = _said(options.tier, "--tier", "LH=left arm", names)
     for role in roles.values():
-        if role not in (*ROLES, IGNORE):
-            raise ValueError(f"a tier is read as one of {', '.join((*ROLES, IGNORE))}, not '{role}'")
+        if role not in (*ROLES, *SPEECH, IGNORE):
+            raise ValueError(f"a tier is read as one of {', '.join((*ROLES, *SPEECH, IGNORE))}, not '{role}'")
     found = begin(annotation, roles, tiers, labels=(labels,))
     here = [x for label in found.labels for x in (label.text, label.key)]
     said = _said(options.label, "--label", "nod=gesture positive", here, label_of)

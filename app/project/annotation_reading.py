@@ -10,8 +10,10 @@ from functools import cached_property
 
 from metagraph.graph import edits, performance_edits
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.playback.annotation import Annotation, Label, guess_roles, labels
+from metagraph.playback.annotation import SPEECH, Annotation, Label, guess_roles, labels
 from metagraph.playback.learn import Act, learn, performance, sequences
+from metagraph.playback.markov import DEFAULTS
+from metagraph.playback.mode_shares import with_modes
 from metagraph.playback.running_plan import perform
 
 FEW = 30  # acts below which a model is a rough one
@@ -37,6 +39,23 @@ class Reading:
         """Layer -> what it was seen to do; layers that no tier is read as are not in it."""
         found = sequences(self.annotation, self.roles, self.labels)
         return {layer: found[layer] for layer in LAYERS if layer in found}
+
+    @cached_property
+    def spoken(self) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
+        """When the one who was watched speaks, and when the partner does, seconds; empty where no tier
+        says.
+        """
+        own, partner = (
+            [
+                (i.start, i.end)
+                for tier in self.annotation.tiers
+                if self.roles.get(tier.name) == role
+                for i in tier.intervals
+                if i.text.strip()
+            ]
+            for role in SPEECH
+        )
+        return own, partner
 
     def with_role(self, tier: str, role: str) -> Reading:
         return replace(self, roles={**self.roles, tier: role})
@@ -80,7 +99,12 @@ def into(
     done = []
     for layer in LAYERS:
         if layer in learned and reading.observed.get(layer):
-            project = edits.set_markov(project, learn(layer, [reading.observed[layer]], tagged, smoothing))
+            acts = reading.observed[layer]
+            model = with_modes(
+                learn(layer, [acts], tagged, smoothing), acts, *reading.spoken, reading.annotation.end
+            )
+            model = model if model.modes else replace(model, modes=DEFAULTS[layer].modes)
+            project = edits.set_markov(project, model)
             done.append(layer)
     kept = None
     if name is not None and any(reading.observed.values()):

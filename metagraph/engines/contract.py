@@ -114,7 +114,8 @@ class ExportedMarkov(Struct, forbid_unknown_fields=True):
     """states: (limb, kind). matrix: rows of probabilities. gap: mean seconds of rest between meta actions.
     positive, negative: the share of gestures asked for with that tag. tags: for each state the tags it asks
     for, blanks between them; empty when no state asks for any. lengths: for each state mean and standard
-    deviation of its seconds, or empty.
+    deviation of its seconds, or empty. modes: what is performed of what it writes while one is said to idle,
+    to listen and to talk: rows of shares of gestures, fidgets and transitions; empty for all of it.
     """
 
     states: list[tuple[LimbName, KindName]]
@@ -126,6 +127,7 @@ class ExportedMarkov(Struct, forbid_unknown_fields=True):
     lengths: list[
         Annotated[list[Annotated[float, Meta(ge=0, le=1e6)]], Meta(min_length=2, max_length=2)]
     ] = []
+    modes: list[Annotated[list[Annotated[float, Meta(ge=0, le=1)]], Meta(min_length=3, max_length=3)]] = []
 
 
 class ExportedLayer(Struct, forbid_unknown_fields=True):

@@ -319,6 +319,7 @@ def _layer(project: Project, graph: MetaGraph) -> c.ExportedLayer:
             model.negative,
             list(model.tags),
             [list(pair) for pair in model.lengths],
+            [list(row) for row in model.modes],
         ),
         own_markov=graph.layer in project.markov,
     )

@@ -32,6 +32,7 @@ from metagraph.graph.model import (
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.life.body import Body
+from metagraph.playback.markov import DEFAULTS
 
 
 @guarded
@@ -118,10 +119,11 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         base=base,
         roles=dict(document.roles),
         parts=dict(document.parts),
-        markov={
-            layer: _markov(layer, document.layers[layer].markov)
+        markov={  # also what was the default once
+            layer: model
             for layer in LAYERS
-            if document.layers[layer].own_markov
+            if (model := _markov(layer, document.layers[layer].markov)) != DEFAULTS[layer]
+            or document.layers[layer].own_markov
         },
         settings=Settings(p.alpha, p.seed, p.never_twice, p.shortest, p.wait, p.memory, p.rest, p.lookahead),
         life=document.life,
@@ -198,6 +200,7 @@ def _markov(layer: Layer, model: c.ExportedMarkov) -> Markov:
         "positive": model.positive,
         "negative": model.negative,
         "lengths": model.lengths,
+        "modes": model.modes,
     }
     return markov_from(layer, {"states": states, "matrix": model.matrix, **more}, f"$.layers.{layer}.markov")
 

@@ -376,6 +376,14 @@ def _over_time(project: Project) -> Iterator[Case]:
         ScriptStep(6.0, 30.0),
     )
     yield Case("interrupted live", "the running action is never touched", steps)
+    steps = (
+        ScriptStep(0.0, 60.0),
+        ScriptStep(2.0, 60.0, (_ask("m1", "mode", 5.0, mode="listening"),)),
+        ScriptStep(3.0, 60.0, (_ask("m2", "mode", 25.0, mode="idle"),)),
+        ScriptStep(20.0, 60.0, (_ask("s1", "say", 22.0, text="and so it went on for quite some time"),)),
+        ScriptStep(30.0, 60.0, (_ask("w1", "withdraw", what="m2"),)),
+    )
+    yield Case("modes asked for live", "who listens or idles gestures less than who talks", steps, idle=True)
 
 
 def _life(project: Project) -> Iterator[Case]:

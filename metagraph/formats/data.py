@@ -55,6 +55,7 @@ from metagraph.graph.model import (
     Timing,
 )
 from metagraph.graph.requests import words_of
+from metagraph.graph.words import MODES
 from metagraph.motion.contact_hold import Contact
 from metagraph.motion.joint_map import JointMap
 from metagraph.motion.retime import LONGEST, MOST, SPEEDS, Hold, Retime
@@ -444,7 +445,15 @@ def markov_from(layer: Layer, data: Any, where: str) -> Markov:
         raise DataError(f"{where}.lengths", f"should be {len(states)} pairs of seconds, one for each state")
     if any(mean < 1e-3 or deviation < 0 for mean, deviation in lengths):
         raise DataError(f"{where}.lengths", "should be means above 0 and deviations of 0 or more")
-    more = fill(Markov, data, where, ("layer", "states", "matrix", "tags", "lengths"))
+    modes = [
+        floats(x if isinstance(x, list) else [], 3, f"{where}.modes")
+        for x in get(data, "modes", list, where, [])
+    ]
+    if modes and (len(modes) != len(MODES) or not all(0 <= x <= 1 for row in modes for x in row)):
+        raise DataError(
+            f"{where}.modes", f"should be {len(MODES)} rows ({', '.join(MODES)}) of three shares from 0 to 1"
+        )
+    more = fill(Markov, data, where, ("layer", "states", "matrix", "tags", "lengths", "modes"))
     return Markov(
         layer,
         tuple(states),
@@ -452,4 +461,5 @@ def markov_from(layer: Layer, data: Any, where: str) -> Markov:
         **more,
         tags=tuple(tags) if any(tags) else (),
         lengths=tuple((a, b) for a, b in lengths),
+        modes=tuple((a, b, c) for a, b, c in modes),
     )

@@ -305,7 +305,9 @@ class Markov:
     matrix: rows of probabilities, each summing to 1. gap: mean seconds of rest between two actions. positive,
     negative: share of gestures asked for with that tag, where tags are not part of the states. tags: one text
     a state, the tags (blanks between them) it asks for; empty when tags are not part of the states. lengths:
-    (mean, standard deviation) seconds of each state's actions; empty where that is not known.
+    (mean, standard deviation) seconds of each state's actions; empty where that is not known. modes: what is
+    performed of what it writes while one is said to idle, to listen and to talk, a row each: shares of
+    gestures, fidgets and transitions, 0..1; empty where the mode makes no difference.
     """
 
     layer: Layer
@@ -316,6 +318,7 @@ class Markov:
     negative: float = 0.0
     tags: tuple[str, ...] = ()
     lengths: tuple[tuple[float, float], ...] = ()
+    modes: tuple[tuple[float, float, float], ...] = ()
 
     def tag(self, state: int) -> str:
         """Return the tags a state asks for, "" for none."""

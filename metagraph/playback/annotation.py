@@ -20,6 +20,10 @@ ROLES: Mapping[str, tuple[Layer, Limb]] = {
     "left arm": ("arms", "left"), "right arm": ("arms", "right"), "arms": ("arms", "both"),
     "head action": ("head", "both"), "head stance": ("head", "both"), "body": ("body", "both"),
 }  # fmt: skip
+SPEECH = (
+    "speech",
+    "partner's speech",
+)  # roles of tiers that tell who talks when: their labels are what is said
 STANCES = ("head stance", "body")  # roles whose intervals are changes of stance, or the stances themselves
 PHASES = ("preparation", "stroke", "hold", "retraction")  # of one gesture
 MEANINGS = ("gesture", "fidget", "transition", "stance", *PHASES, IGNORE)
@@ -111,6 +115,7 @@ _ELSE = _set("""
     gaze eye eyes mouth face facial brow brows meaning handedness handshape orthography marker language tokens lemma syntax blick
     shape
 """)
+_SPOKEN = _set("speech utterance utterances")
 _SIDES = _set("lh rh linkehand rechtehand left right links rechts")  # enough without a word for hand
 
 
@@ -145,7 +150,7 @@ def guess_roles(annotation: Annotation, *remembered: Mapping[str, str]) -> dict[
     the same to them, the one whose labels are best known.
     """
     said = {
-        t.name: next((m[t.name] for m in remembered if m.get(t.name) in (*ROLES, IGNORE)), None)
+        t.name: next((m[t.name] for m in remembered if m.get(t.name) in (*ROLES, *SPEECH, IGNORE)), None)
         for t in annotation.tiers
     }
     guessed = {t.name: guess_role(t) for t in annotation.tiers}
@@ -156,7 +161,11 @@ def guess_roles(annotation: Annotation, *remembered: Mapping[str, str]) -> dict[
     who = people.most_common(1)[0][0] if people else ""
     best: dict[str, Tier] = {}
     for tier in annotation.tiers:
-        if said[tier.name] is None and tier.whose == who and guessed[tier.name] != IGNORE:
+        spoken = set(_words(tier.name.partition("@")[0])) & _SPOKEN
+        if people and said[tier.name] is None and spoken and tier.intervals:
+            guessed[tier.name] = SPEECH[tier.whose != who]
+            best.setdefault(guessed[tier.name], tier)
+        elif said[tier.name] is None and tier.whose == who and guessed[tier.name] != IGNORE:
             other = best.get(guessed[tier.name])
             if other is None or _clarity(tier) > _clarity(other):
                 best[guessed[tier.name]] = tier

@@ -8,7 +8,8 @@ from typing import Any, Literal
 
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
-from metagraph.playback.life.track import StayFrom
+from metagraph.playback.life.track import Item, ModeFrom, Speech, StayFrom
+from metagraph.playback.markov import model
 from metagraph.playback.plan import Cue, LayerPlan, Past, Plan, Report
 from metagraph.playback.planner import extend
 from metagraph.playback.sampling import remember
@@ -53,6 +54,9 @@ def hear(
         for s in (*plan.track.stays, *items)
         if isinstance(s, StayFrom) and (s.id in gone or s.id in withdrawn)
     }
+    told: tuple[Item, ...] = (*plan.track.modes, *plan.track.speeches)
+    if any(isinstance(i, ModeFrom | Speech) for i in items) or any(t.id in withdrawn for t in told):
+        touched |= {layer for layer in LAYERS if model(project, layer).modes}  # who talks moves otherwise
     # Without any asks everything is planned again, so that an edited project shows; with some, what they have
     # to do with.
     leave = (

@@ -2,7 +2,8 @@
 
 The arms matrix is the paper's (Borer et al., figure 11), learned from annotated casual conversation. Body and
 head have no published matrix; theirs are ours, shaped on the paper's labels: the head nods and now and then
-changes its tilt, the body mostly rests, shifts and fidgets.
+changes its tilt, the body mostly rests, shifts and fidgets. So are the shares of what is performed while one
+is said to idle, listen or talk: hands gesture with one's own speech, the head nods at the other's.
 """
 
 from __future__ import annotations
@@ -10,7 +11,8 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping
 
-from metagraph.graph.model import Kind, Layer, Limb, Markov, Project
+from metagraph.graph.model import Kind, Layer, Limb, Markov, Mode, Project
+from metagraph.graph.words import MODES
 from metagraph.playback.choice import pick, uniform
 from metagraph.playback.plan import WRITTEN, Cursor, MetaAction, MetaRequest
 
@@ -43,6 +45,7 @@ ARMS = Markov(
     0    0    0    0    20 20 0    0    60
     """),
     gap=1.6,
+    modes=((0.1, 1.0, 1.0), (0.15, 0.8, 0.7), (1.0, 0.4, 0.7)),
 )
 HEAD = Markov(
     "head",
@@ -51,9 +54,18 @@ HEAD = Markov(
     gap=2.4,
     positive=0.2,
     negative=0.1,
+    modes=((0.2, 1.0, 1.0), (1.0, 0.6, 0.8), (0.7, 1.0, 1.0)),
 )
-BODY = Markov("body", _states("LR,G LR,F LR,T"), _rows("10 40 50\n20 30 50\n25 45 30"), gap=6.0)
+BODY = Markov(
+    "body",
+    _states("LR,G LR,F LR,T"),
+    _rows("10 40 50\n20 30 50\n25 45 30"),
+    gap=6.0,
+    modes=((0.3, 1.0, 1.0), (0.3, 0.7, 0.7), (1.0, 0.5, 0.8)),
+)
 DEFAULTS: Mapping[Layer, Markov] = {"body": BODY, "arms": ARMS, "head": HEAD}
+
+KINDS: tuple[Kind, ...] = ("gesture", "fidget", "transition")  # as in `Markov.modes`
 
 START = Cursor()
 
@@ -107,6 +119,16 @@ def write(
         out.append(MetaAction(request, start, start + seconds, written=True))
         number, time = number + 1, start + seconds
     return out, Cursor(number, state, time)
+
+
+def performs(chain: Markov, seed: int, meta: MetaAction, mode: Mode | None) -> bool:
+    """Whether something the model wrote is performed while somebody idles, listens or talks (`Markov.modes`).
+    What is left out leaves the rest as it was, so that it does not matter when a mode became known.
+    """
+    if not chain.modes or mode is None or meta.request.kind not in KINDS:
+        return True
+    share = chain.modes[MODES.index(mode)][KINDS.index(meta.request.kind)]
+    return share >= 1 or uniform(seed, meta.request.id, "mode") < share
 
 
 def length(chain: Markov, state: int, seed: int, key: str) -> float:

@@ -142,11 +142,7 @@ def _extend_layer(
     )  # what runs keeps the time it was wanted for, from the models
     placed, told = replan([*future, *written, *asked], project.settings, busy)
     performer.perform(
-        [
-            m
-            for m in placed
-            if not (m.written and m.request.kind == "transition" and plan.track.stays_at(layer, m.start))
-        ],
+        [m for m in placed if not m.written or _performed(project, plan, layer, m)],
         end,
     )
     performer.vary_rests(end)
@@ -154,6 +150,15 @@ def _extend_layer(
         layer, (*done, *placed), tuple(performer.cues), tuple(performer.rests), old.past, cursor, written
     )
     return whole, [*reports, *delayed, *told, *performer.reports]
+
+
+def _performed(project: Project, plan: Plan, layer: Layer, meta: MetaAction) -> bool:
+    """Whether what a model wrote is performed: not where it would leave a stance that was asked for, to stay
+    in, and as often as its mode says.
+    """
+    if meta.request.kind == "transition" and plan.track.stays_at(layer, meta.start):
+        return False
+    return markov.performs(markov.model(project, layer), plan.seed, meta, plan.track.told_mode(meta.start))
 
 
 def _written(

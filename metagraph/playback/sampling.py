@@ -207,7 +207,9 @@ class Performer:
             name = graph.stances[self.stance].name
             asked = " ".join(x for x in (request.limb or "", *request.tags, request.kind) if x)
             if found:  # whose limb is a wish, too
-                self._tell(meta, "other-limb", f"stance '{name}' has no {asked}; another will do", played=True)
+                self._tell(
+                    meta, "other-limb", f"stance '{name}' has no {asked}; another will do", played=True
+                )
                 return [SamplingStep(found)]
             hint = "" if meta.written else self._elsewhere(request)
             self._tell(meta, "no-candidate", f"stance '{name}' has no {asked}{hint}")

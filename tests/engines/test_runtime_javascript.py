@@ -758,9 +758,21 @@ MUTATIONS = [
     ),
     (
         "planner.js",
-        "const leaves = (m) => m.written &&",
+        "const leaves = (m) =>",
         "const leaves = (m) => false &&",
         "staying in a stance",
+    ),
+    (
+        "markov.js",
+        "return share >= 1 ||",
+        "return share >= 0 ||",
+        "modes of the models",
+    ),
+    (
+        "hear.js",
+        "if (items.some(speaks) ||",
+        "if (false && items.some(speaks) ||",
+        "planning again where the mode changes",
     ),
     (
         "planner.js",

@@ -834,7 +834,13 @@ MUTATIONS = [
         "some.Exists(a => a.Id != again + 1)",
         "models that do not repeat themselves",
     ),
-    ("Planner.cs", "return meta.Written &&", "return meta.Part > 99 &&", "staying in a stance"),
+    (
+        "Planner.cs",
+        "bool leaves = meta.Request.Kind",
+        "bool leaves = meta.Part > 99 && meta.Request.Kind",
+        "staying in a stance",
+    ),
+    ("Markov.cs", "return share >= 1 ||", "return share >= 0 ||", "modes of the models"),
     ("Plan.cs", "held * ((HoldTo - HoldFrom) / Hold)", "held", "the stretch of a hold"),
     ("Replan.cs", "b.Request.Priority.CompareTo(a.Request.Priority)", "0", "priority at equal starts"),
     (

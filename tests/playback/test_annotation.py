@@ -258,7 +258,7 @@ def test_meanings_are_a_word_and_tags() -> None:
 def test_the_sample_annotation_is_understood_without_being_told() -> None:
     annotation = read_elan(SAMPLE)
     roles = guess_roles(annotation)
-    assert {r for r in roles.values() if r != "ignore"} == set(ROLES) - {"arms"}
+    assert {r for r in roles.values() if r != "ignore"} == {*ROLES, "speech"} - {"arms"}
     assert {x.key: x.meaning for x in labels(annotation, roles)} == {
         "arms: gesture": "gesture",
         "arms: fidget": "fidget",

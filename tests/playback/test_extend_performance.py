@@ -218,7 +218,9 @@ def test_layers_that_an_ask_has_nothing_to_do_with_are_left_as_they_are(sample: 
     )
     for ask, touched in (
         (a.Place(id="p", name="user", point=(0.0, 1.0, 2.0)), set()),
-        (a.Say(id="w", text="hello"), set()),
+        (a.Blink(id="b"), set()),
+        (a.Say(id="w", text="hello"), set(LAYERS)),  # who talks moves otherwise
+        (a.Behave(id="m", mode="listening"), set(LAYERS)),
         (a.Nod(id="n"), {"head"}),
         (a.Withdraw(id="x", what="g"), {"arms"}),
         (a.Withdraw(id="x", what="s"), {"head"}),

@@ -39,7 +39,7 @@ from app.widgets.form_fields import Seconds
 from app.widgets.making import make_widget
 from metagraph.formats.elan import read_elan
 from metagraph.graph.model import LAYERS, Layer
-from metagraph.playback.annotation import IGNORE, PHASES, ROLES, Annotation, Label, parted
+from metagraph.playback.annotation import IGNORE, PHASES, ROLES, SPEECH, Annotation, Label, parted
 from metagraph.playback.learn import Act
 
 if TYPE_CHECKING:
@@ -59,8 +59,12 @@ ROLE_TIPS = {
     "head action": "Nods, shakes and the like",
     "head stance": "How the head is held, or changes between that",
     "body": "How body, legs and spine stand, or changes between that",
+    "speech": "When the one who is watched speaks: the models learn what is done talking, listening and idle",
+    "partner's speech": "When the other speaks",
 }
-ROLE_ENTRIES: Entries = [(role.capitalize(), role, ROLE_TIPS.get(role, "")) for role in (*ROLES, IGNORE)]
+ROLE_ENTRIES: Entries = [
+    (role.capitalize(), role, ROLE_TIPS.get(role, "")) for role in (*ROLES, *SPEECH, IGNORE)
+]
 MEANING_TIPS = {
     "stance": "The label names the stance that is held: where another begins, the stance changes",
     **dict.fromkeys(PHASES, "A phase of a gesture: phases that follow each other are one gesture"),
@@ -116,7 +120,8 @@ class AnnotateDialog(QDialog):
         self.document, self.session, self.name, self.reading = document, session, name, reading
         annotation = reading.annotation
         self.order = sorted(
-            annotation.tiers, key=lambda t: reading.roles[t.name] == IGNORE
+            annotation.tiers,
+            key=lambda t: (*SPEECH, IGNORE).count(reading.roles[t.name]) + (reading.roles[t.name] == IGNORE),
         )  # those that are read first
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle("Import annotation")

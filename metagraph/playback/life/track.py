@@ -106,6 +106,16 @@ class Track:
         last = next((s for s in reversed(self.stays) if s.layer == layer and s.start <= seconds), None)
         return last is not None and last.on and seconds < last.end
 
+    def told_mode(self, seconds: float) -> Mode | None:
+        """Return the mode that was asked for at a time, or talking while something is said; None where
+        neither tells.
+        """
+        asked = bisect_right(self.modes, seconds, key=lambda m: m.start) - 1
+        if asked >= 0 and self.modes[asked].mode is not None:
+            return self.modes[asked].mode
+        said = bisect_right(self.speeches, seconds, key=lambda s: s.start) - 1
+        return "talking" if said >= 0 and seconds < self.speeches[said].end else None
+
     def without(self, idents: Collection[str], now: float = -inf) -> Track:
         """Return the track without items of these ids that begin at `now` or later; what has begun ends now,
         if it can.

@@ -4,7 +4,6 @@ at.
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -42,12 +41,7 @@ class GazeTarget:
 
 def mode_at(track: Track, seconds: float) -> Mode:
     """Return the mode asked for; where none is, talking while something is said and idle otherwise."""
-    asked = bisect_right(track.modes, seconds, key=_start) - 1
-    mode = track.modes[asked].mode if asked >= 0 else None
-    if mode is not None:
-        return mode
-    said = bisect_right(track.speeches, seconds, key=_start) - 1
-    return "talking" if said >= 0 and seconds < track.speeches[said].end else "idle"
+    return track.told_mode(seconds) or "idle"
 
 
 def modes_between(track: Track, start: float, end: float) -> Iterator[tuple[float, int]]:

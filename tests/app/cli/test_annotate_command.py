@@ -36,7 +36,7 @@ def test_without_anything_wanted_it_only_tells(project: Path, capsys: pytest.Cap
     before = project.read_bytes()
     code, data, notes = run(capsys, "annotate", project, EAF)
     assert code == 0 and not data["saved"]
-    assert data["tiers"]["Left arm"] == "left arm" and data["tiers"]["Speech"] == "ignore"
+    assert data["tiers"]["Left arm"] == "left arm" and data["tiers"]["Speech"] == "speech"
     assert {"layer": "head", "label": "nodding", "count": 33, "meaning": "gesture positive"} in data["labels"]
     arms = data["layers"]["arms"]
     assert arms["actions"] == 52 and len(arms["matrix"]) == len(arms["states"]) == len(arms["seen"]) == 7

@@ -127,8 +127,9 @@ export class LayerGraph {
       this.index.get(key).push(action);
     }
     this.kinds = new Set([...this.actions.values()].map((action) => action.kind));
-    this.markov = { tags: [], lengths: [], ...data.markov };
+    this.markov = { tags: [], lengths: [], modes: [], ...data.markov };
     inRange(this.markov.gap, 1e-3, 1e9, `layers.${layer}.markov.gap`);
+    for (const row of this.markov.modes) for (const p of row) inRange(p, 0, 1, `layers.${layer}.markov.modes`);
     for (const row of this.markov.matrix) for (const p of row) inRange(p, 0, 1, `layers.${layer}.markov.matrix`);
   }
 

@@ -33,6 +33,10 @@ export function hear(graph, plan, now, asks, end, options = {}) {
     ...plan.requests.filter((r) => withdrawn.has(r.id)).map((r) => r.layer),
     ...[...plan.track.stays, ...items.filter(isStay)].filter(changed).map((stay) => stay.layer),
   ]);
+  const speaks = (item) => item.kind === "mode" || item.kind === "speech"; // who talks moves otherwise than who listens
+  if (items.some(speaks) || trackItems(plan.track).some((item) => speaks(item) && withdrawn.has(item.id))) {
+    for (const layer of LAYERS) if (graph.layers[layer].markov.modes.length) touched.add(layer);
+  }
   // Without any asks everything is planned on; with some, what they have to do with.
   const leave = asks.length && now > 0 && end === plan.end ? LAYERS.filter((layer) => !touched.has(layer)) : [];
   const track = plus(without(plan.track, withdrawn, fixed), items);

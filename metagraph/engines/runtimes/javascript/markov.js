@@ -2,6 +2,7 @@
 
 import { pick, uniform } from "./choice.js";
 import { WRITTEN, makeRequest } from "./plan.js";
+import { MODES } from "./words.js";
 
 /**
  * Return the meta actions that start before `until` seconds, from the cursor on, and the cursor before the first one left out.
@@ -46,4 +47,14 @@ function lengthOf(model, state, seed, key) {
   const spread = Math.log1p((deviation / mean) ** 2);
   const z = Math.sqrt(-2 * Math.log(u)) * Math.cos(2 * Math.PI * uniform(seed, key, "length2"));
   return mean * Math.exp(Math.sqrt(spread) * z - spread / 2);
+}
+
+const PERFORMED = ["gesture", "fidget", "transition"]; // as in a row of `modes`
+
+/** Whether something the model wrote is performed while somebody idles, listens or talks; null where that is not known. */
+export function performs(model, seed, meta, mode) {
+  const place = PERFORMED.indexOf(meta.request.kind);
+  if (!model.modes.length || mode === null || place < 0) return true;
+  const share = model.modes[MODES.indexOf(mode)][place];
+  return share >= 1 || uniform(seed, meta.request.id, "mode") < share;
 }

@@ -6,8 +6,8 @@
  */
 
 import { schedule } from "./life/schedule.js";
-import { staysAt } from "./life/track.js";
-import { write } from "./markov.js";
+import { staysAt, toldMode } from "./life/track.js";
+import { performs, write } from "./markov.js";
 import { FITS, Performer } from "./pick.js";
 import { TEMPORAL, keyOf } from "./plan.js";
 import { delay, replan } from "./replan.js";
@@ -100,8 +100,9 @@ function extendLayer(graph, plan, layer, now, asked, again, end, begin, idle) {
   // What runs keeps the time it was wanted for, from the models.
   const busy = done.reduce((latest, m) => (m.written ? latest : Math.max(latest, m.end)), -Infinity);
   const placed = replan([...future, ...written, ...delayed.metas], graph.settings, busy);
-  const leaves = (m) => m.written && m.request.kind === "transition" && staysAt(plan.track, layer, m.start);
-  performer.perform(placed.metas.filter((m) => !leaves(m)), end);
+  const leaves = (m) => m.request.kind === "transition" && staysAt(plan.track, layer, m.start);
+  const performed = (m) => !leaves(m) && performs(graph.layers[layer].markov, plan.seed, m, toldMode(plan.track, m.start));
+  performer.perform(placed.metas.filter((m) => !m.written || performed(m)), end);
   performer.varyRests(end);
   const { cues, rests } = performer;
   return {

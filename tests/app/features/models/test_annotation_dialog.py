@@ -68,7 +68,7 @@ def test_every_meaning_has_words_of_its_own_and_odd_ones_are_among_what_can_be_c
 def test_the_sample_is_read_without_a_word(open_dialog, document):
     dialog = open_dialog(read_elan(SAMPLE))
     assert rows(dialog.tiers)[0] == ("Left arm", "30", "Left arm")
-    assert rows(dialog.tiers)[-1] == ("Speech", "11", "Ignore"), "what is not read comes last"
+    assert rows(dialog.tiers)[-1] == ("Speech", "11", "Speech"), "what is no motion comes last"
     assert ("nodding", "head", "33", "▲ gesture, positive") in rows(dialog.labels)
     assert {layer: box.text() for layer, box in dialog.learn.items()} == {
         "body": "Body (12 actions)", "arms": "Arms (52 actions)", "head": "Head (46 actions)",

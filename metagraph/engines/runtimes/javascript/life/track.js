@@ -21,6 +21,14 @@ export function staysAt(track, layer, seconds) {
   return last !== undefined && last.on && seconds < last.end;
 }
 
+/** Return the mode asked for at a time, or talking while something is said; null where neither tells. */
+export function toldMode(track, seconds) {
+  const asked = track.modes.findLast((mode) => mode.start <= seconds);
+  if (asked && asked.mode !== null) return asked.mode;
+  const said = track.speeches.findLast((speech) => speech.start <= seconds);
+  return said && seconds < said.end ? "talking" : null;
+}
+
 /** Return the track without items of these ids that begin at `now` or later; what has begun ends now, if it can. */
 export function without(track, ids, now) {
   if (!trackItems(track).some((item) => ids.has(item.id))) return track;

@@ -6,7 +6,7 @@
 
 import { begunBy } from "../choice.js";
 import { MODES } from "../words.js";
-import { samePlace } from "./track.js";
+import { samePlace, toldMode } from "./track.js";
 
 export const PARTNER = "user"; // whom the character talks with, and looks at when nothing else is asked for
 export const AHEAD = "ahead"; // nothing in particular: eyes and head as the layers have them
@@ -16,10 +16,7 @@ export const alikeTargets = (a, b) => samePlace(a.to, b.to) && a.amount === b.am
 
 /** Return the place among MODES of the mode asked for; where none is, talking while something is said and idle otherwise. */
 function modeAt(track, seconds) {
-  const asked = track.modes[begunBy(track.modes, seconds) - 1];
-  if (asked && asked.mode !== null) return MODES.indexOf(asked.mode);
-  const said = track.speeches[begunBy(track.speeches, seconds) - 1];
-  return MODES.indexOf(said && seconds < said.end ? "talking" : "idle");
+  return MODES.indexOf(toldMode(track, seconds) ?? "idle");
 }
 
 /** Return [start, place among MODES] of each mode from `start` to before `end`; the first begins at `start`. */

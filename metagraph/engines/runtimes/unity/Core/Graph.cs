@@ -63,6 +63,8 @@ namespace Metagraph
     {
         public string[] Limbs, Kinds, Tags;
         public double[][] Matrix, Lengths;
+        /// <summary>Shares of gestures, fidgets and transitions that are performed while one idles, listens and talks; or none.</summary>
+        public double[][] Modes;
         public double Gap, Positive, Negative;
     }
 

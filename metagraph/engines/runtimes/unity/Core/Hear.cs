@@ -41,6 +41,11 @@ namespace Metagraph
             touched.UnionWith(plan.Requests.Where(r => withdrawn.Contains(r.Id)).Select(r => r.Layer));
             touched.UnionWith(plan.Track.Stays.Concat(items.OfType<StayFrom>())
                 .Where(s => gone.Contains(s.Id) || withdrawn.Contains(s.Id)).Select(s => s.Layer));
+            if (items.Concat(plan.Track.Items.Where(i => withdrawn.Contains(i.Id))).Any(i => i is ModeFrom || i is Speech))
+            {
+                // Who talks moves otherwise than who listens.
+                touched.UnionWith(Basics.Layers.Where(layer => graph.Layers[layer].Markov.Modes.Length > 0));
+            }
             bool partly = asks.Count > 0 && now > 0 && end == plan.End;
             string[] leave = partly ? Basics.Layers.Where(layer => !touched.Contains(layer)).ToArray() : Basics.None;
             plan = plan.With(plan.Track.Without(withdrawn, begins).Plus(items));

@@ -228,7 +228,12 @@ namespace Metagraph
                 Gap = json["gap"].Within(1e-3, 1e9), Positive = json["positive"].Number, Negative = json["negative"].Number,
                 Tags = json.Maybe("tags", out found) ? found.Texts : Basics.None,
                 Lengths = new double[0][],
+                Modes = json.Maybe("modes", out found) ? found.Items.ConvertAll(row => row.Numbers(3)).ToArray() : new double[0][],
             };
+            if (model.Modes.Length != 0 && model.Modes.Length != Basics.Modes.Length)
+            {
+                throw json.Wrong("should have shares for each mode");
+            }
             model.Lengths = json.Maybe("lengths", out found) ? found.Items.ConvertAll(pair => pair.Numbers(2)).ToArray() : model.Lengths;
             bool tagged = model.Tags.Length == 0 || model.Tags.Length == states.Count;
             if (model.Matrix.Length != states.Count || !tagged || (model.Lengths.Length != 0 && model.Lengths.Length != states.Count))

@@ -7,6 +7,8 @@ namespace Metagraph
     /// <summary>The model that performs when nobody asks for anything: a first-order chain over (limb, kind).</summary>
     internal static class Markov
     {
+        private static readonly string[] Performed = { "gesture", "fidget", "transition" }; // as in a row of the modes
+
         /// <summary>
         /// Append the meta actions that start before `until` seconds, from the cursor on; return the cursor before the first one left
         /// out. Rests are drawn between 0.35 and 1.65 times the mean gap. Each draw is keyed by the meta action's number, so a longer
@@ -53,6 +55,18 @@ namespace Metagraph
                 time = start + seconds;
             }
             return new Cursor { Number = number, State = state, Time = time };
+        }
+
+        /// <summary>Whether something the model wrote is performed while somebody idles, listens or talks; null where that is not known.</summary>
+        public static bool Performs(MarkovModel chain, uint seed, MetaAction meta, string mode)
+        {
+            int place = Array.IndexOf(Performed, meta.Request.Kind);
+            if (chain.Modes.Length == 0 || mode == null || place < 0)
+            {
+                return true;
+            }
+            double share = chain.Modes[Array.IndexOf(Basics.Modes, mode)][place];
+            return share >= 1 || Choice.Uniform(seed, meta.Request.Id, "mode") < share;
         }
 
         /// <summary>The chances of the next state; all alike where nothing leads on.</summary>

@@ -116,7 +116,7 @@ namespace Metagraph
             // What runs keeps the time it was wanted for, from the models.
             double busy = done.Where(m => !m.Written).Select(m => m.End).DefaultIfEmpty(double.NegativeInfinity).Max();
             List<MetaAction> placed = Replan.Place(future.Concat(written).Concat(asked), whole.Planner, busy, reports);
-            performer.Perform(placed.FindAll(m => !Stays(plan.Track, m)), end);
+            performer.Perform(placed.FindAll(m => !m.Written || Performed(graph.Markov, plan, m)), end);
             performer.VaryRests(end);
             reports.AddRange(performer.Reports);
             return new LayerPlan(layer, done.Concat(placed).ToList(), performer.Cues, performer.Rests, old.Past, cursor, written);
@@ -127,10 +127,11 @@ namespace Metagraph
             return (request, at);
         }
 
-        /// <summary>Whether a model would leave a stance that was asked for, to stay in.</summary>
-        private static bool Stays(Track track, MetaAction meta)
+        /// <summary>Whether what a model wrote is performed: not where it would leave a stance that was asked for, to stay in.</summary>
+        private static bool Performed(MarkovModel model, Plan plan, MetaAction meta)
         {
-            return meta.Written && meta.Request.Kind == "transition" && track.StaysAt(meta.Request.Layer, meta.Start);
+            bool leaves = meta.Request.Kind == "transition" && plan.Track.StaysAt(meta.Request.Layer, meta.Start);
+            return !leaves && Markov.Performs(model, plan.Seed, meta, plan.Track.ToldMode(meta.Start));
         }
 
         /// <summary>The stance a layer begins in: as it did before, as asked, the graph's start, or the first that has a loop.</summary>

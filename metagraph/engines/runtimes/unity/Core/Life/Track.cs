@@ -259,6 +259,18 @@ namespace Metagraph
             return last != null && last.On && seconds < last.End;
         }
 
+        /// <summary>The mode asked for at a time, or talking while something is said; null where neither tells.</summary>
+        public string ToldMode(double seconds)
+        {
+            int asked = Basics.BisectRight(Modes, seconds, m => m.Start) - 1;
+            if (asked >= 0 && Modes[asked].Mode != null)
+            {
+                return Modes[asked].Mode;
+            }
+            int said = Basics.BisectRight(Speeches, seconds, s => s.Start) - 1;
+            return said >= 0 && seconds < Speeches[said].End ? "talking" : null;
+        }
+
         /// <summary>The track without items of these ids that begin at `now` or later; what has begun ends now, if it can.</summary>
         public Track Without(HashSet<string> ids, double now)
         {

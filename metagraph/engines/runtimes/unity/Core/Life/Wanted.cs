@@ -27,13 +27,7 @@ namespace Metagraph
         /// <summary>The mode asked for; where none is, talking while something is said and idle otherwise.</summary>
         private static string ModeAt(Track track, double seconds)
         {
-            int asked = Basics.BisectRight(track.Modes, seconds, m => m.Start) - 1;
-            if (asked >= 0 && track.Modes[asked].Mode != null)
-            {
-                return track.Modes[asked].Mode;
-            }
-            int said = Basics.BisectRight(track.Speeches, seconds, s => s.Start) - 1;
-            return said >= 0 && seconds < track.Speeches[said].End ? "talking" : "idle";
+            return track.ToldMode(seconds) ?? "idle";
         }
 
         /// <summary>Start and place among the modes of each mode from `start` to before `end`; the first begins at `start`.</summary>

@@ -16,7 +16,7 @@ const ACTION = {
 	likelihood = "number", phases = "list?", cooldown = "number?", spacing = "number?"
 }
 const MARKOV = {
-	states = "list", matrix = "list", gap = "number", positive = "number", negative = "number", tags = "list?", lengths = "list?"
+	states = "list", matrix = "list", gap = "number", positive = "number", negative = "number", tags = "list?", lengths = "list?", modes = "list?"
 }
 const PLANNER = {
 	"seed": "number", "alpha": "number", "never_twice": "switch", "shortest": "number", "wait": "number", "window": "number",

@@ -121,6 +121,7 @@ func _read_layer(layer, data):
 	var markov = data.markov.duplicate()
 	markov.tags = [] if data.markov.tags == null else data.markov.tags
 	markov.lengths = [] if data.markov.lengths == null else data.markov.lengths
+	markov.modes = [] if data.markov.modes == null else data.markov.modes
 	var reach = []  # [joint, weight] of those it moves
 	for joint in range(names.size()):
 		var weight = data.weights.get(parts[joint], 0.0)

@@ -43,6 +43,11 @@ static func hear(graph, plan, now, asks, end, stances, idle):
 	for stay in plan.track.stays + items:
 		if stay.list == "stays" and (gone.has(stay.id) or withdrawn.has(stay.id)):
 			touched[stay.layer] = true
+	for item in items + Track.items(plan.track):
+		if (item.list == "modes" or item.list == "speeches") and (gone.has(item.id) or withdrawn.has(item.id)):
+			for layer in Util.LAYERS:  # who talks moves otherwise than who listens
+				if graph.layers[layer].markov.modes.size() > 0:
+					touched[layer] = true
 	var leave = []
 	if asks.size() > 0 and now > 0 and end == plan.end:
 		for layer in Util.LAYERS:

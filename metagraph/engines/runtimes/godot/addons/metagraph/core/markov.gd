@@ -1,6 +1,8 @@
 # The model that performs when nobody asks for anything: a first-order chain over (limb, kind), see docs/format.md.
 
 const Request = preload("request.gd")
+const Util = preload("util.gd")
+const PERFORMED = ["gesture", "fidget", "transition"]  # as in a row of `modes`
 const START = {number = 0, state = -1, time = 0.0}  # before meta action `number`, in state `state` (-1: none yet), which ended at `time`
 
 
@@ -49,6 +51,15 @@ static func write(choice, model, layer, seed32, until, kinds, cursor):
 		number += 1
 		time = start + seconds
 	return [out, {number = number, state = state, time = time}]
+
+
+# Returns whether something the model wrote is performed while somebody idles, listens or talks; null where that is not known.
+static func performs(choice, model, seed32, meta, mode):
+	var place = PERFORMED.find(meta.request.kind)
+	if model.modes.size() == 0 or mode == null or place < 0:
+		return true
+	var share = model.modes[Util.MODES.find(mode)][place]
+	return share >= 1 or choice.uniform(seed32, [meta.request.id, "mode"]) < share
 
 
 static func _any(weights):

@@ -144,7 +144,9 @@ static func _extend_layer(graph, plan, layer, now, asked, again, end, begin, idl
 	var placed = Replan.replan(future + written + delayed[0], graph.settings, busy)
 	var metas = []
 	for meta in placed[0]:
-		if not (meta.written and meta.request.kind == "transition" and Track.stays_at(plan.track, layer, meta.start)):
+		var leaves = meta.request.kind == "transition" and Track.stays_at(plan.track, layer, meta.start)
+		var mode = Track.told_mode(plan.track, meta.start)
+		if not meta.written or (not leaves and Markov.performs(graph.choice, graph.layers[layer].markov, plan.seed32, meta, mode)):
 			metas.append(meta)
 	performer.perform(metas, end)
 	performer.vary_rests(end)

@@ -29,6 +29,15 @@ static func stays_at(track, layer, seconds):
 	return false
 
 
+# Returns the mode asked for at a time, or talking while something is said; null where neither tells.
+static func told_mode(track, seconds):
+	var asked = Util.after(track.modes, "start", seconds) - 1
+	if asked >= 0 and track.modes[asked].mode != null:
+		return track.modes[asked].mode
+	var said = Util.after(track.speeches, "start", seconds) - 1
+	return "talking" if said >= 0 and seconds < track.speeches[said].end else null
+
+
 # Returns the track without items of these ids {id: true} that begin at `now` or later; what has begun ends now, if it can.
 static func without(track, idents, now):
 	var out = {}

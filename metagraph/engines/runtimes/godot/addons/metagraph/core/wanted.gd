@@ -3,6 +3,7 @@
 # A target is {start, to: a point or a name, since: when the look at it began, amount, strict, asked: not of its own accord}.
 
 const Util = preload("util.gd")
+const Track = preload("track.gd")
 const PARTNER = "user"  # whom the character talks with, and looks at when nothing else is asked for
 const AHEAD = "ahead"  # nothing in particular: eyes and head as the layers have them
 
@@ -14,11 +15,8 @@ static func like(a, b):
 
 # Returns the mode asked for; where none is, talking while something is said and idle otherwise.
 static func mode_at(track, seconds):
-	var asked = Util.after(track.modes, "start", seconds) - 1
-	if asked >= 0 and track.modes[asked].mode != null:
-		return track.modes[asked].mode
-	var said = Util.after(track.speeches, "start", seconds) - 1
-	return "talking" if said >= 0 and seconds < track.speeches[said].end else "idle"
+	var mode = Track.told_mode(track, seconds)
+	return "idle" if mode == null else mode
 
 
 # Returns [start, place among MODES] of each mode from `start` to before `end`; the first begins at `start`.
