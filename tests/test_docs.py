@@ -13,11 +13,14 @@ import shutil
 from importlib.util import find_spec
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from app.cli.parser import main
 from metagraph.formats.language_files import read_pack
 from metagraph.formats.store import from_text
+from metagraph.study.perceive.perceive_plan import PerceivePlan
+from metagraph.study.perceive.perceive_plan import from_text as perceive_from_text
 from metagraph.study.study_plan import from_text as study_from_text
 
 # Papers are drawn by Qt; whoever opens windows later in this process needs its application.
@@ -117,6 +120,9 @@ def test_project_and_study_files_in_the_pages_can_be_read(page: Path, n: int, tm
     if text.startswith("study:"):
         assert study_from_text(text).tasks
         return
+    if text.startswith("perceive:"):
+        assert perceive_from_text(text).pairs
+        return
     project = from_text(text, Path("page.metagraph.yaml"))
     assert project.clips and project.skeleton is not None
     assert any(a.kind == "gesture" for a in project.actions()) or any(
@@ -178,6 +184,15 @@ def test_every_field_of_a_study_file_and_every_event_of_its_log_is_described() -
     schema = json.loads(schema_text())
     fields = {name for part in schema["$defs"].values() for name in part["properties"]}
     assert not {f for f in fields | set(TYPES) if f"`{f}`" not in text}
+
+
+def test_every_field_of_a_perceptual_study_is_described() -> None:
+    text = (ROOT / "docs" / "perceive.md").read_text(encoding="utf-8")
+    parts = msgspec.json.schema(PerceivePlan)["$defs"]
+    fields = {
+        name for part, said in parts.items() if part not in ("Item", "Scale") for name in said["properties"]
+    }
+    assert "mismatched" in text and not {f for f in fields if f"`{f}`" not in text}
 
 
 def test_every_field_of_a_project_file_is_described() -> None:

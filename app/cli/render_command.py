@@ -60,17 +60,25 @@ def size_of(text: str) -> tuple[int, int]:
     return width, height
 
 
+def bounds_of(seen: Sequence[Seen], times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest and highest corner, `[3]`, of a box round all that is seen at times."""
+    from preview.scene import Scene
+
+    some = times[:: max(1, len(times) // 60)]
+    return Scene(tuple(_actor(figure, shown, some) for figure, shown in seen)).bounds()
+
+
 def pictures(
-    seen: Sequence[Seen], times: np.ndarray, size: tuple[int, int], look: str
+    seen: Sequence[Seen], times: np.ndarray, size: tuple[int, int], look: str, camera: Any = None
 ) -> Iterator[np.ndarray]:
-    """Yield one picture `[H, W, 4]` for each time. The camera holds still."""
+    """Yield one picture `[H, W, 4]` for each time. The camera holds still; by default it sees all."""
     from preview.camera import whole_figure
     from preview.offscreen import Offscreen
     from preview.scene import THEMES, Scene
 
-    some = times[:: max(1, len(times) // 60)]
-    scene = Scene(tuple(_actor(figure, shown, some) for figure, shown in seen))
-    camera = whole_figure(scene.bounds(), size[0] / size[1], ASIDE if len(seen) > 1 else 0.0)
+    if camera is None:
+        box = bounds_of(seen, times)
+        camera = whole_figure(box, size[0] / size[1], ASIDE if len(seen) > 1 else 0.0)
     with Offscreen(*size) as offscreen:
         for at in times:
             yield offscreen.render(
@@ -166,8 +174,8 @@ def _outs(out: Path, shown: Shown) -> list[Path]:
     return [out] if shown.partner is None else [out.with_stem(f"{out.stem}-{n + 1}") for n in range(2)]
 
 
-def sound_of(shown: Shown, folder: Path, seconds: float) -> tuple[np.ndarray, int] | None:
-    """Return the sound of what is said, None where nothing is."""
+def sound_of(shown: Shown, folder: Path, seconds: float, start: float = 0.0) -> tuple[np.ndarray, int] | None:
+    """Return the sound of what is said from a start on, None where nothing is said at all."""
     lines = {
         s.line: line
         for one in shown.both
@@ -182,7 +190,9 @@ def sound_of(shown: Shown, folder: Path, seconds: float) -> tuple[np.ndarray, in
     for note in notes:
         print(f"note: {note}", file=sys.stderr)
     return mixed(
-        [part for one in shown.both for part in placed(one.plan, sounds)], 0, round(seconds * RATE)
+        [part for one in shown.both for part in placed(one.plan, sounds)],
+        round(start * RATE),
+        round(seconds * RATE),
     ), RATE
 
 

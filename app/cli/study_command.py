@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from app.cli.perceive_command import arguments as perceive_arguments
 from app.cli.study_people import arguments as people_arguments
 from app.cli.study_planning import arguments as plan_arguments
 from app.cli.study_replaying import arguments as replay_arguments
@@ -61,6 +62,8 @@ def arguments(parser: ArgumentParser) -> None:
     plan_arguments(action)
     replay_arguments(action)
     watch_arguments(action)
+    words = "which of two videos people prefer, and how they rate one: stimuli, page, answers, report"
+    perceive_arguments(actions.add_parser("perceive", help=words, description=f"W{words[1:]}."))
     action("example", "recompute the comparison that was published with the meta-graph", example)
     made = action("simulate", "write a study of simulated participants with known effects", simulate)
     made.add_argument("out", type=Path, help="a folder that is not there yet")

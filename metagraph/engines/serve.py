@@ -8,6 +8,8 @@ or what a link leads to elsewhere.
 from __future__ import annotations
 
 import functools
+import os
+import re
 import socket
 import threading
 from collections.abc import Callable
@@ -21,9 +23,11 @@ from metagraph.files import is_file, is_inside
 
 WAIT = 10.0  # seconds for a request to be sent
 AT_ONCE = 64  # requests
+MOST_AT_ONCE = 8 << 20  # bytes of a part of a file
+_RANGE = re.compile(r"bytes=([0-9]{0,15})-([0-9]{0,15})")
 
 
-class _Quiet(SimpleHTTPRequestHandler):
+class Quiet(SimpleHTTPRequestHandler):
     # Said here, since a system's own table may call scripts plain text, and browsers then refuse modules.
     extensions_map = {  # noqa: RUF012 - the base class has it so
         **SimpleHTTPRequestHandler.extensions_map,
@@ -39,18 +43,24 @@ class _Quiet(SimpleHTTPRequestHandler):
         """Say nothing: requests of one's own browser are not news."""
 
     def end_headers(self) -> None:
+        self.send_header("Accept-Ranges", "bytes")
         self.send_header("Cache-Control", "no-cache")  # exporting again must show
         self.send_header("X-Content-Type-Options", "nosniff")
         self.send_header("Cross-Origin-Resource-Policy", "same-origin")
         super().end_headers()
 
+    def is_asked_by_name(self) -> bool:
+        """Return whether a request is to the address that is listened on, by its own name."""
+        address, port = self.connection.getsockname()[:2]
+        names = dict.fromkeys(
+            (address, "127.0.0.1", "localhost") if address.startswith("127.") else (address,)
+        )
+        hosts = self.headers.get_all("Host") or []
+        return [h.strip().lower() for h in hosts] in [[f"{name}:{port}"] for name in names]
+
     def send_head(self) -> BytesIO | BinaryIO | None:
         """Send what comes before a file, or why there is none."""
-        port = self.connection.getsockname()[1]
-        hosts = self.headers.get_all("Host") or []
-        if [h.strip().lower() for h in hosts] not in [
-            [f"{name}:{port}"] for name in ("127.0.0.1", "localhost")
-        ]:
+        if not self.is_asked_by_name():
             self.send_error(HTTPStatus.FORBIDDEN, "This page is for this machine alone")
             return None
         path, root = Path(self.translate_path(self.path)), Path(self.directory)
@@ -59,7 +69,37 @@ class _Quiet(SimpleHTTPRequestHandler):
         if not inside or any(p.startswith(".") for p in path.relative_to(root).parts) or not is_file(path):
             self.send_error(HTTPStatus.NOT_FOUND)
             return None
-        return super().send_head()
+        wanted = _RANGE.fullmatch(self.headers.get("Range", ""))
+        return (
+            super().send_head()
+            if wanted is None or wanted[0] == "bytes=-"
+            else self._part(path, *wanted.groups())
+        )
+
+    def _part(self, path: Path, first: str, last: str) -> BytesIO | None:
+        """Send what comes before a part of a file, which browsers ask for to play a video again."""
+        try:
+            with path.open("rb") as file:
+                size = os.fstat(file.fileno()).st_size
+                begin = int(first) if first else max(0, size - int(last))
+                end = min(int(last) if first and last else size - 1, size - 1, begin + MOST_AT_ONCE - 1)
+                file.seek(begin)
+                content = file.read(max(0, end - begin + 1))
+        except OSError:
+            self.send_error(HTTPStatus.NOT_FOUND)
+            return None
+        if not content:
+            self.send_response(HTTPStatus.REQUESTED_RANGE_NOT_SATISFIABLE)
+            self.send_header("Content-Range", f"bytes */{size}")
+            self.send_header("Content-Length", "0")
+            self.end_headers()
+            return None
+        self.send_response(HTTPStatus.PARTIAL_CONTENT)
+        self.send_header("Content-Type", self.guess_type(str(path)))
+        self.send_header("Content-Range", f"bytes {begin}-{begin + len(content) - 1}/{size}")
+        self.send_header("Content-Length", str(len(content)))
+        self.end_headers()
+        return BytesIO(content)
 
     def list_directory(self, path: Any) -> None:
         """Show nobody what lies in a folder."""
@@ -93,11 +133,19 @@ class _Server(ThreadingHTTPServer):
 class Served:
     """A folder being served on the loopback, until `close` or the program's end. url: its address."""
 
-    def __init__(self, folder: str | Path, port: int = 0) -> None:
-        """port: 0 for any that is free. Raises OSError when it is taken."""
+    def __init__(
+        self,
+        folder: str | Path,
+        port: int = 0,
+        address: str = "127.0.0.1",
+        handler: type[Quiet] = Quiet,
+    ) -> None:
+        """port: 0 for any that is free. address: of the interface that is listened on, IPv4. handler: what
+        answers requests. Raises OSError when the port is taken or there is no such address.
+        """
         self.folder = Path(folder).resolve()
-        self._server = _Server(("127.0.0.1", port), functools.partial(_Quiet, directory=str(self.folder)))
-        self.url = f"http://127.0.0.1:{self._server.server_address[1]}/"
+        self._server = _Server((address, port), functools.partial(handler, directory=str(self.folder)))
+        self.url = f"http://{address}:{self._server.server_address[1]}/"
         self._thread = threading.Thread(
             target=self._server.serve_forever, args=(0.1,), name="web page", daemon=True
         )

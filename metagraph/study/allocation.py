@@ -11,7 +11,7 @@ import json
 import os
 import secrets
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
@@ -34,12 +34,22 @@ PATIENCE = 5.0  # seconds to wait for another window that draws just now
 
 def prepare(study: Study) -> str:
     """Make the secret, unless there is one; return its digest, to be made known before anybody begins."""
-    path = study.folder / SECRET
+    return commitment(make_secret(study.folder))
+
+
+def make_secret(folder: Path) -> str:
+    """Return a folder's secret, made unless there is one. Raises FileError."""
+    path = folder / SECRET
     if not path.is_file():
         write_atomically(path, (secrets.token_hex(32) + "\n").encode())
         with suppress(OSError):
             path.chmod(0o600)
-    return commitment(_secret(study))
+    return read_secret(folder)
+
+
+def read_secret(folder: Path) -> str:
+    """Return a folder's secret. Raises FileError."""
+    return read_file(folder / SECRET, LOG_FILE).decode("ascii", "replace").strip()
 
 
 def commitment(secret: str) -> str:
@@ -47,22 +57,25 @@ def commitment(secret: str) -> str:
     return hashlib.sha256(secret.encode()).hexdigest()
 
 
-def _secret(study: Study) -> str:
-    return read_file(study.folder / SECRET, LOG_FILE).decode("ascii", "replace").strip()
-
-
-def numbers(secret: str, orders: int) -> Iterator[int]:
-    """Yield the numbers of orders as they are drawn: 0, 1, 2 ... shuffled within blocks of one or two
-    rounds of all orders, how many that is drawn, too, so that the last of a block cannot be foreseen.
-    """
+def drawer(secret: str) -> Callable[..., int]:
+    """Return what draws a number, 0..2^256 - 1, from the secret and any words: the same ones for ever."""
     key = secret.encode()
 
-    def draw(block: int, place: int) -> int:
-        return int.from_bytes(hmac.new(key, f"{block} {place}".encode(), "sha256").digest(), "big")
+    def draw(*words: object) -> int:
+        return int.from_bytes(hmac.new(key, " ".join(map(str, words)).encode(), "sha256").digest(), "big")
 
+    return draw
+
+
+def numbers(secret: str, orders: int, most: int = 2) -> Iterator[int]:
+    """Yield the numbers of orders as they are drawn: 0, 1, 2 ... shuffled within blocks of one or two
+    rounds of all orders, how many that is drawn, too, so that the last of a block cannot be foreseen.
+    most: rounds of a block; 1 where nobody sees who comes next anyway.
+    """
+    draw = drawer(secret)
     start = block = 0
     while True:
-        size = orders * (1 + draw(block, 0) % 2)
+        size = orders * (1 + draw(block, 0) % most)
         yield from sorted(range(start, start + size), key=lambda n: draw(block, n + 1))
         start, block = start + size, block + 1
 
@@ -97,11 +110,11 @@ def allocate(study: Study, participant: str) -> int:
             "order",
             "Run 'metagraph study plan' with --allocate, and keep the digest it tells.",
         )
-    with _alone(study.folder / f".{LOG}.lock"):
+    with alone(study.folder / f".{LOG}.lock"):
         known = drawn(study)
         if participant in known:
             return known[participant]
-        source = numbers(_secret(study), orders(study))
+        source = numbers(read_secret(study.folder), orders(study))
         number = next(n for place, n in enumerate(source) if place == len(known))
         note = {
             "place": len(known),
@@ -110,22 +123,29 @@ def allocate(study: Study, participant: str) -> int:
             "order": [c for c, _ in study.plan.blocks(participant, number)],
             "at": datetime.now(UTC).isoformat(timespec="seconds"),
         }
-        try:
-            append_line(study.folder / LOG, json.dumps(note))
-        except OSError as error:
-            raise FileError(
-                study.folder / LOG,
-                f"cannot be written ({error.strerror or error})",
-                participant,
-                "Make room on the disk, and check your rights.",
-            ) from None
+        append_durably(study.folder / LOG, note, participant)
         return number
+
+
+def append_durably(path: Path, note: dict[str, Any], where: str = "") -> None:
+    """Add a line to a log of notes; it is on the disk afterwards. where: what an error names. Raises
+    FileError.
+    """
+    try:
+        append_line(path, json.dumps(note))
+    except OSError as error:
+        raise FileError(
+            path,
+            f"cannot be written ({error.strerror or error})",
+            where,
+            "Make room on the disk, and check your rights.",
+        ) from None
 
 
 def problems(study: Study) -> list[str]:
     """Return in words where the log of the allocation is not what the secret gives."""
     try:
-        source = numbers(_secret(study), orders(study))
+        source = numbers(read_secret(study.folder), orders(study))
     except FileError:
         return ["the secret of the allocation is not there: nobody can see whether it was followed"]
     out = []
@@ -136,8 +156,8 @@ def problems(study: Study) -> list[str]:
 
 
 @contextmanager
-def _alone(path: Path) -> Iterator[None]:
-    """Wait until no other window draws."""
+def alone(path: Path) -> Iterator[None]:
+    """Wait until no other program holds the lock at `path`, then hold it."""
     until = time.monotonic() + PATIENCE
     while True:
         try:

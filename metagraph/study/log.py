@@ -14,7 +14,7 @@ import os
 import threading
 import time
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -258,6 +258,20 @@ class Writer:
         """Append an event. Raises ValueError for a kind that there is not, TypeError for what JSON cannot
         say, FileError when the disk does not take it; the event is then kept and written with the next one.
         """
+        event = self._append(kind, fields)
+        if kind in BOUNDARIES:
+            self.sync()
+        else:
+            self._disk.wake.set()
+        return event
+
+    def extend(self, events: Iterable[tuple[str, Mapping[str, Any]]]) -> None:
+        """Append several events, (kind, fields) each; all are on the disk afterwards. Raises as `add`."""
+        for kind, fields in events:
+            self._append(kind, fields)
+        self.sync()
+
+    def _append(self, kind: str, fields: Mapping[str, Any]) -> Event:
         if kind not in TYPES:
             raise ValueError(f"'{kind}' is no kind of event; there are {', '.join(TYPES)}")
         mono = round(self._clock() - self._start, 6)
@@ -275,10 +289,6 @@ class Writer:
         self._flush()
         for listener in self.listeners:
             listener(event)
-        if kind in BOUNDARIES:
-            self.sync()
-        else:
-            self._disk.wake.set()
         return event
 
     def _flush(self) -> None:

@@ -177,7 +177,8 @@ def means(
     """
     row, left, right = 46, 190, 560
     height, bottom = 24 + row * len(rows) + 44, 16 + row * len(rows)
-    x, ticks = plain_axis(low, high, left, right, tuple((high - low) / k for k in (5, 4, 2)))
+    whole = (1.0, 2.0) if high - low <= 12 else ()  # points of a scale
+    x, ticks = plain_axis(low, high, left, right, (*whole, *((high - low) / k for k in (5, 4, 2))))
     parts = [text((left + right) / 2, bottom + 38, title, "dim", "middle")]
     for k, condition in enumerate(dict.fromkeys(c for _, found in rows for c in found) if names else ()):
         parts.append(text(left - 14, bottom + 20 + 15 * k, names[condition], f"label {condition}", "end"))

@@ -19,6 +19,7 @@ from metagraph.study.stats_t import t_quantile
 
 Array = NDArray[np.float64]
 EXACTLY = 1e-12  # of all variance, what is left below which rows fit exactly, and nothing can be estimated
+FEW_ROWS = 40  # that share groups, beyond which sums by group are less work than the rows' covariances
 NOTHING = 1e-4  # a deviation beside that of the rest below which a group is told as having none
 
 
@@ -105,6 +106,29 @@ def _independent(columns: Mapping[str, Array], rows: int) -> tuple[list[str], li
     return kept, left_out
 
 
+class _Tall:
+    """Many rows that share few groups, as groups that cross do: all that is needed of them is sums by group
+    (Woodbury's identity), whose number counts, not the rows'.
+    """
+
+    def __init__(self, y: Array, x: Array, codes: Sequence[NDArray[np.intp]]) -> None:
+        """y `[m]`, x `[m, p]`, codes: of each sort of group `[m]`."""
+        both = np.concatenate([x, y[:, None]], 1)
+        columns = [np.unique(c, return_inverse=True)[1] for c in codes]
+        z = np.concatenate([np.eye(int(c.max()) + 1)[c] for c in columns], 1)
+        self.rows = len(y)
+        self.sort = np.concatenate([np.full(int(c.max()) + 1, k) for k, c in enumerate(columns)])
+        self.inner, self.across, self.plain = z.T @ z, z.T @ both, both.T @ both
+
+    def sums(self, scale: float, variances: Array) -> tuple[float, Array]:
+        """Return log |V|, and [x y]'V^-1 [x y] `[p + 1, p + 1]`."""
+        d = np.sqrt(variances[self.sort] / scale)
+        low = np.linalg.cholesky(np.eye(len(d)) + d[:, None] * self.inner * d)
+        w = np.linalg.solve(low, d[:, None] * self.across)
+        logs = self.rows * log(scale) + 2 * float(np.log(np.diagonal(low)).sum())
+        return logs, np.asarray((self.plain - w.T @ w) / scale, np.float64)
+
+
 class _Model:
     """The likelihood of deviations of groups, as ratios to that of the rest. Rows that share no group are
     reckoned apart, those of as many rows at once.
@@ -113,8 +137,12 @@ class _Model:
     def __init__(self, y: Array, x: Array, codes: Sequence[NDArray[np.intp]], restricted: bool) -> None:
         self.n, self.p, self.k, self.restricted = len(y), x.shape[1], len(codes), restricted
         self.pieces: list[tuple[Array, Array, Array]] = []  # y [B, m], x [B, m, p], same group [K, B, m, m]
+        self.tall: list[_Tall] = []
         by_size: dict[int, list[NDArray[np.intp]]] = {}
         for rows in _apart(len(y), codes):
+            if self.k and sum(len(np.unique(c[rows])) for c in codes) < len(rows) > FEW_ROWS:
+                self.tall.append(_Tall(y[rows], x[rows], [c[rows] for c in codes]))
+                continue
             by_size.setdefault(len(rows), []).append(rows)
         for blocks in by_size.values():
             at = np.stack(blocks)
@@ -127,11 +155,15 @@ class _Model:
         """Return log |V|, X'V^-1 X, X'V^-1 y and y'V^-1 y of V = scale I + sum of variances same."""
         logs, quad = 0.0, 0.0
         xx, xy = np.zeros((self.p, self.p)), np.zeros(self.p)
+        for piece in self.tall:
+            log_size, both = piece.sums(scale, variances)
+            logs, quad = logs + log_size, quad + float(both[-1, -1])
+            xx, xy = xx + both[:-1, :-1], xy + both[:-1, -1]
         for y, x, same in self.pieces:
             v = scale * np.eye(y.shape[1]) + np.tensordot(variances, same, 1)
             low = np.linalg.cholesky(v)
-            both = np.linalg.solve(low, np.concatenate([x, y[:, :, None]], 2))
-            a, b = both[:, :, :-1], both[:, :, -1]
+            solved = np.linalg.solve(low, np.concatenate([x, y[:, :, None]], 2))
+            a, b = solved[:, :, :-1], solved[:, :, -1]
             logs += 2 * float(np.log(np.diagonal(low, axis1=1, axis2=2)).sum())
             xx += np.einsum("bmp,bmq->pq", a, a)
             xy += np.einsum("bmp,bm->p", a, b)

@@ -186,6 +186,10 @@ class Study:
         found = drawn(self).get(participant) if self.plan.order == "concealed" else None
         return self.plan.blocks(participant, found)
 
+    def known(self, participant: str) -> None:
+        """Raises ValueError for a stranger."""
+        self.plan.known(participant)
+
     def data(self, participant: str) -> Path:
         return self.folder / "data" / participant
 
@@ -297,14 +301,14 @@ def from_text(text: str, path: Path = Path(FILE)) -> Plan:
         where = where.rstrip("`").lstrip(".").replace("[...]", "")
         unknown = re.search(r"unknown field `(\w+)`", message)
         raise failure(
-            _plain(message), ".".join(filter(None, (where, unknown[1] if unknown else "")))
+            plain_words(message), ".".join(filter(None, (where, unknown[1] if unknown else "")))
         ) from None
     for where, cause in faults(plan):
         raise failure(cause, where)
     return plan
 
 
-def _plain(message: str) -> str:
+def plain_words(message: str) -> str:
     """Return msgspec's words as ours."""
     for pattern, words in (
         (r"Object contains unknown field `(\w+)`", r"there is no field '\1'"),

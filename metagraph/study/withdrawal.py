@@ -9,6 +9,7 @@ import shutil
 from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Protocol
 
 import msgspec
 
@@ -18,20 +19,40 @@ from metagraph.errors import FileError
 from metagraph.files import read_file
 from metagraph.formats.atomic import append_line
 from metagraph.study.log import Writer, read, wall_time
-from metagraph.study.study_plan import Study
 from metagraph.study.watching import LOCK, is_open
 
 DELETIONS = "deletions.jsonl"
 
 
+class Keeping(Protocol):
+    """A study that keeps a log of each participant in a folder of theirs."""
+
+    @property
+    def folder(self) -> Path:
+        """Return where the study is."""
+
+    @property
+    def path(self) -> Path:
+        """Return its plan."""
+
+    def known(self, participant: str) -> None:
+        """Raises ValueError for a stranger."""
+
+    def data(self, participant: str) -> Path:
+        """Return the folder of all that is kept of somebody."""
+
+    def log(self, participant: str) -> Path:
+        """Return somebody's log."""
+
+
 def withdraw(
-    study: Study, participant: str, why: str = "", now: Callable[[], datetime] = lambda: datetime.now(UTC)
+    study: Keeping, participant: str, why: str = "", now: Callable[[], datetime] = lambda: datetime.now(UTC)
 ) -> bool:
     """Note in a participant's log that they withdrew, so that no report or export uses it; return whether it
     was not noted yet. why: in words, of the person who notes it. Raises FileError where there is no log,
     ValueError for a stranger.
     """
-    study.plan.known(participant)
+    study.known(participant)
     path = study.log(participant)
     if read(path).standing == "withdrawn":
         return False
@@ -44,13 +65,13 @@ def withdraw(
 
 
 def delete(
-    study: Study, participant: str, now: Callable[[], datetime] = lambda: datetime.now(UTC)
+    study: Keeping, participant: str, now: Callable[[], datetime] = lambda: datetime.now(UTC)
 ) -> dict[str, object]:
     """Delete all that is kept of a participant beside the study file, and note that it was done: who, when,
     how many files. Return the note. Raises FileError where nothing is kept, or the disk refuses; ValueError
     for a stranger.
     """
-    study.plan.known(participant)
+    study.known(participant)
     folder = study.data(participant)
     if not folder.is_dir():
         raise FileError(
@@ -79,7 +100,7 @@ def delete(
     return note
 
 
-def deleted(study: Study) -> frozenset[str]:
+def deleted(study: Keeping) -> frozenset[str]:
     """Return whose data was deleted. Damaged lines are left out."""
     path = study.folder / DELETIONS
     if not path.is_file():
@@ -93,14 +114,14 @@ def deleted(study: Study) -> frozenset[str]:
     return frozenset(out)
 
 
-def mentions(study: Study, participant: str) -> list[Path]:
+def mentions(study: Keeping, participant: str) -> list[Path]:
     """Return the files in the study's folder, apart from the plan and the data, that still hold the
     pseudonym: reports and exports written before.
     """
     out = []
-    skipped = {study.path, study.folder / DELETIONS}
+    skipped, kept = {study.path, study.folder / DELETIONS}, study.data(participant).parent
     for path in sorted(study.folder.rglob("*")):
-        if path in skipped or study.folder / "data" in path.parents or not path.is_file():
+        if path in skipped or kept in path.parents or not path.is_file():
             continue
         if participant in path.relative_to(study.folder).as_posix():
             out.append(path)

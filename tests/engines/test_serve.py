@@ -80,7 +80,7 @@ def test_links_that_lead_elsewhere_and_pipes_are_not_followed(shown: Served) -> 
 def test_who_says_nothing_takes_no_room_from_others_for_long(
     shown: Served, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(serve._Quiet, "timeout", 0.2)
+    monkeypatch.setattr(serve.Quiet, "timeout", 0.2)
     port = int(shown.url.rstrip("/").rpartition(":")[2])
     silent = [socket.create_connection(("127.0.0.1", port)) for _ in range(serve.AT_ONCE)]
     for line in silent:
@@ -118,3 +118,38 @@ def test_a_port_that_is_taken_is_an_error(tmp_path: Path) -> None:
             Served(tmp_path, int(served.url.rstrip("/").rpartition(":")[2]))
     finally:
         served.close()
+
+
+@pytest.mark.parametrize(
+    ("asked_for", "status", "body", "told"),
+    [
+        ("bytes=0-1", 206, b"<p", "bytes 0-1/7"),
+        ("bytes=3-", 206, b"here", "bytes 3-6/7"),
+        ("bytes=-2", 206, b"re", "bytes 5-6/7"),
+        ("bytes=5-900", 206, b"re", "bytes 5-6/7"),
+        ("bytes=7-", 416, b"", "bytes */7"),
+        ("bytes=5-2", 416, b"", "bytes */7"),
+        ("bytes=-", 200, b"<p>here", None),
+        ("bytes=0-1,3-4", 200, b"<p>here", None),
+        ("bytes=x-1", 200, b"<p>here", None),
+        ("lines=1-2", 200, b"<p>here", None),
+    ],
+)
+def test_parts_of_files_are_sent_as_asked(
+    shown: Served, asked_for: str, status: int, body: bytes, told: str | None
+) -> None:
+    request = urllib.request.Request(shown.url, headers={"Range": asked_for})
+    try:
+        with urllib.request.urlopen(request, timeout=10) as answer:
+            found = answer.status, answer.read(), answer.headers["Content-Range"]
+    except urllib.error.HTTPError as error:
+        with error:
+            found = error.code, error.read(), error.headers["Content-Range"]
+    assert found == (status, body, told)
+
+
+def test_a_part_of_what_is_hidden_is_not_sent(shown: Served) -> None:
+    request = urllib.request.Request(shown.url + ".env", headers={"Range": "bytes=0-3"})
+    with pytest.raises(urllib.error.HTTPError, match="404") as told:
+        urllib.request.urlopen(request, timeout=10)
+    told.value.close()

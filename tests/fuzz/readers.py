@@ -174,6 +174,24 @@ def _log() -> dict[str, bytes]:
         return {"log.jsonl": log.path.read_bytes()}
 
 
+def _answers() -> dict[str, bytes]:
+    events = [
+        {"n": 0, "type": "begin", "at": "2026-01-01T00:00:00.000Z", "mono": 0.5, "agent": "x"},
+        {"n": 1, "type": "answer", "trial": "a1", "value": "left", "seconds": 1.5, "watched": [6.0, 6.0]},
+        {"n": 2, "type": "answer", "trial": "a2", "value": {"natural": 4}, "first": 2.5, "replays": 1},
+        {"n": 3, "type": "end"},
+    ]
+    whole = {"perceive": 1, "design": "0" * 64, "code": "P01", "run": "0123456789ab", "events": events}
+    return {"a.json": json.dumps(whole).encode()}
+
+
+def _perceive() -> dict[str, bytes]:
+    from tests.study.perceive.perceive_makers import CHOICE, RATING, text
+
+    more = "compare: [[all, deaf]]\nchecks: {told: 2, same: 1}\nvideo: {width: 64}\n"
+    return {"perceive.yaml": text(asked=CHOICE + RATING, more=more).encode()}
+
+
 def _keypoints() -> dict[str, bytes]:
     rows = [{"t": n / 30, "keypoints": [[100 + k, 50 + 9 * k + n, 0.9] for k in range(17)]} for n in range(3)]
     people = {"frames": [{"people": [{"pose_keypoints_2d": [1.0, 2.0, 0.5] * 25}]}] * 2, "fps": 30}
@@ -200,6 +218,8 @@ def _readers() -> dict[str, Fuzzed]:
     from metagraph.playback.bml import read_bml
     from metagraph.speech.lines import read_voice, voice_from_phones
     from metagraph.study.log import read as read_log
+    from metagraph.study.perceive.answers import read_answers
+    from metagraph.study.perceive.perceive_plan import read_plan
     from metagraph.study.study_plan import read_study
 
     def drawn(path: Path) -> None:
@@ -276,6 +296,8 @@ def _readers() -> dict[str, Fuzzed]:
         "export": Fuzzed(lambda path: read_export(path, motions=False), _export, JSON, spoilt_json),
         "log": Fuzzed(read_log, _log, JSON, None),
         "study": Fuzzed(read_study, lambda: {"study.yaml": study.read_bytes()} if study.is_file() else {"study.yaml": b"study: 1\n"}, (b"&a", b"{", b"- "), spoilt_words),
+        "answers": Fuzzed(read_answers, _answers, JSON, spoilt_json),
+        "perceive": Fuzzed(read_plan, _perceive, (b"&a", b"{", b"- ", b"{item}"), spoilt_words),
         "lines": Fuzzed(listed, _fixed(a_csv=b"id,text\nl1,Hello\nl2,\"Well, no\"\n"), (b'"', b",", b"\0", b";", b"\t"), spoilt_words),
         "patterns": Fuzzed(read_patterns, _fixed(a_json=b'{"words":{"beat":["x"]},"patterns":[]}'), JSON, None),
         "osc": Fuzzed(osc, _fixed(a_osc=note, b_osc=bundle), (b",", b"[", b"]", b"#bundle\0"), None),

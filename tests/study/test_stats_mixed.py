@@ -7,6 +7,7 @@ from math import sqrt
 import numpy as np
 import pytest
 
+from metagraph.study import stats_mixed
 from metagraph.study.stats_mixed import fit
 from metagraph.study.stats_t import t_quantile
 
@@ -134,3 +135,21 @@ def test_groups_that_do_not_differ_have_no_deviation() -> None:
     found = fit(y, {"one": [1] * 6}, {"pair": [0, 0, 1, 1, 2, 2]})
     assert found is not None and found.deviations["pair"] == 0
     assert found.df["one"] == pytest.approx(5), "then it is an ordinary mean"
+
+
+def test_many_rows_of_few_groups_give_what_their_covariances_give(monkeypatch: pytest.MonkeyPatch) -> None:
+    rng = np.random.default_rng(4)
+    people, items = np.repeat(np.arange(12), 9), np.tile(np.arange(9), 12)
+    y = 0.4 + rng.normal(0, 0.8, 12)[people] + rng.normal(0, 0.5, 9)[items] + rng.normal(0, 1, 108)
+    y, people, items = y[:-3], people[:-3], items[:-3]  # somebody left early
+    effects = {"one": np.ones(105), "place": rng.normal(0, 1, 105)}
+    groups = {"people": people, "items": items}
+    by_sums = stats_mixed.fit(y, effects, groups)
+    monkeypatch.setattr(stats_mixed, "FEW_ROWS", 10_000)
+    by_rows = stats_mixed.fit(y, effects, groups)
+    assert by_sums is not None and by_rows is not None
+    assert by_sums.deviance == pytest.approx(by_rows.deviance, abs=1e-8)
+    assert [*by_sums.deviations.values()] == pytest.approx([*by_rows.deviations.values()], abs=1e-4)
+    assert [*by_sums.df.values()] == pytest.approx([*by_rows.df.values()], rel=1e-2)
+    for one, other in zip(by_sums.effects.values(), by_rows.effects.values(), strict=True):
+        assert (one.value, one.low, one.high) == pytest.approx((other.value, other.low, other.high), abs=1e-3)

@@ -1,5 +1,5 @@
 // node browser.mjs FOLDER STEPS.json: serves a folder on the loopback, opens it in headless Chromium, and runs steps in the page.
-// STEPS: [{"url": path}, {"run": "JavaScript whose value is printed"}, {"wait": ms}, {"shot": "file.png"}, {"click": selector}, ...]
+// STEPS: [{"url": path}, {"run": "JavaScript whose value is printed"}, {"wait": ms}, {"shot": "file.png"}, {"click": selector}, {"press": key}, {"download": [selector, "file"]}, ...]
 import fs from "node:fs";
 import http from "node:http";
 import path from "node:path";
@@ -20,13 +20,21 @@ const page = await browser.newPage({ viewport: { width: 1280, height: 800 }, col
 const errors = [];
 page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
 page.on("pageerror", (error) => errors.push(String(error)));
+async function until(words) {  // asked from outside, since a page may forbid eval
+  for (const end = Date.now() + 30000; ; await page.waitForTimeout(40)) {
+    if (await page.evaluate(words).then(Boolean, () => false)) return;
+    if (Date.now() > end) throw new Error(`never came true: ${words}`);
+  }
+}
 try {
   for (const step of JSON.parse(fs.readFileSync(script))) {
     if (step.url !== undefined) await page.goto(new URL(step.url, base).href);
-    if (step.until) await page.waitForFunction(step.until, null, { timeout: 30000 });
+    if (step.until) await until(step.until);
     if (step.run) console.log(JSON.stringify({ value: await page.evaluate(step.run) ?? null }));
     if (step.click) await page.click(step.click);
     if (step.fill) await page.fill(...step.fill);
+    if (step.press) await page.keyboard.press(step.press);
+    if (step.download) await (await Promise.all([page.waitForEvent("download"), page.click(step.download[0])]))[0].saveAs(step.download[1]);
     if (step.wait) await page.waitForTimeout(step.wait);
     if (step.shot) await page.screenshot({ path: step.shot });
   }

@@ -1,0 +1,257 @@
+"""`metagraph study perceive`: which of two videos people prefer, from stimuli to a report."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentParser, Namespace
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+from app.cli.perceive_planning import arguments as planning_arguments
+from app.cli.perceive_planning import empty
+
+NOTHING = 3  # exit code where nothing can be told
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Add the actions, each with its options."""
+    actions = parser.add_subparsers(dest="step", metavar="step", required=True)
+
+    def action(name: str, words: str, run: Callable[[Namespace], int]) -> ArgumentParser:
+        out = actions.add_parser(name, help=words, description=words[:1].upper() + words[1:] + ".")
+        out.add_argument("--json", action="store_true", help="print what a program can read")
+        out.set_defaults(run=run)
+        return out
+
+    made = action("make", "draw the videos of a study and write the page that shows them", make)
+    made.add_argument("plan", type=Path, help="a perceive.yaml")
+    made.add_argument(
+        "--into", type=Path, required=True, metavar="FOLDER", help="a folder that is not there yet"
+    )
+    served = action("serve", "show the page to browsers, and keep what they answer, until stopped", serve)
+    _study(served)
+    served.add_argument("--port", type=int, default=0, help="(default: any that is free)")
+    served.add_argument(
+        "--address", default="127.0.0.1", help="of the interface to listen on (default: this machine alone)"
+    )
+    brought = action("collect", "keep answers that the page has saved as files", collect)
+    _study(brought)
+    brought.add_argument("answers", type=Path, nargs="+", help="the files, or folders of them")
+    told = action("report", "write what the answers show: a page and tables as CSV", report)
+    _study(told)
+    told.add_argument("--out", type=Path, help="where to write it (default: report, in the study's folder)")
+    planning_arguments(action)
+    gone = action("withdraw", "leave somebody's answers out of all reports from now on", withdraw)
+    _study(gone)
+    gone.add_argument("participant", help="their code")
+    gone.add_argument("--why", default="", help="in words, kept in the log")
+    deleted = action("delete", "delete all answers of somebody, and note that it was done", delete)
+    _study(deleted)
+    deleted.add_argument("participant", help="their code")
+    deleted.add_argument("--yes", action="store_true", help="do not ask")
+
+
+def _study(parser: ArgumentParser) -> None:
+    parser.add_argument("folder", type=Path, help="the folder that 'make' or 'simulate' wrote")
+
+
+def make(options: Namespace) -> int:
+    import hashlib
+
+    from app.cli.command_output import say
+    from app.cli.perceive_stimuli import Stimuli
+    from metagraph.speech.soundtrack import RATE
+    from metagraph.study.allocation import make_secret
+    from metagraph.study.perceive.design import design, sequences
+    from metagraph.study.perceive.folder import level_times, write_folder
+    from metagraph.study.perceive.perceive_plan import FILE, read_plan
+    from preview.video import write_video
+
+    path = options.plan / FILE if options.plan.is_dir() else options.plan
+    plan = read_plan(path)
+    empty(options.into)
+    stimuli = Stimuli(path.resolve(), plan)
+    sounds = stimuli.sounds()  # what is missing is told before anything is drawn
+    videos = options.into / "show" / "videos"
+    videos.mkdir(parents=True, exist_ok=True)
+    secret = make_secret(options.into)
+    made = design(plan, secret)
+    items = {i.id: i for i in plan.items}
+    apart = plan.choice is None or plan.choice.present == "after"  # else one sound is heard of both
+    cameras: dict[str, Any] = {}
+    shown: dict[tuple[str, str], str] = {}
+    tellable = sys.stderr.isatty() and not options.json
+    for n, (name, (condition, ident)) in enumerate(sorted(made.key.stimuli.items())):
+        item = items[ident]
+        if ident not in cameras:
+            cameras[ident] = stimuli.camera(item)
+        if tellable:
+            print(f"\r{n + 1} of {len(made.key.stimuli)} videos ", end="", file=sys.stderr, flush=True)
+        heard = sounds[condition, ident]
+        content = hashlib.sha256(b"" if heard is None or not apart else heard.tobytes())
+        frames = _digested(stimuli.pictures(condition, item, cameras[ident]), content)
+        look = plan.video
+        sound = None if heard is None else (heard, RATE)
+        write_video(videos / f"{name}.mp4", frames, look.fps, (look.width, look.height), sound=sound)
+        shown[condition, ident] = content.hexdigest()
+    if tellable:
+        print(file=sys.stderr)
+    level_times(options.into)
+    study = write_folder(options.into, plan, path.read_bytes(), made)
+    each = [len(s.trials) for s in made.key.sessions.values()]
+    rounds = sequences(plan)
+    lines = [
+        f"{study.show / 'index.html'}: {len(made.key.stimuli)} videos, {len(each)} participants of "
+        f"{max(each)} trials",
+        f"SHA-256 of the secret: {made.key.commitment}",
+        "Give people the folder 'show' and a code each, and nothing else of it; or serve it.",
+    ]
+    if len(each) % rounds:
+        lines.append(
+            f"note: pairs and sides are shown equally often with a multiple of {rounds} participants"
+        )
+    alike = [(a, b, i) for a, b in plan.pairs for i in items if shown[a, i] == shown[b, i]]
+    lines += [
+        f"note: '{a}' and '{b}' show the very same in item '{i}': choose another stretch" for a, b, i in alike
+    ]
+    data = {
+        "alike": alike,
+        "page": str(study.show / "index.html"),
+        "videos": len(made.key.stimuli),
+        "participants": list(made.key.sessions),
+        "commitment": made.key.commitment,
+        "design": made.key.design,
+        "balanced_for": rounds,
+    }
+    say(options, "\n".join(lines), data)
+    return 0
+
+
+def _digested(frames: Iterable[Any], content: Any) -> Iterator[Any]:
+    """Yield pictures, adding each to a digest."""
+    for picture in frames:
+        content.update(picture.tobytes())
+        yield picture
+
+
+def serve(options: Namespace) -> int:
+    import time
+
+    from app.cli.command_output import until_told_to_stop
+    from metagraph.study.perceive.folder import read_folder
+    from metagraph.study.perceive.serving import page_of
+    from metagraph.study.perceive.serving import serve as begin
+
+    study = read_folder(options.folder)
+    page_of(study)
+    try:
+        served = begin(study, options.port, options.address)
+    except (OSError, OverflowError) as error:
+        raise ValueError(f"{options.address}:{options.port} cannot be listened on ({error})") from None
+    try:
+        with until_told_to_stop():
+            print(f"the page is at {served.url}#CODE (Ctrl+C stops)", file=sys.stderr, flush=True)
+            while True:
+                time.sleep(3600)
+    finally:
+        served.close()
+    print("stopped", file=sys.stderr)
+    return 0
+
+
+def collect(options: Namespace) -> int:
+    from app.cli.command_output import say
+    from metagraph.errors import FileError
+    from metagraph.study.perceive.answers import SheetError, keep, read_answers
+    from metagraph.study.perceive.folder import read_folder
+
+    study = read_folder(options.folder)
+    paths = [q for p in options.answers for q in (sorted(p.glob("*.json")) if p.is_dir() else [p])]
+    done: list[dict[str, Any]] = []
+    failed: list[str] = []
+    for path in paths:
+        try:
+            sheet = read_answers(path)
+            found = keep(study, sheet)
+        except FileError as error:
+            failed.append(str(error))
+        except SheetError as error:
+            failed.append(f"{path.name}: {error}. Nothing of it was kept; the file is left as it is.")
+        else:
+            done.append({"code": sheet.code, "kept": found.kept, "new": found.new, "file": str(path)})
+    for words in failed:
+        print(f"note: {words}", file=sys.stderr)
+    lines = [f"{d['code']}: {d['new']} new events, {d['kept']} in all" for d in done]
+    say(options, "\n".join(lines) or "nothing was kept", {"collected": done, "failed": failed})
+    return 0 if done and not failed else NOTHING
+
+
+def report(options: Namespace) -> int:
+    from app.cli.command_output import say
+    from metagraph.study.perceive.folder import read_folder
+    from metagraph.study.perceive.perceive_analysis import analyse
+    from metagraph.study.perceive.perceive_data import collect as read_answers
+    from metagraph.study.perceive.perceive_report import summary, tables, write_report
+
+    study = read_folder(options.folder)
+    results = analyse(read_answers(study))
+    written = write_report(results, options.out or study.folder / "report")
+    for words in results.answers.odd:
+        print(f"note: {words}", file=sys.stderr)
+    columns, rows = tables(results)["pairs.csv"]
+    data = {
+        "people": len(results.answers.people),
+        "count": len(results.answers.counting),
+        "pairs": [dict(zip(columns, row, strict=True)) for row in rows],
+        "rated": [
+            {"question": r.question, "pair": list(r.pair), "difference": r.difference.value, "p": r.together}
+            for r in results.rated
+        ],
+        "cautions": list(results.cautions),
+        "odd": list(results.answers.odd),
+        "simulated": results.answers.simulated,
+        "written": [str(p) for p in written],
+    }
+    fake = ["Nobody took part: these answers were simulated."] if results.answers.simulated else []
+    said = [*fake, *summary(results), *(f"- {w}" for w in results.cautions), str(written[0])]
+    say(options, "\n".join(said), data)
+    return 0 if results.answers.counting else NOTHING
+
+
+def withdraw(options: Namespace) -> int:
+    from app.cli.command_output import say
+    from metagraph.study.perceive.folder import read_folder
+    from metagraph.study.withdrawal import withdraw as note
+
+    study = read_folder(options.folder)
+    new = note(study, options.participant, options.why)
+    say(
+        options,
+        f"{options.participant}: {'left out from now on' if new else 'had withdrawn before'}; "
+        "write the report anew",
+        {"participant": options.participant, "new": new},
+    )
+    return 0
+
+
+def delete(options: Namespace) -> int:
+    from app.cli.command_output import say
+    from metagraph.study.perceive.folder import read_folder
+    from metagraph.study.withdrawal import delete as remove
+
+    study = read_folder(options.folder)
+    study.known(options.participant)
+    place = study.data(options.participant)
+    if not options.yes:
+        if options.json or not sys.stdin.isatty():
+            raise ValueError(f"deleting {place} cannot be taken back: say --yes")
+        if input(f"Delete {place} and all that is in it? It cannot be taken back. [y/N] ").lower() != "y":
+            return 1
+    note = remove(study, options.participant)
+    say(
+        options,
+        f"{options.participant}: {note['files']} files deleted; write the report anew",
+        {"deleted": note},
+    )
+    return 0

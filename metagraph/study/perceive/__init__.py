@@ -1,0 +1,1 @@
+"""Perceptual studies: which of two videos people prefer, and how they rate one."""

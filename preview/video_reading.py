@@ -1,0 +1,102 @@
+"""Reads pictures and sound of a video, through PyAV: what others have drawn, shown as ours is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from metagraph.budgets import MOTION_FILE, PICTURE_PIXELS
+from metagraph.errors import FileError
+from metagraph.files import check_file
+
+Array = NDArray[Any]
+_REMEDY = "Convert it to MP4 (H.264), and check that it plays."
+
+
+def video_seconds(path: str | Path) -> float:
+    """Return how long a video lasts, seconds. Raises FileError."""
+    import av
+
+    path = check_file(path, MOTION_FILE)
+    try:
+        with av.open(str(path)) as container:
+            stream = container.streams.video[0]
+            if stream.width * stream.height > PICTURE_PIXELS:
+                raise FileError(
+                    path, "its pictures are too large", f"{stream.width} x {stream.height}", _REMEDY
+                )
+            if container.duration:
+                return float(container.duration / av.time_base)
+            return float((stream.duration or 0) * (stream.time_base or 0))
+    except (OSError, ValueError, IndexError) as error:
+        raise FileError(path, f"is no video that can be read ({error})", "", _REMEDY) from None
+
+
+def read_pictures(path: str | Path, times: Array, size: tuple[int, int]) -> Iterator[Array]:
+    """Yield the picture, uint8 `[H, W, 3]`, that is shown at each of ascending times, seconds, fitted into
+    width and height with black round it. Raises FileError where the video ends before.
+    """
+    import av
+
+    path = check_file(path, MOTION_FILE)
+    wanted = iter(np.asarray(times, np.float64).tolist())
+    at = next(wanted, None)
+    shown: Array | None = None
+    try:
+        with av.open(str(path)) as container:
+            for frame in container.decode(video=0):
+                moment = float(frame.time or 0.0)
+                while at is not None and shown is not None and moment > at + 1e-6:
+                    yield shown
+                    at = next(wanted, None)
+                if at is None:
+                    return
+                shown = _fitted(frame.to_ndarray(format="rgb24"), size)
+            last = float(np.asarray(times)[-1]) + 0.05
+            while at is not None and shown is not None and at <= last and moment + 0.2 >= at:
+                yield shown  # the last picture stands a while
+                at = next(wanted, None)
+    except (OSError, ValueError, IndexError) as error:
+        raise FileError(path, f"is no video that can be read ({error})", "", _REMEDY) from None
+    if at is not None:
+        raise FileError(path, "ends too early", f"{at:.2f} s", "Give a longer video, or a shorter item.")
+
+
+def _fitted(picture: Array, size: tuple[int, int]) -> Array:
+    width, height = size
+    high, wide = picture.shape[:2]
+    if (wide, high) == size:
+        return picture
+    scale = min(width / wide, height / high)
+    inner = (max(1, round(wide * scale)), max(1, round(high * scale)))
+    out = np.zeros((height, width, 3), np.uint8)
+    x, y = (width - inner[0]) // 2, (height - inner[1]) // 2
+    small = np.asarray(Image.fromarray(picture).resize(inner, Image.Resampling.LANCZOS))
+    out[y : y + inner[1], x : x + inner[0]] = small
+    return out
+
+
+def read_video_sound(path: str | Path, rate: int) -> Array | None:
+    """Return a video's sound, mono float32 `[N]` at a rate; None where it has none. Raises FileError."""
+    import av
+
+    path = check_file(path, MOTION_FILE)
+    try:
+        with av.open(str(path)) as container:
+            if not container.streams.audio:
+                return None
+            resampler = av.AudioResampler(format="flt", layout="mono", rate=rate)
+            parts = [
+                part.to_ndarray().reshape(-1)
+                for frame in container.decode(audio=0)
+                for part in resampler.resample(frame)
+            ]
+            parts += [part.to_ndarray().reshape(-1) for part in resampler.resample(None)]
+    except (OSError, ValueError, IndexError) as error:
+        raise FileError(path, f"its sound cannot be read ({error})", "", _REMEDY) from None
+    return np.concatenate(parts).astype(np.float32) if parts else None
