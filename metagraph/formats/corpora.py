@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from numpy.typing import NDArray
@@ -17,7 +18,7 @@ Array = NDArray[Any]
 class Recorded:
     """A conversation, and how each side moved, None where nobody knows. samples: `[2, N]` of both voices at
     `generation.features.RATE`, None where they are in the conversation's files. notes: what there is to know
-    about how it was read.
+    about how it was read. files: what it was read from.
     """
 
     name: str
@@ -25,3 +26,4 @@ class Recorded:
     conversation: Conversation
     samples: Array | None = None
     notes: tuple[str, ...] = ()
+    files: tuple[Path, ...] = ()
