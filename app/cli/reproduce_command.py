@@ -70,7 +70,8 @@ def run(options: Namespace) -> int:
     told["conversations"] = material.told or "made up"
     content = {
         "report.html": page(made, told),
-        "report.json": json.dumps({**told, "exhibits": data_of(made), "notes": material.notes}, indent=1) + "\n",
+        "report.json": json.dumps({**told, "exhibits": data_of(made), "notes": material.notes}, indent=1)
+        + "\n",
     }
     for name, text in content.items():
         write_atomically(options.into / name, text.encode())
@@ -122,14 +123,15 @@ def _material(options: Namespace) -> Material:
     from app.cli.demo_command import SAMPLE
     from metagraph.errors import FileError
     from metagraph.exhibits.material import Material
-    from metagraph.formats.corpora import read_corpus
+    from metagraph.formats.corpora import Recorded, read_corpus
     from metagraph.generation.offered import SHIPPED
 
     if options.model is not None and not options.model.is_file():
         raise FileError(options.model, "there is no such model", remedy="Check where the .mgmodel file is.")
     model = options.model or (SHIPPED if SHIPPED.is_file() else None)
     notes: list[str] = []
-    given, told = (), ""
+    given: tuple[Recorded, ...] = ()
+    told = ""
     if options.takes is not None:
         corpus = read_corpus(options.takes)
         notes += [*corpus.failures, *corpus.notes]

@@ -42,10 +42,12 @@ def growth(material: Material) -> Shown:
     )
     says = [
         f"{found[-1][0]} actions are as many drops; drawn by hand they are {found[-1][1]:,} connections.",
-        f"The paper calls the growth exponential. Connections grow as the product of what ends in a stance and "
+        "The paper calls the growth exponential. Connections grow as the product of what ends in a "
+        "stance and "
         f"what begins there: as a power of the number of actions, here {slope:.2f} "
         "(2 where stances are as many, 1 where each new stance brings its own actions).",
-        f"Its example, {EXAMPLE_STANCES} stances with {EXAMPLE_ON_EACH} gestures and {EXAMPLE_ON_EACH} fidgets on "
+        f"Its example, {EXAMPLE_STANCES} stances with {EXAMPLE_ON_EACH} gestures and {EXAMPLE_ON_EACH} "
+        "fidgets on "
         f"each and a transition from each to each (figure 1): {imagined.states} states and "
         f"{imagined.connections:,} connections, or {imagined.states} drops on 4 nodes (figure 2).",
     ]
@@ -88,7 +90,13 @@ def hours(material: Material) -> Shown:
 
     rows = [
         row("there: meta-graph", "timed, one animator", META_HOURS * 3600, "fewer", CLIPS),
-        row("there: Unreal's state machine", "timed, the same animator", MANUAL_HOURS * 3600, "many more", CLIPS),
+        row(
+            "there: Unreal's state machine",
+            "timed, the same animator",
+            MANUAL_HOURS * 3600,
+            "many more",
+            CLIPS,
+        ),
         row("here: meta-graph, many at once", "counted", meta.seconds, str(len(meta.score.mistakes)), clips),
         row(f"here: by hand, {best.way}", "counted", best.seconds, str(len(best.score.mistakes)), clips),
         row("here: by hand, link by link", "counted", each.seconds, str(len(each.score.mistakes)), clips),
@@ -98,12 +106,15 @@ def hours(material: Material) -> Shown:
         f"There: {MANUAL_HOURS:g} / {META_HOURS:g} = {published.ratio.value:.2f} times as long, told as "
         f"{TIMES_FASTER} times. One person, one order, no interval; with the week of tutorial "
         f"{published.with_tutorial:.1f} times.",
-        "Here nobody was timed. Operators of the keystroke-level model were counted while the real edits were made by "
-        "somebody who makes no mistake and never looks, so hours and minutes are different in kind and only ratios "
+        "Here nobody was timed. Operators of the keystroke-level model were counted while the real edits "
+        "were made by "
+        "somebody who makes no mistake and never looks, so hours and minutes are different in kind and "
+        "only ratios "
         "may be laid beside each other.",
         f"By hand takes {every:.1f} times as long link by link, and {ratio:.2f} times in the "
         + ("quickest way a search could find" if material.full else "quickest way known")
-        + f", with aliases that the paper's editor did not have: {'slower' if ratio > 1 else 'faster'} than dropping "
+        + ", with aliases that the paper's editor did not have: "
+        + f"{'slower' if ratio > 1 else 'faster'} than dropping "
         "clips where names tell what they are and nothing is proposed.",
     ]
     bars = [

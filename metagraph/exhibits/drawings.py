@@ -1,5 +1,5 @@
-"""Drawings of exhibits as SVG. Classes: `paper` what was published, `ours` what was made here, `s0`..`s10` any
-other, coloured by the page.
+"""Drawings of exhibits as SVG. Classes: `paper` what was published, `ours` what was made here, `s0`..`s10`
+any other, coloured by the page.
 """
 
 from __future__ import annotations
@@ -12,15 +12,20 @@ from metagraph.study.plot_axes import RATIOS, Place, log_axis, plain_axis
 from metagraph.svg import WIDTH, dot, line, number, svg, text
 
 Axis = tuple[Place, list[float]]
+Bar = tuple[str, float, float | None, float | None]  # class, value, ends of its interval
+Stretch = tuple[str, float, float, str]  # class, start, end, words
 
 LEFT, RIGHT, TOP, BOTTOM = 76.0, 616.0, 14.0, 250.0
+DOTTED = 40  # points of a line that are shown one by one
 STEPS = tuple(m * 10.0**e for e in range(-5, 9) for m in (1, 2, 2.5, 5))
 
 
 def rect(css: str, x: float, y: float, wide: float, high: float, words: str = "") -> str:
     """Return a rectangle. words: shown under the pointer."""
     told = f"<title>{escape(words)}</title>" if words else ""
-    shape = f"x='{number(x)}' y='{number(y)}' width='{number(max(0.0, wide))}' height='{number(max(0.0, high))}'"
+    shape = (
+        f"x='{number(x)}' y='{number(y)}' width='{number(max(0.0, wide))}' height='{number(max(0.0, high))}'"
+    )
     return f"<rect class='{css}' {shape}>{told}</rect>"
 
 
@@ -46,7 +51,7 @@ def lines(
     title: str,
     logs: bool = False,
 ) -> str:
-    """Draw values over values, dots joined. series: words -> class and points. logs: both axes logarithmic."""
+    """Draw values over values, joined. series: words -> class and points. logs: both axes logarithmic."""
     every = [p for _, points in series.values() for p in points if all(isfinite(v) for v in p)]
     if not every:
         return nothing(title)
@@ -57,7 +62,9 @@ def lines(
     parts = _frame(x, x_ticks, y, y_ticks, across, up)
     for css, points in series.values():
         placed = [(x(a), y(b)) for a, b in points if isfinite(a) and isfinite(b)]
-        parts += [polyline(css, placed), *(f"<g class='{css}'>{dot(a, b, 3)}</g>" for a, b in placed)]
+        parts.append(polyline(css, placed))
+        if len(placed) <= DOTTED:
+            parts += [f"<g class='{css}'>{dot(a, b, 3)}</g>" for a, b in placed]
     parts += legend([(css, words) for words, (css, _) in series.items()], BOTTOM + 48)
     return svg(BOTTOM + 68, parts, title)
 
@@ -85,15 +92,15 @@ def histogram(
 
 
 def pairs(
-    rows: Sequence[tuple[str, Sequence[tuple[str, float, float | None, float | None]]]],
+    rows: Sequence[tuple[str, Sequence[Bar]]],
     names: Sequence[tuple[str, str]],
     across: str,
     title: str,
     most: float | None = None,
     one: float | None = None,
 ) -> str:
-    """Draw bars under each other. rows: words -> class, value, and ends of an interval or None. names: class and
-    words of the legend. most: end of the axis. one: where a dashed line stands.
+    """Draw bars under each other. rows: words -> class, value, and ends of an interval or None. names: class
+    and words of the legend. most: end of the axis. one: where a dashed line stands.
     """
     left, high = 210.0, 16
     known = [v for _, bars in rows for _, *vs in bars for v in vs if v is not None and isfinite(v)]
@@ -122,9 +129,7 @@ def pairs(
     return svg(at + 64, parts, title)
 
 
-def lanes(
-    rows: Sequence[tuple[str, Sequence[tuple[str, float, float, str]]]], seconds: float, title: str
-) -> str:
+def lanes(rows: Sequence[tuple[str, Sequence[Stretch]]], seconds: float, title: str) -> str:
     """Draw stretches of time under each other. rows: words -> class, start, end, words of each stretch."""
     left, high, gap = 150.0, 22, 10
     x, ticks = _plain(0.0, seconds, left, RIGHT)
@@ -136,7 +141,9 @@ def lanes(
         at = TOP + n * (high + gap)
         parts.append(text(left - 12, at + 15, words, "label", "end"))
         for css, a, b, told in stretches:
-            parts.append(rect(css, x(a), at, max(2.0, x(b) - x(a) - 1), high, f"{told}: {a:.2f} to {b:.2f} s"))
+            parts.append(
+                rect(css, x(a), at, max(2.0, x(b) - x(a) - 1), high, f"{told}: {a:.2f} to {b:.2f} s")
+            )
             if len(told) * 6.5 < x(b) - x(a):
                 parts.append(text((x(a) + x(b)) / 2, at + 15, told, "inside", "middle"))
     return svg(bottom + 26, parts, title)

@@ -77,15 +77,17 @@ EXHIBITS: tuple[Exhibit, ...] = (
     Exhibit("hours", "meta-graph", "section 7.1", "8 hours against 63", "authoring", (12, 12)),
     Exhibit("replanning", "meta-graph", "figure 6", "Temporal replanning", "planning", (1, 1)),
     Exhibit("sampling", "meta-graph", "figure 7", "Sampling specific actions", "planning", (2, 5)),
-    Exhibit("variation", "meta-graph", "figures 9 and 12", "One request, many performances", "planning", (3, 8)),
+    Exhibit(
+        "variation", "meta-graph", "figures 9 and 12", "One request, many performances", "planning", (3, 8)
+    ),
     Exhibit("matrix", "meta-graph", "figure 11", "What follows what", "planning", (1, 3), NUMBERS),
-    Exhibit("rates", "conversation", "table 1", "Movements that go with speech", "speaking", (3, 60), "takes"),
+    Exhibit(
+        "rates", "conversation", "table 1", "Movements that go with speech", "speaking", (3, 60), "takes"
+    ),
     Exhibit("window", "conversation", "figure 3", "A window for a movement", "speaking", (1, 1), "takes"),
     Exhibit("costs", "conversation", "figure 4", "What a transition costs", "graphs", (2, 20), "takes"),
     Exhibit("components", "conversation", "table 2", "States and edges", "graphs", (8, 120), "takes"),
-    Exhibit(
-        "search", "conversation", "figure 5", "The search, step by step", "searching", (8, 20), "takes"
-    ),
+    Exhibit("search", "conversation", "figure 5", "The search, step by step", "searching", (8, 20), "takes"),
     Exhibit(
         "success",
         "conversation",
@@ -108,17 +110,15 @@ EXHIBITS: tuple[Exhibit, ...] = (
     Exhibit(
         "distance", "generator", "figure 6", "Distance from the mean pose", "generated", (15, 60), "model"
     ),
-    Exhibit(
-        "roles", "generator", "figures 7 and 8", "Speaking and listening", "generated", (3, 10), "model"
-    ),
+    Exhibit("roles", "generator", "figures 7 and 8", "Speaking and listening", "generated", (3, 10), "model"),
     Exhibit("sizes", "generator", "section 7", "How many parameters", "generated", (0, 0), NUMBERS),
 )
 NAMES = tuple(e.name for e in EXHIBITS)
 
 
 def chosen(names: Sequence[str]) -> tuple[Exhibit, ...]:
-    """Return exhibits by name or by paper, each once, in the papers' order; all where nothing is named. Raises
-    ValueError for a name that is none.
+    """Return exhibits by name or by paper, each once, in the papers' order; all where nothing is named.
+    Raises ValueError for a name that is none.
     """
     papers = {e.paper for e in EXHIBITS}
     wrong = [n for n in names if n not in NAMES and n not in papers]

@@ -1,5 +1,5 @@
-"""Exhibits of the third paper: how far a generator's motion goes from the mean pose, how it speaks and listens,
-and how large the models are.
+"""Exhibits of the third paper: how far a generator's motion goes from the mean pose, how it speaks and
+listens, and how large the models are.
 """
 
 from __future__ import annotations
@@ -50,14 +50,20 @@ def distance(material: Material) -> Shown:
     ]
     parts.append(Drawing("Notched boxes; whiskers by Tukey", figures.boxes(far, "cm")))
     parts.append(
-        Drawing("Poses of the first take, one a second, from the front", figures.overlaid({n: m[0] for n, m in motion.items()}))
+        Drawing(
+            "Poses of the first take, one a second, from the front",
+            figures.overlaid({n: m[0] for n, m in motion.items()}),
+        )
     )
     wrists = {name: np.percentile(v[:, 5:7], (25, 75)) for name, v in far.items()}
     spans = {name: float(b - a) for name, (a, b) in wrists.items()}
     says = (
-        "The paper prints this figure without numbers: its ground truth, Flow-VAE, MoGlow and CVAE cannot be laid beside ours "
-        "but by eye, and are of another person. Each column here is beside the recorded motion it should look like.",
-        f"Wrists' range between quartiles: {spans['generated']:.1f} cm generated, {spans['recorded']:.1f} cm recorded. "
+        "The paper prints this figure without numbers: its ground truth, Flow-VAE, MoGlow and CVAE "
+        "cannot be laid beside ours "
+        "but by eye, and are of another person. Each column here is beside the recorded motion it should "
+        "look like.",
+        f"Wrists' range between quartiles: {spans['generated']:.1f} cm generated, "
+        f"{spans['recorded']:.1f} cm recorded. "
         "The paper finds its own 'at a similar scale' and its CVAE less active.",
     )
     head = ("landmark", "recorded: quartiles, cm", "generated: quartiles, cm", "apart (W1), cm")
@@ -91,30 +97,42 @@ def roles(material: Material) -> Shown:
         "Speaking over listening, by the mean change without its sign: "
         + ", ".join(f"{name} {r:.2f}" for name, r in ratios.items())
         + ". The paper draws figures 7 and 8 and says that both behave alike.",
-        "It also says that gradients become negative while listening, since the actor moves towards the mean pose. Over a "
+        "It also says that gradients become negative while listening, since the actor moves towards the "
+        "mean pose. Over a "
         "whole conversation positive and negative changes must nearly cancel; medians stand in the table.",
     )
     head = ("while", "", "frames", "mean change, cm/s", "median with its sign, cm/s")
-    return Shown(_about(material), says, (ExhibitTable("Change of the distance", head, tuple(rows)), *parts), {"ratio": ratios})
+    return Shown(
+        _about(material),
+        says,
+        (ExhibitTable("Change of the distance", head, tuple(rows)), *parts),
+        {"ratio": ratios},
+    )
 
 
 def sizes(material: Material) -> Shown:
     """Section 7: trainable parameters."""
-    rows, numbers = [], {}
+    rows: list[tuple[str, ...]] = []
+    numbers: dict[str, list[float]] = {}
     for kind in KINDS:
         same, small = parameters(sizes_of(kind, "paper", 6 * JOINTS)), parameters(sizes_of(kind, "small"))
         there = PARAMETERS[kind]
-        rows.append((kind, f"{there / 1e6:g} M", f"{same / 1e6:.2f} M", f"{same / there:.2f}", f"{small / 1e6:.2f} M"))
+        rows.append(
+            (kind, f"{there / 1e6:g} M", f"{same / 1e6:.2f} M", f"{same / there:.2f}", f"{small / 1e6:.2f} M")
+        )
         numbers[kind] = [there, same, small]
     ours = parameters(sizes_of("matching"))
     rows.append(("matching", "-", "-", "-", f"{ours / 1e6:.2f} M"))
     one = parameters(replace(sizes_of("flow-vae", "paper", 6 * JOINTS), layers=1))
     less = 1 - PARAMETERS["flow-vae"] / PARAMETERS["moglow"]
     says = (
-        "Counted for 9 joints of 6 numbers and the sizes the text gives: 1,231 numbers of control (31 frames of 31, "
-        "5 poses of 54), K = 8 and 16 steps, 400 and 800 units. The text does not tell how many layers each LSTM has: "
+        "Counted for 9 joints of 6 numbers and the sizes the text gives: 1,231 numbers of control (31 "
+        "frames of 31, "
+        "5 poses of 54), K = 8 and 16 steps, 400 and 800 units. The text does not tell how many layers "
+        "each LSTM has: "
         f"two here; with one the Flow-VAE would have {one / 1e6:.1f} M.",
-        f"The paper says 80 % fewer than MoGlow; by its own counts {less:.0%}. CVAE and MoGlow come out, its Flow-VAE "
+        f"The paper says 80 % fewer than MoGlow; by its own counts {less:.0%}. CVAE and MoGlow come out, "
+        "its Flow-VAE "
         f"counts {numbers['flow-vae'][1] / 1e6:.1f} M here: what makes the rest is not told.",
     )
     head = ("model", "there", "here, the paper's sizes", "ratio", "here, for a processor")
@@ -160,8 +178,10 @@ def _judged(material: Material) -> Judged | str:
 
 
 def _about(material: Material) -> str:
-    seen = "the model has not learned from them, though from takes of the same maker" if material.made_up else (
-        "takes that the model has learned from are left out"
+    seen = (
+        "the model has not learned from them, though from takes of the same maker"
+        if material.made_up
+        else ("takes that the model has learned from are left out")
     )
     name = material.model.name if material.model is not None else "none"
     return f"{material.about}; model: {name}; {seen}"

@@ -46,9 +46,9 @@ class Actor:
 
 @dataclass(frozen=True, eq=False)
 class Material:
-    """project: whose actions are exhibited. given: somebody's own conversations; made up where there are none.
-    told: what these are called in words. model: of the third paper's exhibits, None where there is none. full:
-    as much as the papers have, where that can be made.
+    """project: whose actions are exhibited. given: somebody's own conversations; made up where there are
+    none. told: what these are called in words. model: of the third paper's exhibits, None where there is
+    none. full: as much as the papers have, where that can be made.
     """
 
     project: Project
@@ -88,9 +88,7 @@ class Material:
                     f"{len(some) - len(kept)} takes of side {side + 1} have another skeleton: left out"
                 )
             name = side_name(kept[0][1], side)
-            out.append(
-                Actor(name, tuple(c for c, _ in kept), tuple(heard_by(t, side) for _, t in kept))
-            )
+            out.append(Actor(name, tuple(c for c, _ in kept), tuple(heard_by(t, side) for _, t in kept)))
         if not out:
             raise ValueError("none of these conversations has motion: nothing can be exhibited of it")
         return tuple(out)
@@ -100,9 +98,11 @@ class Material:
         """What the conversations are, in words."""
         minutes = sum(r.conversation.length for r in self.conversations) / 60
         if self.given:
-            return f"{self.told}: {len(self.given)} conversations, {minutes:.1f} min; not seen when this was made"
+            count = len(self.given)
+            return f"{self.told}: {count} conversations, {minutes:.1f} min; unseen when this was made"
         return (
-            f"{len(self.conversations)} made-up conversations of {self.conversations[0].conversation.length:g} s: "
+            f"{len(self.conversations)} made-up conversations of "
+            f"{self.conversations[0].conversation.length:g} s: "
             "synthetic voices, performed by the project with the paper's rates. Who made them made what is "
             "measured: they show that the measure works, not how people are"
         )
@@ -123,8 +123,8 @@ def made(
     rates: Sequence[Rates] | None = None,
     fps: float = RATE,
 ) -> tuple[Recorded, ...]:
-    """Return made-up conversations. rates: of both sides, else the paper's two actors'. Raises ValueError where
-    the project has no skeleton, or conversations would be too short.
+    """Return made-up conversations. rates: of both sides, else the paper's two actors'. Raises ValueError
+    where the project has no skeleton, or conversations would be too short.
     """
     out = []
     both = actors_rates() if rates is None else tuple(rates)
@@ -143,13 +143,9 @@ def moved(project: Project, talk: Conversation, side: int, fps: float = RATE) ->
     return replace(bake(plan, project, talk.length, fps), name=f"{talk.name}, {talk.sides[side].name}")
 
 
-
-
 def with_rates(talk: Conversation, rates: Sequence[Rates]) -> Conversation:
     """Return a conversation in which both move as often as is said."""
-    sides: Any = tuple(
-        msgspec.structs.replace(s, rates=r) for s, r in zip(talk.sides, rates, strict=True)
-    )
+    sides: Any = tuple(msgspec.structs.replace(s, rates=r) for s, r in zip(talk.sides, rates, strict=True))
     return msgspec.structs.replace(talk, sides=sides)
 
 

@@ -8,23 +8,20 @@ from typing import Any
 
 from metagraph.exhibits.exhibit import Drawing, Exhibit, ExhibitTable, Shown
 from metagraph.exhibits.published import PAPERS
+from metagraph.generation import figures
 from metagraph.study.report_style import STYLE
 
-_STYLE = """
-body { max-width: 1000px; }
-.paper { --c: var(--s2); } .ours { --c: var(--s1); } .ink { --c: var(--text); }
-rect.paper, rect.ours, .paper circle, .ours circle { fill: var(--c); }
-.curve { fill: none; stroke: var(--c); stroke-width: 1.8; }
-text.small { font-size: 10px; fill: var(--dim); }
-td:first-child { min-width: 90px; } td, th { padding-right: 14px; } .wide-table { overflow-x: auto; }
-nav { columns: 2; font-size: 13px; margin: 12px 0 24px; } nav a { display: block; padding: 2px 0; text-decoration: none; }
-nav b { display: block; margin-top: 8px; } h2 { border-top: 1px solid var(--line); padding-top: 18px; }
-.box polygon { stroke: var(--text); stroke-width: .5; } .box .median { stroke: var(--inside); stroke-width: 1.5; }
-.box .whisker { stroke: var(--dim); } .box .beyond { opacity: .5; }
-polyline { fill: none; stroke-width: .8; } .bones path { fill: none; stroke-width: .6; stroke-opacity: .12; }
-.mark0 { stroke: var(--s0); } .mark1 { stroke: var(--s2); } .mark2 { stroke: var(--s3); } .mark3 { stroke: var(--s4); }
-.fill0 { fill: var(--s0); } .fill1 { fill: var(--s2); } .fill2 { fill: var(--s3); } .fill3 { fill: var(--s4); }
-.line0 path { stroke: var(--s0); } .line1 path { stroke: var(--s1); } .line2 path { stroke: var(--s2); }
+_STYLE = f"""
+body {{ max-width: 1000px; }} .wide-table {{ overflow-x: auto; }}
+.paper {{ --c: var(--s2); }} .ours {{ --c: var(--s1); }} .ink {{ --c: var(--text); }}
+rect.paper, rect.ours, .paper circle, .ours circle {{ fill: var(--c); }}
+line.edge {{ stroke: var(--text); stroke-width: 1.2; }} text.small {{ font-size: 10px; fill: var(--dim); }}
+td:first-child {{ min-width: 90px; }} td, th {{ padding-right: 14px; }}
+nav {{ columns: 2; font-size: 13px; margin: 12px 0 24px; }} nav b {{ display: block; margin-top: 8px; }}
+nav a {{ display: block; padding: 2px 0; text-decoration: none; }}
+h2 {{ border-top: 1px solid var(--line); padding-top: 18px; }}
+{figures.STYLE}
+polyline.curve {{ fill: none; stroke: var(--c); stroke-width: 1.8; }}
 """
 Made = tuple[Exhibit, Shown, float]  # and the seconds it took
 
@@ -33,7 +30,10 @@ def page(made: Sequence[Made], told: Mapping[str, str]) -> str:
     """Return the page. told: what stands at its top."""
     parts = ["<h1>The papers' exhibits, made again</h1>", "<div class='card'>"]
     parts += [f"<p>{escape(k)}: {escape(v)}</p>" for k, v in told.items()]
-    parts += ["<p class='dim'>What was published is purple in drawings, what was made here green.</p></div>", "<nav>"]
+    parts += [
+        "<p class='dim'>What was published is purple in drawings, what was made here green.</p></div>",
+        "<nav>",
+    ]
     before = ""
     for exhibit, _, _ in made:
         if exhibit.paper != before:
@@ -45,7 +45,8 @@ def page(made: Sequence[Made], told: Mapping[str, str]) -> str:
         parts += _exhibit(exhibit, shown, seconds)
     head = "<meta charset='utf-8'><title>The papers' exhibits</title>"
     body = "\n".join(parts)
-    return f"<!DOCTYPE html><html lang='en'><head>{head}<style>{STYLE}{_STYLE}</style></head><body>{body}</body></html>\n"
+    style = f"<style>{STYLE}{_STYLE}</style>"
+    return f"<!DOCTYPE html><html lang='en'><head>{head}{style}</head><body>{body}</body></html>\n"
 
 
 def _exhibit(exhibit: Exhibit, shown: Shown, seconds: float) -> list[str]:

@@ -1,10 +1,13 @@
-"""Exhibits of the meta-graph paper about planning: temporal replanning, sampling, variation, what follows what."""
+"""Exhibits of the meta-graph paper about planning: temporal replanning, sampling, variation, what follows
+what.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 from math import sqrt
 
 from metagraph.exhibits import drawings
@@ -42,14 +45,14 @@ def replanning(material: Material) -> Shown:
     case("no time left to wait", [_meta("a", 0.5, 6), _meta("b", 1, 2)])
     rows = [(w, _told(asked), _told(plan), words or "as asked") for w, asked, plan, words in cases]
     stretches = []
-    for words, asked, plan, _ in cases:
-        low = [m for m in asked if m.request.priority <= 1]
-        high = [m for m in asked if m.request.priority > 1]
-        stretches.append((words[:24], [_bar("s4", m) for m in low] + [_bar("s3", m) for m in high]))
-        stretches.append(("meta plan", [_bar("ours", m) for m in plan]))
+    for n, (_, asked, plan, _) in enumerate(cases, 1):
+        for meta in asked:
+            stretches.append((f"{n}: asked", [_bar("s3" if meta.request.priority > 1 else "s4", meta)]))
+        stretches.append((f"{n}: meta plan", [_bar("ours", m) for m in plan]))
     kept = _kept(material.project)
     says = [
-        "Placed greedily by start, then priority, as the paper says. What it leaves open: two that are as important "
+        "Placed greedily by start, then priority, as the paper says. What it leaves open: two that are "
+        "as important "
         f"do not cut each other, the later waits, up to {Settings().wait:g} s; a remainder under "
         f"{Settings().shortest:g} s is dropped.",
         kept,
@@ -59,8 +62,7 @@ def replanning(material: Material) -> Shown:
         f"five cases written for this, and the project '{material.project.name}' for the running action",
         tuple(says),
         (
-            Drawing("Asked (brown more important) and planned (green), two lines a case; what overlaps is drawn "
-                    "over each other", drawn),
+            Drawing("Asked (brown: more important) and planned (green), in the order of the table", drawn),
             ExhibitTable("The cases in words", ("case", "asked, s", "planned, s", "told"), tuple(rows)),
         ),
         {"cases": [[w, _told(a), _told(p)] for w, a, p, _ in cases]},
@@ -114,31 +116,45 @@ def sampling(material: Material) -> Shown:
         ),
         (
             "3: wholly covered by what plays",
-            [_ask("first", layer, 1.0, 0.5), _ask("covered", layer, 1.6, 0.2), _ask("next", layer, longest + 3, 1.0)],
+            [
+                _ask("first", layer, 1.0, 0.5),
+                _ask("covered", layer, 1.6, 0.2),
+                _ask("next", layer, longest + 3, 1.0),
+            ],
         ),
     ]
     lanes, rows = [], []
     until = 2 * longest + 7
-    for words, asked in cases:
+    for n, (words, asked) in enumerate(cases, 1):
         plan = make_plan(project, until, asked, 1, {layer: stance}, idle=False)
         cues = plan.layers[layer].cues
         told = "; ".join(f"{r.request}: {r.message}" for r in plan.reports if r.layer == layer)
-        lanes.append((words[:24], [("s4", r.start, r.start + (r.duration or 1), r.id) for r in asked]))
-        lanes.append(("plays", [("ours", c.start, c.end, c.meta) for c in cues]))
-        rows.append((words, ", ".join(f"{c.meta} {c.start:.2f}-{c.end:.2f}" for c in cues), told or "all play"))
+        for r in asked:
+            css = "s3" if r.priority > 1 else "s4"
+            lanes.append((f"{n}: asked", [(css, r.start, r.start + (r.duration or 1.0), r.id)]))
+        lanes.append((f"{n}: plays", [("ours", c.start, c.end, c.meta) for c in cues]))
+        rows.append(
+            (words, ", ".join(f"{c.meta} {c.start:.2f}-{c.end:.2f}" for c in cues), told or "all play")
+        )
     table, off, drawn = _formula(project, layer, stance, DRAWS[material.full])
     says = (
-        "Ours differs in one thing: a request that comes to nothing says why; and a gesture may be left early "
+        "Ours differs in two things: a request that comes to nothing says why; and a gesture may be left "
+        "early "
         "where its timing allows, so that more fit before something important.",
-        f"The formula: each of {drawn:,} draws had chances by p = (1 / max(c, 1)) / sum, c growing by {ALPHA:g} with "
-        f"each use. Drawn and expected counts differ by chi-square {off[0]:.1f} at {off[1]} degrees of freedom "
+        f"The formula: each of {drawn:,} draws had chances by p = (1 / max(c, 1)) / sum, c growing by "
+        f"{ALPHA:g} with "
+        f"each use. Drawn and expected counts differ by chi-square {off[0]:.1f} at {off[1]} degrees of "
+        "freedom "
         f"(about {off[1]} to be expected by chance, {off[1] + 3 * sqrt(2 * off[1]):.0f} would be odd).",
     )
     return Shown(
         f"the project '{project.name}', stance '{graph.stances[stance].name}': {len(some)} gestures",
         says,
         (
-            Drawing("Meta actions (above) and what plays (below)", drawings.lanes(lanes, until, "Three cases")),
+            Drawing(
+                "Meta actions (brown: more important) and what plays (green), in the order of the table",
+                drawings.lanes(lanes, until, "Three cases"),
+            ),
             ExhibitTable("The cases in words", ("case", "plays, s", "told"), tuple(rows)),
             table,
         ),
@@ -152,17 +168,16 @@ def _formula(
     """Return how often candidates were drawn that had been used less or more than others, chi-square with its
     degrees of freedom, and how many draws.
     """
-    plain = set_settings(project, never_twice=False, memory=0.0)
-    limbs = [a.id for a in plain.graphs[layer].of(stance, "gesture") if a.spacing is None and a.cooldown <= 0][:6]
+    plain = set_settings(project, never_twice=False, memory=0.0, alpha=ALPHA)
+    limbs = [
+        a.id for a in plain.graphs[layer].of(stance, "gesture") if a.spacing is None and a.cooldown <= 0
+    ][:6]
     if len(limbs) < 2:
         return ExhibitTable("The formula", ("candidates",), ((str(len(limbs)),),)), (0.0, 0), 0
     likely = {a.id: a.likelihood for a in plain.graphs[layer].actions.values() if a.id in limbs}
-    expected, seen = Counter[str](), Counter[str]()
-    variance, done = Counter[str](), 0
+    expected, seen, done = [0.0] * 4, [0] * 4, 0
     for run in range(draws // 20):
-        asked = [
-            replace(_ask(f"{run}/{n}", layer, 20.0 * n, 1.0), among=tuple(limbs)) for n in range(20)
-        ]
+        asked = [replace(_ask(f"{run}/{n}", layer, 20.0 * n, 1.0), among=tuple(limbs)) for n in range(20)]
         plan = make_plan(plain, 410.0, asked, key32(7, str(run)), {layer: stance}, idle=False)
         uses = Counter[str]()
         for cue in plan.layers[layer].cues:
@@ -171,21 +186,22 @@ def _formula(
             weights = {i: likely[i] / max(ALPHA * uses[i], 1.0) for i in limbs}
             total, least = sum(weights.values()), min(uses[i] for i in limbs)
             for i in limbs:
-                key = min(uses[i] - least, 3)
-                p = weights[i] / total
-                expected[str(key)] += p  # type: ignore[assignment]
-                variance[str(key)] += p * (1 - p)  # type: ignore[assignment]
-            seen[str(min(uses[cue.action.id] - least, 3))] += 1
+                expected[min(uses[i] - least, 3)] += weights[i] / total
+            seen[min(uses[cue.action.id] - least, 3)] += 1
             uses[cue.action.id] += 1
             done += 1
-    keys = [k for k in sorted(expected) if expected[k] >= 5]
+    keys = [k for k in range(4) if expected[k] >= 5]
     chi = sum((seen[k] - expected[k]) ** 2 / expected[k] for k in keys)
     rows = tuple(
-        (f"{k} more than the least used" if k != "3" else "3 or more", f"{expected[k]:.1f}", f"{seen[k]}")
+        (f"{k} more than the least used" if k < 3 else "3 or more", f"{expected[k]:.1f}", f"{seen[k]}")
         for k in keys
     )
     words = f"{len(limbs)} candidates, {done:,} draws: how often one was drawn that had been used so often"
-    return ExhibitTable(words, ("uses", "expected by the formula", "drawn"), rows), (chi, max(1, len(keys) - 1)), done
+    return (
+        ExhibitTable(words, ("uses", "expected by the formula", "drawn"), rows),
+        (chi, max(1, len(keys) - 1)),
+        done,
+    )
 
 
 def variation(material: Material) -> Shown:
@@ -199,30 +215,47 @@ def variation(material: Material) -> Shown:
     plans = [make_plan(project, 45.0, asked, s, idle=False) for s in range(1, seeds + 1)]
     alone = [make_plan(project, 60.0, (), s) for s in range(1, seeds + 1)]
     rows, numbers = [], {}
-    for words, some in (("eight gestures asked for (figure 9)", plans), ("nothing asked for (figure 12)", alone)):
+    for words, some in (
+        ("eight gestures asked for (figure 9)", plans),
+        ("nothing asked for (figure 12)", alone),
+    ):
         played = [[c.action.id for c in p.layers[layer].cues] for p in some]
         pairs = [(a, b) for k, a in enumerate(played) for b in played[k + 1 :]]
-        alike = [sum(x == y for x, y in zip(a, b, strict=False)) / max(1, min(len(a), len(b))) for a, b in pairs]
-        again = [sum(x == y for x, y in zip(a, a[1:], strict=False)) for a in played]
+        alike = [
+            sum(x == y for x, y in zip(a, b, strict=False)) / max(1, min(len(a), len(b))) for a, b in pairs
+        ]
+        again = [sum(x == y for x, y in pairwise(a)) for a in played]
         different = len({tuple(p) for p in played})
         used = len({i for p in played for i in p})
         share = sum(alike) / max(1, len(alike))
         rows.append((words, f"{different} of {seeds}", f"{share:.0%}", str(used), str(sum(again))))
         numbers[words] = {"different": different, "seeds": seeds, "alike": share, "used": used}
     lanes = [
-        (f"seed {n + 1}", [(f"s{_colour(c)}", c.start, c.end, c.action.name[:14]) for c in p.layers[layer].cues])
+        (
+            f"seed {n + 1}",
+            [(f"s{_colour(c)}", c.start, c.end, c.action.name[:14]) for c in p.layers[layer].cues],
+        )
         for n, p in enumerate(plans[:5])
     ]
-    head = ("", "different sequences", "the same at the same place", "actions used", "the same twice in a row")
+    head = (
+        "",
+        "different sequences",
+        "the same at the same place",
+        "actions used",
+        "the same twice in a row",
+    )
     return Shown(
         f"the project '{project.name}', layer {layer}, seeds 1 to {seeds}",
         (
-            "The paper shows three pictures and claims that performances differ; here it is counted. The same seed "
+            "The paper shows three pictures and claims that performances differ; here it is counted. The "
+            "same seed "
             "gives the same performance in every runtime.",
         ),
         (
             ExhibitTable("How much performances differ", head, tuple(rows)),
-            Drawing("The same eight requests with five seeds", drawings.lanes(lanes, 45.0, "Five performances")),
+            Drawing(
+                "The same eight requests with five seeds", drawings.lanes(lanes, 45.0, "Five performances")
+            ),
         ),
         numbers,
     )
@@ -236,7 +269,7 @@ def matrix(material: Material) -> Shown:
     sequence = [states[m.request.limb or "both", m.request.kind] for m in written]
     count = len(STATES)
     moves = [[0] * count for _ in range(count)]
-    for a, b in zip(sequence, sequence[1:], strict=False):
+    for a, b in pairwise(sequence):
         moves[a][b] += 1
     rows, worst, ours = [], 0.0, []
     for n, row in enumerate(moves):
@@ -247,19 +280,27 @@ def matrix(material: Material) -> Shown:
             p = ARMS.matrix[n][j]
             if 0 < p < 1 and left:
                 worst = max(worst, abs(share - p) / sqrt(p * (1 - p) / left))
-        cells = [f"{FIGURE_11[n][j]:g} / {100 * shares[j]:.1f}" if FIGURE_11[n][j] or row[j] else "0" for j in range(count)]
+        cells = [
+            f"{FIGURE_11[n][j]:g} / {100 * shares[j]:.1f}" if FIGURE_11[n][j] or row[j] else "0"
+            for j in range(count)
+        ]
         rows.append((STATES[n], *cells))
     forbidden = sum(moves[i][j] for i in range(count) for j in range(count) if not FIGURE_11[i][j])
     least = [fewest(row) for row in FIGURE_11]
     long_run = stationary(ARMS.matrix)
     says = [
-        f"{len(sequence):,} actions written by the model that ships: no share is off the published one by more than "
+        f"{len(sequence):,} actions written by the model that ships: no share is off the published one "
+        "by more than "
         f"{worst:.1f} standard deviations (81 are looked at), and what has 0 % never came ({forbidden}).",
-        f"Rounded in print, three rows sum to 99.9 or 100.1 %; ours sum to 1. The percentages are fractions of "
-        f"{', '.join(map(str, least))}: the whole matrix can come of {sum(least)} transitions, 'R, T then L, T 100 %' of "
+        "Rounded in print, three rows sum to 99.9 or 100.1 %; ours sum to 1. The percentages are "
+        "fractions of "
+        f"{', '.join(map(str, least))}: the whole matrix can come of {sum(least)} transitions, 'R, T "
+        "then L, T 100 %' of "
         "a single one. It is an example, as the paper says, not how people are.",
         "In the long run: "
-        + ", ".join(f"{s} {p:.0%}" for s, p in sorted(zip(STATES, long_run, strict=True), key=lambda x: -x[1]))
+        + ", ".join(
+            f"{s} {p:.0%}" for s, p in sorted(zip(STATES, long_run, strict=True), key=lambda x: -x[1])
+        )
         + ".",
     ]
     grids = {

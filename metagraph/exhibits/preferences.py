@@ -1,13 +1,14 @@
 """How sure the conversation paper's user study may be: its own test, and an exact one.
 
-Each of its tests has one number: how many of n answers preferred the first of two videos. The published values
-of chi-square come of holding that share against its own complement, as if those were two samples of n
+Each of its tests has one number: how many of n answers preferred the first of two videos. The published
+values of chi-square come of holding that share against its own complement, as if those were two samples of n
 answers, which counts every answer twice. The exact test of one share against a half is the binomial one.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from math import comb, erfc, sqrt
 
 from metagraph.exhibits.published import FIGURE_6, PublishedRating
@@ -17,8 +18,9 @@ from metagraph.synthesis.cooccurrence import wilson
 
 @dataclass(frozen=True, slots=True)
 class Preference:
-    """A row of the study's figure 6. chi, p: of two independent samples, as published. exact: p of the binomial
-    test, two-sided; corrected: the same by Holm over all rows. share: 0..1; low, high: its 95 % interval (Wilson).
+    """A row of the study's figure 6. chi, p: of two independent samples, as published. exact: p of the
+    binomial test, two-sided; corrected: the same by Holm over all rows. share: 0..1; low, high: its 95 %
+    interval (Wilson).
     """
 
     rating: PublishedRating
@@ -58,7 +60,8 @@ def binomial(chosen: int, n: int) -> float:
     if not (n > 0 and 0 <= chosen <= n):
         raise ValueError(f"{chosen} of {n}: a count is 0 to all of one answer or more")
     fewer = min(chosen, n - chosen)
-    return min(1.0, 2 * sum(comb(n, k) for k in range(fewer + 1)) / 2**n)
+    tail = sum(comb(n, k) for k in range(fewer + 1))
+    return min(1.0, float(Fraction(2 * tail, 1 << n)))
 
 
 def preferences() -> tuple[Preference, ...]:

@@ -1,8 +1,9 @@
-"""Exhibits of the conversation paper about the search: what it finds, how often, and where constraints compete."""
+"""Exhibits of the conversation paper about the search: what it finds, how often, and where constraints
+compete.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import fmean, median
 
@@ -45,7 +46,8 @@ def search(material: Material) -> Shown:
     length = min(WINDOW, actor.clips[0].duration)
     asked = wanted(cut(actor.speech[0], 0.0, length), length)
     sound = heard(states, said)
-    rows, bars, numbers = [], [], {}
+    rows, numbers = [], {}
+    bars: list[tuple[str, list[drawings.Bar]]] = []
     for words, rules in (("the paper's costs", FREE), ("with prices for jumps", JUMP_RULES)):
         costs, jumps, again = [], [], []
         count = TRIED[material.full]
@@ -60,7 +62,17 @@ def search(material: Material) -> Shown:
             again.append(looks.repeated)
         found = f"{len(costs)} of {count}"
         if costs:
-            rows.append((words, "by chance", found, f"{median(costs):.3g}", f"{min(costs):.3g}", f"{fmean(jumps):.2f}", f"{fmean(again):.0%}"))
+            rows.append(
+                (
+                    words,
+                    "by chance",
+                    found,
+                    f"{median(costs):.3g}",
+                    f"{min(costs):.3g}",
+                    f"{fmean(jumps):.2f}",
+                    f"{fmean(again):.0%}",
+                )
+            )
             bars.append((f"{words}, median", [("paper", median(costs), min(costs), max(costs))]))
         else:
             rows.append((words, "by chance", found, "-", "-", "-", "-"))
@@ -75,12 +87,16 @@ def search(material: Material) -> Shown:
             rows.append((words, "the best", f"none: {error}"[:70], "-", "-", "-", "-"))
             numbers[words] = {"greedy": costs, "exact": None}
     says = (
-        f"Segment by segment, the {SAVED} cheapest candidates kept, each seed another random set to start from: the paper's "
+        f"Segment by segment, the {SAVED} cheapest candidates kept, each seed another random set to "
+        "start from: the paper's "
         "search. It returns a path or none, and cannot say whether there is one.",
-        "'The best' is dynamic programming over all frames: it finds a path whenever there is one, and none costs less.",
+        "'The best' is dynamic programming over all frames: it finds a path whenever there is one, and "
+        "none costs less.",
     )
     head = ("cost", "search", "found", "median cost", "least", "jumps a second", "shown again")
-    drawn = drawings.pairs(bars, (("paper", "by chance, least to most"), ("ours", "the best")), "cost", "Costs of paths")
+    drawn = drawings.pairs(
+        bars, (("paper", "by chance, least to most"), ("ours", "the best")), "cost", "Costs of paths"
+    )
     return Shown(
         f"{material.about} ({actor.name}; the first take's first {length:g} s from the others)",
         says,
@@ -96,37 +112,66 @@ def success(material: Material) -> Shown:
         _published("there: all constraints", FOUND),
         _published("there: without hesitation", FOUND_WITHOUT_HESITATION),
     ]
-    bars = [("all, there", [_bar("paper", FOUND)]), ("without hesitation, there", [_bar("paper", FOUND_WITHOUT_HESITATION)])]
+    bars = [
+        ("all, there", [_bar("paper", FOUND)]),
+        ("without hesitation, there", [_bar("paper", FOUND_WITHOUT_HESITATION)]),
+    ]
     numbers = {}
-    for actor in material.actors:
+    for n, actor in enumerate(material.actors, 1):
         if len(actor.clips) < 2:
             material.notes.append(f"{actor.name} has one take: nothing can be held out")
             continue
         done = evaluate(actor.clips, actor.speech, [s for s in SETTINGS if s.name in names])
         rows += [_row(f"here, {actor.name}", r) for r in done.rows]
         for r in done.rows:
-            numbers[f"{actor.name}, {r.setting}, {r.search}"] = [r.found, r.cases, r.per_second, r.repeated, r.rest]
+            numbers[f"{actor.name}, {r.setting}, {r.search}"] = [
+                r.found,
+                r.cases,
+                r.per_second,
+                r.repeated,
+                r.rest,
+            ]
             if r.setting in QUICK[:2]:
                 css = "ours" if r.search == "exact" else "s9"
-                bars.append((f"{r.setting}, {r.search}"[:34], [(css, r.success, r.low, r.high)]))
+                words = r.setting.removesuffix(" constraints")
+                bars.append((f"{words}, {r.search}, {n}", [(css, r.success, r.low, r.high)]))
     if not numbers:
         return Shown(material.about, missing="nobody has two takes: nothing can be held out")
     says = (
-        f"The paper found motion for {FOUND} of {CASES} windows with its search; whether the others had any it could not "
+        f"The paper found motion for {FOUND} of {CASES} windows with its search; whether the others had "
+        "any it could not "
         "know. 'exact' finds it wherever there is some.",
-        "A path that stands still longer than its takes ever do counts as not found here. 'free jumps' is the paper's cost, "
+        "A path that stands still longer than its takes ever do counts as not found here. 'free jumps' "
+        "is the paper's cost, "
         "in which a jump costs nothing where a pose resembles itself.",
     )
     head = ("", "search", "found", "success", "95 %", "jumps a second", "shown again", "longest rest")
-    drawn = drawings.pairs(bars, (("paper", "there"), ("ours", "exact"), ("s9", "by chance")), "share of windows", "Success", 1.0)
+    drawn = drawings.pairs(
+        bars, (("paper", "there"), ("ours", "exact"), ("s9", "by chance")), "share of windows", "Success", 1.0
+    )
     return Shown(
-        material.about, says, (ExhibitTable("Windows of 15 s, every 14 s", head, tuple(rows)), Drawing("Success", drawn)), numbers
+        material.about,
+        says,
+        (
+            ExhibitTable("Windows of 15 s, every 14 s", head, tuple(rows)),
+            Drawing("Success with 95 % intervals; 1 and 2: the two here", drawn),
+        ),
+        numbers,
     )
 
 
 def _published(words: str, found: int) -> tuple[str, ...]:
     low, high = wilson(found, CASES)
-    return words, "by chance", f"{found} of {CASES}", f"{found / CASES:.1%}", f"{low:.0%} to {high:.0%}", "not told", "not told", "not told"
+    return (
+        words,
+        "by chance",
+        f"{found} of {CASES}",
+        f"{found / CASES:.1%}",
+        f"{low:.0%} to {high:.0%}",
+        "not told",
+        "not told",
+        "not told",
+    )
 
 
 def _bar(css: str, found: int) -> tuple[str, float, float | None, float | None]:
@@ -144,8 +189,8 @@ def _row(words: str, r: EvaluationRow) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Scarcity:
-    """Made-up conversations in which there is less to choose from. adjoining: whether a side's clauses follow each
-    other without a gap where the gap was short. rare: of so many responses and hesitations one is left.
+    """Made-up conversations in which there is less to choose from. adjoining: whether a side's clauses follow
+    each other without a gap where the gap was short. rare: of so many responses and hesitations one is left.
     """
 
     name: str
@@ -178,26 +223,35 @@ def competing(material: Material) -> Shown:
         odd += [k for k, c in by.items() if k[3] == "greedy" and c.found and not by[(*k[:3], "exact")].found]
         rows += [_row(scarcity.name, r) for r in done.rows]
         numbers[scarcity.name] = {
-            f"{r.setting}, {r.search}": [r.found, r.cases, r.per_second, r.repeated, r.rest] for r in done.rows
+            f"{r.setting}, {r.search}": [r.found, r.cases, r.per_second, r.repeated, r.rest]
+            for r in done.rows
         }
         both = [r for r in done.rows if r.setting == ALL]
         bars.append(
-            (scarcity.name, [("ours" if r.search == "exact" else "s9", r.success, r.low, r.high) for r in both])
+            (
+                scarcity.name,
+                [("ours" if r.search == "exact" else "s9", r.success, r.low, r.high) for r in both],
+            )
         )
-    tried = [(n, v[f"{ALL}, exact"][0], v[f"{ALL}, greedy"][0], v[f"{ALL}, exact"][1]) for n, v in numbers.items()]
+    tried = [
+        (n, v[f"{ALL}, exact"][0], v[f"{ALL}, greedy"][0], v[f"{ALL}, exact"][1]) for n, v in numbers.items()
+    ]
     below = [n for n, best, _, cases in tried if best < cases]
     better = [n for n, best, greedy, _ in tried if best > greedy]
     says = (
-        "Takes in which all windows find motion show nothing. Here there are fewer takes, shorter ones, clauses without gaps "
+        "Takes in which all windows find motion show nothing. Here there are fewer takes, shorter ones, "
+        "clauses without gaps "
         "between them, and answers so rare that some windows ask for what no other take has.",
-        f"Below 100 % even where the best path is looked for: {', '.join(below) or 'none'}. Found by the exact search and "
+        f"Below 100 % even where the best path is looked for: {', '.join(below) or 'none'}. Found by the "
+        "exact search and "
         f"missed by the one by chance: {', '.join(better) or 'none'}; the other way round {len(odd)} windows"
         + (", where the best path stands still and is not counted." if odd else ", as it must be."),
     )
     head = ("", "search", "found", "success", "95 %", "jumps a second", "shown again", "longest rest")
     drawn = drawings.pairs(bars, (("ours", "exact"), ("s9", "by chance")), "share of windows", "Success", 1.0)
     return Shown(
-        f"made-up conversations, performed by the project '{material.project.name}'; whoever made them made what is measured",
+        f"made-up conversations, performed by the project '{material.project.name}'; whoever made them "
+        "made what is measured",
         says,
         (ExhibitTable("Scarce takes", head, tuple(rows)), Drawing("Success with all constraints", drawn)),
         numbers,
@@ -205,14 +259,16 @@ def competing(material: Material) -> Shown:
 
 
 def scarce(project: Project, scarcity: Scarcity, sides: int = 2, seed: int = SEED) -> Actor:
-    """Return takes of made-up conversations with less to choose from, of both sides or the first alone, as one
-    actor's. Raises ValueError where the project cannot perform.
+    """Return takes of made-up conversations with less to choose from, of both sides or the first alone, as
+    one actor's. Raises ValueError where the project cannot perform.
     """
     clips, speech = [], []
     rates = actors_rates()
     for n in range(scarcity.count):
         name = f"{scarcity.name} {n + 1}"
-        spoken = converse(scarcity.seconds, key32(seed, "scarce", str(n)), key32(seed, "scarce moves", str(n)), name)
+        spoken = converse(
+            scarcity.seconds, key32(seed, "scarce", str(n)), key32(seed, "scarce moves", str(n)), name
+        )
         talk = with_rates(_scarcer(spoken.conversation, scarcity), (rates[0], rates[0]))
         for side in range(sides):
             clips.append(moved(project, talk, side))
@@ -238,5 +294,3 @@ def _scarcer(talk: Conversation, scarcity: Scarcity) -> Conversation:
         sides.append(msgspec.structs.replace(side, segments=tuple(kept)))
     made: tuple[Side, Side] = (sides[0], sides[1])
     return msgspec.structs.replace(talk, sides=made)
-
-

@@ -2,12 +2,13 @@
 
 Nothing of any corpus comes with the program. Layouts that are known by their names of files:
 
-- `genea`: GENEA 2023's cut of *Talking With Hands*: `main-agent` and `interloctr`, each with bvh, wav and tsv,
-  `trn_2023_v0_000_main-agent.bvh`.
-- `talking-with-hands`: the corpus itself, unpacked: `session1/take1`, persons by their marks, `..._deep5_...`.
+- `genea`: GENEA 2023's cut of *Talking With Hands*: `main-agent` and `interloctr`, each with bvh, wav and
+  tsv, `trn_2023_v0_000_main-agent.bvh`.
+- `talking-with-hands`: the corpus itself, unpacked: `session1/take1`, persons by their marks,
+  `..._deep5_...`.
 - `beat`: one side of a conversation, `1_wayne_0_1_1.bvh`, with wav and TextGrid; the partner is not heard.
-- `pairs`: anything else: `talk_1.bvh`, `talk_2.bvh`, `talk.wav` with two channels or one file a side, and words. The
-  mark that tells sides apart may also be a and b, left and right, male and female.
+- `pairs`: anything else: `talk_1.bvh`, `talk_2.bvh`, `talk.wav` with two channels or one file a side, and
+  words. The mark that tells sides apart may also be a and b, left and right, male and female.
 """
 
 from __future__ import annotations
@@ -86,15 +87,18 @@ def read_corpus(
     layout: Layout | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Corpus:
-    """Read every conversation of a folder and below; one that cannot be read fails alone. layout: as told above,
-    else what most files look like. Raises FileError where there is no folder, or nothing in it can be read.
+    """Read every conversation of a folder and below; one that cannot be read fails alone. layout: as told
+    above, else what most files look like. Raises FileError where there is no folder, or nothing in it can be
+    read.
     """
     folder = Path(folder)
     if not folder.is_dir():
         raise FileError(folder, "there is no such folder", remedy="Check where the corpus is.")
     clips = find_clip_files(folder)
     if not clips:
-        raise FileError(folder, f"it holds no motion that can be read{_unread(folder)}", remedy="Give BVH, FBX or glTF.")
+        raise FileError(
+            folder, f"it holds no motion that can be read{_unread(folder)}", remedy="Give BVH, FBX or glTF."
+        )
     layout = _layout(clips) if layout is None else layout
     found = _grouped(folder, clips, layout)
     recorded, failures, notes = [], [], []
@@ -113,7 +117,8 @@ def read_corpus(
     if not recorded:
         raise FileError(
             folder,
-            f"none of its {len(found)} conversations can be read, read as '{layout}'; the first: {failures[0].rstrip('.')}",
+            f"none of its {len(found)} conversations can be read, taken as '{layout}'; "
+            f"the first: {failures[0].rstrip('.')}",
             remedy="Each needs motion, sound beside it of the same name, and best its words.",
         )
     return Corpus(layout, tuple(recorded), tuple(failures), tuple(dict.fromkeys(notes)))
@@ -156,8 +161,8 @@ def _placed(path: Path, layout: Layout) -> Place | None:
 
 
 def _grouped(folder: Path, clips: Sequence[Path], layout: Layout) -> dict[str, _Found]:
-    """Return the files of each conversation. A mark of a side counts where another file has the other's, or what it
-    goes with is called without it.
+    """Return the files of each conversation. A mark of a side counts where another file has the other's, or
+    what it goes with is called without it.
     """
     every = sorted(p for p in folder.rglob("*") if p.is_file())
     sounds = [p for p in every if p.suffix.lower() in SOUNDS]
@@ -195,11 +200,15 @@ def _read(name: str, files: _Found) -> Recorded:
     people = sorted(w for w in {*files.clips, *files.sounds, *files.words} if w) or [""]
     first = next(iter(files.clips.values()))
     if len(people) > 2:
-        raise FileError(first, f"has {len(people)} people ({', '.join(people)})", remedy="Two talk with each other here.")
+        raise FileError(
+            first, f"has {len(people)} people ({', '.join(people)})", remedy="Two talk with each other here."
+        )
     own = [files.sounds[w] for w in people if w in files.sounds]
     both = files.sounds.get("")
     if not own and both is None:
-        raise FileError(first, "there is no sound beside it", remedy="Give one the same name: who speaks when is heard.")
+        raise FileError(
+            first, "there is no sound beside it", remedy="Give one the same name: who speaks when is heard."
+        )
     audio = own if len(own) == 2 or both is None else [both]
     notes = []
     if len(audio) == 1 and own and len(people) == 2:

@@ -31,7 +31,14 @@ def voice(chunks: list[tuple[float, float]], pitch: float = 120.0) -> np.ndarray
 
 
 WORDS = {
-    0: [(1.0, 1.4, "so"), (1.4, 1.8, "that"), (1.8, 2.4, "was"), (2.4, 3.0, "big"), (6.0, 6.3, "um"), (7.0, 8.0, "then")],
+    0: [
+        (1.0, 1.4, "so"),
+        (1.4, 1.8, "that"),
+        (1.8, 2.4, "was"),
+        (2.4, 3.0, "big"),
+        (6.0, 6.3, "um"),
+        (7.0, 8.0, "then"),
+    ],
     1: [(3.3, 3.7, "yeah"), (8.6, 9.2, "i"), (9.2, 9.9, "know"), (9.9, 10.6, "them")],
 }
 
@@ -63,9 +70,10 @@ def grid(side: int) -> str:
         marks += [(at, a, ""), (a, b, w)]
         at = b
     marks.append((at, SECONDS, ""))
-    body = "".join(f"{a}\n{b}\n\"{w}\"\n" for a, b, w in marks if b > a)
+    body = "".join(f'{a}\n{b}\n"{w}"\n' for a, b, w in marks if b > a)
     count = sum(b > a for a, b, _ in marks)
-    head = f'File type = "ooTextFile"\nObject class = "TextGrid"\n\n0\n{SECONDS}\n<exists>\n1\n"IntervalTier"\n"words"\n'
+    head = 'File type = "ooTextFile"\nObject class = "TextGrid"\n\n'
+    head += f'0\n{SECONDS}\n<exists>\n1\n"IntervalTier"\n"words"\n'
     return f"{head}0\n{SECONDS}\n{count}\n{body}"
 
 
@@ -106,7 +114,9 @@ def test_genea_has_two_folders_and_a_table_of_words_each(tmp_path: Path) -> None
 
 def test_talking_with_hands_tells_persons_by_their_marks(tmp_path: Path) -> None:
     for n, who in enumerate(("deep5", "shallow12")):
-        motion(tmp_path / "mocap_data" / "session3" / "take7" / f"take7_noFingers_{who}_scale_local.bvh", n + 1)
+        motion(
+            tmp_path / "mocap_data" / "session3" / "take7" / f"take7_noFingers_{who}_scale_local.bvh", n + 1
+        )
         sound(tmp_path / "audio_data" / "session3" / "take7" / f"take7_{who}.wav", n)
     found = read_corpus(tmp_path)
     assert found.layout == "talking-with-hands"
@@ -149,6 +159,7 @@ def test_a_number_that_tells_no_side_is_part_of_the_name(tmp_path: Path) -> None
     assert names == ["job interview 1", "job interview 2"]
     motion(tmp_path / "alone_1.bvh")
     sound(tmp_path / "alone_1.wav", 0)
+    text(tmp_path / "alone_1.tsv", rows(0))
     assert "alone_1" in [r.name for r in read_corpus(tmp_path).recorded]
 
 
