@@ -112,9 +112,15 @@ def _made(exhibit: Exhibit, material: Material) -> tuple[Shown, float]:
     began = perf_counter()
     try:
         shown = exhibit.make(material)
-    except (FileError, ValueError) as error:
+    except Exception as error:
         about = material.told or f"the project '{material.project.name}'"
-        shown = Shown(about, missing=str(error))
+        known = isinstance(error, (FileError, ValueError)) and str(error)
+        told = (
+            str(error)
+            if known
+            else f"it failed ({type(error).__name__}: {error}); report it with the project"
+        )
+        shown = Shown(about, missing=told)
     return shown, perf_counter() - began
 
 
@@ -133,7 +139,13 @@ def _material(options: Namespace) -> Material:
     given: tuple[Recorded, ...] = ()
     told = ""
     if options.takes is not None:
-        corpus = read_corpus(options.takes)
+        show = sys.stderr.isatty() and not options.json
+
+        def progress(done: int, total: int) -> None:
+            if show:
+                print(f"\rreading {done + 1:,} of {total:,}", end="", file=sys.stderr, flush=True)
+
+        corpus = read_corpus(options.takes, progress=progress)
         notes += [*corpus.failures, *corpus.notes]
         given, told = corpus.recorded, f"{options.takes.name} ({corpus.layout})"
     project = opened(SAMPLE if options.project is None else options.project)

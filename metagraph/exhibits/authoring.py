@@ -72,9 +72,11 @@ def hours(material: Material) -> Shown:
     from metagraph.study.counted_drops import dropped
     from metagraph.study.counted_hand import searched, try_way
 
-    published, project = example(), material.project
+    published, project = example(), once(material.project)
+    again = len(list(material.project.actions())) - len(list(project.actions()))
+    about = _of(project) + (f", {again} further uses of the same clips left out" if again else "")
     if len(list(project.actions())) < 2:
-        return Shown(_of(project), missing="the project has fewer than two actions: there is nothing to wire")
+        return Shown(about, missing="the project has fewer than two actions: there is nothing to wire")
     meta = dropped(project)
     tried = [
         try_way(Way("many at once", "from aliases", "words", "many at once", True), project),
@@ -83,7 +85,7 @@ def hours(material: Material) -> Shown:
     if material.full:
         tried = [searched(project)[0], tried[-1]]
     best, each = sorted(tried, key=lambda t: (bool(t.score.mistakes), t.seconds))[:1][0], tried[-1]
-    clips = len(project.clips)
+    clips = len(list(project.actions()))
 
     def row(words: str, kind: str, seconds: float, mistakes: str, count: int) -> tuple[str, ...]:
         return words, kind, _time(seconds), f"{seconds / 60 / count:.2f}", mistakes
@@ -132,7 +134,7 @@ def hours(material: Material) -> Shown:
     head = ("", "", "time", "minutes a clip", "mistakes")
     table = ExhibitTable(f"{CLIPS} clips there, {clips} here", head, tuple(rows))
     return Shown(
-        _of(project),
+        about,
         tuple(says),
         (table, Drawing("Ratios; the dashed line is no difference", drawn)),
         {
@@ -142,6 +144,12 @@ def hours(material: Material) -> Shown:
             "seconds": {"meta": meta.seconds, "best": best.seconds, "each": each.seconds},
         },
     )
+
+
+def once(project: Project) -> Project:
+    """Return a project with the first use of each clip: who wires clips by hand makes a state of each."""
+    first = {a.clip: a.id for a in reversed(list(project.actions()))}
+    return remove_actions(project, [a.id for a in project.actions() if first[a.clip] != a.id])
 
 
 def smaller(project: Project, count: int) -> Project:

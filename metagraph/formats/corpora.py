@@ -76,6 +76,7 @@ class _Found:
     clips: dict[str, Path] = field(default_factory=dict)
     sounds: dict[str, Path] = field(default_factory=dict)
     words: dict[str, Path] = field(default_factory=dict)
+    left: list[Path] = field(default_factory=list)  # others of the same side
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -164,26 +165,44 @@ def _grouped(folder: Path, clips: Sequence[Path], layout: Layout) -> dict[str, _
     """Return the files of each conversation. A mark of a side counts where another file has the other's, or
     what it goes with is called without it.
     """
-    every = sorted(p for p in folder.rglob("*") if p.is_file())
+    every = [p for p in sorted(folder.rglob("*")) if p.is_file() and not _hidden(p, folder)]
     sounds = [p for p in every if p.suffix.lower() in SOUNDS]
     known = [s for s in _WORDS if layout != "beat" or s != ".json"]  # there JSON is the face
     words = [p for p in every if p.suffix.lower() in known]
     words.sort(key=lambda p: known.index(p.suffix.lower()))
     bare = {_placed(p, layout) for p in (*clips, *sounds)}
     called = {b[0] for p in clips if (b := _placed(p, layout)) is not None and b[1]}
+
+    def placed(path: Path) -> Place | None:
+        place = _placed(path, layout)
+        if place is None or layout != "pairs" or not place[1]:
+            return place
+        alone = not any(b is not None and b[0] == place[0] and b[1] != place[1] for b in bare)
+        return (path.stem, "") if alone or path.stem in called else place
+
+    homes: dict[Place, set[Path]] = {}
+    for path in clips:
+        if (place := placed(path)) is not None:
+            homes.setdefault(place, set()).add(path.parent)
+    apart = layout in ("pairs", "beat")  # of the others motion and sound lie in folders of their own
+    twice = {name for (name, _), places in homes.items() if apart and len(places) > 1}
     out: dict[str, _Found] = {}
     for kind, paths in (("clips", clips), ("sounds", sounds), ("words", words)):
         for path in paths:
-            place = _placed(path, layout)
-            if place is None:
+            if (place := placed(path)) is None:
                 continue
             name, who = place
-            alone = who and not any(b is not None and b[0] == name and b[1] != who for b in bare)
-            if layout == "pairs" and (alone or path.stem in called):
-                name, who = path.stem, ""
-            kept: dict[str, Path] = getattr(out.setdefault(name, _Found()), kind)
-            kept.setdefault(who, path)
+            if name in twice:  # the same name in several folders is several conversations
+                name = f"{path.parent.relative_to(folder).as_posix()}/{name}"
+            found = out.setdefault(name, _Found())
+            kept: dict[str, Path] = getattr(found, kind)
+            if kept.setdefault(who, path) != path and kind != "words":
+                found.left.append(path)
     return {n: f for n, f in out.items() if f.clips}
+
+
+def _hidden(path: Path, folder: Path) -> bool:
+    return any(part.startswith(".") for part in path.relative_to(folder).parts)
 
 
 def _unread(folder: Path) -> str:
@@ -210,7 +229,7 @@ def _read(name: str, files: _Found) -> Recorded:
             first, "there is no sound beside it", remedy="Give one the same name: who speaks when is heard."
         )
     audio = own if len(own) == 2 or both is None else [both]
-    notes = []
+    notes = [f"{p.name} is left out: another file of the same side is taken" for p in files.left]
     if len(audio) == 1 and own and len(people) == 2:
         notes.append(f"only {audio[0].name} is there: the other side is not heard")
     if len(audio) == 1 and audio[0] != both and people.index(_of(files.sounds, audio[0])) == 1:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 
 from metagraph.exhibits import material as materials
 from metagraph.exhibits import searching
-from metagraph.exhibits.authoring import figure_1, smaller
+from metagraph.exhibits.authoring import figure_1, hours, once, smaller
 from metagraph.exhibits.exhibit import EXHIBITS, NUMBERS, Drawing, Exhibit, ExhibitTable, Shown, chosen
 from metagraph.exhibits.material import Material, actors_rates, made
 from metagraph.exhibits.page import data_of, page, text_of
@@ -17,6 +18,8 @@ from metagraph.exhibits.planning import fewest
 from metagraph.exhibits.published import FIGURE_6, FIGURE_11, TABLE_1, TABLE_2
 from metagraph.exhibits.searching import Scarcity, competing, scarce
 from metagraph.formats.corpora import Recorded
+from metagraph.formats.store import open_project
+from metagraph.graph.edits import place
 from metagraph.graph.expand import connections, size
 from metagraph.graph.model import Project
 
@@ -59,6 +62,17 @@ def test_the_graph_that_figure_1_imagines_has_as_many_connections_as_listing_the
 def test_a_smaller_project_keeps_its_stances_first(sample: Project) -> None:
     few = list(smaller(sample, 9).actions())
     assert len(few) == 9 and {a.kind for a in few} == {"stance"}
+
+
+def test_clips_that_are_used_twice_are_wired_once_and_that_is_told(few: Path) -> None:
+    project = open_project(few).project
+    graph = project.graphs["arms"]
+    stance = next(iter(graph.stances))
+    clip = graph.of(stance, "gesture")[0].clip
+    twice = place(project, [clip], "arms", "fidget", stance, None)
+    assert len(list(once(twice).actions())) == len(list(project.actions()))
+    shown = hours(Material(twice))
+    assert "1 further uses of the same clips left out" in shown.material and shown.says
 
 
 @pytest.mark.parametrize("exhibit", EXHIBITS, ids=lambda e: e.name)

@@ -163,6 +163,29 @@ def test_a_number_that_tells_no_side_is_part_of_the_name(tmp_path: Path) -> None
     assert "alone_1" in [r.name for r in read_corpus(tmp_path).recorded]
 
 
+def test_one_name_in_two_folders_is_two_conversations(tmp_path: Path) -> None:
+    for day in ("monday", "tuesday"):
+        for n in (1, 2):
+            motion(tmp_path / day / f"talk_{n}.bvh", n)
+        sound(tmp_path / day / "talk.wav", 0, 1)
+    (tmp_path / ".trash").mkdir()
+    sound(tmp_path / ".trash" / "talk.wav", 0)
+    found = read_corpus(tmp_path).recorded
+    assert [r.name for r in found] == ["monday/talk", "tuesday/talk"]
+    assert all(r.clips[1] is not None and {p.parent for p in r.files} == {tmp_path / d} for r, d in
+               zip(found, ("monday", "tuesday"), strict=True))  # fmt: skip
+
+
+def test_two_clips_of_one_side_are_not_taken_for_both_and_that_is_told(tmp_path: Path) -> None:
+    place = tmp_path / "mocap_data" / "session1" / "take2"
+    for name in ("hasFingers_deep1", "noFingers_deep1", "noFingers_shallow9"):
+        motion(place / f"take2_{name}_scale_local.bvh")
+    sound(tmp_path / "audio_data" / "session1" / "take2" / "both.wav", 0, 1)
+    (one,) = read_corpus(tmp_path).recorded
+    assert all(c is not None for c in one.clips)
+    assert any("noFingers_deep1_scale_local.bvh is left out" in note for note in one.notes)
+
+
 def test_a_bad_conversation_fails_alone(tmp_path: Path) -> None:
     for name in ("good", "bad"):
         motion(tmp_path / f"{name}_1.bvh")

@@ -87,3 +87,15 @@ def test_an_exhibit_that_cannot_be_made_spoils_no_other(
     assert code == 3
     told = capsys.readouterr().out
     assert "missing: " in told and "without responses" in told
+
+
+def test_an_exhibit_that_fails_in_a_way_nobody_foresaw_spoils_no_other(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(_: object) -> None:
+        raise KeyError("odd")
+
+    monkeypatch.setattr("metagraph.exhibits.planning.matrix", broken)
+    assert main(["reproduce", "matrix", "ratings", "--into", str(tmp_path / "out")]) == 3
+    told = capsys.readouterr().out
+    assert "it failed (KeyError: 'odd')" in told and "without responses" in told
