@@ -92,7 +92,7 @@ def _list(options: Namespace, exhibits: Sequence[Exhibit]) -> int:
         if e.paper != before:
             lines.append(f"{e.paper}: {PAPERS[e.paper]}")
             before = e.paper
-        quick, whole = (f"{s:g} s" if s < 90 else f"{s / 60:g} min" for s in e.seconds)
+        quick, whole = (f"{s:g} s" if s < 90 else f"{s / 60:.0f} min" for s in e.seconds)
         lines.append(f"  {e.name:<12}{e.place:<18}{e.title:<50}{quick:>6}, --full {whole}")
     data = [
         {"exhibit": e.name, "paper": e.paper, "place": e.place, "title": e.title, "seconds": list(e.seconds)}

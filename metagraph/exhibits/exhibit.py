@@ -74,27 +74,27 @@ EXHIBITS: tuple[Exhibit, ...] = (
         "authoring",
         (1, 1),
     ),
-    Exhibit("hours", "meta-graph", "section 7.1", "8 hours against 63", "authoring", (12, 12)),
+    Exhibit("hours", "meta-graph", "section 7.1", "8 hours against 63", "authoring", (5, 40)),
     Exhibit("replanning", "meta-graph", "figure 6", "Temporal replanning", "planning", (1, 1)),
-    Exhibit("sampling", "meta-graph", "figure 7", "Sampling specific actions", "planning", (2, 5)),
+    Exhibit("sampling", "meta-graph", "figure 7", "Sampling specific actions", "planning", (1, 5)),
     Exhibit(
-        "variation", "meta-graph", "figures 9 and 12", "One request, many performances", "planning", (3, 8)
+        "variation", "meta-graph", "figures 9 and 12", "One request, many performances", "planning", (1, 1)
     ),
-    Exhibit("matrix", "meta-graph", "figure 11", "What follows what", "planning", (1, 3), NUMBERS),
+    Exhibit("matrix", "meta-graph", "figure 11", "What follows what", "planning", (1, 20), NUMBERS),
     Exhibit(
-        "rates", "conversation", "table 1", "Movements that go with speech", "speaking", (3, 60), "takes"
+        "rates", "conversation", "table 1", "Movements that go with speech", "speaking", (4, 45), "takes"
     ),
     Exhibit("window", "conversation", "figure 3", "A window for a movement", "speaking", (1, 1), "takes"),
-    Exhibit("costs", "conversation", "figure 4", "What a transition costs", "graphs", (2, 20), "takes"),
-    Exhibit("components", "conversation", "table 2", "States and edges", "graphs", (8, 120), "takes"),
-    Exhibit("search", "conversation", "figure 5", "The search, step by step", "searching", (8, 20), "takes"),
+    Exhibit("costs", "conversation", "figure 4", "What a transition costs", "graphs", (1, 2), "takes"),
+    Exhibit("components", "conversation", "table 2", "States and edges", "graphs", (3, 15), "takes"),
+    Exhibit("search", "conversation", "figure 5", "The search, step by step", "searching", (1, 35), "takes"),
     Exhibit(
         "success",
         "conversation",
         "section 8.1",
         "How often a held out conversation finds motion",
         "searching",
-        (25, 1500),
+        (10, 1800),
         "takes",
     ),
     Exhibit(
@@ -103,14 +103,14 @@ EXHIBITS: tuple[Exhibit, ...] = (
         "section 8.1",
         "Where constraints compete",
         "searching",
-        (20, 120),
+        (15, 230),
     ),
     Exhibit("ratings", "conversation", "figure 6", "What people preferred", "rating", (0, 0), NUMBERS),
-    Exhibit("times", "conversation", "table 3", "Building and searching", "graphs", (8, 60), "takes"),
+    Exhibit("times", "conversation", "table 3", "Building and searching", "graphs", (1, 70), "takes"),
     Exhibit(
-        "distance", "generator", "figure 6", "Distance from the mean pose", "generated", (15, 60), "model"
+        "distance", "generator", "figure 6", "Distance from the mean pose", "generated", (5, 15), "model"
     ),
-    Exhibit("roles", "generator", "figures 7 and 8", "Speaking and listening", "generated", (3, 10), "model"),
+    Exhibit("roles", "generator", "figures 7 and 8", "Speaking and listening", "generated", (1, 1), "model"),
     Exhibit("sizes", "generator", "section 7", "How many parameters", "generated", (0, 0), NUMBERS),
 )
 NAMES = tuple(e.name for e in EXHIBITS)

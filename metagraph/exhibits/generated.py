@@ -58,13 +58,11 @@ def distance(material: Material) -> Shown:
     wrists = {name: np.percentile(v[:, 5:7], (25, 75)) for name, v in far.items()}
     spans = {name: float(b - a) for name, (a, b) in wrists.items()}
     says = (
-        "The paper prints this figure without numbers: its ground truth, Flow-VAE, MoGlow and CVAE "
-        "cannot be laid beside ours "
-        "but by eye, and are of another person. Each column here is beside the recorded motion it should "
-        "look like.",
-        f"Wrists' range between quartiles: {spans['generated']:.1f} cm generated, "
-        f"{spans['recorded']:.1f} cm recorded. "
-        "The paper finds its own 'at a similar scale' and its CVAE less active.",
+        "The paper prints this figure without numbers: its ground truth, Flow-VAE, MoGlow and CVAE cannot "
+        "be laid beside ours but by eye, and are of another person. Each column here is beside the "
+        "recorded motion it should look like.",
+        f"Wrists' range between quartiles: {spans['generated']:.1f} cm generated, {spans['recorded']:.1f} "
+        "cm recorded. The paper finds its own 'at a similar scale' and its CVAE less active.",
     )
     head = ("landmark", "recorded: quartiles, cm", "generated: quartiles, cm", "apart (W1), cm")
     return Shown(
@@ -98,8 +96,8 @@ def roles(material: Material) -> Shown:
         + ", ".join(f"{name} {r:.2f}" for name, r in ratios.items())
         + ". The paper draws figures 7 and 8 and says that both behave alike.",
         "It also says that gradients become negative while listening, since the actor moves towards the "
-        "mean pose. Over a "
-        "whole conversation positive and negative changes must nearly cancel; medians stand in the table.",
+        "mean pose. Over a whole conversation positive and negative changes must nearly cancel; medians "
+        "stand in the table.",
     )
     head = ("while", "", "frames", "mean change, cm/s", "median with its sign, cm/s")
     return Shown(
@@ -127,13 +125,10 @@ def sizes(material: Material) -> Shown:
     less = 1 - PARAMETERS["flow-vae"] / PARAMETERS["moglow"]
     says = (
         "Counted for 9 joints of 6 numbers and the sizes the text gives: 1,231 numbers of control (31 "
-        "frames of 31, "
-        "5 poses of 54), K = 8 and 16 steps, 400 and 800 units. The text does not tell how many layers "
-        "each LSTM has: "
-        f"two here; with one the Flow-VAE would have {one / 1e6:.1f} M.",
+        "frames of 31, 5 poses of 54), K = 8 and 16 steps, 400 and 800 units. The text does not tell how "
+        f"many layers each LSTM has: two here; with one the Flow-VAE would have {one / 1e6:.1f} M.",
         f"The paper says 80 % fewer than MoGlow; by its own counts {less:.0%}. CVAE and MoGlow come out, "
-        "its Flow-VAE "
-        f"counts {numbers['flow-vae'][1] / 1e6:.1f} M here: what makes the rest is not told.",
+        f"its Flow-VAE counts {numbers['flow-vae'][1] / 1e6:.1f} M here: what makes the rest is not told.",
     )
     head = ("model", "there", "here, the paper's sizes", "ratio", "here, for a processor")
     return Shown("the papers' sizes", says, (ExhibitTable("Parameters", head, tuple(rows)),), numbers)

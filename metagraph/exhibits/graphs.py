@@ -84,14 +84,13 @@ def costs(material: Material) -> Shown:
             "residual": off,
         }
     says = (
-        "The paper draws four histograms without numbers and says that most costs are near 0, 'because "
-        "of resting "
-        "motions', and that Johnson's S_B fits best; it prints no residuals. Here: the sum of squared "
-        f"differences between the fitted density and a histogram of {BINS} bars.",
+        "The paper draws four histograms without numbers and says that most costs are near 0, 'because of "
+        "resting motions', and that Johnson's S_B fits best; it prints no residuals. Here: the sum of "
+        f"squared differences between the fitted density and a histogram of {BINS} bars.",
         f"The threshold is the {LEVEL:.0%} level at k = {STEP}: fitted "
         f"{numbers[str(STEP)]['limit'] / max(numbers[str(STEP)]['observed'], 1e-9):.2f} times what was "
-        "observed. Where takes "
-        "rest much, a peak at 0 stands beside a long tail, and no distribution with one hump is both.",
+        "observed. Where takes rest much, a peak at 0 stands beside a long tail, and no distribution with "
+        "one hump is both.",
     )
     head = ("k", "median, m", f"{LEVEL:.0%} observed, m", f"{LEVEL:.0%} fitted, m", "residual")
     return Shown(
@@ -149,8 +148,7 @@ def components(material: Material) -> Shown:
         "Edges here count those to the frame that follows; the paper does not say whether its do. "
         f"Transitions leave and enter key states only: {KEYS:.2%} there, {share:.2%} here.",
         "What the table shows is that below some k the graph falls apart and above it hardly grows. At "
-        "which k depends on how "
-        "much takes resemble themselves"
+        "which k depends on how much takes resemble themselves"
         + (
             ": made-up ones come back to the very poses of the project's stances, so it is the same at "
             "each k."
@@ -214,12 +212,10 @@ def times(material: Material) -> Shown:
         ),
     ]
     says = (
-        "Seconds of different machines on different data: there 4 cores of an i9-9980XE, here this one, "
-        "and fewer states. "
-        "Per million pairs of key states "
-        f"{1e6 * mean / (KEYS * 50_568) ** 2:.2f} s there and "
-        f"{1e6 * fmean(building) / (KEYS * fmean(sizes)) ** 2:.2f} s here, "
-        "where places and velocities are worked out in it.",
+        "Seconds of different machines on different data: there 4 cores of an i9-9980XE, here this one. "
+        f"Per million pairs of key states {1e6 * mean / (KEYS * 50_568) ** 2:.2f} s there and "
+        f"{1e6 * fmean(building) / (KEYS * fmean(sizes)) ** 2:.2f} s here, where places and velocities are "
+        "worked out in it.",
         "The paper's figure of 20 times less work by key states is 1 / 0.2225^2 = 20.2: counted, not timed.",
         f"{missed} of {sum(map(len, searching.values()))} searches found nothing in that time.",
     )

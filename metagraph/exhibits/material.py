@@ -102,9 +102,9 @@ class Material:
             return f"{self.told}: {count} conversations, {minutes:.1f} min; unseen when this was made"
         return (
             f"{len(self.conversations)} made-up conversations of "
-            f"{self.conversations[0].conversation.length:g} s: "
-            "synthetic voices, performed by the project with the paper's rates. Who made them made what is "
-            "measured: they show that the measure works, not how people are"
+            f"{self.conversations[0].conversation.length:g} s: synthetic voices, performed by the project "
+            "with the paper's rates. Who made them made what is measured: they show that the measure "
+            "works, not how people are"
         )
 
     @cached_property

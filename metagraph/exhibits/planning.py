@@ -51,9 +51,8 @@ def replanning(material: Material) -> Shown:
         stretches.append((f"{n}: meta plan", [_bar("ours", m) for m in plan]))
     kept = _kept(material.project)
     says = [
-        "Placed greedily by start, then priority, as the paper says. What it leaves open: two that are "
-        "as important "
-        f"do not cut each other, the later waits, up to {Settings().wait:g} s; a remainder under "
+        "Placed greedily by start, then priority, as the paper says. What it leaves open: two that are as "
+        f"important do not cut each other, the later waits, up to {Settings().wait:g} s; a remainder under "
         f"{Settings().shortest:g} s is dropped.",
         kept,
     ]
@@ -139,13 +138,11 @@ def sampling(material: Material) -> Shown:
     table, off, drawn = _formula(project, layer, stance, DRAWS[material.full])
     says = (
         "Ours differs in two things: a request that comes to nothing says why; and a gesture may be left "
-        "early "
-        "where its timing allows, so that more fit before something important.",
+        "early where its timing allows, so that more fit before something important.",
         f"The formula: each of {drawn:,} draws had chances by p = (1 / max(c, 1)) / sum, c growing by "
-        f"{ALPHA:g} with "
-        f"each use. Drawn and expected counts differ by chi-square {off[0]:.1f} at {off[1]} degrees of "
-        "freedom "
-        f"(about {off[1]} to be expected by chance, {off[1] + 3 * sqrt(2 * off[1]):.0f} would be odd).",
+        f"{ALPHA:g} with each use. Drawn and expected counts differ by chi-square {off[0]:.1f} at {off[1]} "
+        f"degrees of freedom (about {off[1]} to be expected by chance, {off[1] + 3 * sqrt(2 * off[1]):.0f} "
+        "would be odd).",
     )
     return Shown(
         f"the project '{project.name}', stance '{graph.stances[stance].name}': {len(some)} gestures",
@@ -248,8 +245,7 @@ def variation(material: Material) -> Shown:
         f"the project '{project.name}', layer {layer}, seeds 1 to {seeds}",
         (
             "The paper shows three pictures and claims that performances differ; here it is counted. The "
-            "same seed "
-            "gives the same performance in every runtime.",
+            "same seed gives the same performance in every runtime.",
         ),
         (
             ExhibitTable("How much performances differ", head, tuple(rows)),
@@ -289,14 +285,12 @@ def matrix(material: Material) -> Shown:
     least = [fewest(row) for row in FIGURE_11]
     long_run = stationary(ARMS.matrix)
     says = [
-        f"{len(sequence):,} actions written by the model that ships: no share is off the published one "
-        "by more than "
-        f"{worst:.1f} standard deviations (81 are looked at), and what has 0 % never came ({forbidden}).",
-        "Rounded in print, three rows sum to 99.9 or 100.1 %; ours sum to 1. The percentages are "
-        "fractions of "
-        f"{', '.join(map(str, least))}: the whole matrix can come of {sum(least)} transitions, 'R, T "
-        "then L, T 100 %' of "
-        "a single one. It is an example, as the paper says, not how people are.",
+        f"{len(sequence):,} actions written by the model that ships: no share is off the published one by "
+        f"more than {worst:.1f} standard deviations (81 are looked at), and what has 0 % never came "
+        f"({forbidden}).",
+        "Rounded in print, three rows sum to 99.9 or 100.1 %; ours sum to 1. The percentages are fractions "
+        f"of {', '.join(map(str, least))}: the whole matrix can come of {sum(least)} transitions, 'R, T "
+        "then L, T 100 %' of a single one. It is an example, as the paper says, not how people are.",
         "In the long run: "
         + ", ".join(
             f"{s} {p:.0%}" for s, p in sorted(zip(STATES, long_run, strict=True), key=lambda x: -x[1])

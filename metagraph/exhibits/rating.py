@@ -31,22 +31,19 @@ def ratings(material: Material) -> Shown:
     wrong = [r for r in found if not r.holds]
     says = (
         "The published chi-square values come out to the last printed digit, but only by holding each "
-        "share against its own "
-        "complement as two independent samples of n answers each (R's prop.test of c and n - c in n and "
-        "n). There was one "
-        "sample of n answers: every answer is counted twice, and chi-square is about twice too large.",
+        "share against its own complement as two independent samples of n answers each (R's prop.test of c "
+        "and n - c in n and n). There was one sample of n answers: every answer is counted twice, and "
+        "chi-square is about twice too large.",
         "The exact binomial test against a half: "
         + "; ".join(f"{r.rating.first} over {r.rating.second} p = {r.exact:.3g}" for r in found)
-        + f". '{wrong[0].rating.second}', which the paper calls significant (p = {wrong[0].rating.p:g}), "
-        "is not; "
-        "'no constraints' still is, by itself.",
+        + f". '{wrong[0].rating.second}', which the paper calls significant (p = {wrong[0].rating.p:g}), is "
+        "not; 'no constraints' still is, by itself.",
         f"Of four tests the least p of an ablation is {found[3].exact:.3f}, by Holm "
-        f"{found[3].corrected:.3f}: taken "
-        "together only captured motion is surely told apart. And 40 people gave 20 answers each on 20 "
-        "segments, "
-        "so answers are not independent; the counts of each person were not published.",
-        "The introduction says that 30 % preferred synthesized motion, section 8 says 31 %: 64 of 206 "
-        "are 31.1 %.",
+        f"{found[3].corrected:.3f}: taken together only captured motion is surely told apart. And 40 people "
+        "gave 20 answers each on 20 segments, so answers are not independent; the counts of each person "
+        "were not published.",
+        "The introduction says that 30 % preferred synthesized motion, section 8 says 31 %: 64 of 206 are "
+        "31.1 %.",
     )
     head = ("", "preferred", "95 %", "printed", "recomputed", "exact p", "by Holm", "the paper's word")
     drawn = drawings.pairs(

@@ -87,9 +87,8 @@ def search(material: Material) -> Shown:
             rows.append((words, "the best", f"none: {error}"[:70], "-", "-", "-", "-"))
             numbers[words] = {"greedy": costs, "exact": None}
     says = (
-        f"Segment by segment, the {SAVED} cheapest candidates kept, each seed another random set to "
-        "start from: the paper's "
-        "search. It returns a path or none, and cannot say whether there is one.",
+        f"Segment by segment, the {SAVED} cheapest candidates kept, each seed another random set to start "
+        "from: the paper's search. It returns a path or none, and cannot say whether there is one.",
         "'The best' is dynamic programming over all frames: it finds a path whenever there is one, and "
         "none costs less.",
     )
@@ -107,7 +106,6 @@ def search(material: Material) -> Shown:
 
 def success(material: Material) -> Shown:
     """Section 8.1: each take held out, its speech asked of all others."""
-    names = [s.name for s in SETTINGS] if material.full else QUICK
     rows: list[tuple[str, ...]] = [
         _published("there: all constraints", FOUND),
         _published("there: without hesitation", FOUND_WITHOUT_HESITATION),
@@ -121,7 +119,7 @@ def success(material: Material) -> Shown:
         if len(actor.clips) < 2:
             material.notes.append(f"{actor.name} has one take: nothing can be held out")
             continue
-        done = evaluate(actor.clips, actor.speech, [s for s in SETTINGS if s.name in names])
+        done = evaluate(actor.clips, actor.speech, [s for s in SETTINGS if s.name in QUICK])
         rows += [_row(f"here, {actor.name}", r) for r in done.rows]
         for r in done.rows:
             numbers[f"{actor.name}, {r.setting}, {r.search}"] = [
@@ -138,12 +136,10 @@ def success(material: Material) -> Shown:
     if not numbers:
         return Shown(material.about, missing="nobody has two takes: nothing can be held out")
     says = (
-        f"The paper found motion for {FOUND} of {CASES} windows with its search; whether the others had "
-        "any it could not "
-        "know. 'exact' finds it wherever there is some.",
-        "A path that stands still longer than its takes ever do counts as not found here. 'free jumps' "
-        "is the paper's cost, "
-        "in which a jump costs nothing where a pose resembles itself.",
+        f"The paper found motion for {FOUND} of {CASES} windows with its search; whether the others had any "
+        "it could not know. 'exact' finds it wherever there is some.",
+        "A path that stands still longer than its takes ever do counts as not found here. 'free jumps' is "
+        "the paper's cost, in which a jump costs nothing where a pose resembles itself.",
     )
     head = ("", "search", "found", "success", "95 %", "jumps a second", "shown again", "longest rest")
     drawn = drawings.pairs(
@@ -240,18 +236,18 @@ def competing(material: Material) -> Shown:
     better = [n for n, best, greedy, _ in tried if best > greedy]
     says = (
         "Takes in which all windows find motion show nothing. Here there are fewer takes, shorter ones, "
-        "clauses without gaps "
-        "between them, and answers so rare that some windows ask for what no other take has.",
+        "clauses without gaps between them, and answers so rare that some windows ask for what no other "
+        "take has.",
         f"Below 100 % even where the best path is looked for: {', '.join(below) or 'none'}. Found by the "
-        "exact search and "
-        f"missed by the one by chance: {', '.join(better) or 'none'}; the other way round {len(odd)} windows"
+        f"exact search and missed by the one by chance: {', '.join(better) or 'none'}; the other way round "
+        f"{len(odd)} windows"
         + (", where the best path stands still and is not counted." if odd else ", as it must be."),
     )
     head = ("", "search", "found", "success", "95 %", "jumps a second", "shown again", "longest rest")
     drawn = drawings.pairs(bars, (("ours", "exact"), ("s9", "by chance")), "share of windows", "Success", 1.0)
     return Shown(
-        f"made-up conversations, performed by the project '{material.project.name}'; whoever made them "
-        "made what is measured",
+        f"made-up conversations, performed by the project '{material.project.name}'; whoever made them made "
+        "what is measured",
         says,
         (ExhibitTable("Scarce takes", head, tuple(rows)), Drawing("Success with all constraints", drawn)),
         numbers,

@@ -58,8 +58,7 @@ def rates(material: Material) -> Shown:
     names = (("paper", "there"), ("ours", "here"), ("s4", "here by chance"))
     says = [
         "The paper tells no chance: hands move often, so many clauses have a movement near them whatever "
-        "is said. "
-        "Here the same speech is also laid elsewhere over the same motion.",
+        "is said. Here the same speech is also laid elsewhere over the same motion.",
         _above(found),
     ]
     clauses = [
@@ -77,8 +76,7 @@ def rates(material: Material) -> Shown:
     if material.made_up:
         says.append(
             "Here the rates that were asked for are the paper's own; what is found differs by what could "
-            "not be "
-            "performed and by movements that come near by chance."
+            "not be performed and by movements that come near by chance."
         )
     head = ("", "what", "matched", "segments", "rate", "95 %", "by chance")
     return Shown(
@@ -150,13 +148,10 @@ def window(material: Material) -> Shown:
     graph = drawings.lines(names, "seconds", "metres a second", "Speed of a hand about a clause")
     says = (
         f"A clause of {a.end - a.start:.2f} s in '{clip.name}' at {a.start:.2f} s. Nothing moves unless "
-        "something is "
-        f"faster than {idle:.2f} m/s (equation 1 over the take); the movement begins and ends by the "
-        "same rule within "
-        "within the window (equation 2).",
-        "Neighbours are trimmed at half the gap, so that each moment is one segment's; the paper's "
-        "figure leaves open "
-        "where.",
+        f"something is faster than {idle:.2f} m/s (equation 1 over the take); the movement begins and ends "
+        "by the same rule within within the window (equation 2).",
+        "Neighbours are trimmed at half the gap, so that each moment is one segment's; the paper's figure "
+        "leaves open where.",
     )
     return Shown(
         material.about,

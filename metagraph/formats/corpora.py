@@ -118,8 +118,8 @@ def read_corpus(
     if not recorded:
         raise FileError(
             folder,
-            f"none of its {len(found)} conversations can be read, taken as '{layout}'; "
-            f"the first: {failures[0].rstrip('.')}",
+            f"none of its {len(found)} conversations can be read, taken as '{layout}'; the first: "
+            f"{failures[0].rstrip('.')}",
             remedy="Each needs motion, sound beside it of the same name, and best its words.",
         )
     return Corpus(layout, tuple(recorded), tuple(failures), tuple(dict.fromkeys(notes)))
