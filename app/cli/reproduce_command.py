@@ -42,7 +42,7 @@ def arguments(parser: ArgumentParser) -> None:
         help="a learned generator (.mgmodel; default: the one that comes with the program)",
     )
     parser.add_argument(
-        "--full", action="store_true", help="as much made-up motion as the papers recorded, and every setting"
+        "--full", action="store_true", help="as much made-up motion as the papers recorded, and more draws"
     )
 
 
