@@ -19,9 +19,10 @@ from metagraph.generation.evaluation import Judged, Manner, judge, unseen
 from metagraph.generation.features import PARTNER, RATE, SELF
 from metagraph.generation.landmarks import LANDMARKS
 from metagraph.generation.networks import Kind, parameters, sizes_of
-from metagraph.generation.performing import side_sound
+from metagraph.generation.performing import fits, side_sound
 from metagraph.generation.statistics import mean_landmarks, wasserstein
 from metagraph.generation.takes import Source, SplitError, Take, TakeError, take_of
+from metagraph.graph.project_retargeting import Bringing
 
 NO_MODEL = (
     "there is no learned generator: it comes with the program where it is installed (sample_clips/models), "
@@ -141,6 +142,8 @@ def _judged(material: Material) -> Judged | str:
     if model is None:
         return NO_MODEL
     takes: list[Take] = []
+    bringing = Bringing(material.project) if fits(model, material.project) else None
+    brought = 0
     for recorded in material.conversations:
         for side in (0, 1):
             clip = recorded.clips[side]
@@ -154,6 +157,9 @@ def _judged(material: Material) -> Judged | str:
                 samples, told = side_sound(recorded.conversation, side, Path())
                 material.notes.extend(told)
             try:
+                if clip.skeleton != model.rig.skeleton and bringing is not None:
+                    known = bringing.known(clip) or bringing.propose(clip.skeleton)
+                    clip, brought = bringing.bring(clip, known), brought + 1
                 takes.append(take_of(model.rig, clip, samples, RATE, source, recorded.conversation, side))
             except (TakeError, ValueError) as error:
                 material.notes.append(str(error))
@@ -163,6 +169,8 @@ def _judged(material: Material) -> Judged | str:
             + (f" ({material.notes[-1]})" if material.notes else "")
             + ": train one of these takes with `metagraph generate train`, and name it with --model"
         )
+    if brought:
+        material.notes.append(f"{brought} takes were retargeted onto the model's figure to be judged")
     try:
         fresh, left = unseen(model, takes)
     except SplitError as error:

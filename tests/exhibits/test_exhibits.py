@@ -8,8 +8,8 @@ from xml.etree import ElementTree
 
 import pytest
 
+from metagraph.exhibits import generated, searching
 from metagraph.exhibits import material as materials
-from metagraph.exhibits import searching
 from metagraph.exhibits.authoring import figure_1, hours, once, smaller
 from metagraph.exhibits.exhibit import EXHIBITS, NUMBERS, Drawing, Exhibit, ExhibitTable, Shown, chosen
 from metagraph.exhibits.material import Material, actors_rates, made
@@ -17,8 +17,11 @@ from metagraph.exhibits.page import data_of, page, text_of
 from metagraph.exhibits.planning import fewest
 from metagraph.exhibits.published import FIGURE_6, FIGURE_11, TABLE_1, TABLE_2
 from metagraph.exhibits.searching import Scarcity, competing, scarce
+from metagraph.formats.bvh import write_bvh
+from metagraph.formats.clips import read_clips
 from metagraph.formats.corpora import Recorded
 from metagraph.formats.store import open_project
+from metagraph.generation.offered import SHIPPED
 from metagraph.graph.edits import place
 from metagraph.graph.expand import connections, size
 from metagraph.graph.model import Project
@@ -115,6 +118,24 @@ def test_a_side_nobody_recorded_and_one_take_alone_spoil_nothing(
     alone = Material(sample, talks[:1])
     assert "nothing can be held out" in searching.success(alone).missing
     assert "cannot be held out" in searching.search(alone).missing
+
+
+@pytest.mark.skipif(not SHIPPED.is_file(), reason="no learned generator is installed")
+def test_takes_of_another_figure_are_retargeted_before_a_model_is_judged_on_them(
+    sample: Project, talks: tuple[Recorded, ...], tmp_path: Path
+) -> None:
+    clip = talks[0].clips[0]
+    assert clip is not None
+    write_bvh(clip, tmp_path / "other.bvh")  # which has no rest rotations: another skeleton
+    (other,) = read_clips(tmp_path / "other.bvh")
+    assert other.skeleton != clip.skeleton
+    talk = replace(talks[0], clips=(other, None))
+    material = Material(sample, (talk,), "one talk", SHIPPED)
+    shown = generated.distance(material)
+    assert not shown.missing and shown.numbers["wrists"]["recorded"] > 0
+    assert material.notes == ["1 takes were retargeted onto the model's figure to be judged"]
+    plain = generated.distance(Material(sample, (replace(talk, clips=(clip, None)),), "one talk", SHIPPED))
+    assert shown.numbers["wrists"]["recorded"] == pytest.approx(plain.numbers["wrists"]["recorded"], rel=0.05)
 
 
 def test_made_up_conversations_are_the_same_each_time_and_move_at_the_actors_rates(sample: Project) -> None:
