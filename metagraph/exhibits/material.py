@@ -87,7 +87,8 @@ class Material:
                 self.notes.append(
                     f"{len(some) - len(kept)} takes of side {side + 1} have another skeleton: left out"
                 )
-            name = side_name(kept[0][1], side)
+            names = {side_name(t, side) for _, t in kept}
+            name = names.pop() if len(names) == 1 else f"side {side + 1}"
             out.append(Actor(name, tuple(c for c, _ in kept), tuple(heard_by(t, side) for _, t in kept)))
         if not out:
             raise ValueError("none of these conversations has motion: nothing can be exhibited of it")

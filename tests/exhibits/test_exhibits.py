@@ -7,6 +7,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from msgspec import structs
 
 from metagraph.exhibits import generated, searching
 from metagraph.exhibits import material as materials
@@ -112,6 +113,12 @@ def test_a_side_nobody_recorded_and_one_take_alone_spoil_nothing(
 ) -> None:
     half = tuple(replace(t, clips=(t.clips[0], None)) for t in talks)
     assert [a.name for a in Material(sample, half).actors] == ["Speaker 1"]
+    named = tuple(
+        replace(t, conversation=structs.replace(t.conversation, sides=(
+            structs.replace(t.conversation.sides[0], name=f"p{n}"), t.conversation.sides[1])))
+        for n, t in enumerate(talks)
+    )  # fmt: skip
+    assert [a.name for a in Material(sample, named).actors] == ["side 1", "Speaker 2"]
     none = Material(sample, (replace(talks[0], clips=(None, None)),))
     with pytest.raises(ValueError, match="none of these conversations has motion"):
         _ = none.actors
