@@ -94,7 +94,7 @@ EXHIBITS: tuple[Exhibit, ...] = (
         "section 8.1",
         "How often a held out conversation finds motion",
         "searching",
-        (10, 1800),
+        (10, 1300),
         "takes",
     ),
     Exhibit(
