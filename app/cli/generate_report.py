@@ -53,20 +53,10 @@ MEANINGS = {
     "frechet": "distance between Gaussians of seconds of motion",
     "diversity": "mean distance of the landmarks between two takes to the same speech, cm",
 }
-_STYLE = """
-body { max-width: 1180px; } svg { max-width: 1000px; } .wide-table { overflow-x: auto; }
-table { font-size: 12px; } td:first-child { min-width: 110px; } td .dim { font-size: 11px; }
-.box polygon { stroke: var(--text); stroke-width: .5; }
-.box .median { stroke: var(--inside); stroke-width: 1.5; }
-.box .whisker { stroke: var(--dim); } .box .beyond { opacity: .5; }
-polyline { fill: none; stroke-width: .8; } .bones path { fill: none; stroke-width: .6; stroke-opacity: .12; }
-.mark0 { stroke: var(--s0); } .mark1 { stroke: var(--s2); }
-.mark2 { stroke: var(--s3); } .mark3 { stroke: var(--s4); }
-.fill0 { fill: var(--s0); } .fill1 { fill: var(--s2); }
-.fill2 { fill: var(--s3); } .fill3 { fill: var(--s4); }
-.line0 path { stroke: var(--s0); } .line1 path { stroke: var(--s1); } .line2 path { stroke: var(--s2); }
-.line3 path { stroke: var(--s3); } .line4 path { stroke: var(--s4); }
-"""
+_STYLE = f"""
+body {{ max-width: 1180px; }} svg {{ max-width: 1000px; }} .wide-table {{ overflow-x: auto; }}
+table {{ font-size: 12px; }} td:first-child {{ min-width: 110px; }} td .dim {{ font-size: 11px; }}
+{figures.STYLE}"""
 
 
 def data_of(rows: Sequence[Row], told: dict[str, Any]) -> dict[str, Any]:

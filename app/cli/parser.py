@@ -81,6 +81,11 @@ COMMANDS: dict[str, tuple[str, bool, str]] = {
         False,
         "motion for conversations, learned from takes: train, sample, judge",
     ),
+    "reproduce": (
+        "reproduce_command",
+        False,
+        "make the papers' tables and figures again, theirs and ours beside each other",
+    ),
     "info": ("info_command", False, "tell what is in a project, an export or a clip file"),
     "demo": (
         "demo_command",

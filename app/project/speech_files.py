@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 SOUNDS = (".wav", ".flac", ".ogg", ".mp3")
-TRANSCRIPTS = (".textgrid", ".eaf", ".vtt", ".srt", ".json", ".ctm")
+TRANSCRIPTS = (".textgrid", ".eaf", ".vtt", ".srt", ".json", ".ctm", ".tsv")
 
 
 def kinds_of(paths: Sequence[Path]) -> tuple[tuple[Path, ...], tuple[Path, ...]]:

@@ -17,8 +17,8 @@ from metagraph.graph.conversation import SHORTEST, Segment, Word
 
 LATEST = 1e6  # seconds
 _TEXT = 1000  # characters of a word
-SUFFIXES = (".TextGrid", ".eaf", ".vtt", ".srt", ".json", ".ctm")
-REMEDY = f"Known are {', '.join(SUFFIXES)}: TextGrid, ELAN, WebVTT, SRT, Whisper's and IBM's JSON, CTM."
+SUFFIXES = (".TextGrid", ".eaf", ".vtt", ".srt", ".json", ".ctm", ".tsv")
+REMEDY = f"Known are {', '.join(SUFFIXES)}: TextGrid, ELAN, WebVTT, SRT, JSON of Whisper or IBM, CTM, tables."
 _SILENT = frozenset(
     (
         "",

@@ -1,5 +1,5 @@
-"""Transcripts: who says which word when, from TextGrid, ELAN, WebVTT, SRT, CTM and the JSON of Whisper's kin
-and of IBM.
+"""Transcripts: who says which word when, from TextGrid, ELAN, WebVTT, SRT, CTM, tables and the JSON of
+Whisper's kin and of IBM.
 
 What a file is, its content says. Our own exports are read back whole: words and segments, as corrected by
 hand.
@@ -13,7 +13,7 @@ from metagraph.errors import FileError
 from metagraph.files import guarded
 from metagraph.formats.transcript_words import REMEDY, Transcript, text_of
 from metagraph.formats.transcripts_json import read_json
-from metagraph.formats.transcripts_text import is_ctm, read_ctm, read_cues
+from metagraph.formats.transcripts_text import is_ctm, is_table, read_ctm, read_cues, read_table
 from metagraph.formats.transcripts_tiers import read_elan_tiers, read_textgrid_tiers
 
 
@@ -35,6 +35,8 @@ def read_transcript(path: str | Path) -> Transcript:
         return read_json(path, text)
     if head.startswith("WEBVTT") or "-->" in text:
         return read_cues(path, text)
+    if is_table(text):
+        return read_table(path, text)
     if is_ctm(text):
         return read_ctm(path, text)
     raise FileError(path, "is none of the transcripts that can be read", "its beginning", REMEDY)

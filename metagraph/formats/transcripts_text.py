@@ -1,4 +1,4 @@
-"""Subtitles, WebVTT and SubRip (SRT), and NIST's CTM, as transcripts.
+"""Subtitles, WebVTT and SubRip (SRT), NIST's CTM, and tables of words, as transcripts.
 
 Cues hold sentences: their words share the cue's time by their letters, unless WebVTT gives words times of
 their own. Who speaks, a voice tag (`<v Ann>`) or a name before a colon tells; cues that name nobody go on
@@ -188,4 +188,36 @@ def read_ctm(path: Path, text: str) -> Transcript:
     for n, (recording, channel, start, length, word) in rows:
         who = channel if recordings < 2 else recording if channels < 2 else f"{recording} {channel}"
         out.add(who if recordings * channels > 1 else "", word, start, start + length, f"line {n + 1}")
+    return out.finished()
+
+
+# --- a table of words
+
+
+def is_table(text: str) -> bool:
+    """Whether the first line that is not empty is one of a table: start, end, words, parted by tabs."""
+    line = next((x for x in text.split("\n")[:1000] if x.strip()), "")
+    return _table_row(line) is not None
+
+
+def _table_row(line: str) -> tuple[float, float, str] | None:
+    cells = line.split("\t")
+    if len(cells) != 3:
+        return None
+    try:
+        return float(cells[0]), float(cells[1]), cells[2]
+    except ValueError:
+        return None
+
+
+def read_table(path: Path, text: str) -> Transcript:
+    """Read a line a word, start and end in seconds, as GENEA's transcripts are. Raises FileError."""
+    out = Collected(path)
+    for n, line in enumerate(text.split("\n")):
+        if not line.strip():
+            continue
+        row = _table_row(line)
+        if row is None:
+            raise out.fail("has no start, end and word, parted by tabs", f"line {n + 1}")
+        out.add("", row[2], row[0], row[1], f"line {n + 1}")
     return out.finished()

@@ -22,6 +22,19 @@ Array = NDArray[Any]
 LONGEST = 300.0  # seconds that are drawn
 SYSTEMS = 5  # that have a colour of their own
 _KIND = ("wrist", "elbow", "head nose", "sternum shoulder")  # landmarks of one colour
+# What a page colours these drawings with, beside `study.report_style`.
+STYLE = """
+.box polygon { stroke: var(--text); stroke-width: .5; }
+.box .median { stroke: var(--inside); stroke-width: 1.5; }
+.box .whisker { stroke: var(--dim); } .box .beyond { opacity: .5; }
+polyline { fill: none; stroke-width: .8; } .bones path { fill: none; stroke-width: .6; stroke-opacity: .12; }
+.mark0 { stroke: var(--s0); } .mark1 { stroke: var(--s2); }
+.mark2 { stroke: var(--s3); } .mark3 { stroke: var(--s4); }
+.fill0 { fill: var(--s0); } .fill1 { fill: var(--s2); }
+.fill2 { fill: var(--s3); } .fill3 { fill: var(--s4); }
+.line0 path { stroke: var(--s0); } .line1 path { stroke: var(--s1); } .line2 path { stroke: var(--s2); }
+.line3 path { stroke: var(--s3); } .line4 path { stroke: var(--s4); }
+"""
 _NAMES = ("wrists", "elbows", "head, nose", "sternum, shoulders")
 _BONES = ((0, 1), (0, 2), (1, 3), (3, 5), (2, 4), (4, 6), (0, 7), (7, 8))
 _EVERY = 5  # frames between two points of a line

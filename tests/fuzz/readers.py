@@ -286,7 +286,7 @@ def _readers() -> dict[str, Fuzzed]:
         "character": Fuzzed(drawn, _clip_seeds(".glb"), JSON, spoilt_glb),
         "textgrid": Fuzzed(voice_from_phones, _only(".TextGrid"), (b'"', b"<exists>", b"IntervalTier"), spoilt_words),
         "elan": Fuzzed(read_elan, _only(".eaf"), XML, spoilt_words),
-        "subtitles": Fuzzed(read_transcript, _only(".vtt", ".srt", ".ctm"), (b" --> ", b"<v Ann>", b"WEBVTT"), spoilt_words),
+        "subtitles": Fuzzed(read_transcript, _only(".vtt", ".srt", ".ctm", ".tsv"), (b" --> ", b"<v Ann>", b"WEBVTT"), spoilt_words),
         "transcript": Fuzzed(read_transcript, _only(".json", ".whisper", ".ibm"), JSON, spoilt_json),
         "words": Fuzzed(read_pack, _fixed(sv_yaml=b"code: sv\nname: x\nresponses: [ja, 'n\xc3\xa5']\nsmall: i, den\n"), (b"&a", b"{", b"- ", b", "), spoilt_words),
         "sound": Fuzzed(read_voice, _wav, (b"RIFF", b"fmt ", b"data", b"OggS", b"fLaC"), None),

@@ -35,6 +35,7 @@ SEEDS = {
     "00:05.000 --> 00:06.000\nAnn: no\n",
     ".srt": "1\n00:00:01,000 --> 00:00:02,000\nANN: so we\n\n2\n00:00:03,000 --> 00:00:04,000\n- BEN: yes\n",
     ".ctm": "a 1 0.5 0.2 so 0.9\na 2 0.7 0.2 we\n",
+    ".tsv": "0.5\t0.7\tso\n0.7\t0.9\twe\n",
     ".whisper": json.dumps(
         {
             "segments": [

@@ -1,0 +1,152 @@
+"""`metagraph reproduce`: the papers' tables and figures, made again beside what they print."""
+
+from __future__ import annotations
+
+import json
+import sys
+from argparse import ArgumentParser, Namespace
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # reading a command line must not wait for arrays
+    from metagraph.exhibits.exhibit import Exhibit, Shown
+    from metagraph.exhibits.material import Material
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Add the options."""
+    parser.add_argument(
+        "exhibits",
+        nargs="*",
+        metavar="EXHIBIT",
+        help="exhibits by name, or papers with all of theirs (default: all; --list names them)",
+    )
+    parser.add_argument("--into", type=Path, metavar="FOLDER", help="write report.html and report.json there")
+    parser.add_argument(
+        "--list", action="store_true", help="say which exhibits there are and how long each takes"
+    )
+    parser.add_argument(
+        "--project", type=Path, metavar="FILE", help="your project (default: the sample project)"
+    )
+    parser.add_argument(
+        "--takes",
+        type=Path,
+        metavar="FOLDER",
+        help="your recorded conversations: clips with sound, and words, beside them (default: made-up ones)",
+    )
+    parser.add_argument(
+        "--model",
+        type=Path,
+        metavar="FILE",
+        help="a learned generator (.mgmodel; default: the one that comes with the program)",
+    )
+    parser.add_argument(
+        "--full", action="store_true", help="as much made-up motion as the papers recorded, and more draws"
+    )
+
+
+def run(options: Namespace) -> int:
+    """Make exhibits; write the report and print the tables."""
+    from app.cli.command_output import say
+    from metagraph import __version__
+    from metagraph.exhibits.exhibit import chosen
+    from metagraph.exhibits.page import data_of, page, text_of
+    from metagraph.formats.atomic import write_atomically
+
+    exhibits = chosen(options.exhibits)
+    if options.list:
+        return _list(options, exhibits)
+    if options.into is None:
+        raise ValueError("say where the report goes: --into FOLDER; or --list for what there is")
+    material = _material(options)
+    made = []
+    for exhibit in exhibits:
+        if sys.stderr.isatty() and not options.json:
+            print(f"{exhibit.name} ...", file=sys.stderr, flush=True)
+        shown, seconds = _made(exhibit, material)
+        made.append((exhibit, shown, seconds))
+    told = {"Metagraph": __version__, "project": material.project.name}
+    told["conversations"] = material.told or "made up"
+    content = {
+        "report.html": page(made, told),
+        "report.json": json.dumps({**told, "exhibits": data_of(made), "notes": material.notes}, indent=1)
+        + "\n",
+    }
+    for name, text in content.items():
+        write_atomically(options.into / name, text.encode())
+    for note in dict.fromkeys(material.notes):
+        print(f"note: {note}", file=sys.stderr)
+    words = [text_of(e, s) for e, s, _ in made]
+    written = [str(options.into / name) for name in content]
+    say(options, "\n\n".join([*words, "\n".join(written)]), {"exhibits": data_of(made), "written": written})
+    return 3 if any(s.missing for _, s, _ in made) else 0
+
+
+def _list(options: Namespace, exhibits: Sequence[Exhibit]) -> int:
+    from app.cli.command_output import say
+    from metagraph.exhibits.published import PAPERS
+
+    lines, before = [], ""
+    for e in exhibits:
+        if e.paper != before:
+            lines.append(f"{e.paper}: {PAPERS[e.paper]}")
+            before = e.paper
+        quick, whole = (f"{s:g} s" if s < 90 else f"{s / 60:.0f} min" for s in e.seconds)
+        lines.append(f"  {e.name:<12}{e.place:<18}{e.title:<50}{quick:>6}, --full {whole}")
+    data = [
+        {"exhibit": e.name, "paper": e.paper, "place": e.place, "title": e.title, "seconds": list(e.seconds)}
+        for e in exhibits
+    ]
+    say(options, "\n".join(lines), data)
+    return 0
+
+
+def _made(exhibit: Exhibit, material: Material) -> tuple[Shown, float]:
+    """Return an exhibit and how long it took; one that cannot be made says why, and spoils no other."""
+    from time import perf_counter
+
+    from metagraph.errors import FileError
+    from metagraph.exhibits.exhibit import Shown
+
+    began = perf_counter()
+    try:
+        shown = exhibit.make(material)
+    except Exception as error:
+        about = material.told or f"the project '{material.project.name}'"
+        known = isinstance(error, (FileError, ValueError)) and str(error)
+        told = (
+            str(error)
+            if known
+            else f"it failed ({type(error).__name__}: {error}); report it with the project"
+        )
+        shown = Shown(about, missing=told)
+    return shown, perf_counter() - began
+
+
+def _material(options: Namespace) -> Material:
+    from app.cli.command_output import opened
+    from app.cli.demo_command import SAMPLE
+    from metagraph.errors import FileError
+    from metagraph.exhibits.material import Material
+    from metagraph.formats.corpora import Recorded, read_corpus
+    from metagraph.generation.offered import SHIPPED
+
+    if options.model is not None and not options.model.is_file():
+        raise FileError(options.model, "there is no such model", remedy="Check where the .mgmodel file is.")
+    model = options.model or (SHIPPED if SHIPPED.is_file() else None)
+    notes: list[str] = []
+    given: tuple[Recorded, ...] = ()
+    told = ""
+    if options.takes is not None:
+        show = sys.stderr.isatty() and not options.json
+
+        def progress(done: int, total: int) -> None:
+            if show:
+                print(f"\rreading {done + 1:,} of {total:,}", end="", file=sys.stderr, flush=True)
+
+        corpus = read_corpus(options.takes, progress=progress)
+        notes += [*corpus.failures, *corpus.notes]
+        given, told = corpus.recorded, f"{options.takes.name} ({corpus.layout})"
+    project = opened(SAMPLE if options.project is None else options.project)
+    return Material(project, given, told, model, options.full, notes)
