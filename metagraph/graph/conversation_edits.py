@@ -77,8 +77,8 @@ def change_side(project: Project, ident: str, side: int, /, **changes: Any) -> P
 
 
 def set_rates(project: Project, ident: str, side: int, **rates: float) -> Project:
-    """Set how often one of the two moves with what is said: clause, response, hesitation, 0..1. Raises
-    EditError out of that range.
+    """Set how often one of the two moves with what is said: clause, response, hesitation, mirror, 0..1.
+    Raises EditError out of that range.
     """
     of = _conversation(project, ident).sides[side]
     return _with_side(project, ident, side, msgspec.structs.replace(of, rates=_valid(of.rates, rates)))

@@ -194,13 +194,14 @@ def drive(
     line: str | None = None,
     head: Point = (0.0, 1.6, 1.3),
     together: bool = True,
+    more: Sequence[AnyRequest] = (),
 ) -> tuple[Performance, Plan]:
     """Return what a side performs, and its plan: gestures whose stroke would miss its peak, since another
-    still plays, are taken back. Arguments as for `asks_of`.
+    still plays, are taken back. Arguments as for `asks_of`; more: asked besides.
 
     The same asks performed again give the same plan.
     """
-    asks = asks_of(conversation, side, project, line, head, together)
+    asks = [*asks_of(conversation, side, project, line, head, together), *more]
     plan = Plan(conversation.seed, 0.0)
     for _ in range(ROUNDS):
         plan = perform(project, asks, conversation.length, conversation.seed, idle=False)

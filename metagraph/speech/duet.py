@@ -23,6 +23,7 @@ from metagraph.playback.plan import Plan
 from metagraph.speech.delivered import Delivered, delivered
 from metagraph.speech.drive import drive
 from metagraph.speech.lines import read_spoken
+from metagraph.speech.mirroring import mirrored
 
 Array = NDArray[Any]
 HEAD = 1.6  # metres up, of a skeleton whose head is not known
@@ -104,26 +105,39 @@ def duet(
     """Return both characters' plans. ident: the conversation's id. projects: of each side. heard: their
     voices.
     """
-    parts = []
     heads = [_head(project) for project in projects]
+    known = [_with_voice(conversation, ident, n, projects[n], heard[n]) for n in (0, 1)]
+    at = [(0.0, round(heads[1 - n], 3), conversation.distance) for n in (0, 1)]
+    made = [drive(conversation, n, *known[n], at[n]) for n in (0, 1)]
+    taken_up = [
+        tuple(mirrored(conversation, n, known[n][0], made[n][1], known[1 - n][0], made[1 - n][1]))
+        for n in (0, 1)
+    ]
+    parts = []
     for n, stand in enumerate(stands(conversation.distance)):
-        side, project, voice, line = conversation.sides[n], projects[n], heard[n], None
-        if voice is not None:
-            line = _free_id(ident, n, project)
-            peaks = [s.peak for s in side.segments if s.kind == "clause" and s.peak is not None]
-            voice = replace(voice, stresses=np.array(peaks)) if peaks else voice
-            project = replace(
-                project, lines={**project.lines, line: line_of(side)}, voices={**project.voices, line: voice}
-            )
-        if conversation.blinks == "peaks":  # and no others
-            project = replace(
-                project, life=msgspec.structs.replace(project.life, blinks=0.0, accent_blinks=0.0)
-            )
-        head = (0.0, round(heads[1 - n], 3), conversation.distance)
-        performance, plan = drive(conversation, n, project, line, head)
-        told = delivered(conversation, n, project, plan)
-        parts.append(DuetPart(project, performance, plan, stand, told))
+        performance, plan = (
+            drive(conversation, n, *known[n], at[n], more=taken_up[n]) if taken_up[n] else made[n]
+        )
+        told = delivered(conversation, n, known[n][0], plan)
+        parts.append(DuetPart(known[n][0], performance, plan, stand, told))
     return Duet((parts[0], parts[1]), conversation.length)
+
+
+def _with_voice(
+    conversation: Conversation, ident: str, n: int, project: Project, voice: Voice | None
+) -> tuple[Project, str | None]:
+    """Return a side's project with its voice among the lines, and that line's id; None without a voice."""
+    side, line = conversation.sides[n], None
+    if voice is not None:
+        line = _free_id(ident, n, project)
+        peaks = [s.peak for s in side.segments if s.kind == "clause" and s.peak is not None]
+        voice = replace(voice, stresses=np.array(peaks)) if peaks else voice
+        project = replace(
+            project, lines={**project.lines, line: line_of(side)}, voices={**project.voices, line: voice}
+        )
+    if conversation.blinks == "peaks":  # and no others
+        project = replace(project, life=msgspec.structs.replace(project.life, blinks=0.0, accent_blinks=0.0))
+    return project, line
 
 
 def _free_id(ident: str, side: int, project: Project) -> str:

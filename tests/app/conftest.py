@@ -124,7 +124,11 @@ class Driver(Handles):
             words.disconnect(self.told.append)
 
     def wait(self, until: Callable[[], bool], seconds: float = 20) -> None:
-        self.bot.waitUntil(until, timeout=int(seconds * 1000))  # type: ignore[attr-defined]
+        try:
+            self.bot.waitUntil(until, timeout=int(seconds * 1000))  # type: ignore[attr-defined]
+        except Exception as error:
+            error.add_note(f"the window said: {self.told}")
+            raise
 
     def pause(self, milliseconds: int) -> None:
         self.bot.wait(milliseconds)  # type: ignore[attr-defined]

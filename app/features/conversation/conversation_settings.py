@@ -31,7 +31,7 @@ from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.formats.store import SUFFIX, relative
 from metagraph.graph import conversation_edits
-from metagraph.graph.conversation import Conversation, Rates, side_name
+from metagraph.graph.conversation import SPOKEN, Conversation, Rates, side_name
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
 
@@ -39,6 +39,10 @@ RATES = {
     "clause": ("gestures with its own clauses", "How often the hands move with a clause"),
     "response": ("nods with its own responses", "How often the head nods with a “yeah” or “mm-hmm”"),
     "hesitation": ("nods when the other hesitates", "How often the head nods while the partner says “er”"),
+    "mirror": (
+        "mirrors the other's stance",
+        "How often the partner's change of stance is taken up while listening",
+    ),
 }
 BLINKS = {
     "life": ("As in Life, and on stresses", "The life layer's blinks, and one on many of the clauses' peaks"),
@@ -162,11 +166,10 @@ class RatesDialog(SettingDialog):
                 self.fields[side][name] = field
                 grid.addWidget(field, row, 1 + side)
             for column, actor in enumerate(ACTORS):
-                grid.addWidget(
-                    caption(f"{100 * getattr(conversation_edits.PAPER[actor], name):.0f} %", self, True),
-                    row,
-                    3 + column,
+                did = (
+                    f"{100 * getattr(conversation_edits.PAPER[actor], name):.0f} %" if name in SPOKEN else "–"
                 )
+                grid.addWidget(caption(did, self, True), row, 3 + column)
         for side in (0, 1):
             row_of = QHBoxLayout()
             row_of.setSpacing(2)
@@ -178,7 +181,7 @@ class RatesDialog(SettingDialog):
                     lambda _=False, side=side, rates=conversation_edits.PAPER[actor]: self.take(side, rates)
                 )
                 row_of.addWidget(button)
-            grid.addLayout(row_of, 4, 1 + side)
+            grid.addLayout(row_of, len(RATES) + 1, 1 + side)
         layout.addLayout(grid)
         row_of = QHBoxLayout()
         row_of.addWidget(QLabel("Blinks", self))
@@ -201,8 +204,8 @@ class RatesDialog(SettingDialog):
         self.delivered.setVisible(bool(self.delivered.text()))
 
     def take(self, side: int, rates: Rates) -> None:
-        for name, field in self.fields[side].items():
-            field.setValue(100 * getattr(rates, name))
+        for name in SPOKEN:
+            self.fields[side][name].setValue(100 * getattr(rates, name))
 
     def change(self, project: Project) -> Project:
         for side in (0, 1):

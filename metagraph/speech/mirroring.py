@@ -1,0 +1,78 @@
+"""Listeners take up the posture of who speaks, as in a mirror, a moment later (LaFrance and Broadbent 1976;
+Yang et al. name it as future work).
+
+Which of one's own stances is most like the other's is told by where head, hands, chest and feet are, seen
+from the hips, so two characters of other studios with other names mirror each other too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.graph import anatomy
+from metagraph.graph.conversation import Conversation
+from metagraph.graph.model import Project
+from metagraph.graph.requests import Go
+from metagraph.playback.choice import uniform
+from metagraph.playback.plan import Plan
+
+Array = NDArray[Any]
+
+DELAY = (1.0, 2.0)  # seconds after the other stands so: at least, and what chance adds to it
+SEEN = ("head", "chest", "left_hand", "right_hand", "left_foot", "right_foot")
+OTHER = (0, 1, 3, 2, 5, 4)  # their places in a mirror
+NEARER = 0.8  # of how unlike the present stance is: one that is no more like is not taken up
+
+
+def mirrored(
+    conversation: Conversation, side: int, project: Project, plan: Plan, other: Project, seen: Plan
+) -> Iterator[Go]:
+    """Yield the stances of the body that a side takes up while it listens. project, plan: its own; other,
+    seen: the partner's. Nothing where either has no stances to tell apart, or bodies cannot be compared.
+    """
+    share = conversation.sides[side].rates.mirror
+    own, theirs = stance_shapes(project), stance_shapes(other)
+    if share <= 0 or len(own) < 2 or len(theirs) < 2:
+        return
+    taken: tuple[float, str] | None = None
+    speaks = [(s.start, s.end) for s in conversation.sides[side].segments]
+    for n, cue in enumerate(seen.layers["body"].cues):
+        at = cue.end + DELAY[0] + DELAY[1] * uniform(conversation.seed, str(side), f"mirror {n}", "when")
+        if cue.then == cue.stance or cue.then not in theirs or at >= conversation.length:
+            continue
+        if any(start <= at < end for start, end in speaks):
+            continue
+        if uniform(conversation.seed, str(side), f"mirror {n}") >= share:
+            continue
+        wanted = theirs[cue.then][OTHER, :] * (-1, 1, 1)
+        apart = {stance: float(np.linalg.norm(shape - wanted)) for stance, shape in own.items()}
+        best, now = min(apart, key=lambda s: apart[s]), plan.layers["body"].stance_at(at)
+        if taken is not None and plan.layers["body"].stance_at(taken[0]) == now:
+            now = taken[1]  # nothing else has changed it since
+        if best != now and apart[best] < NEARER * apart.get(now or "", np.inf):
+            taken = at, best
+            yield Go(id=f"mirror {n}", at=round(at, 3), layer="body", stance=best, priority=1)
+
+
+def stance_shapes(project: Project) -> dict[str, Array]:
+    """Return where `SEEN` is in each stance of the body `[6, 3]`, x to the left, from the hips, in units of
+    the hips' height; none where that cannot be told.
+    """
+    roles = anatomy.roles(project)
+    if project.skeleton is None or not {"hips", *SEEN} <= roles.keys():
+        return {}
+    graph, out = project.graphs["body"], {}
+    for stance in graph.stances:
+        loop = next(iter(graph.of(stance, "stance")), None)
+        entry = project.clips.get(loop.clip) if loop is not None else None
+        if loop is None or entry is None or entry.motion is None or entry.motion.skeleton != project.skeleton:
+            continue
+        pose = entry.motion.pose_at(project.span(loop)[0])
+        places = project.skeleton.globals(pose)[1]
+        hips = places[roles["hips"]]
+        out[stance] = (places[[roles[r] for r in SEEN]] - hips) / max(float(abs(hips[1])), 1e-3)
+    return out
