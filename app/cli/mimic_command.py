@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from metagraph.playback.plan import Plan
 
 OUT = (".mp4", ".png", ".glb", ".bvh", ".json")
+TAKES = (".bvh", ".glb")
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -34,6 +35,13 @@ def arguments(parser: ArgumentParser) -> None:
         help=f"write it: a video, a contact sheet, motion, or the requests ({', '.join(OUT)})",
     )
     parser.add_argument("--keep", metavar="NAME", help="keep it as a performance of the project")
+    parser.add_argument(
+        "--take",
+        type=Path,
+        metavar="FILE",
+        help=f"write the person's own motion on the project's skeleton, a take ({', '.join(TAKES)}); needs "
+        "keypoints in three dimensions",
+    )
     parser.add_argument(
         "--no-mirror",
         action="store_true",
@@ -74,6 +82,8 @@ def run(options: Namespace) -> int:
     if options.out is not None and options.out.suffix not in OUT:
         name = options.out.suffix or options.out.name
         raise ValueError(f"it is written as {', '.join(OUT)}, not as '{name}'")
+    if options.take is not None and options.take.suffix not in TAKES:
+        raise ValueError(f"a take is written as {' or '.join(TAKES)}, not as '{options.take.suffix}'")
     picture = size_of(options.picture) if options.picture else None
     size = size_of(options.size)
     project = opened(options.project)
@@ -87,7 +97,11 @@ def run(options: Namespace) -> int:
     made = _planned(project, kept)
     written = [
         str(x)
-        for x in (_keep(options, project, kept), _write(options, project, kept, made, size))
+        for x in (
+            _keep(options, project, kept),
+            _write(options, project, kept, made, size),
+            _take(options, project, seen),
+        )
         if x is not None
     ]
     for note in seen.notes:
@@ -100,6 +114,32 @@ def run(options: Namespace) -> int:
     else:
         print("\n".join(_lines(options, seen, rows, written)))
     return 0 if rows else 3
+
+
+def _take(options: Namespace, project: Project, seen: Keypoints) -> Path | None:
+    """Write the person's own motion, if it is wanted."""
+    from metagraph.errors import FileError
+    from metagraph.formats.bvh import write_bvh
+    from metagraph.formats.gltf_writer import write_glb
+    from metagraph.mimicry.keypoint_take import KeypointTakeError, take_of
+
+    path: Path | None = options.take
+    if path is None:
+        return None
+    if project.skeleton is None:
+        raise ValueError("a project without clips has no skeleton to move: import clips first")
+    try:
+        clip = take_of(seen if options.no_mirror else seen.mirrored(), project.skeleton, path.stem)
+    except KeypointTakeError as error:
+        raise FileError(
+            options.keypoints, str(error).partition(": ")[0], "", str(error).partition(": ")[2]
+        ) from None
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if path.suffix == ".bvh":
+        write_bvh(clip, path)
+    else:
+        write_glb(path, [clip])
+    return path
 
 
 def _planned(project: Project, kept: Performance) -> Plan:

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from app.cli.parser import main
+from metagraph.formats.clips import read_clips
 from metagraph.formats.store import open_project
 from metagraph.graph.requests import Performance
 
@@ -102,6 +103,27 @@ def test_plain_motion_is_written(project: Path, tmp_path: Path, capsys: pytest.C
 
 
 @pytest.mark.gl
+def test_the_persons_own_motion_becomes_a_take(
+    project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "takes" / "seen.bvh"
+    code, data, _ = run(capsys, project, DEEP, "--no-mirror", "--take", out)
+    clip = read_clips(out)[0]
+    assert code == 0 and str(out) in data["written"]
+    assert clip.duration == pytest.approx(data["seconds"], abs=0.2)
+    left, right = tmp_path / "l.glb", tmp_path / "r.glb"
+    run(capsys, project, DEEP, "--no-mirror", "--take", left)
+    run(capsys, project, DEEP, "--take", right)  # as in a mirror
+    assert left.read_bytes() != right.read_bytes()
+
+
+def test_flat_keypoints_make_no_take_and_it_says_what_would(
+    project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["mimic", str(project), str(FLAT), "--take", str(tmp_path / "x.bvh")]) == 1
+    assert "no depth" in capsys.readouterr().err and not (tmp_path / "x.bvh").exists()
+
+
 def test_a_contact_sheet_is_drawn(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "sheet.png"
     assert run(capsys, project, DEEP, "-o", out, "--size", "96x64")[0] == 0
