@@ -3,7 +3,7 @@ becomes a take.
 
 Hips and chest turn as the lines between hips and between shoulders do, limbs point where theirs point and
 bend in the plane of theirs, the head looks where nose and ears say. Fingers, feet and how far a hand is
-turned are not in keypoints: they stay as in the rest pose.
+turned are not in keypoints: feet stay flat, the others as in the rest pose.
 """
 
 from __future__ import annotations
@@ -154,6 +154,10 @@ def _turned(skeleton: Skeleton, roles: Mapping[str, int], seen: Mapping[str, Arr
             wanted = seen[f"{side}_{end}"] - seen[f"{side}_{begin}"]
             away[joint] = _pointed(base, bone, wanted)
         _bent(away, roles, rest_places, seen, side)
+        if f"{side}_foot" in roles:  # flat on the floor, pointing where the hips do
+            ahead = rotation.rotate(hips, np.array([0.0, 0.0, 1.0]))
+            turn = np.arctan2(ahead[:, 0], ahead[:, 2])
+            away[roles[f"{side}_foot"]] = rotation.from_axis_angle(np.array([0.0, 1.0, 0.0]), turn)
     out = np.empty((len(hips), len(skeleton), 4))
     whole = rotation.identity((len(hips),))
     turned: list[Array] = []
