@@ -152,6 +152,7 @@ class LinesPanel(QWidget):
         self.empty.setProperty("dim", True)
         layout.addWidget(self.empty, 1)
         document.changed.connect(self._edited)
+        document.loaded.connect(self.search.clear)  # what is not looked for here must not hide lines there
         session.look.changed.connect(self._changed)
 
     # --- showing

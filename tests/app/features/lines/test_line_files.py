@@ -133,6 +133,14 @@ def test_sounds_dropped_on_the_panel_can_be_edited_said_and_removed(drive, toy, 
     assert list(drive.document.project.lines) == ["one", "279"]
 
 
+def test_what_was_looked_for_in_one_project_hides_no_lines_of_the_next(drive, toy):
+    drive.document.load(toy.project(), None)
+    drive.show("lines")
+    drive.lines.search.setText("hello")
+    drive.document.load(toy.project(), None)
+    assert drive.lines.search.text() == ""
+
+
 def test_words_without_sound_are_a_line_too(drive, toy):
     drive.document.load(toy.project(), None)
     drive.show("lines")
