@@ -72,7 +72,7 @@ def _above(clip: Clip, joint: int) -> list[int]:
 
 
 def _held(clip: Clip, contact: Contact) -> Clip:
-    skeleton, parents = clip.skeleton, clip.skeleton.parents
+    skeleton = clip.skeleton
     upper, lower, hand, to = (
         skeleton.index(n) for n in (contact.upper, contact.lower, contact.hand, contact.to)
     )
@@ -84,7 +84,27 @@ def _held(clip: Clip, contact: Contact) -> Clip:
     stays = places[:, to] + rotation.rotate(turns[:, to], np.broadcast_to(offset, places[:, to].shape))
     weight = _weight(clip, contact, np.linalg.norm(stays - places[:, hand], axis=-1))
     goal = places[:, hand] + weight[:, None] * (stays - places[:, hand])
-    swing, fold = _bent(places[:, upper], places[:, lower], places[:, hand], goal, turns[:, upper])
+    wanted = rotation.multiply(turns[:, to], np.broadcast_to(turn, turns[:, to].shape))
+    turned = rotation.nlerp(turns[:, hand], wanted, weight)
+    rotations = brought(clip, turns, places, (upper, lower, hand), goal, turned)
+    out, moved = clip.rotations.copy(), weight > 0
+    for joint in (upper, lower, hand):
+        out[moved, joint] = _continuous(rotations[moved, joint], clip.rotations[moved, joint])
+    return replace(clip, rotations=out)
+
+
+def brought(
+    clip: Clip, turns: Array, places: Array, limb: tuple[int, int, int], goal: Array, turned: Array
+) -> Array:
+    """Return a clip's local rotations `[F, J, 4]` with the end of a limb of two bones where it should be, or
+    as near as it reaches; it bends to the side it is bent to.
+
+    turns `[F, J, 4]`, places `[F, J, 3]`: of all joints, globally. limb: its upper and lower joint, its end.
+    goal `[F, 3]`: where the end comes to. turned `[F, 4]`: how the end is turned then, globally.
+    """
+    parents = clip.skeleton.parents
+    upper, lower, end = limb
+    swing, fold = _bent(places[:, upper], places[:, lower], places[:, end], goal, turns[:, upper])
     rotations = np.array(clip.rotations, np.float64)
     above_upper = turns[:, parents[upper]] if parents[upper] >= 0 else rotation.IDENTITY
     rotations[:, upper] = rotation.multiply(
@@ -95,14 +115,9 @@ def _held(clip: Clip, contact: Contact) -> Clip:
     rotations[:, lower] = rotation.multiply(
         rotation.conjugate(above_lower), rotation.multiply(both, turns[:, lower])
     )
-    above_hand = rotation.multiply(both, turns[:, parents[hand]])
-    wanted = rotation.multiply(turns[:, to], np.broadcast_to(turn, turns[:, to].shape))
-    turned = rotation.nlerp(turns[:, hand], wanted, weight)
-    rotations[:, hand] = rotation.multiply(rotation.conjugate(above_hand), turned)
-    out, moved = clip.rotations.copy(), weight > 0
-    for joint in (upper, lower, hand):
-        out[moved, joint] = _continuous(rotations[moved, joint], clip.rotations[moved, joint])
-    return replace(clip, rotations=out)
+    above_end = rotation.multiply(both, turns[:, parents[end]])
+    rotations[:, end] = rotation.multiply(rotation.conjugate(above_end), turned)
+    return rotations
 
 
 def _continuous(rotations: Array, like: Array) -> Array:

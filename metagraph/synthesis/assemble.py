@@ -16,6 +16,7 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
 from metagraph.suggest.tracks import RATE, poses_of, rig_of, stands
 from metagraph.synthesis.search import Path
+from metagraph.synthesis.standing_feet import held_feet, standing
 from metagraph.synthesis.states import States, SynthesisError
 
 Array = NDArray[Any]
@@ -36,12 +37,18 @@ class _Frames:
 
 
 def assemble(
-    states: States, clips: Sequence[Clip], path: Path, name: str = "synthesised", blend: int = BLEND
+    states: States,
+    clips: Sequence[Clip],
+    path: Path,
+    name: str = "synthesised",
+    blend: int = BLEND,
+    hold_feet: bool = True,
 ) -> Clip:
     """Return a path's motion, RATE frames a second. clips: those the states are of. It begins over the
     origin, facing +z; from there the root goes on by what each frame goes on in its take. blend: frames on
     either side of a transition in which one motion fades into the other, by a cosine, rotations along the
-    shortest way (slerp). Raises SynthesisError when the takes are others.
+    shortest way (slerp). hold_feet: where it goes from piece to piece, feet that stood in the takes stay
+    where they were put down. Raises SynthesisError when the takes are others.
     """
     takes = [c for c in clips if c.frames >= 2]
     frames = _frames(takes)
@@ -60,7 +67,7 @@ def assemble(
         after = min(blend, (edges[number + 2] - jump) // 2)
         _blend(out, frames, states, way, ground, heading, jump, before, after)
     joints = sorted({0, *roots.tolist(), *(j for c in takes for j in c.translated)})
-    return Clip(
+    made = Clip(
         name,
         takes[0].skeleton,
         RATE,
@@ -72,6 +79,11 @@ def assemble(
             "transitions",
         ),
     )
+    if not hold_feet or not len(path.jumps):
+        return made
+    each = [standing(c.skeleton, poses_of(c)) for c in takes]
+    feet = {side: np.concatenate([one[side] for one in each])[way] for side in each[0]}
+    return held_feet(made, feet)
 
 
 def _first(states: States) -> Array:
