@@ -57,7 +57,7 @@ def _long(there: Array, least: int) -> Array:
             np.diff(np.concatenate([[not value], out == value, [not value]]).astype(np.int8))
         )
         for a, b in edges.reshape(-1, 2):
-            inside = value or (0 < a and b < len(out))
+            inside = value or (a > 0 and b < len(out))
             if inside and b - a < (least if value else least // 2):
                 out[a:b] = not value
     return out
