@@ -124,7 +124,6 @@ def empty(window: Any) -> None:
     for job in list(shell.jobs.running):
         job.cancel()
     shell.stage.performance.live.end()
-    QSettings().clear()  # the page one begins on offers no files of this test
     shell.document.load(Project(), None)
     settle(window)
     QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
