@@ -72,6 +72,18 @@ def say(options: Namespace, words: str, data: Any) -> None:
     print(json.dumps(data) if options.json else words)
 
 
+def may_delete(options: Namespace, folder: Path) -> bool:
+    """Return whether a folder may be deleted: `--yes` says so, or somebody who is asked. Raises ValueError
+    where nobody can be asked.
+    """
+    if options.yes:
+        return True
+    if options.json or not sys.stdin.isatty():
+        raise ValueError(f"deleting {folder} cannot be taken back: say --yes")
+    asked = f"Delete {folder} and all that is in it? It cannot be taken back. [y/N] "
+    return input(asked).lower() == "y"
+
+
 def performance_arguments(parser: ArgumentParser, seconds: float) -> None:
     """Add the options that say which performance, and how much of it. seconds: the usual length."""
     parser.add_argument(

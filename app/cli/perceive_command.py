@@ -236,18 +236,15 @@ def withdraw(options: Namespace) -> int:
 
 
 def delete(options: Namespace) -> int:
-    from app.cli.command_output import say
+    from app.cli.command_output import may_delete, say
     from metagraph.study.perceive.folder import read_folder
     from metagraph.study.withdrawal import delete as remove
 
     study = read_folder(options.folder)
     study.known(options.participant)
     place = study.data(options.participant)
-    if not options.yes:
-        if options.json or not sys.stdin.isatty():
-            raise ValueError(f"deleting {place} cannot be taken back: say --yes")
-        if input(f"Delete {place} and all that is in it? It cannot be taken back. [y/N] ").lower() != "y":
-            return 1
+    if not may_delete(options, place):
+        return 1
     note = remove(study, options.participant)
     say(
         options,

@@ -82,7 +82,7 @@ def withdraw(options: Namespace) -> int:
 
 
 def delete(options: Namespace) -> int:
-    from app.cli.command_output import say
+    from app.cli.command_output import may_delete, say
     from metagraph.study.study_plan import read_study
     from metagraph.study.withdrawal import delete as remove
     from metagraph.study.withdrawal import mentions
@@ -90,11 +90,8 @@ def delete(options: Namespace) -> int:
     study = read_study(options.study)
     study.plan.known(options.participant)
     folder = study.data(options.participant)
-    if not options.yes:
-        if options.json or not sys.stdin.isatty():
-            raise ValueError(f"deleting {folder} cannot be taken back: say --yes")
-        if input(f"Delete {folder} and all that is in it? It cannot be taken back. [y/N] ").lower() != "y":
-            return 1
+    if not may_delete(options, folder):
+        return 1
     note = remove(study, options.participant)
     say(options, f"{options.participant}: {note['files']} files deleted", {"deleted": note})
     _told(mentions(study, options.participant))

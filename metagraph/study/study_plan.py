@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 import msgspec
 from msgspec import Meta, Struct
@@ -32,6 +32,7 @@ VERSION = 1
 FILE = "study.yaml"
 MOST = 1000  # participants
 _CORRECT = "Correct it; docs/studies.md describes every field."
+P = TypeVar("P")
 
 ConditionName = Literal["meta", "manual"]
 Minutes = Annotated[float, Meta(gt=0, le=1440)]
@@ -270,32 +271,46 @@ def read_study(path: str | Path) -> Study:
 
 def from_text(text: str, path: Path = Path(FILE)) -> Plan:
     """Return the plan of a study file's text. Raises FileError."""
+    return plan_from(text, path, Plan, "study", "no study", VERSION, faults, _CORRECT)
+
+
+def plan_from(
+    text: str,
+    path: Path,
+    kind: type[P],
+    key: str,
+    lacking: str,
+    newest: int,
+    faults_of: Callable[[P], Iterable[tuple[str, str]]],
+    remedy: str,
+) -> P:
+    """Return the plan of a YAML text that begins with its key and version. lacking: what a text without them
+    is. faults_of: what is wrong that the fields' types do not say, (field, cause). Raises FileError naming
+    the line.
+    """
     try:
         data, lines = parse(text)
     except TextError as error:
-        raise FileError(
-            path, f"not valid YAML ({error})", f"line {error.line}" if error.line else "its text", _CORRECT
-        ) from None
+        place = f"line {error.line}" if error.line else "its text"
+        raise FileError(path, f"not valid YAML ({error})", place, remedy) from None
 
     def failure(cause: str, where: str) -> FileError:
         place = where
         while place not in lines and place:
             place = place[: max(place.rfind("."), place.rfind("["), 0)]
-        return FileError(
-            path, cause, f"line {lines.get(place, 1)}" + (f" ({where})" if where else ""), _CORRECT
-        )
+        told = f"line {lines.get(place, 1)}" + (f" ({where})" if where else "")
+        return FileError(path, cause, told, remedy)
 
-    version = data.get("study") if isinstance(data, Mapping) else None
-    if not isinstance(data, Mapping) or "study" not in data:
-        raise failure("is no study: it should begin with 'study: 1'", "")
-    if isinstance(version, int) and version > VERSION:
-        raise FileError(
-            path, f"is of a newer version ({version}; this one reads {VERSION})", "study", "Update Metagraph."
-        )
-    if version != VERSION or isinstance(version, bool):
-        raise failure(f"should be the version of the format, {VERSION}", "study")
+    version = data.get(key) if isinstance(data, Mapping) else None
+    if not isinstance(data, Mapping) or key not in data:
+        raise failure(f"is {lacking}: it should begin with '{key}: 1'", "")
+    if isinstance(version, int) and version > newest:
+        newer = f"is of a newer version ({version}; this one reads {newest})"
+        raise FileError(path, newer, key, "Update Metagraph.")
+    if version != newest or isinstance(version, bool):
+        raise failure(f"should be the version of the format, {newest}", key)
     try:
-        plan = msgspec.convert(data, Plan)
+        plan = msgspec.convert(data, kind)
     except msgspec.ValidationError as error:
         message, _, where = str(error).partition(" - at `$")
         where = where.rstrip("`").lstrip(".").replace("[...]", "")
@@ -303,7 +318,7 @@ def from_text(text: str, path: Path = Path(FILE)) -> Plan:
         raise failure(
             plain_words(message), ".".join(filter(None, (where, unknown[1] if unknown else "")))
         ) from None
-    for where, cause in faults(plan):
+    for where, cause in faults_of(plan):
         raise failure(cause, where)
     return plan
 

@@ -4,21 +4,17 @@ and checked to the last field. Paths in it are relative to it.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping
 from itertools import combinations
 from pathlib import Path
 from typing import Annotated, Literal
 
-import msgspec
 from msgspec import Meta, Struct
 
 from metagraph.budgets import TEXT_FILE
 from metagraph.errors import FileError
 from metagraph.files import read_file
-from metagraph.formats.text import TextError, parse
 from metagraph.study.questionnaires import Item, Name
-from metagraph.study.study_plan import MOST, plain_words
+from metagraph.study.study_plan import MOST, plan_from
 
 VERSION = 1
 FILE = "perceive.yaml"
@@ -160,39 +156,7 @@ def read_plan(path: str | Path) -> PerceivePlan:
 
 def from_text(text: str, path: Path = Path(FILE)) -> PerceivePlan:
     """Return the plan of a text. Raises FileError."""
-    try:
-        data, lines = parse(text)
-    except TextError as error:
-        place = f"line {error.line}" if error.line else "its text"
-        raise FileError(path, f"not valid YAML ({error})", place, _CORRECT) from None
-
-    def failure(cause: str, where: str) -> FileError:
-        place = where
-        while place not in lines and place:
-            place = place[: max(place.rfind("."), place.rfind("["), 0)]
-        told = f"line {lines.get(place, 1)}" + (f" ({where})" if where else "")
-        return FileError(path, cause, told, _CORRECT)
-
-    version = data.get("perceive") if isinstance(data, Mapping) else None
-    if not isinstance(data, Mapping) or "perceive" not in data:
-        raise failure("is no perceptual study: it should begin with 'perceive: 1'", "")
-    if isinstance(version, int) and version > VERSION:
-        newer = f"is of a newer version ({version}; this one reads {VERSION})"
-        raise FileError(path, newer, "perceive", "Update Metagraph.")
-    if version != VERSION or isinstance(version, bool):
-        raise failure(f"should be the version of the format, {VERSION}", "perceive")
-    try:
-        plan = msgspec.convert(data, PerceivePlan)
-    except msgspec.ValidationError as error:
-        message, _, where = str(error).partition(" - at `$")
-        where = where.rstrip("`").lstrip(".").replace("[...]", "")
-        unknown = re.search(r"unknown field `(\w+)`", message)
-        raise failure(
-            plain_words(message), ".".join(filter(None, (where, unknown[1] if unknown else "")))
-        ) from None
-    for where, cause in faults(plan):
-        raise failure(cause, where)
-    return plan
+    return plan_from(text, path, PerceivePlan, "perceive", "no perceptual study", VERSION, faults, _CORRECT)
 
 
 def faults(plan: PerceivePlan) -> list[tuple[str, str]]:
