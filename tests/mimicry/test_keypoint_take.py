@@ -134,3 +134,47 @@ def test_other_studios_takes_are_made_again_too(shared_data: Path) -> None:
         clip = read_clips(path)[0]
         errors.append(off(clip, take_of(seen(clip), clip.skeleton, clip.name)).reshape(-1, 7))
     assert np.median(np.concatenate(errors)) < 0.045
+
+
+def test_elbows_and_knees_bend_in_one_plane_of_the_upper_limb(sample: Project) -> None:
+    """An arm may be where it should and yet be twisted: it bends in a plane that stays with it."""
+    from metagraph.motion import rotation
+
+    clips = [c.motion for c in sample.clips.values() if c.motion is not None][::24]
+    turned = []
+    for clip in clips:
+        made = take_of(seen(clip), clip.skeleton, clip.name)
+        roles = find_roles(clip.skeleton)
+        turns, places = made.skeleton.globals(made.poses())
+        for side in ("left", "right"):
+            upper, lower, hand = (roles[f"{side}_{r}"] for r in ("upper_arm", "lower_arm", "hand"))
+            one, two = places[:, lower] - places[:, upper], places[:, hand] - places[:, lower]
+            plane = np.cross(one, two)
+            plane /= np.linalg.norm(one, axis=-1, keepdims=True) * np.linalg.norm(two, axis=-1, keepdims=True)
+            bent = np.linalg.norm(plane, axis=-1) > 0.35  # clearly: straighter arms keep the plane they had
+            own = rotation.rotate(rotation.conjugate(turns[bent, upper]), plane[bent])
+            turned.append(own / np.linalg.norm(own, axis=-1, keepdims=True) * (1 if side == "left" else -1))
+    for side in (0, 1):
+        planes = np.concatenate(turned[side::2])
+        assert len(planes) > 100
+        middle = planes.mean(0) / np.linalg.norm(planes.mean(0))
+        assert np.degrees(np.arccos(np.clip(planes @ middle, -1, 1))).max() < 5
+
+
+def test_who_is_unseen_for_long_stays_as_last_seen(sample: Project) -> None:
+    clip = next(c.motion for c in sample.clips.values() if c.motion is not None)
+    whole = seen(clip)
+    still = np.repeat(whole.points[:1], 90, 0)
+    wrist = POINTS.index("left_wrist")
+    elbow = still[0, POINTS.index("left_elbow")]
+    bent = np.linalg.norm(still[0, wrist] - elbow)
+    angle = np.linspace(0, np.pi / 2, 90)
+    still[:, wrist] = elbow + bent * np.stack([0 * angle, np.sin(angle) - 0.5, np.cos(angle)], -1)
+    sure = np.ones(still.shape[:2])
+    sure[20:70, wrist] = 0
+    made = take_of(Keypoints(np.arange(90) / 30, still, sure, POINTS, 3), clip.skeleton, "x")
+    hand = find_roles(clip.skeleton)["left_hand"]
+    places = made.skeleton.globals(made.poses())[1][:, hand]
+    gap = places[26:64]
+    assert np.linalg.norm(gap - gap[0], axis=-1).max() < 1e-6
+    assert np.linalg.norm(places[80] - gap[0]) > 0.05
