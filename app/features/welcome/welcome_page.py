@@ -150,6 +150,7 @@ class WelcomePage(QWidget):
 
     def _again(self) -> None:
         self.closed = False
+        self._tell_recent()  # a page that is there already may speak of what is no more
         self.follow()
 
     def _close(self) -> None:
