@@ -84,6 +84,14 @@ EXHIBITS: tuple[Exhibit, ...] = (
     Exhibit(
         "rates", "conversation", "table 1", "Movements that go with speech", "speaking", (4, 45), "takes"
     ),
+    Exhibit(
+        "delivery",
+        "conversation",
+        "table 1, figure 11",
+        "What an hour delivers of what is asked",
+        "keeping_rates",
+        (3, 12),
+    ),
     Exhibit("window", "conversation", "figure 3", "A window for a movement", "speaking", (1, 1), "takes"),
     Exhibit("costs", "conversation", "figure 4", "What a transition costs", "graphs", (1, 2), "takes"),
     Exhibit("components", "conversation", "table 2", "States and edges", "graphs", (3, 15), "takes"),
