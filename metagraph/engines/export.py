@@ -33,7 +33,7 @@ from metagraph.graph.model import (
 from metagraph.motion.character_mesh import Character
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton, unique_names
-from metagraph.playback import choice, markov
+from metagraph.playback import choice, hashing, markov
 from metagraph.playback.phases import LEAST_BLEND, phases
 from metagraph.playback.planner import WINDOW
 from metagraph.playback.sampling import HURRY, LOOP_FADE
@@ -267,9 +267,9 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
         planner=_planner(project.settings),
         randomness=c.Randomness(
             "fnv1a32-mix",
-            choice.OFFSET,
-            choice.PRIME,
-            [16, choice.MIX[0], 13, choice.MIX[1], 16],
+            hashing.OFFSET,
+            hashing.PRIME,
+            [16, hashing.MIX[0], 13, hashing.MIX[1], 16],
             choice.key32(1, "a", "b"),
         ),
         roles=dict(project.roles),

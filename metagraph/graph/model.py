@@ -318,7 +318,7 @@ class Markov:
     negative: float = 0.0
     tags: tuple[str, ...] = ()
     lengths: tuple[tuple[float, float], ...] = ()
-    modes: tuple[tuple[float, float, float], ...] = ()
+    modes: tuple[tuple[float, ...], ...] = ()
 
     def tag(self, state: int) -> str:
         """Return the tags a state asks for, "" for none."""

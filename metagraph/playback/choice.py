@@ -9,49 +9,27 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-_MASK = 0xFFFFFFFF
-OFFSET, PRIME = 0x811C9DC5, 0x01000193  # FNV-1a's, 32 bits
-MIX = (0x85EBCA6B, 0xC2B2AE35)  # MurmurHash3's finaliser
+from metagraph.playback.hashing import Bits, absorb, begun, mix
 
 
-def mix(value: int) -> int:
-    """Scramble 32 bits: two rounds of shift-xor and odd multiplication (MurmurHash3's finaliser)."""
-    value &= _MASK
-    value ^= value >> 16
-    value = (value * MIX[0]) & _MASK
-    value ^= value >> 13
-    value = (value * MIX[1]) & _MASK
-    return value ^ (value >> 16)
-
-
-def _absorb(value: int, word: str) -> int:
-    for byte in word.encode():
-        value = ((value ^ byte) * PRIME) & _MASK
-    return (value * PRIME) & _MASK  # the closing zero byte
-
-
-def _begin(seed: int, words: tuple[str, ...]) -> int:
-    value = (OFFSET ^ mix(seed)) & _MASK
-    for word in words:
-        value = _absorb(value, word)
-    return value
-
-
-def key32(seed: int, *words: str) -> int:
+def key32(seed: Bits, *words: str) -> Bits:
     """Return the 32-bit hash of a seed and words: FNV-1a over their UTF-8 bytes, each word closed by a zero
     byte, then mixed.
 
     The seed, mixed, is xored into FNV's offset basis.
     """
-    return mix(_begin(seed, words))
+    value = begun(seed)
+    for word in words:
+        value = absorb(value, word)
+    return mix(value)
 
 
-def uniform(seed: int, *words: str) -> float:
+def uniform(seed: Bits, *words: str) -> float:
     """Return a number in the open interval (0, 1)."""
-    return (key32(seed, *words) + 0.5) / 4294967296.0
+    return _unit(key32(seed, *words))
 
 
-def pick(seed: int, key: str, purpose: str, weights: Mapping[str, float]) -> str:
+def pick(seed: Bits, key: str, purpose: str, weights: Mapping[str, float]) -> str:
     """Return one of the ids, id k with probability weight_k / sum.
 
     Each id runs its own race, the shortest of exponential times -log(u_k) / weight_k wins; so adding or
@@ -59,12 +37,16 @@ def pick(seed: int, key: str, purpose: str, weights: Mapping[str, float]) -> str
     is positive.
     """
     best, shortest = "", math.inf
-    begun = _begin(seed, (key, purpose))
+    start = absorb(absorb(begun(seed), key), purpose)
     for ident, weight in weights.items():
         if weight > 0:
-            time = -math.log((mix(_absorb(begun, ident)) + 0.5) / 4294967296.0) / weight
+            time = -math.log(_unit(mix(absorb(start, ident)))) / weight
             if time < shortest or (time == shortest and ident < best):
                 best, shortest = ident, time
-    if not best:
+    if best == "":
         raise ValueError("nothing to choose from")
     return best
+
+
+def _unit(bits: Bits) -> float:
+    return (bits + 0.5) / 4294967296.0

@@ -10,6 +10,7 @@ Snell, Finite Markov Chains, section 4.6).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -131,7 +132,7 @@ def compare(
 
 
 def generate(
-    model: Markov, seconds: float, seed: int = 1, kinds: Sequence[Kind] | None = None
+    model: Markov, seconds: float, seed: int = 1, kinds: AbstractSet[Kind] | None = None
 ) -> tuple[Act, ...]:
     """Return what a model does in some seconds when nobody asks for anything."""
     return acts_of_metas(write(model, seed, seconds, kinds)[0])

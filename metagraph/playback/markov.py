@@ -9,11 +9,13 @@ is said to idle, listen or talk: hands gesture with one's own speech, the head n
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping, Sequence
+from collections.abc import Set as AbstractSet
 
 from metagraph.graph.model import Kind, Layer, Limb, Markov, Mode, Project
 from metagraph.graph.words import MODES
 from metagraph.playback.choice import pick, uniform
+from metagraph.playback.hashing import Bits
 from metagraph.playback.plan import WRITTEN, Cursor, MetaAction, MetaRequest
 
 _LIMB: Mapping[str, Limb] = {"L": "left", "R": "right", "LR": "both"}
@@ -67,8 +69,6 @@ DEFAULTS: Mapping[Layer, Markov] = {"body": BODY, "arms": ARMS, "head": HEAD}
 
 KINDS: tuple[Kind, ...] = ("gesture", "fidget", "transition")  # as in `Markov.modes`
 
-START = Cursor()
-
 
 def model(project: Project, layer: Layer) -> Markov:
     """Return the project's model of a layer, or the default."""
@@ -79,7 +79,7 @@ BEGIN = Cursor()
 
 
 def write(
-    chain: Markov, seed: int, until: float, kinds: Collection[Kind] | None = None, cursor: Cursor = BEGIN
+    chain: Markov, seed: Bits, until: float, kinds: AbstractSet[Kind] | None = None, cursor: Cursor = BEGIN
 ) -> tuple[list[MetaAction], Cursor]:
     """Return the meta actions that start before `until` seconds, from the cursor on, and the cursor before
     the first one left out.
@@ -94,22 +94,16 @@ def write(
     number, state, time = cursor.number, cursor.state, cursor.time
     open_to = [1.0 if kinds is None or kind in kinds else 0.0 for _, kind in chain.states]
     out: list[MetaAction] = []
-    while any(open_to):
+    while any(p > 0 for p in open_to):
         key = f"auto/{chain.layer}/{number}"
-        row = (
-            [p * may for p, may in zip(chain.matrix[state], open_to, strict=True)]
-            if 0 <= state < len(open_to)
-            else open_to
-        )
-        weights = {str(i): p for i, p in enumerate(row if any(row) else open_to)}
         start = time + chain.gap * (0.35 + 1.3 * uniform(seed, key, "gap"))
-        if start >= until:
+        if not start < until:  # nor when it is no number
             break
-        state = int(pick(seed, key, "state", weights))
+        state = int(pick(seed, key, "state", _row(chain, state, open_to)))
         limb, kind = chain.states[state]
         seconds = length(chain, state, seed, key)
         tags = tuple(chain.tag(state).split())
-        if kind == "gesture" and not chain.tags:
+        if kind == "gesture" and len(chain.tags) == 0:
             draw = uniform(seed, key, "tag")
             if draw < chain.positive:
                 tags = ("positive",)
@@ -121,17 +115,29 @@ def write(
     return out, Cursor(number, state, time)
 
 
-def performs(chain: Markov, seed: int, meta: MetaAction, mode: Mode | None) -> bool:
+def _row(chain: Markov, state: int, open_to: Sequence[float]) -> dict[str, float]:
+    """Return how likely each state is after a state (-1: before the first), by its place; any that may be
+    where nothing leads on.
+    """
+    row = list(open_to)
+    if 0 <= state < len(row):
+        row = [p * may for p, may in zip(chain.matrix[state], open_to, strict=True)]
+    if not any(p > 0 for p in row):
+        row = list(open_to)
+    return {str(i): p for i, p in enumerate(row)}
+
+
+def performs(chain: Markov, seed: Bits, meta: MetaAction, mode: Mode | None) -> bool:
     """Whether something the model wrote is performed while somebody idles, listens or talks (`Markov.modes`).
     What is left out leaves the rest as it was, so that it does not matter when a mode became known.
     """
-    if not chain.modes or mode is None or meta.request.kind not in KINDS:
+    if len(chain.modes) == 0 or mode is None or meta.request.kind not in KINDS:
         return True
     share = chain.modes[MODES.index(mode)][KINDS.index(meta.request.kind)]
     return share >= 1 or uniform(seed, meta.request.id, "mode") < share
 
 
-def length(chain: Markov, state: int, seed: int, key: str) -> float:
+def length(chain: Markov, state: int, seed: Bits, key: str) -> float:
     """Return how many seconds meta action `key` lasts: 1 to 3, evenly, where the model has no lengths.
 
     Else log-normal with the state's mean m and standard deviation s, from two uniform draws u, v in (0, 1) by
@@ -139,9 +145,10 @@ def length(chain: Markov, state: int, seed: int, key: str) -> float:
     `m exp(sqrt(a) z - a / 2)`.
     """
     u = uniform(seed, key, "length")
-    if not chain.lengths:
+    if len(chain.lengths) == 0:
         return 1.0 + 2.0 * u
     mean, deviation = chain.lengths[state]
-    spread = math.log1p((deviation / mean) ** 2)
+    share = deviation / mean
+    spread = math.log1p(share * share)
     z = math.sqrt(-2.0 * math.log(u)) * math.cos(2.0 * math.pi * uniform(seed, key, "length2"))
     return mean * math.exp(math.sqrt(spread) * z - spread / 2.0)

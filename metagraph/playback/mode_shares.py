@@ -70,4 +70,4 @@ def with_modes(
         else usual[m]
         for m in MODES
     )
-    return replace(model, gap=round(gap, 4), modes=rows)  # type: ignore[arg-type]
+    return replace(model, gap=round(gap, 4), modes=rows)

@@ -8,11 +8,9 @@ remainder if it asked to.
 
 from __future__ import annotations
 
-import heapq
-from bisect import bisect_right
+from bisect import bisect_right, insort
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from itertools import count
 
 from metagraph.graph.model import Settings
 from metagraph.playback.plan import MetaAction, Outcome, Report
@@ -97,21 +95,19 @@ def _fitted(
     return out, reports
 
 
-def _placed(metas: Iterable[MetaAction], settings: Settings) -> tuple[list[MetaAction], list[Report]]:
-    serial = count()  # so that equal entries never compare further
-    queue: list[tuple[float, int, str, int, int, MetaAction]] = []
-    reports: list[Report] = []
+def _order(meta: MetaAction) -> tuple[float, int, str, int]:
+    """Return what decides who is placed first."""
+    return meta.start, -meta.request.priority, meta.request.id, meta.part
 
-    def push(meta: MetaAction) -> None:
-        heapq.heappush(
-            queue, (meta.start, -meta.request.priority, meta.request.id, meta.part, next(serial), meta)
-        )
 
-    for meta in metas:
-        push(meta)
+def _placed(metas: Sequence[MetaAction], settings: Settings) -> tuple[list[MetaAction], list[Report]]:
+    queue = sorted(metas, key=_order)
+    at = 0  # what is before it was looked at
     placed: list[MetaAction] = []
-    while queue:
-        meta = heapq.heappop(queue)[-1]
+    reports: list[Report] = []
+    while at < len(queue):
+        meta = queue[at]
+        at += 1
         last = placed[-1] if placed else None
         if last is None or last.end <= meta.start:
             placed.append(meta)
@@ -125,17 +121,18 @@ def _placed(metas: Iterable[MetaAction], settings: Settings) -> tuple[list[MetaA
             rest = replace(last, start=meta.end, part=last.part + 1 if kept else last.part)
             resumes = last.request.resume and rest.end - rest.start >= settings.shortest
             if resumes:
-                push(rest)
+                insort(queue, rest, lo=at, key=_order)
             word = "is cut" if kept else "gives way"
             after = f" and goes on at {meta.end:.2f} s" if resumes else ""
             outcome: Outcome = "resumed" if resumes else "cut" if kept else "covered"
             message = f"{word} at {meta.start:.2f} s for '{meta.request.id}', which is more important{after}"
             reports.append(_told(last, outcome, message, kept or resumes))
-            push(meta)  # it may reach back over what was placed before, too
+            insort(queue, meta, lo=at, key=_order)  # it may reach back over what was placed before, too
         elif last.end - meta.request.start > settings.wait:
             reports.append(_told(meta, "covered", _no_time(last)))
         else:
-            push(replace(meta, start=last.end, end=last.end + (meta.end - meta.start)))
+            later = replace(meta, start=last.end, end=last.end + (meta.end - meta.start))
+            insort(queue, later, lo=at, key=_order)
             reports.append(
                 _told(
                     meta, "late", f"waits {last.end - meta.request.start:.2f} s for '{last.request.id}'", True

@@ -34,7 +34,7 @@ from metagraph.graph.check import check
 from metagraph.graph.expand import connections, size
 from metagraph.graph.model import LAYERS, Markov, Project
 from metagraph.motion.skeleton import unique_names
-from metagraph.playback import choice, markov
+from metagraph.playback import choice, hashing, markov
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import ease, pose_at
 from tests.projects import clip, projects
@@ -201,8 +201,8 @@ def test_the_constants_are_those_the_planner_uses(exported: Any) -> None:
     document = json.loads(exported.json.read_bytes())
     numbers = document["randomness"]
     assert (numbers["offset"], numbers["prime"], numbers["test"]) == (
-        choice.OFFSET,
-        choice.PRIME,
+        hashing.OFFSET,
+        hashing.PRIME,
         choice.key32(1, "a", "b"),
     )
     assert document["planner"]["blend"] == "3x^2-2x^3"

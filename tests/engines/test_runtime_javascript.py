@@ -652,15 +652,15 @@ def test_it_plays_in_three_js(tmp_path: Path) -> None:
 
 MUTATIONS = [
     ("life/gaze.js", "x * x * (3 - 2 * x)", "x", "the blending curve"),
-    ("choice.js", "return close(plain);", "return plain;", "the zero byte that closes a word"),
-    ("choice.js", "value ^= value >>> 13;", "value ^= value >>> 12;", "the mixing"),
+    ("hashing.js", "return close(plain);", "return plain;", "the zero byte that closes a word"),
+    ("hashing.js", "value ^= value >>> 13;", "value ^= value >>> 12;", "the mixing"),
     (
-        "choice.js",
+        "hashing.js",
         "UTF8.encode(word).reduce",
         "[...word].map((c) => c.charCodeAt(0)).reduce",
         "bytes of UTF-8",
     ),
-    ("choice.js", "/ weights[n];", "* weights[n];", "the weight of a candidate"),
+    ("choice.js", "/ weight;", "* weight;", "the weight of a candidate"),
     (
         "pick.js",
         "Math.max(this.count(a.id, now), 1)",
@@ -682,7 +682,7 @@ MUTATIONS = [
         "if (action.endStance !== goal || before.size > 2) continue;",
         "ways",
     ),
-    ("pick.js", "hop ? `${keyOf(meta)}/${hop}` : keyOf(meta)", "keyOf(meta)", "the key of a hop"),
+    ("pick.js", "hop ? `${meta.key}/${hop}` : meta.key", "meta.key", "the key of a hop"),
     (
         "pick.js",
         "exact = [exact, found, every].find",
@@ -720,8 +720,8 @@ MUTATIONS = [
     ("pick.js", "waits > this.settings.wait", "false", "how long what was asked for waits"),
     ("pick.js", "const until = cue.end - cue.blendOut;", "const until = cue.end;", "when a loop begins anew"),
     ("plan.js", "held * ((cue.holdTo - cue.holdFrom) / cue.hold)", "held", "the stretch of a hold"),
-    ("replan.js", "y.request.priority - x.request.priority ||", "", "priority at equal starts"),
-    ("replan.js", "|| compareText(x.request.id, y.request.id)", "", "ids at equal starts and priorities"),
+    ("replan.js", "-meta.request.priority, meta", "meta", "priority at equal starts"),
+    ("replan.js", "meta.request.id, meta.part", "meta.part", "ids at equal starts and priorities"),
     (
         "replan.js",
         "start: meta.end, part: kept ? last.part + 1 : last.part",
@@ -746,8 +746,8 @@ MUTATIONS = [
     ("markov.js", "return 1 + 2 * u;", "return 1 + u;", "how long what a model writes lasts"),
     (
         "markov.js",
-        "draw < model.positive + model.negative",
-        "draw < model.negative",
+        "draw < chain.positive + chain.negative",
+        "draw < chain.negative",
         "the share of negative gestures",
     ),
     (

@@ -18,7 +18,7 @@ from metagraph.engines.export import export
 from metagraph.engines.reading import read_export
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
-from metagraph.playback import choice, markov, player, replan, sampling
+from metagraph.playback import choice, hashing, markov, player, replan, sampling
 from metagraph.playback.life import evaluate, gaze, solve
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import pose_at
@@ -101,7 +101,7 @@ def test_an_export_plays_what_the_preview_plays(sample: Project, tmp_path: Path)
 
 
 def _broken_key32(seed: int, *words: str) -> int:
-    return choice.mix(choice.OFFSET ^ len("".join(words)) ^ seed)
+    return hashing.mix(hashing.OFFSET ^ len("".join(words)) ^ seed)
 
 
 MUTATIONS: dict[str, tuple[Any, str, Any]] = {

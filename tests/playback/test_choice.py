@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from metagraph.playback.choice import key32, mix, pick, uniform
+from metagraph.playback.choice import key32, pick, uniform
+from metagraph.playback.hashing import mix
 
 CASES = [(0,), (1,), (0, ""), (1, "a", "b"), (1, "ab"), (4294967295, "ä", "x"), (7, "auto/arms/0", "state")]
 KEYS = [2872998923, 3987542849, 91794203, 1418986408, 2281871870, 3040681498, 2718527135]

@@ -253,7 +253,7 @@ class ModelsPanel(QWidget):
             label.setVisible(not shown.tags)
         self.share_words.setVisible(bool(shown.tags))
         self._show_sources()
-        self.strip.show_acts({layer: generate(shown, SAMPLE, self.seed, sorted(kinds) or None)}, SAMPLE)
+        self.strip.show_acts({layer: generate(shown, SAMPLE, self.seed, kinds or None)}, SAMPLE)
         self._soon.start()
 
     def _say(self, words: str) -> None:

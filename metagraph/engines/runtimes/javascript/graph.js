@@ -4,6 +4,7 @@ import { readBody } from "./life/body.js";
 import { Voices } from "./life/voice.js";
 import { Glb, GlbError, resample } from "./glb.js";
 import { hear } from "./hear.js";
+import { Markov } from "./model.js";
 import { emptyPlan } from "./plan.js";
 import { morphsAt, poseAt } from "./pose.js";
 import { multiply } from "./rotation.js";
@@ -127,7 +128,8 @@ export class LayerGraph {
       this.index.get(key).push(action);
     }
     this.kinds = new Set([...this.actions.values()].map((action) => action.kind));
-    this.markov = { tags: [], lengths: [], modes: [], ...data.markov };
+    const { states, matrix, gap, positive, negative, tags, lengths, modes } = data.markov;
+    this.markov = new Markov(layer, states, matrix, gap, positive, negative, tags, lengths, modes);
     inRange(this.markov.gap, 1e-3, 1e9, `layers.${layer}.markov.gap`);
     for (const row of this.markov.modes) for (const p of row) inRange(p, 0, 1, `layers.${layer}.markov.modes`);
     for (const row of this.markov.matrix) for (const p of row) inRange(p, 0, 1, `layers.${layer}.markov.matrix`);

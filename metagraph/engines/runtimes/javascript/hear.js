@@ -1,6 +1,6 @@
 /** Performing what is asked while it comes in: working asks into a running plan, forgetting what is over, and answering. */
 
-import { keyOf, remember } from "./plan.js";
+import { remember } from "./plan.js";
 import { extend } from "./planner.js";
 import { plus, sinceTrack, trackItems, without } from "./life/track.js";
 import { sinceSchedule } from "./life/schedule.js";
@@ -120,7 +120,7 @@ function sinceLayer(plan, seconds) {
   return {
     ...plan,
     cues,
-    metas: plan.metas.filter((m) => m.end >= seconds || played.has(keyOf(m))),
+    metas: plan.metas.filter((m) => m.end >= seconds || played.has(m.key)),
     rests: plan.rests.slice(under),
     past: pastOf(plan.past, gone),
   };

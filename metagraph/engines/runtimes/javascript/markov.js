@@ -1,60 +1,125 @@
-/** The Markov model that performs when nobody asks for anything: a first-order chain over (limb, kind). */
+/**
+ * The Markov model that performs when nobody asks for anything: a first-order chain over (limb, kind).
+ *
+ * The arms matrix is the paper's (Borer et al., figure 11), learned from annotated casual conversation. Body and head have
+ * no published matrix; theirs are ours, shaped on the paper's labels: the head nods and now and then changes its tilt, the
+ * body mostly rests, shifts and fidgets. So are the shares of what is performed while one is said to idle, listen or talk:
+ * hands gesture with one's own speech, the head nods at the other's.
+ *
+ * Translated from metagraph/playback/markov.py; change that, and translate anew.
+ */
 
-import { pick, uniform } from "./choice.js";
-import { WRITTEN, makeRequest } from "./plan.js";
 import { MODES } from "./words.js";
+import { pick, uniform } from "./choice.js";
+import { Cursor, MetaAction, MetaRequest, WRITTEN } from "./meta_plan.js";
+import { splitWords, zip } from "./basics.js";
+
+export const KINDS = ["gesture", "fidget", "transition"]; // as in `Markov.modes`
+export const BEGIN = new Cursor();
 
 /**
- * Return the meta actions that start before `until` seconds, from the cursor on, and the cursor before the first one left out.
+ * Return the meta actions that start before `until` seconds, from the cursor on, and the cursor before the first one left
+ * out.
  *
- * Each draw is keyed by the meta action's number, so a longer horizon only appends. kinds: what the graph has; states of other
- * kinds are passed over. A row of zeros starts again from any state.
- * @param {object} model @param {string} layer @param {number} seed @param {number} until @param {Set<string>} kinds
- * @param {{number: number, state: number, time: number}} cursor
+ * Rests are drawn between 0.35 and 1.65 times the mean gap, windows as `length` says. kinds: what the graph has; states of
+ * other kinds are passed over, so that half-filled graphs perform too.
+ *
+ * Each draw is keyed by the meta action's number, so a longer horizon only appends, and writing on from a cursor gives bit
+ * for bit what writing in one go does. A chain that cannot leave a row of zeros starts again from any state.
+ * @param {Markov} chain
+ * @param {number} seed
+ * @param {number} until
+ * @param {?Set<string>} kinds
+ * @param {Cursor} cursor
+ * @returns {[MetaAction[], Cursor]}
  */
-export function write(model, layer, seed, until, kinds, cursor) {
-  let { number, state, time } = cursor;
-  const open = model.states.map(([, kind]) => (kinds.has(kind) ? 1 : 0));
-  const places = open.map((_, n) => String(n));
-  const metas = [];
-  while (open.some((x) => x > 0)) {
-    const key = `auto/${layer}/${number}`;
-    const start = time + model.gap * (0.35 + 1.3 * uniform(seed, key, "gap"));
-    if (!(start < until)) break; // nor when it is no number
-    const row = state >= 0 && state < open.length ? model.matrix[state].map((p, n) => p * open[n]) : open;
-    state = Number(pick(seed, key, "state", places, row.some((p) => p > 0) ? row : open));
-    const [limb, kind] = model.states[state];
-    const seconds = lengthOf(model, state, seed, key);
-    let tags = (model.tags[state] ?? "").split(/\s+/).filter(Boolean);
-    if (kind === "gesture" && !model.tags.length) {
-      const draw = uniform(seed, key, "tag");
-      if (draw < model.positive) tags = ["positive"];
-      else if (draw < model.positive + model.negative) tags = ["negative"];
+export function write(chain, seed, until, kinds = null, cursor = BEGIN) {
+  let number = cursor.number;
+  let state = cursor.state;
+  let time = cursor.time;
+  const openTo = chain.states.map(([, kind]) => (kinds === null || kinds.has(kind)) ? 1 : 0);
+  const out = [];
+  while (openTo.some((p) => p > 0)) {
+    const key = `auto/${chain.layer}/${number}`;
+    const start = time + chain.gap * (0.35 + 1.3 * uniform(seed, key, "gap"));
+    if (!(start < until)) { // nor when it is no number
+      break;
     }
-    const request = makeRequest({ id: key, layer, kind, start, duration: seconds, tags, limb, priority: WRITTEN });
-    metas.push({ request, start, end: start + seconds, part: 0, written: true });
-    number += 1;
+    state = Number(pick(seed, key, "state", _row(chain, state, openTo)));
+    const [limb, kind] = chain.states[state];
+    const seconds = length(chain, state, seed, key);
+    let tags = [...splitWords(chain.tag(state))];
+    if (kind === "gesture" && chain.tags.length === 0) {
+      const draw = uniform(seed, key, "tag");
+      if (draw < chain.positive) {
+        tags = ["positive"];
+      } else if (draw < chain.positive + chain.negative) {
+        tags = ["negative"];
+      }
+    }
+    const request = new MetaRequest(key, chain.layer, kind, start, seconds, null, tags, limb, null, WRITTEN);
+    out.push(new MetaAction(request, start, start + seconds, 0, true));
+    number = number + 1;
     time = start + seconds;
   }
-  return { metas, cursor: { number, state, time } };
+  return [out, new Cursor(number, state, time)];
 }
 
-/** Return how many seconds a meta action lasts: 1 to 3, evenly, where the model has no lengths, else log-normal (Box and Muller). */
-function lengthOf(model, state, seed, key) {
+/**
+ * Return how likely each state is after a state (-1: before the first), by its place; any that may be where nothing leads
+ * on.
+ * @param {Markov} chain
+ * @param {number} state
+ * @param {number[]} openTo
+ * @returns {Map<string, number>}
+ */
+function _row(chain, state, openTo) {
+  let row = [...openTo];
+  if (0 <= state && state < row.length) {
+    row = zip(chain.matrix[state], openTo).map(([p, may]) => p * may);
+  }
+  if (!row.some((p) => p > 0)) {
+    row = [...openTo];
+  }
+  return new Map(row.map((p, i) => [String(i), p]));
+}
+
+/**
+ * Whether something the model wrote is performed while somebody idles, listens or talks (`Markov.modes`). What is left out
+ * leaves the rest as it was, so that it does not matter when a mode became known.
+ * @param {Markov} chain
+ * @param {number} seed
+ * @param {MetaAction} meta
+ * @param {?string} mode
+ * @returns {boolean}
+ */
+export function performs(chain, seed, meta, mode) {
+  if (chain.modes.length === 0 || mode === null || !KINDS.includes(meta.request.kind)) {
+    return true;
+  }
+  const share = chain.modes[MODES.indexOf(mode)][KINDS.indexOf(meta.request.kind)];
+  return share >= 1 || uniform(seed, meta.request.id, "mode") < share;
+}
+
+/**
+ * Return how many seconds meta action `key` lasts: 1 to 3, evenly, where the model has no lengths.
+ *
+ * Else log-normal with the state's mean m and standard deviation s, from two uniform draws u, v in (0, 1) by Box and Muller,
+ * which any language can do alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
+ * @param {Markov} chain
+ * @param {number} state
+ * @param {number} seed
+ * @param {string} key
+ * @returns {number}
+ */
+export function length(chain, state, seed, key) {
   const u = uniform(seed, key, "length");
-  if (!model.lengths.length) return 1 + 2 * u;
-  const [mean, deviation] = model.lengths[state];
-  const spread = Math.log1p((deviation / mean) ** 2);
+  if (chain.lengths.length === 0) {
+    return 1 + 2 * u;
+  }
+  const [mean, deviation] = chain.lengths[state];
+  const share = deviation / mean;
+  const spread = Math.log1p(share * share);
   const z = Math.sqrt(-2 * Math.log(u)) * Math.cos(2 * Math.PI * uniform(seed, key, "length2"));
   return mean * Math.exp(Math.sqrt(spread) * z - spread / 2);
-}
-
-const PERFORMED = ["gesture", "fidget", "transition"]; // as in a row of `modes`
-
-/** Whether something the model wrote is performed while somebody idles, listens or talks; null where that is not known. */
-export function performs(model, seed, meta, mode) {
-  const place = PERFORMED.indexOf(meta.request.kind);
-  if (!model.modes.length || mode === null || place < 0) return true;
-  const share = model.modes[MODES.indexOf(mode)][place];
-  return share >= 1 || uniform(seed, meta.request.id, "mode") < share;
 }

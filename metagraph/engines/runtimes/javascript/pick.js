@@ -1,8 +1,8 @@
 /** From a meta plan to specific actions: candidates, the three temporal cases, the draw (Borer et al., section 6.2). */
 
 import { pick } from "./choice.js";
-import { REMEMBERED, clipSeconds, keyOf, nodeOf, rankOf, remember, report } from "./plan.js";
-import { s } from "./replan.js";
+import { Report } from "./meta_plan.js";
+import { REMEMBERED, clipSeconds, nodeOf, remember, s } from "./plan.js";
 
 export const FITS = 1e-6; // seconds by which sums of times may be off
 
@@ -53,7 +53,7 @@ export class Performer {
   perform(metas, end) {
     for (const { meta, limit, wish } of bounds(metas)) {
       if (meta.start >= end) return;
-      if (meta.end <= this.ready + FITS && meta.start < this.ready && !this.begun.has(keyOf(meta))) {
+      if (meta.end <= this.ready + FITS && meta.start < this.ready && !this.begun.has(meta.key)) {
         const running = this.cues.length ? `'${this.cues[this.cues.length - 1].action.name}'` : "the running action";
         const waits = this.ready - meta.request.start;
         // What is wanted for a certain time is over; what is wanted once may come late.
@@ -87,9 +87,9 @@ export class Performer {
         }
         fitting = warm;
       }
-      const key = hop ? `${keyOf(meta)}/${hop}` : keyOf(meta);
+      const key = hop ? `${meta.key}/${hop}` : meta.key;
       const action = this.draw(fitting, key, now);
-      const cue = this.cue(action, shape(action), limit, hop ? Infinity : wish, stance, keyOf(meta));
+      const cue = this.cue(action, shape(action), limit, hop ? Infinity : wish, stance, meta.key);
       cues.push(cue);
       now = cue.end;
       stance = cue.then;
@@ -205,9 +205,7 @@ export class Performer {
   /** Draw with p_k ~ likelihood_k / max(c_k, 1), leaving out those used too recently as long as any others are left. */
   draw(candidates, key, now) {
     const left = this.spaced(candidates);
-    const weights = left.map((a) => a.likelihood / Math.max(this.count(a.id, now), 1));
-    const chosen = pick(this.seed, key, "action", left.map((a) => a.id), weights);
-    return left.find((a) => a.id === chosen) ?? left[0];
+    return this.picked(left, key, "action", (a) => a.likelihood / Math.max(this.count(a.id, now), 1));
   }
 
   /** Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and so on. */
@@ -265,8 +263,15 @@ export class Performer {
 
   loop(stance, key) {
     const loops = this.graph.of(stance, "stance");
-    const chosen = pick(this.seed, key, "loop", loops.map((a) => a.id), loops.map((a) => a.likelihood));
-    return loops.find((a) => a.id === chosen) ?? loops[0];
+    return this.picked(loops, key, "loop", (a) => a.likelihood);
+  }
+
+  /** Draw one of some actions; the first where none has a weight. */
+  picked(actions, key, purpose, weight) {
+    const weights = new Map(actions.map((a) => [a.id, weight(a)]));
+    if (![...weights.values()].some((w) => w > 0)) return actions[0];
+    const chosen = pick(this.seed, key, purpose, weights);
+    return actions.find((a) => a.id === chosen);
   }
 
   /** Where a stance has several loops, change between them in long rests, at a loop's end. */
@@ -290,7 +295,8 @@ export class Performer {
 
   /** @returns {null} so that what tells can end with it */
   tell(meta, outcome, message, played = false) {
-    this.reports.push(report(meta, outcome, message, played));
+    const { request, start, written } = meta;
+    this.reports.push(new Report(request.id, outcome, message, request.layer, start, played, written));
     return null;
   }
 }
@@ -302,11 +308,11 @@ function bounds(metas) {
   for (const meta of [...metas].reverse()) {
     let [limit, wish] = [Infinity, Infinity];
     for (const [rank, start] of first) {
-      if (rank > rankOf(meta)) limit = Math.min(limit, start);
-      if (rank >= rankOf(meta)) wish = Math.min(wish, start);
+      if (rank > meta.rank) limit = Math.min(limit, start);
+      if (rank >= meta.rank) wish = Math.min(wish, start);
     }
     out.push({ meta, limit, wish });
-    if (!meta.written) first.set(rankOf(meta), meta.start);
+    if (!meta.written) first.set(meta.rank, meta.start);
   }
   return out.reverse();
 }

@@ -8,8 +8,9 @@
 import { schedule } from "./life/schedule.js";
 import { staysAt, toldMode } from "./life/track.js";
 import { performs, write } from "./markov.js";
+import { MetaAction, Report } from "./meta_plan.js";
 import { FITS, Performer } from "./pick.js";
-import { TEMPORAL, keyOf } from "./plan.js";
+import { TEMPORAL } from "./plan.js";
 import { delay, replan } from "./replan.js";
 import { LAYERS } from "./words.js";
 
@@ -54,7 +55,7 @@ export function extend(graph, plan, now, requests, end, { stances = {}, idle = t
 function metaOf(request, window) {
   let length = request.duration === null ? window : Math.max(0, request.duration);
   if (request.stroke !== null) length = Math.max(length, request.stroke - request.start + FITS);
-  return { request, start: request.start, end: request.start + length, part: 0, written: false };
+  return new MetaAction(request, request.start, request.start + length);
 }
 
 /** again: requests that replace what was asked before. */
@@ -66,17 +67,17 @@ function extendLayer(graph, plan, layer, now, asked, again, end, begin, idle) {
   let [written, cursor] = [[], old.cursor];
   if (idle) {
     const { markov, kinds } = graph.layers[layer];
-    const more = write(markov, layer, plan.seed, end, kinds, old.cursor);
-    written = [...old.written, ...more.metas].filter((m) => m.start >= now);
-    cursor = more.cursor;
+    let more;
+    [more, cursor] = write(markov, plan.seed, end, kinds, old.cursor);
+    written = [...old.written, ...more].filter((m) => m.start >= now);
   }
   again = new Set([...again, ...written.map((m) => m.request.id)]);
   const stays = old.metas.filter((m) => !again.has(m.request.id));
-  const future = stays.filter((m) => waiting.has(keyOf(m)) || (m.start >= now && !played.has(keyOf(m))));
+  const future = stays.filter((m) => waiting.has(m.key) || (m.start >= now && !played.has(m.key)));
   // What was told about time still holds; the rest will be told again by those that are planned again.
   const at = (id, start) => `${start} ${id}`;
   const plannedAgain = new Set(future.map((m) => at(m.request.id, m.start)));
-  const done = stays.filter((m) => !plannedAgain.has(at(m.request.id, m.start)) && (played.has(keyOf(m)) || m.start < now));
+  const done = stays.filter((m) => !plannedAgain.has(at(m.request.id, m.start)) && (played.has(m.key) || m.start < now));
   const reports = plan.reports.filter(
     (r) => r.layer === layer && !again.has(r.request) && (TEMPORAL.has(r.outcome) || !plannedAgain.has(at(r.request, r.at))),
   );
@@ -84,8 +85,7 @@ function extendLayer(graph, plan, layer, now, asked, again, end, begin, idle) {
   if (!begin || !performer.begin(begin)) {
     const message = `the ${layer} layer has no stance with a loop to begin in`;
     for (const m of [...future, ...asked]) {
-      const { request, start, written: model } = m;
-      if (!model) reports.push({ request: request.id, outcome: "no-stance", message, layer, at: start, played: false, written: false });
+      if (!m.written) reports.push(new Report(m.request.id, "no-stance", message, layer, m.start));
     }
     const metas = [...done, ...future, ...asked];
     return { plan: { layer, metas, cues: [], rests: [], past: old.past, cursor, written }, reports };
@@ -96,18 +96,18 @@ function extendLayer(graph, plan, layer, now, asked, again, end, begin, idle) {
   }
   performer.begun = new Set([...played].filter((key) => waiting.has(key)));
   performer.free = Math.max(now - (performer.ready - performer.free), performer.free);
-  const delayed = delay(asked, performer.ready, graph.settings);
+  const [late, delayed] = delay(asked, performer.ready, graph.settings);
   // What runs keeps the time it was wanted for, from the models.
   const busy = done.reduce((latest, m) => (m.written ? latest : Math.max(latest, m.end)), -Infinity);
-  const placed = replan([...future, ...written, ...delayed.metas], graph.settings, busy);
+  const [placed, told] = replan([...future, ...written, ...late], graph.settings, busy);
   const leaves = (m) => m.request.kind === "transition" && staysAt(plan.track, layer, m.start);
   const performed = (m) => !leaves(m) && performs(graph.layers[layer].markov, plan.seed, m, toldMode(plan.track, m.start));
-  performer.perform(placed.metas.filter((m) => !m.written || performed(m)), end);
+  performer.perform(placed.filter((m) => !m.written || performed(m)), end);
   performer.varyRests(end);
   const { cues, rests } = performer;
   return {
-    plan: { layer, metas: [...done, ...placed.metas], cues, rests, past: old.past, cursor, written },
-    reports: [...reports, ...delayed.reports, ...placed.reports, ...performer.reports],
+    plan: { layer, metas: [...done, ...placed], cues, rests, past: old.past, cursor, written },
+    reports: [...reports, ...delayed, ...told, ...performer.reports],
   };
 }
 

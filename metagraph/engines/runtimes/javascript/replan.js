@@ -1,14 +1,22 @@
 /**
  * Temporal replanning: meta actions that may clash become a meta plan that does not (Borer et al., section 6.1).
  *
- * Greedy, by start time and then priority. The running action is never touched. Where two overlap, the more important one keeps
- * its time; the other is delayed past it, or cut where it begins, and then goes on with its remainder if it asked to.
+ * Greedy, by start time and then priority. The running action is never touched. Where two overlap, the more important one
+ * keeps its time; the other is delayed past it, or cut where it begins, and then goes on with its remainder if it asked to.
+ *
+ * Translated from metagraph/playback/replan.py; change that, and translate anew.
  */
 
-import { begunBy, compareText } from "./choice.js";
-import { report } from "./plan.js";
+import { Report } from "./meta_plan.js";
+import { bisectRight, but, insort, sortedBy } from "./basics.js";
 
-/** Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past. */
+/**
+ * Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past.
+ * @param {MetaAction[]} asked
+ * @param {number} free
+ * @param {Settings} settings
+ * @returns {[MetaAction[], Report[]]}
+ */
 export function delay(asked, free, settings) {
   const metas = [];
   const reports = [];
@@ -17,39 +25,60 @@ export function delay(asked, free, settings) {
     if (late <= 0) {
       metas.push(meta);
     } else if (late > settings.wait) {
-      reports.push(report(meta, "past", `asked for at ${s(meta.start)}, ${s(late)} before anything could start`));
+      reports.push(_told(
+        meta,
+        "past",
+        `asked for at ${meta.start.toFixed(2)} s, ${late.toFixed(1)} s before anything could start`,
+      ));
     } else {
-      metas.push({ ...meta, start: free, end: free + (meta.end - meta.start) });
-      reports.push(report(meta, "late", `waits ${s(late)} for the running action`, true));
+      metas.push(but(meta, { start: free, end: free + (meta.end - meta.start) }));
+      reports.push(_told(meta, "late", `waits ${late.toFixed(2)} s for the running action`, true));
     }
   }
-  return { metas, reports };
+  return [metas, reports];
 }
 
 /**
  * Return the meta plan, ascending and without overlaps, and what became of the rest.
  *
  * What is asked for is placed first; what a model wrote fits into the gaps, from `busy` seconds on. Meta actions that do not
- * overlap come back as they are, so a plan that is placed again stays as it is.
+ * overlap come back as they are, so a plan that is placed again stays as it is. Of equal start and priority, the id that
+ * sorts first goes first.
+ * @param {MetaAction[]} metas
+ * @param {Settings} settings
+ * @param {number} busy
+ * @returns {[MetaAction[], Report[]]}
  */
 export function replan(metas, settings, busy = -Infinity) {
-  const reports = [];
-  const placed = place(metas.filter((m) => !m.written), settings, reports);
-  const written = fit(metas.filter((m) => m.written), placed, settings.shortest, busy, reports);
-  return { metas: [...placed, ...written].sort((a, b) => a.start - b.start || a.end - b.end), reports };
+  const every = [...metas];
+  const [placed, reports] = _placed(every.filter((m) => !m.written), settings);
+  const [written, told] = _fitted(every.filter((m) => m.written), placed, settings.shortest, busy);
+  return [sortedBy([...placed, ...written], (m) => [m.start, m.end]), [...reports, ...told]];
 }
 
-/** Return what is left of what a model wrote beside what is placed: the first stretch of each that is long enough. */
-function fit(written, placed, shortest, busy, reports) {
+/**
+ * Return what is left of what a model wrote beside what is placed: the first stretch of each that is long enough.
+ * @param {MetaAction[]} written
+ * @param {MetaAction[]} placed
+ * @param {number} shortest
+ * @param {number} busy
+ * @returns {[MetaAction[], Report[]]}
+ */
+function _fitted(written, placed, shortest, busy) {
   const out = [];
-  for (const meta of written.sort((a, b) => a.start - b.start || compareText(a.request.id, b.request.id))) {
-    let start = Math.max(meta.start, busy, out.length ? out[out.length - 1].end : busy);
+  const reports = [];
+  const starts = placed.map((m) => m.start);
+  for (const meta of sortedBy(written, (m) => [m.start, m.request.id])) {
+    let start = Math.max(meta.start, busy, out.length > 0 ? out[out.length - 1].end : busy);
     let end = meta.end;
     let beside = null;
-    for (let n = Math.max(0, begunBy(placed, start) - 1); n < placed.length; n++) {
-      const other = placed[n];
-      if (other.start >= end) break;
-      if (other.end <= start) continue;
+    for (const other of placed.slice(Math.max(0, bisectRight(starts, start) - 1))) {
+      if (other.start >= end) {
+        break;
+      }
+      if (other.end <= start) {
+        continue;
+      }
       beside = other;
       if (other.start - start >= shortest) {
         end = other.start;
@@ -60,58 +89,99 @@ function fit(written, placed, shortest, busy, reports) {
     if (start === meta.start && end === meta.end) {
       out.push(meta);
     } else if (end - start >= shortest) {
-      out.push({ ...meta, start, end });
-      if (end < meta.end && beside) reports.push(report(meta, "cut", `is cut at ${s(end)} for '${beside.request.id}'`, true));
+      out.push(but(meta, { start: start, end: end }));
+      if (end < meta.end && beside !== null) {
+        reports.push(_told(
+          meta,
+          "cut",
+          `is cut at ${end.toFixed(2)} s for '${beside.request.id}', which is asked for`,
+          true,
+        ));
+      }
     } else {
-      reports.push(report(meta, "covered", beside ? noTime(beside) : "no time left beside what plays"));
+      const words = beside !== null ? _noTime(beside) : "no time left beside what plays";
+      reports.push(_told(meta, "covered", words));
     }
   }
-  return out;
+  return [out, reports];
 }
 
-/** Of equal start and priority, the id that sorts first goes first. */
-function order(a, b) {
-  const [x, y] = [a.meta, b.meta];
-  const first = x.start - y.start || y.request.priority - x.request.priority || compareText(x.request.id, y.request.id);
-  return first || x.part - y.part || a.serial - b.serial;
+/**
+ * Return what decides who is placed first.
+ * @param {MetaAction} meta
+ * @returns {[number, number, string, number]}
+ */
+function _order(meta) {
+  return [meta.start, -meta.request.priority, meta.request.id, meta.part];
 }
 
-function place(metas, settings, reports) {
-  const queue = metas.map((meta, serial) => ({ meta, serial })).sort((a, b) => order(b, a)); // the next one at the end
-  let serial = metas.length;
-  const push = (meta) => {
-    const entry = { meta, serial: serial++ };
-    let n = queue.length;
-    while (n > 0 && order(queue[n - 1], entry) < 0) n--;
-    queue.splice(n, 0, entry);
-  };
+/**
+ * @param {MetaAction[]} metas
+ * @param {Settings} settings
+ * @returns {[MetaAction[], Report[]]}
+ */
+function _placed(metas, settings) {
+  const queue = sortedBy(metas, _order);
+  let at = 0; // what is before it was looked at
   const placed = [];
-  while (queue.length) {
-    const { meta } = queue.pop();
-    const last = placed[placed.length - 1];
-    if (!last || last.end <= meta.start) {
+  const reports = [];
+  while (at < queue.length) {
+    const meta = queue[at];
+    at += 1;
+    const last = placed.length > 0 ? placed[placed.length - 1] : null;
+    if (last === null || last.end <= meta.start) {
       placed.push(meta);
-    } else if (meta.request.priority > last.request.priority) {
+      continue;
+    }
+    if (meta.request.priority > last.request.priority) {
       placed.pop();
       const kept = meta.start - last.start >= settings.shortest;
-      if (kept) placed.push({ ...last, end: meta.start });
+      if (kept) {
+        placed.push(but(last, { end: meta.start }));
+      }
       // What was never begun goes on as itself, so that its draws stay the same.
-      const rest = { ...last, start: meta.end, part: kept ? last.part + 1 : last.part };
+      const rest = but(last, { start: meta.end, part: kept ? last.part + 1 : last.part });
       const resumes = last.request.resume && rest.end - rest.start >= settings.shortest;
-      if (resumes) push(rest);
+      if (resumes) {
+        insort(queue, rest, at, _order);
+      }
+      const word = kept ? "is cut" : "gives way";
+      const after = resumes ? ` and goes on at ${meta.end.toFixed(2)} s` : "";
       const outcome = resumes ? "resumed" : kept ? "cut" : "covered";
-      const words = `${kept ? "is cut" : "gives way"} at ${s(meta.start)} for '${meta.request.id}', which is more important`;
-      reports.push(report(last, outcome, resumes ? `${words} and goes on at ${s(meta.end)}` : words, kept || resumes));
-      push(meta); // it may reach back over what was placed before, too
+      const message = `${word} at ${meta.start.toFixed(2)} s for '${meta.request.id}', which is more important${after}`;
+      reports.push(_told(last, outcome, message, kept || resumes));
+      insort(queue, meta, at, _order); // it may reach back over what was placed before, too
     } else if (last.end - meta.request.start > settings.wait) {
-      reports.push(report(meta, "covered", noTime(last)));
+      reports.push(_told(meta, "covered", _noTime(last)));
     } else {
-      push({ ...meta, start: last.end, end: last.end + (meta.end - meta.start) });
-      reports.push(report(meta, "late", `waits ${s(last.end - meta.request.start)} for '${last.request.id}'`, true));
+      const later = but(meta, { start: last.end, end: last.end + (meta.end - meta.start) });
+      insort(queue, later, at, _order);
+      reports.push(_told(
+        meta,
+        "late",
+        `waits ${(last.end - meta.request.start).toFixed(2)} s for '${last.request.id}'`,
+        true,
+      ));
     }
   }
-  return placed;
+  return [placed, reports];
 }
 
-const noTime = (other) => `no time left beside '${other.request.id}' (${s(other.start)} to ${s(other.end)})`;
-export const s = (seconds) => `${seconds.toFixed(2)} s`;
+/**
+ * @param {MetaAction} other
+ * @returns {string}
+ */
+function _noTime(other) {
+  return `no time left beside '${other.request.id}' (${other.start.toFixed(2)}-${other.end.toFixed(2)} s)`;
+}
+
+/**
+ * @param {MetaAction} meta
+ * @param {string} outcome
+ * @param {string} message
+ * @param {boolean} played
+ * @returns {Report}
+ */
+function _told(meta, outcome, message, played = false) {
+  return new Report(meta.request.id, outcome, message, meta.request.layer, meta.start, played, meta.written);
+}

@@ -7,7 +7,7 @@
  *     lid       = follow x pitch of the eye + blink x (1 - how far it is shut already)
  */
 
-import { bisect } from "../choice.js";
+import { bisect } from "../basics.js";
 import { fromVector, multiply } from "../rotation.js";
 import { CHANNELS, LIDS, MOUTH } from "../words.js";
 import { Gaze, ease } from "./gaze.js";

@@ -7,7 +7,7 @@
  *     angle(t) = sum over targets i of angle_i (S_i(t) - S_{i+1}(t)),  S_i: how far the move to target i has come, 0..1
  */
 
-import { begunBy, bisect } from "../choice.js";
+import { begunBy, bisect } from "../basics.js";
 import { AHEAD, PARTNER } from "./wanted.js";
 
 const [EYE_TIME, EYE_TIME_PER_DEGREE] = [0.021, 0.0022]; // seconds

@@ -4,7 +4,7 @@
  *   `first`: number of the first event that is still kept.
  */
 
-import { bisect } from "../choice.js";
+import { bisect } from "../basics.js";
 
 /** @returns {Lane} */
 export const emptyLane = () => ({ starts: [], values: [], first: 0 });

@@ -5,7 +5,7 @@
  * lingers after it; what the mouth shows is the mean of all pieces weighted by how much each rules.
  */
 
-import { begunBy } from "../choice.js";
+import { begunBy } from "../basics.js";
 import { VISEMES } from "../words.js";
 import { ease } from "./gaze.js";
 

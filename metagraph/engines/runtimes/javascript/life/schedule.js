@@ -5,7 +5,8 @@
  * as a plan does: what has begun stays, tick by tick gives what one call gives, and what lies behind can be forgotten.
  */
 
-import { begunBy, bisect, uniform } from "../choice.js";
+import { begunBy, bisect } from "../basics.js";
+import { uniform } from "../choice.js";
 import { MODES } from "../words.js";
 import { emptyLane, longer, nextOf, sinceLane, until } from "./lane.js";
 import { alike } from "./track.js";

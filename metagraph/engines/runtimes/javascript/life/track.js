@@ -6,7 +6,7 @@
  * place `name` and `point`; a stay `layer`, `on`, `end`.
  */
 
-import { compareText } from "../choice.js";
+import { compareText } from "../basics.js";
 
 const LANES = { look: "looks", speech: "speeches", mode: "modes", place: "places", blink: "blinks", stay: "stays" };
 

@@ -4,7 +4,7 @@
  *   looked at from `start` on. `since`: when the look at it began; its place may have changed meanwhile. `asked`: not of its own accord.
  */
 
-import { begunBy } from "../choice.js";
+import { begunBy } from "../basics.js";
 import { MODES } from "../words.js";
 import { samePlace, toldMode } from "./track.js";
 

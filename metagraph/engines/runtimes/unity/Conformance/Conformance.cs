@@ -54,7 +54,7 @@ public static class Conformance
         foreach (List<object> hash in List(vectors["hashes"]))
         {
             string[] words = List(hash[1]).Cast<string>().ToArray();
-            if (Choice.Key32((uint)Number(hash[0]), words) != Number(hash[2]))
+            if (ChoiceRules.Key32((uint)Number(hash[0]), words) != Number(hash[2]))
             {
                 Fail(folder, "the hash of " + string.Join(" ", words));
             }

@@ -1,80 +1,74 @@
+// Translated from metagraph/playback/choice.py; change that, and translate anew.
 using System;
 using System.Collections.Generic;
-using System.Text;
+using System.Linq;
 
 namespace Metagraph
 {
     /// <summary>
-    /// Keyed randomness: every draw is a hash of (seed, key, purpose). Nothing is remembered between draws, so changing one
-    /// request leaves the draws of all others as they were.
+    /// Keyed randomness: every draw is a hash of (seed, key, purpose), in 32-bit integers that any language can mix alike.
+    ///
+    /// Nothing is remembered between draws, so changing one request leaves the draws of all others as they were.
     /// </summary>
-    public static class Choice
+    public static class ChoiceRules
     {
-        private const uint Offset = 0x811C9DC5, Prime = 0x01000193; // FNV-1a's, 32 bits
-
-        /// <summary>Scramble 32 bits: MurmurHash3's finaliser.</summary>
-        public static uint Mix(uint value)
-        {
-            value ^= value >> 16;
-            value = unchecked(value * 0x85EBCA6B);
-            value ^= value >> 13;
-            value = unchecked(value * 0xC2B2AE35);
-            return value ^ (value >> 16);
-        }
-
-        private static uint Absorb(uint value, string word)
-        {
-            foreach (byte b in Encoding.UTF8.GetBytes(word))
-            {
-                value = unchecked((value ^ b) * Prime);
-            }
-            return unchecked(value * Prime); // the closing zero byte
-        }
-
-        /// <summary>The 32-bit hash of a seed and words.</summary>
+        /// <summary>
+        /// Return the 32-bit hash of a seed and words: FNV-1a over their UTF-8 bytes, each word closed by a zero byte, then
+        /// mixed.
+        ///
+        /// The seed, mixed, is xored into FNV's offset basis.
+        /// </summary>
         public static uint Key32(uint seed, params string[] words)
         {
-            return Mix(Begin(seed, words));
-        }
-
-        private static uint Begin(uint seed, params string[] words)
-        {
-            uint value = Offset ^ Mix(seed);
+            var value = HashingRules.Begun(seed);
             foreach (string word in words)
             {
-                value = Absorb(value, word);
+                value = HashingRules.Absorb(value, word);
             }
-            return value;
+            return HashingRules.Mix(value);
         }
 
-        /// <summary>A number in the open interval (0, 1).</summary>
+        /// <summary>Return a number in the open interval (0, 1).</summary>
         public static double Uniform(uint seed, params string[] words)
         {
-            return (Key32(seed, words) + 0.5) / 4294967296.0;
+            return Unit(Key32(seed, words));
         }
 
         /// <summary>
-        /// One of the ids, id k with probability weight_k / sum; null where no weight is positive. Each runs its own race, the
-        /// shortest of -log(u_k) / weight_k wins, so another candidate changes the choice only where it wins.
+        /// Return one of the ids, id k with probability weight_k / sum.
+        ///
+        /// Each id runs its own race, the shortest of exponential times -log(u_k) / weight_k wins; so adding or removing one
+        /// candidate changes the choice only where that candidate wins. Raises ValueError when no weight is positive.
         /// </summary>
-        public static string Pick(uint seed, string key, string purpose, IEnumerable<KeyValuePair<string, double>> weights)
+        public static string Pick(uint seed, string key, string purpose, Dictionary<string, double> weights)
         {
-            string best = null;
-            double shortest = double.PositiveInfinity;
-            uint begun = Begin(seed, key, purpose);
-            foreach (KeyValuePair<string, double> one in weights)
+            var best = "";
+            var shortest = double.PositiveInfinity;
+            var start = HashingRules.Absorb(HashingRules.Absorb(HashingRules.Begun(seed), key), purpose);
+            foreach (var one in weights)
             {
-                if (one.Value > 0)
+                var ident = one.Key;
+                var weight = one.Value;
+                if (weight > 0)
                 {
-                    double time = -Math.Log((Mix(Absorb(begun, one.Key)) + 0.5) / 4294967296.0) / one.Value;
-                    if (best == null || time < shortest || (time == shortest && Basics.Compare(one.Key, best) < 0))
+                    var time = -Math.Log(Unit(HashingRules.Mix(HashingRules.Absorb(start, ident)))) / weight;
+                    if (time < shortest || (time == shortest && PlainText.Compare(ident, best) < 0))
                     {
-                        best = one.Key;
+                        best = ident;
                         shortest = time;
                     }
                 }
             }
+            if (best == "")
+            {
+                throw new InvalidOperationException("nothing to choose from");
+            }
             return best;
+        }
+
+        private static double Unit(uint bits)
+        {
+            return (bits + 0.5) / 4294967296.0;
         }
     }
 }

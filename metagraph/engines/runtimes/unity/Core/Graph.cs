@@ -58,16 +58,6 @@ namespace Metagraph
         }
     }
 
-    /// <summary>A first-order model over (limb, kind) that performs when nobody asks for anything.</summary>
-    public sealed class MarkovModel
-    {
-        public string[] Limbs, Kinds, Tags;
-        public double[][] Matrix, Lengths;
-        /// <summary>Shares of gestures, fidgets and transitions that are performed while one idles, listens and talks; or none.</summary>
-        public double[][] Modes;
-        public double Gap, Positive, Negative;
-    }
-
     /// <summary>One layer: its stances (id, name) and actions, in the order they were placed.</summary>
     public sealed class LayerGraph
     {
@@ -75,7 +65,7 @@ namespace Metagraph
         public string Start;
         public readonly List<KeyValuePair<string, string>> Stances = new List<KeyValuePair<string, string>>();
         public readonly List<GraphAction> Actions = new List<GraphAction>();
-        public MarkovModel Markov;
+        public Markov Markov;
         /// <summary>Joints the layer moves, and how strongly, 0..2.</summary>
         public int[] Reach;
         public double[] Weights;
@@ -133,9 +123,10 @@ namespace Metagraph
             return stance != null && index.TryGetValue(Node(stance, kind), out found) ? found : Nothing;
         }
 
-        public bool HasKind(string kind)
+        /// <summary>The kinds of actions there are.</summary>
+        public HashSet<string> Kinds
         {
-            return kinds.Contains(kind);
+            get { return kinds; }
         }
 
         public bool HasStance(string stance)

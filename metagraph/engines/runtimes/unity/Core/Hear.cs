@@ -44,7 +44,7 @@ namespace Metagraph
             if (items.Concat(plan.Track.Items.Where(i => withdrawn.Contains(i.Id))).Any(i => i is ModeFrom || i is Speech))
             {
                 // Who talks moves otherwise than who listens.
-                touched.UnionWith(Basics.Layers.Where(layer => graph.Layers[layer].Markov.Modes.Length > 0));
+                touched.UnionWith(Basics.Layers.Where(layer => graph.Layers[layer].Markov.Modes.Count > 0));
             }
             bool partly = asks.Count > 0 && now > 0 && end == plan.End;
             string[] leave = partly ? Basics.Layers.Where(layer => !touched.Contains(layer)).ToArray() : Basics.None;

@@ -1,5 +1,6 @@
 using System;
 using System.Collections.Generic;
+using System.Linq;
 
 namespace Metagraph
 {
@@ -142,7 +143,7 @@ namespace Metagraph
 
         private LayerGraph ReadLayer(string layer, Node json)
         {
-            var graph = new LayerGraph(layer) { Start = json["start"].TextOrNull, Markov = ReadMarkov(json["markov"]) };
+            var graph = new LayerGraph(layer) { Start = json["start"].TextOrNull, Markov = ReadMarkov(layer, json["markov"]) };
             foreach (Node stance in json["stances"].Items)
             {
                 if (!graph.Add(stance["id"].Text, stance["name"].Text))
@@ -216,35 +217,35 @@ namespace Metagraph
                 && (action.Joints.Length == 0 || Array.IndexOf(action.Joints, joint.Name) >= 0));
         }
 
-        private static MarkovModel ReadMarkov(Node json)
+        private static Markov ReadMarkov(string layer, Node json)
         {
-            List<Node> states = json["states"].Items;
+            List<(string, string)> states = json["states"].Items.ConvertAll(
+                state => (Half(state, 0).OneOf(Basics.Limbs), Half(state, 1).OneOf(Basics.Kinds)));
             Node found;
-            var model = new MarkovModel
-            {
-                Limbs = states.ConvertAll(state => Half(state, 0).OneOf(Basics.Limbs)).ToArray(),
-                Kinds = states.ConvertAll(state => Half(state, 1).OneOf(Basics.Kinds)).ToArray(),
-                Matrix = json["matrix"].Items.ConvertAll(row => row.Numbers(states.Count)).ToArray(),
-                Gap = json["gap"].Within(1e-3, 1e9), Positive = json["positive"].Number, Negative = json["negative"].Number,
-                Tags = json.Maybe("tags", out found) ? found.Texts : Basics.None,
-                Lengths = new double[0][],
-                Modes = json.Maybe("modes", out found) ? found.Items.ConvertAll(row => row.Numbers(3)).ToArray() : new double[0][],
-            };
-            if (model.Modes.Length != 0 && model.Modes.Length != Basics.Modes.Length)
+            List<string> tags = json.Maybe("tags", out found) ? found.Texts.ToList() : new List<string>();
+            List<List<double>> matrix = json["matrix"].Items.ConvertAll(row => row.Numbers(states.Count).ToList());
+            List<(double, double)> lengths = json.Maybe("lengths", out found)
+                ? found.Items.ConvertAll(pair => (pair.Numbers(2)[0], pair.Numbers(2)[1]))
+                : new List<(double, double)>();
+            List<List<double>> modes = json.Maybe("modes", out found)
+                ? found.Items.ConvertAll(row => row.Numbers(3).ToList())
+                : new List<List<double>>();
+            if (modes.Count != 0 && modes.Count != Basics.Modes.Length)
             {
                 throw json.Wrong("should have shares for each mode");
             }
-            model.Lengths = json.Maybe("lengths", out found) ? found.Items.ConvertAll(pair => pair.Numbers(2)).ToArray() : model.Lengths;
-            bool tagged = model.Tags.Length == 0 || model.Tags.Length == states.Count;
-            if (model.Matrix.Length != states.Count || !tagged || (model.Lengths.Length != 0 && model.Lengths.Length != states.Count))
+            bool tagged = tags.Count == 0 || tags.Count == states.Count;
+            if (matrix.Count != states.Count || !tagged || (lengths.Count != 0 && lengths.Count != states.Count))
             {
                 throw json.Wrong("should have a row of everything for each state");
             }
-            if (Array.Exists(model.Matrix, row => Array.Exists(row, x => !(x >= 0))) || Array.Exists(model.Lengths, pair => !(pair[0] > 0)))
+            if (matrix.Exists(row => row.Exists(x => !(x >= 0))) || lengths.Exists(pair => !(pair.Item1 > 0)))
             {
                 throw json.Wrong("should have no chance below 0, and lengths above 0");
             }
-            return model;
+            return new Markov(
+                layer, states, matrix, json["gap"].Within(1e-3, 1e9), json["positive"].Number, json["negative"].Number, tags, lengths,
+                modes);
         }
 
         /// <summary>Limb or kind of a state.</summary>

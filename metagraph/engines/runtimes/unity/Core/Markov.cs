@@ -1,111 +1,146 @@
+// Translated from metagraph/playback/markov.py; change that, and translate anew.
 using System;
 using System.Collections.Generic;
-using System.Globalization;
+using System.Linq;
 
 namespace Metagraph
 {
-    /// <summary>The model that performs when nobody asks for anything: a first-order chain over (limb, kind).</summary>
-    internal static class Markov
+    /// <summary>
+    /// The Markov model that performs when nobody asks for anything: a first-order chain over (limb, kind).
+    ///
+    /// The arms matrix is the paper's (Borer et al., figure 11), learned from annotated casual conversation. Body and head have
+    /// no published matrix; theirs are ours, shaped on the paper's labels: the head nods and now and then changes its tilt, the
+    /// body mostly rests, shifts and fidgets. So are the shares of what is performed while one is said to idle, listen or talk:
+    /// hands gesture with one's own speech, the head nods at the other's.
+    /// </summary>
+    public static class MarkovRules
     {
-        private static readonly string[] Performed = { "gesture", "fidget", "transition" }; // as in a row of the modes
+        // as in `Markov.modes`
+        public static readonly List<string> Kinds = new List<string> { "gesture", "fidget", "transition" };
+        public static readonly Cursor Begin = new Cursor();
 
         /// <summary>
-        /// Append the meta actions that start before `until` seconds, from the cursor on; return the cursor before the first one left
-        /// out. Rests are drawn between 0.35 and 1.65 times the mean gap. Each draw is keyed by the meta action's number, so a longer
-        /// horizon only appends.
+        /// Return the meta actions that start before `until` seconds, from the cursor on, and the cursor before the first one
+        /// left out.
+        ///
+        /// Rests are drawn between 0.35 and 1.65 times the mean gap, windows as `length` says. kinds: what the graph has; states
+        /// of other kinds are passed over, so that half-filled graphs perform too.
+        ///
+        /// Each draw is keyed by the meta action's number, so a longer horizon only appends, and writing on from a cursor gives
+        /// bit for bit what writing in one go does. A chain that cannot leave a row of zeros starts again from any state.
         /// </summary>
-        public static Cursor Write(LayerGraph graph, uint seed, double until, Cursor cursor, List<MetaAction> found)
+        public static (List<MetaAction>, Cursor) Write(
+            Markov chain,
+            uint seed,
+            double until,
+            HashSet<string> kinds = null,
+            Cursor cursor = null
+        )
         {
-            MarkovModel chain = graph.Markov;
-            int count = chain.Limbs.Length, number = cursor.Number, state = cursor.State;
-            double time = cursor.Time;
-            var open = new double[count]; // states of kinds the layer has no action of are passed over
-            for (int i = 0; i < count; i++)
+            cursor = cursor ?? Begin;
+            var number = cursor.Number;
+            var state = cursor.State;
+            var time = cursor.Time;
+            var openTo = chain.States.Select(pair => (kinds == null || kinds.Contains(pair.Item2)) ? 1.0 : 0.0).ToList();
+            var out_ = new List<MetaAction>();
+            while (openTo.Any(p => p > 0))
             {
-                open[i] = graph.HasKind(chain.Kinds[i]) ? 1.0 : 0.0;
-            }
-            while (Array.Exists(open, x => x > 0))
-            {
-                string key = "auto/" + graph.Layer + "/" + Word(number);
-                double start = time + chain.Gap * (0.35 + 1.3 * Choice.Uniform(seed, key, "gap"));
-                if (start >= until)
+                var key = "auto/" + chain.Layer + "/" + PlainText.Of(number);
+                var start = time + chain.Gap * (0.35 + 1.3 * ChoiceRules.Uniform(seed, key, "gap"));
+                if (!(start < until)) // nor when it is no number
                 {
                     break;
                 }
-                state = int.Parse(Choice.Pick(seed, key, "state", Row(chain, state, open)), CultureInfo.InvariantCulture);
-                double seconds = Length(chain, state, seed, key);
-                string[] tags = Basics.None;
-                if (chain.Tags.Length > 0)
+                state = PlainText.Whole(ChoiceRules.Pick(seed, key, "state", Row(chain, state, openTo)));
+                var found = chain.States[state];
+                string limb = found.Item1;
+                string kind = found.Item2;
+                var seconds = Length(chain, state, seed, key);
+                var tags = PlainText.Words(chain.Tag(state)).ToList();
+                if (kind == "gesture" && chain.Tags.Count == 0)
                 {
-                    tags = chain.Tags[state].Split((char[])null, StringSplitOptions.RemoveEmptyEntries);
+                    var draw = ChoiceRules.Uniform(seed, key, "tag");
+                    if (draw < chain.Positive)
+                    {
+                        tags = new List<string> { "positive" };
+                    }
+                    else if (draw < chain.Positive + chain.Negative)
+                    {
+                        tags = new List<string> { "negative" };
+                    }
                 }
-                else if (chain.Kinds[state] == "gesture")
-                {
-                    double draw = Choice.Uniform(seed, key, "tag");
-                    string tag = draw < chain.Positive ? "positive" : draw < chain.Positive + chain.Negative ? "negative" : null;
-                    tags = tag == null ? tags : new[] { tag };
-                }
-                var request = new Request
-                {
-                    Id = key, Layer = graph.Layer, Kind = chain.Kinds[state], Start = start, Duration = seconds, Tags = tags,
-                    Limb = chain.Limbs[state], Priority = 0,
-                };
-                found.Add(new MetaAction(request, start, start + seconds, 0, true));
-                number++;
+                var request = new MetaRequest(
+                    key,
+                    chain.Layer,
+                    kind,
+                    start,
+                    seconds,
+                    null,
+                    tags,
+                    limb,
+                    null,
+                    MetaPlanRules.Written
+                );
+                out_.Add(new MetaAction(request, start, start + seconds, 0, true));
+                number = number + 1;
                 time = start + seconds;
             }
-            return new Cursor { Number = number, State = state, Time = time };
+            return (out_, new Cursor(number, state, time));
         }
 
-        /// <summary>Whether something the model wrote is performed while somebody idles, listens or talks; null where that is not known.</summary>
-        public static bool Performs(MarkovModel chain, uint seed, MetaAction meta, string mode)
+        /// <summary>
+        /// Return how likely each state is after a state (-1: before the first), by its place; any that may be where nothing
+        /// leads on.
+        /// </summary>
+        private static Dictionary<string, double> Row(Markov chain, int state, List<double> openTo)
         {
-            int place = Array.IndexOf(Performed, meta.Request.Kind);
-            if (chain.Modes.Length == 0 || mode == null || place < 0)
+            var row = openTo.ToList();
+            if (0 <= state && state < row.Count)
+            {
+                row = chain.Matrix[state].Zip(openTo, (p, may) => p * may).ToList();
+            }
+            if (!row.Any(p => p > 0))
+            {
+                row = openTo.ToList();
+            }
+            return row.Select((p, i) => (PlainText.Of(i), p)).ToDictionary(pair => pair.Item1, pair => pair.Item2);
+        }
+
+        /// <summary>
+        /// Whether something the model wrote is performed while somebody idles, listens or talks (`Markov.modes`). What is left
+        /// out leaves the rest as it was, so that it does not matter when a mode became known.
+        /// </summary>
+        public static bool Performs(Markov chain, uint seed, MetaAction meta, string mode)
+        {
+            if (chain.Modes.Count == 0 || mode == null || !Kinds.Contains(meta.Request.Kind))
             {
                 return true;
             }
-            double share = chain.Modes[Array.IndexOf(Basics.Modes, mode)][place];
-            return share >= 1 || Choice.Uniform(seed, meta.Request.Id, "mode") < share;
+            var share = chain.Modes[WordsRules.Modes.IndexOf(mode)][Kinds.IndexOf(meta.Request.Kind)];
+            return share >= 1 || ChoiceRules.Uniform(seed, meta.Request.Id, "mode") < share;
         }
 
-        /// <summary>The chances of the next state; all alike where nothing leads on.</summary>
-        private static List<KeyValuePair<string, double>> Row(MarkovModel chain, int state, double[] open)
+        /// <summary>
+        /// Return how many seconds meta action `key` lasts: 1 to 3, evenly, where the model has no lengths.
+        ///
+        /// Else log-normal with the state's mean m and standard deviation s, from two uniform draws u, v in (0, 1) by Box and
+        /// Muller, which any language can do alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z -
+        /// a / 2)`.
+        /// </summary>
+        public static double Length(Markov chain, int state, uint seed, string key)
         {
-            var row = (double[])open.Clone();
-            if (state >= 0 && state < open.Length)
-            {
-                for (int i = 0; i < row.Length; i++)
-                {
-                    row[i] *= chain.Matrix[state][i];
-                }
-            }
-            double[] chosen = Array.Exists(row, x => x != 0) ? row : open;
-            var weights = new List<KeyValuePair<string, double>>();
-            for (int i = 0; i < chosen.Length; i++)
-            {
-                weights.Add(new KeyValuePair<string, double>(Word(i), chosen[i]));
-            }
-            return weights;
-        }
-
-        /// <summary>Seconds of a meta action: 1 to 3, evenly, where the model has no lengths, else log-normal.</summary>
-        private static double Length(MarkovModel chain, int state, uint seed, string key)
-        {
-            double u = Choice.Uniform(seed, key, "length");
-            if (chain.Lengths.Length == 0)
+            var u = ChoiceRules.Uniform(seed, key, "length");
+            if (chain.Lengths.Count == 0)
             {
                 return 1.0 + 2.0 * u;
             }
-            double mean = chain.Lengths[state][0], deviation = chain.Lengths[state][1];
-            double spread = Math.Log(1.0 + deviation / mean * (deviation / mean));
-            double z = Math.Sqrt(-2.0 * Math.Log(u)) * Math.Cos(2.0 * Math.PI * Choice.Uniform(seed, key, "length2"));
+            var found = chain.Lengths[state];
+            double mean = found.Item1;
+            double deviation = found.Item2;
+            var share = deviation / mean;
+            var spread = PlainNumbers.Log1P(share * share);
+            var z = Math.Sqrt(-2.0 * Math.Log(u)) * Math.Cos(2.0 * Math.PI * ChoiceRules.Uniform(seed, key, "length2"));
             return mean * Math.Exp(Math.Sqrt(spread) * z - spread / 2.0);
-        }
-
-        private static string Word(int number)
-        {
-            return number.ToString(CultureInfo.InvariantCulture);
         }
     }
 }

@@ -123,7 +123,7 @@ namespace Metagraph
             string stance = past.Stance;
             foreach (Step step in steps)
             {
-                Request asked = step.Hop != null ? null : meta.Request;
+                MetaRequest asked = step.Hop != null ? null : meta.Request;
                 List<GraphAction> fitting = step.Candidates;
                 if (limit < double.PositiveInfinity)
                 {
@@ -169,7 +169,7 @@ namespace Metagraph
         }
 
         /// <summary>How an action would play for a request from `now` on, or, without one, as a step on the way to it.</summary>
-        private Shape ShapeOf(GraphAction action, Request request, double now)
+        private Shape ShapeOf(GraphAction action, MetaRequest request, double now)
         {
             var shape = new Shape { Start = now, Entry = action.Start };
             bool special = request != null && (request.Hold != null || request.Stroke != null || !request.Prepare);
@@ -211,14 +211,19 @@ namespace Metagraph
         private GraphAction Draw(List<GraphAction> candidates, string key, double now)
         {
             List<GraphAction> left = Spaced(candidates);
-            var weights = left.Select(a => Weighed(a, a.Likelihood / Math.Max(Count(a.Id, now), 1.0)));
-            string chosen = Choice.Pick(seed, key, "action", weights);
-            return left.Find(a => a.Id == chosen) ?? left[0];
+            return Picked(left, key, "action", a => a.Likelihood / Math.Max(Count(a.Id, now), 1.0));
         }
 
-        private static KeyValuePair<string, double> Weighed(GraphAction action, double weight)
+        /// <summary>One of some actions, drawn by weight; the first where none has any.</summary>
+        private GraphAction Picked(List<GraphAction> actions, string key, string purpose, Func<GraphAction, double> weight)
         {
-            return new KeyValuePair<string, double>(action.Id, weight);
+            Dictionary<string, double> weights = actions.ToDictionary(a => a.Id, weight);
+            if (!weights.Values.Any(w => w > 0))
+            {
+                return actions.FirstOrDefault();
+            }
+            string chosen = ChoiceRules.Pick(seed, key, purpose, weights);
+            return actions.Find(a => a.Id == chosen);
         }
 
         /// <summary>Leave out what needs more other actions before it plays again; where nothing is left, all need one less, etc.</summary>
@@ -307,9 +312,7 @@ namespace Metagraph
 
         private GraphAction Loop(string stance, string key)
         {
-            List<GraphAction> loops = graph.Of(stance, "stance");
-            string chosen = Choice.Pick(seed, key, "loop", loops.Select(a => Weighed(a, a.Likelihood)));
-            return loops.Find(a => a.Id == chosen) ?? loops.FirstOrDefault();
+            return Picked(graph.Of(stance, "stance"), key, "loop", a => a.Likelihood);
         }
 
         /// <summary>Where a stance has several loops, change between them in long rests, at a loop's end.</summary>
@@ -345,10 +348,7 @@ namespace Metagraph
 
         private void Tell(MetaAction meta, string outcome, string message, bool played = false)
         {
-            Reports.Add(new Report
-            {
-                Request = meta.Request.Id, Outcome = outcome, Message = message, Layer = graph.Layer, At = meta.Start, Played = played,
-            });
+            Reports.Add(new Report(meta.Request.Id, outcome, message, graph.Layer, meta.Start, played, meta.Written));
         }
     }
 }

@@ -4,63 +4,6 @@ using System.Collections.Generic;
 namespace Metagraph
 {
     /// <summary>
-    /// What is asked of a layer. Id keys the random draws. Duration: how long the activity is wanted, null for one action. Stroke:
-    /// when a gesture's stroke should come. Hold: seconds its hold should last. Among: ids of the only actions it may be.
-    /// </summary>
-    public sealed class Request
-    {
-        public string Id, Layer, Kind, Action, Limb, Stance;
-        public double Start;
-        public double? Duration, Stroke, Hold;
-        public int Priority = 1;
-        public bool Resume, Prepare = true;
-        public string[] Tags = Basics.None, Among = Basics.None;
-    }
-
-    /// <summary>Where writing stands: before meta action Number, in state number State (-1: none yet), which ended at Time.</summary>
-    public struct Cursor
-    {
-        public static readonly Cursor Begin = new Cursor { State = -1 };
-        public int Number, State;
-        public double Time;
-    }
-
-    /// <summary>A request placed in time: Start..End is the window it may use. Written: by the Markov model, not asked for.</summary>
-    public sealed class MetaAction
-    {
-        public readonly Request Request;
-        public readonly double Start, End;
-        public readonly int Part;
-        public readonly bool Written;
-
-        public MetaAction(Request request, double start, double end, int part = 0, bool written = false)
-        {
-            Request = request;
-            Start = start;
-            End = end;
-            Part = part;
-            Written = written;
-        }
-
-        public MetaAction At(double start, double end)
-        {
-            return new MetaAction(Request, start, end, Part, Written);
-        }
-
-        /// <summary>What a model wrote gives way to all that is asked for.</summary>
-        public double Rank
-        {
-            get { return Written ? double.NegativeInfinity : Request.Priority; }
-        }
-
-        /// <summary>What keys this meta action's random draws.</summary>
-        public string Key
-        {
-            get { return Part == 0 ? Request.Id : Request.Id + "+" + Part; }
-        }
-    }
-
-    /// <summary>
     /// One action in the plan: it plays its clip from Entry on during Start..End, at its own speed but for its hold: clip seconds
     /// HoldFrom..HoldTo take Hold seconds. Stance: before it; Then: the stance it leaves the layer in. Meta: key of what it realises.
     /// </summary>
@@ -104,20 +47,6 @@ namespace Metagraph
             Start = start;
             FadeStart = fadeStart;
             Fade = fade;
-        }
-    }
-
-    /// <summary>What became of a meta action that was not simply played as asked. Played: whether something of it still plays.</summary>
-    public sealed class Report
-    {
-        public string Request, Outcome, Message, Layer;
-        public double At;
-        public bool Played;
-
-        /// <summary>Told by temporal replanning, once.</summary>
-        public bool Temporal
-        {
-            get { return Outcome == "late" || Outcome == "cut" || Outcome == "resumed" || Outcome == "past"; }
         }
     }
 
@@ -208,12 +137,12 @@ namespace Metagraph
         public readonly double End;
         public readonly Dictionary<string, LayerPlan> Layers;
         public readonly List<Report> Reports;
-        public readonly List<Request> Requests;
+        public readonly List<MetaRequest> Requests;
         public readonly Track Track;
         public readonly Schedule Life;
 
         public Plan(
-            uint seed, double end, Dictionary<string, LayerPlan> layers, List<Report> reports, List<Request> requests, Track track,
+            uint seed, double end, Dictionary<string, LayerPlan> layers, List<Report> reports, List<MetaRequest> requests, Track track,
             Schedule life)
         {
             Seed = seed;
@@ -232,9 +161,9 @@ namespace Metagraph
             foreach (string layer in Basics.Layers)
             {
                 layers[layer] = new LayerPlan(
-                    layer, new List<MetaAction>(), new List<Cue>(), new List<Rest>(), new Past(), Cursor.Begin, new List<MetaAction>());
+                    layer, new List<MetaAction>(), new List<Cue>(), new List<Rest>(), new Past(), MarkovRules.Begin, new List<MetaAction>());
             }
-            return new Plan(seed, 0.0, layers, new List<Report>(), new List<Request>(), Track.Empty, Schedule.Empty);
+            return new Plan(seed, 0.0, layers, new List<Report>(), new List<MetaRequest>(), Track.Empty, Schedule.Empty);
         }
 
         internal Plan With(Track track)

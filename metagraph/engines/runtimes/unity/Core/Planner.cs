@@ -7,15 +7,17 @@ namespace Metagraph
     /// <summary>Requests in, a plan of specific actions out: meta actions, temporal replanning, sampling, layer by layer.</summary>
     public static class Planner
     {
+        private static readonly HashSet<string> Temporal = new HashSet<string> { "late", "cut", "resumed", "past" }; // told once
+
         /// <summary>
         /// The plan with new requests worked in, others withdrawn, and the horizon moved to `end`. What starts before `now` stays as
         /// it was; what was planned for later is taken back to its meta actions and planned again. leave: layers that nothing new concerns.
         /// </summary>
         internal static Plan Extend(
-            Graph graph, Plan plan, double now, IEnumerable<Request> requests, double end, IDictionary<string, string> stances, bool idle,
+            Graph graph, Plan plan, double now, IEnumerable<MetaRequest> requests, double end, IDictionary<string, string> stances, bool idle,
             HashSet<string> withdrawn, ICollection<string> leave)
         {
-            List<Request> fresh = Unique(requests);
+            List<MetaRequest> fresh = Unique(requests);
             var again = new HashSet<string>(fresh.Select(r => r.Id));
             again.UnionWith(withdrawn);
             var layers = new Dictionary<string, LayerPlan>();
@@ -33,16 +35,16 @@ namespace Metagraph
                 wish = stances != null && stances.TryGetValue(layer, out wish) ? wish : null;
                 layers[layer] = ExtendLayer(graph, plan, layer, now, asked, again, end, wish, idle, reports);
             }
-            List<Request> kept = plan.Requests.Where(r => !again.Contains(r.Id)).Concat(fresh).ToList();
+            List<MetaRequest> kept = plan.Requests.Where(r => !again.Contains(r.Id)).Concat(fresh).ToList();
             Schedule life = Drawing.Extend(graph, plan.Track, plan.Seed, end, plan.Life, now);
             return new Plan(plan.Seed, end, layers, reports.OrderBy(r => r.At).ToList(), kept, plan.Track, life);
         }
 
         /// <summary>Of requests with one id the last, in the place of the first.</summary>
-        private static List<Request> Unique(IEnumerable<Request> requests)
+        private static List<MetaRequest> Unique(IEnumerable<MetaRequest> requests)
         {
-            var found = new List<Request>();
-            foreach (Request request in requests)
+            var found = new List<MetaRequest>();
+            foreach (MetaRequest request in requests)
             {
                 int place = found.FindIndex(r => r.Id == request.Id);
                 if (place >= 0)
@@ -57,7 +59,7 @@ namespace Metagraph
             return found;
         }
 
-        private static MetaAction Meta(Request request, PlannerSettings settings)
+        private static MetaAction Meta(MetaRequest request, PlannerSettings settings)
         {
             double length = request.Duration == null ? settings.Window : Math.Max(0.0, request.Duration.Value);
             if (request.Stroke != null)
@@ -81,9 +83,9 @@ namespace Metagraph
             Cursor cursor = old.Cursor;
             if (idle) // what the model writes from now on, as it writes it
             {
-                written.AddRange(old.Written);
-                cursor = Markov.Write(graph, plan.Seed, end, cursor, written);
-                written.RemoveAll(m => !(m.Start >= now));
+                var more = MarkovRules.Write(graph.Markov, plan.Seed, end, graph.Kinds, cursor);
+                written = old.Written.Concat(more.Item1).Where(m => m.Start >= now).ToList();
+                cursor = more.Item2;
             }
             var gone = new HashSet<string>(again);
             gone.UnionWith(written.Select(m => m.Request.Id));
@@ -94,14 +96,14 @@ namespace Metagraph
             List<MetaAction> done = staying.Where(
                 m => !planned.Contains(Place(m.Request.Id, m.Start)) && (played.Contains(m.Key) || m.Start < now)).ToList();
             reports.AddRange(plan.Reports.Where(
-                r => r.Layer == layer && !gone.Contains(r.Request) && (r.Temporal || !planned.Contains(Place(r.Request, r.At)))));
+                r => r.Layer == layer && !gone.Contains(r.Request) && (Temporal.Contains(r.Outcome) || !planned.Contains(Place(r.Request, r.At)))));
             string begin = Begin(graph, old, wish);
             Performer performer = begin == null ? null : new Performer(whole.Planner, graph, plan.Seed, begin, old.Past, kept);
             if (performer == null || !performer.Begin(begin))
             {
                 string why = "the " + layer + " layer has no stance with a loop to begin in";
                 reports.AddRange(future.Concat(asked).Where(m => !m.Written).Select(
-                    m => new Report { Request = m.Request.Id, Outcome = "no-stance", Message = why, Layer = layer, At = m.Start }));
+                    m => new Report(m.Request.Id, "no-stance", why, layer, m.Start)));
                 List<MetaAction> all = done.Concat(future).Concat(asked).ToList();
                 return new LayerPlan(layer, all, new List<Cue>(), new List<Rest>(), old.Past, cursor, written);
             }
@@ -112,14 +114,17 @@ namespace Metagraph
             }
             performer.Begun = new HashSet<string>(played.Where(waiting.Contains));
             performer.Free = Math.Max(now - (performer.Ready - performer.Free), performer.Free);
-            asked = Replan.Delay(asked, performer.Ready, whole.Planner, reports);
+            var delayed = ReplanRules.Delay(asked, performer.Ready, whole.Planner);
+            reports.AddRange(delayed.Item2);
             // What runs keeps the time it was wanted for, from the models.
             double busy = done.Where(m => !m.Written).Select(m => m.End).DefaultIfEmpty(double.NegativeInfinity).Max();
-            List<MetaAction> placed = Replan.Place(future.Concat(written).Concat(asked), whole.Planner, busy, reports);
-            performer.Perform(placed.FindAll(m => !m.Written || Performed(graph.Markov, plan, m)), end);
+            List<MetaAction> every = future.Concat(written).Concat(delayed.Item1).ToList();
+            var placed = ReplanRules.Replan(every, whole.Planner, busy);
+            reports.AddRange(placed.Item2);
+            performer.Perform(placed.Item1.FindAll(m => !m.Written || Performed(graph.Markov, plan, m)), end);
             performer.VaryRests(end);
             reports.AddRange(performer.Reports);
-            return new LayerPlan(layer, done.Concat(placed).ToList(), performer.Cues, performer.Rests, old.Past, cursor, written);
+            return new LayerPlan(layer, done.Concat(placed.Item1).ToList(), performer.Cues, performer.Rests, old.Past, cursor, written);
         }
 
         private static (string, double) Place(string request, double at)
@@ -128,10 +133,10 @@ namespace Metagraph
         }
 
         /// <summary>Whether what a model wrote is performed: not where it would leave a stance that was asked for, to stay in.</summary>
-        private static bool Performed(MarkovModel model, Plan plan, MetaAction meta)
+        private static bool Performed(Markov model, Plan plan, MetaAction meta)
         {
             bool leaves = meta.Request.Kind == "transition" && plan.Track.StaysAt(meta.Request.Layer, meta.Start);
-            return !leaves && Markov.Performs(model, plan.Seed, meta, plan.Track.ToldMode(meta.Start));
+            return !leaves && MarkovRules.Performs(model, plan.Seed, meta, plan.Track.ToldMode(meta.Start));
         }
 
         /// <summary>The stance a layer begins in: as it did before, as asked, the graph's start, or the first that has a loop.</summary>

@@ -1,3 +1,4 @@
+// Translated from metagraph/playback/replan.py; change that, and translate anew.
 using System;
 using System.Collections.Generic;
 using System.Linq;
@@ -5,62 +6,94 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// Temporal replanning: meta actions that may clash become a meta plan that does not. Greedy, by start time and then
-    /// priority. Where two overlap, the more important one keeps its time; the other is delayed past it, or cut where it begins.
+    /// Temporal replanning: meta actions that may clash become a meta plan that does not (Borer et al., section 6.1).
+    ///
+    /// Greedy, by start time and then priority. The running action is never touched. Where two overlap, the more important one
+    /// keeps its time; the other is delayed past it, or cut where it begins, and then goes on with its remainder if it asked to.
     /// </summary>
-    internal static class Replan
+    public static class ReplanRules
     {
-        /// <summary>Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past.</summary>
-        public static List<MetaAction> Delay(List<MetaAction> asked, double free, PlannerSettings settings, List<Report> reports)
+        /// <summary>
+        /// Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past.
+        /// </summary>
+        public static (List<MetaAction>, List<Report>) Delay(List<MetaAction> asked, double free, PlannerSettings settings)
         {
             var metas = new List<MetaAction>();
+            var reports = new List<Report>();
             foreach (MetaAction meta in asked)
             {
-                double late = free - meta.Start;
+                var late = free - meta.Start;
                 if (late <= 0)
                 {
                     metas.Add(meta);
                 }
                 else if (late > settings.Wait)
                 {
-                    string when = Basics.Words(meta.Start) + " s, " + Basics.Words(late) + " s before anything could start";
-                    reports.Add(Told(meta, "past", "asked for at " + when));
+                    reports.Add(Told(
+                        meta,
+                        "past",
+                        "asked for at "
+                            + PlainText.Fixed(meta.Start, 2)
+                            + " s, "
+                            + PlainText.Fixed(late, 1)
+                            + " s before anything could start"
+                    ));
                 }
                 else
                 {
-                    metas.Add(meta.At(free, free + (meta.End - meta.Start)));
-                    reports.Add(Told(meta, "late", "waits " + Basics.Words(late) + " s for the running action", true));
+                    metas.Add(new MetaAction(meta.Request, free, free + (meta.End - meta.Start), meta.Part, meta.Written));
+                    reports.Add(Told(meta, "late", "waits " + PlainText.Fixed(late, 2) + " s for the running action", true));
                 }
             }
-            return metas;
+            return (metas, reports);
         }
 
         /// <summary>
-        /// The meta plan, ascending and without overlaps. What is asked for is placed first; what a model wrote fits into the gaps,
-        /// from `busy` seconds on. Meta actions that do not overlap come back as they are.
+        /// Return the meta plan, ascending and without overlaps, and what became of the rest.
+        ///
+        /// What is asked for is placed first; what a model wrote fits into the gaps, from `busy` seconds on. Meta actions that do
+        /// not overlap come back as they are, so a plan that is placed again stays as it is. Of equal start and priority, the id
+        /// that sorts first goes first.
         /// </summary>
-        public static List<MetaAction> Place(IEnumerable<MetaAction> metas, PlannerSettings settings, double busy, List<Report> reports)
+        public static (List<MetaAction>, List<Report>) Replan(
+            List<MetaAction> metas,
+            PlannerSettings settings,
+            double busy = double.NegativeInfinity
+        )
         {
-            List<MetaAction> every = metas.ToList();
-            List<MetaAction> placed = Placed(every.Where(m => !m.Written), settings, reports);
-            List<MetaAction> written = Fitted(every.Where(m => m.Written), placed, settings.Shortest, busy, reports);
-            return placed.Concat(written).OrderBy(m => m.Start).ThenBy(m => m.End).ToList();
+            var every = metas.ToList();
+            var found = Placed(every.Where(m => !m.Written).ToList(), settings);
+            List<MetaAction> placed = found.Item1;
+            List<Report> reports = found.Item2;
+            var found2 = Fitted(every.Where(m => m.Written).ToList(), placed, settings.Shortest, busy);
+            List<MetaAction> written = found2.Item1;
+            List<Report> told = found2.Item2;
+            return (
+                placed.Concat(written).ToList().OrderBy(m => m.Start).ThenBy(m => m.End).ToList(),
+                reports.Concat(told).ToList()
+            );
         }
 
-        /// <summary>What is left of what a model wrote beside what is placed: the first stretch of each that is long enough.</summary>
-        private static List<MetaAction> Fitted(
-            IEnumerable<MetaAction> written, List<MetaAction> placed, double shortest, double busy, List<Report> reports)
+        /// <summary>
+        /// Return what is left of what a model wrote beside what is placed: the first stretch of each that is long enough.
+        /// </summary>
+        private static (List<MetaAction>, List<Report>) Fitted(
+            List<MetaAction> written,
+            List<MetaAction> placed,
+            double shortest,
+            double busy
+        )
         {
-            var found = new List<MetaAction>();
-            var sorted = written.ToList();
-            foreach (MetaAction meta in sorted.OrderBy(m => m.Start).ThenBy(m => m.Request.Id, Comparer<string>.Create(Basics.Compare)))
+            var out_ = new List<MetaAction>();
+            var reports = new List<Report>();
+            var starts = placed.Select(m => m.Start).ToList();
+            foreach (MetaAction meta in written.OrderBy(m => m.Start).ThenBy(m => m.Request.Id, PlainText.Order).ToList())
             {
-                double start = Math.Max(meta.Start, Math.Max(busy, found.Count > 0 ? found[found.Count - 1].End : busy));
-                double end = meta.End;
+                var start = Math.Max(meta.Start, Math.Max(busy, out_.Count > 0 ? out_[out_.Count - 1].End : busy));
+                var end = meta.End;
                 MetaAction beside = null;
-                for (int n = Math.Max(0, Basics.BisectRight(placed, start, m => m.Start) - 1); n < placed.Count; n++)
+                foreach (MetaAction other in PlainLists.Part(placed, Math.Max(0, PlainLists.Right(starts, start) - 1)))
                 {
-                    MetaAction other = placed[n];
                     if (other.Start >= end)
                     {
                         break;
@@ -79,38 +112,47 @@ namespace Metagraph
                 }
                 if (start == meta.Start && end == meta.End)
                 {
-                    found.Add(meta);
+                    out_.Add(meta);
                 }
                 else if (end - start >= shortest)
                 {
-                    found.Add(meta.At(start, end));
+                    out_.Add(new MetaAction(meta.Request, start, end, meta.Part, meta.Written));
                     if (end < meta.End && beside != null)
                     {
-                        string why = " s for '" + beside.Request.Id + "', which is asked for";
-                        reports.Add(Told(meta, "cut", "is cut at " + Basics.Words(end) + why, true));
+                        reports.Add(Told(
+                            meta,
+                            "cut",
+                            "is cut at " + PlainText.Fixed(end, 2) + " s for '" + beside.Request.Id + "', which is asked for",
+                            true
+                        ));
                     }
                 }
                 else
                 {
-                    reports.Add(Told(meta, "covered", beside != null ? NoTime(beside) : "no time left beside what plays"));
+                    var words = beside != null ? NoTime(beside) : "no time left beside what plays";
+                    reports.Add(Told(meta, "covered", words));
                 }
             }
-            return found;
+            return (out_, reports);
         }
 
-        private static List<MetaAction> Placed(IEnumerable<MetaAction> metas, PlannerSettings settings, List<Report> reports)
+        /// <summary>Return what decides who is placed first.</summary>
+        private static (double, int, string, int) Order(MetaAction meta)
         {
-            var queue = new List<MetaAction>(); // the next at the end
-            foreach (MetaAction meta in metas)
-            {
-                Push(queue, meta);
-            }
+            return (meta.Start, -meta.Request.Priority, meta.Request.Id, meta.Part);
+        }
+
+        private static (List<MetaAction>, List<Report>) Placed(List<MetaAction> metas, PlannerSettings settings)
+        {
+            var queue = PlainLists.By(metas, item => Order(item));
+            var at = 0; // what is before it was looked at
             var placed = new List<MetaAction>();
-            while (queue.Count > 0)
+            var reports = new List<Report>();
+            while (at < queue.Count)
             {
-                MetaAction meta = queue[queue.Count - 1];
-                queue.RemoveAt(queue.Count - 1);
-                MetaAction last = placed.Count > 0 ? placed[placed.Count - 1] : null;
+                var meta = queue[at];
+                at += 1;
+                var last = placed.Count > 0 ? placed[placed.Count - 1] : null;
                 if (last == null || last.End <= meta.Start)
                 {
                     placed.Add(meta);
@@ -119,24 +161,31 @@ namespace Metagraph
                 if (meta.Request.Priority > last.Request.Priority)
                 {
                     placed.RemoveAt(placed.Count - 1);
-                    bool kept = meta.Start - last.Start >= settings.Shortest;
+                    var kept = meta.Start - last.Start >= settings.Shortest;
                     if (kept)
                     {
-                        placed.Add(last.At(last.Start, meta.Start));
+                        placed.Add(new MetaAction(last.Request, last.Start, meta.Start, last.Part, last.Written));
                     }
                     // What was never begun goes on as itself, so that its draws stay the same.
                     var rest = new MetaAction(last.Request, meta.End, last.End, kept ? last.Part + 1 : last.Part, last.Written);
-                    bool resumes = last.Request.Resume && rest.End - rest.Start >= settings.Shortest;
+                    var resumes = last.Request.Resume && rest.End - rest.Start >= settings.Shortest;
                     if (resumes)
                     {
-                        Push(queue, rest);
+                        PlainLists.Insert(queue, rest, at, item => Order(item));
                     }
-                    string outcome = resumes ? "resumed" : kept ? "cut" : "covered";
-                    string why = " s for '" + meta.Request.Id + "', which is more important";
-                    string after = resumes ? " and goes on at " + Basics.Words(meta.End) + " s" : "";
-                    string message = (kept ? "is cut at " : "gives way at ") + Basics.Words(meta.Start) + why + after;
+                    var word = kept ? "is cut" : "gives way";
+                    var after = resumes ? " and goes on at " + PlainText.Fixed(meta.End, 2) + " s" : "";
+                    var outcome = resumes ? "resumed" : kept ? "cut" : "covered";
+                    var message = word
+                        + " at "
+                        + PlainText.Fixed(meta.Start, 2)
+                        + " s for '"
+                        + meta.Request.Id
+                        + "', which is more important"
+                        + after;
                     reports.Add(Told(last, outcome, message, kept || resumes));
-                    Push(queue, meta); // it may reach back over what was placed before, too
+                    // it may reach back over what was placed before, too
+                    PlainLists.Insert(queue, meta, at, item => Order(item));
                 }
                 else if (last.End - meta.Request.Start > settings.Wait)
                 {
@@ -144,53 +193,39 @@ namespace Metagraph
                 }
                 else
                 {
-                    Push(queue, meta.At(last.End, last.End + (meta.End - meta.Start)));
-                    string waits = "waits " + Basics.Words(last.End - meta.Request.Start) + " s for '" + last.Request.Id + "'";
-                    reports.Add(Told(meta, "late", waits, true));
+                    var later = new MetaAction(
+                        meta.Request,
+                        last.End,
+                        last.End + (meta.End - meta.Start),
+                        meta.Part,
+                        meta.Written
+                    );
+                    PlainLists.Insert(queue, later, at, item => Order(item));
+                    reports.Add(Told(
+                        meta,
+                        "late",
+                        "waits " + PlainText.Fixed(last.End - meta.Request.Start, 2) + " s for '" + last.Request.Id + "'",
+                        true
+                    ));
                 }
             }
-            return placed;
-        }
-
-        /// <summary>Put a meta action in line: by start, priority, id and part; of equals the first come first.</summary>
-        private static void Push(List<MetaAction> queue, MetaAction meta)
-        {
-            int low = 0, high = queue.Count;
-            while (low < high)
-            {
-                int middle = (low + high) / 2;
-                if (Order(queue[middle], meta) > 0)
-                {
-                    low = middle + 1;
-                }
-                else
-                {
-                    high = middle;
-                }
-            }
-            queue.Insert(low, meta);
-        }
-
-        private static int Order(MetaAction a, MetaAction b)
-        {
-            int order = a.Start.CompareTo(b.Start);
-            order = order != 0 ? order : b.Request.Priority.CompareTo(a.Request.Priority);
-            order = order != 0 ? order : Basics.Compare(a.Request.Id, b.Request.Id);
-            return order != 0 ? order : a.Part.CompareTo(b.Part);
+            return (placed, reports);
         }
 
         private static string NoTime(MetaAction other)
         {
-            return "no time left beside '" + other.Request.Id + "' (" + Basics.Words(other.Start) + "-" + Basics.Words(other.End) + " s)";
+            return "no time left beside '"
+                + other.Request.Id
+                + "' ("
+                + PlainText.Fixed(other.Start, 2)
+                + "-"
+                + PlainText.Fixed(other.End, 2)
+                + " s)";
         }
 
         private static Report Told(MetaAction meta, string outcome, string message, bool played = false)
         {
-            return new Report
-            {
-                Request = meta.Request.Id, Outcome = outcome, Message = message, Layer = meta.Request.Layer, At = meta.Start,
-                Played = played,
-            };
+            return new Report(meta.Request.Id, outcome, message, meta.Request.Layer, meta.Start, played, meta.Written);
         }
     }
 }

@@ -16,7 +16,7 @@ namespace Metagraph
         /// <summary>Each action in turn: the transitions to get there, then the action itself; null if impossible or needless.</summary>
         private List<Step> Steps(MetaAction meta)
         {
-            Request request = meta.Request;
+            MetaRequest request = meta.Request;
             if (request.Action != null)
             {
                 GraphAction action = graph.Action(request.Action);
@@ -51,7 +51,7 @@ namespace Metagraph
                 return Way(meta, request.Stance);
             }
             List<GraphAction> every = graph.Of(past.Stance, request.Kind).FindAll(Usable);
-            if (request.Among.Length > 0)
+            if (request.Among.Count > 0)
             {
                 every = every.FindAll(a => request.Among.Contains(a.Id));
             }

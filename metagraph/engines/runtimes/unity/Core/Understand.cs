@@ -13,7 +13,7 @@ namespace Metagraph
         private const double Forever = 1e9; // seconds; a look that lasts until the next
         private const double ShortestLine = 0.4, Spoken = 14.0; // seconds; characters a second of speech without sound
 
-        public readonly List<Request> Requests = new List<Request>();
+        public readonly List<MetaRequest> Requests = new List<MetaRequest>();
         public readonly List<Item> Items = new List<Item>();
         public readonly HashSet<string> Withdrawn = new HashSet<string>();
         public readonly List<Report> Refused = new List<Report>();
@@ -38,10 +38,7 @@ namespace Metagraph
                 }
                 catch (AskException error)
                 {
-                    all.Refused.Add(new Report
-                    {
-                        Request = ask.Id, Outcome = "not-understood", Message = error.Message, Layer = ask.Layer ?? "arms", At = at,
-                    });
+                    all.Refused.Add(new Report(ask.Id, "not-understood", error.Message, ask.Layer ?? "arms", at));
                 }
             }
             return all;
@@ -53,39 +50,29 @@ namespace Metagraph
             {
                 case "gesture":
                     double start = ask.Stroke == null ? at : Math.Max(0.0, ask.Stroke.Value - LongestLead(graph, ask));
-                    Requests.Add(new Request
-                    {
-                        Id = ask.Id, Layer = ask.Layer, Kind = "gesture", Start = start, Duration = ask.Duration, Tags = ask.Tags,
-                        Limb = ask.Limb, Priority = ask.Priority, Resume = ask.Resume, Stroke = ask.Stroke, Hold = ask.Hold,
-                        Prepare = ask.Prepare,
-                    });
+                    Requests.Add(new MetaRequest(
+                        ask.Id, ask.Layer, "gesture", start, duration: ask.Duration, tags: ask.Tags.ToList(), limb: ask.Limb,
+                        priority: ask.Priority, resume: ask.Resume, stroke: ask.Stroke, hold: ask.Hold, prepare: ask.Prepare));
                     break;
                 case "fidget":
-                    Requests.Add(new Request
-                    {
-                        Id = ask.Id, Layer = ask.Layer, Kind = "fidget", Start = at, Duration = ask.Duration, Tags = ask.Tags,
-                        Limb = ask.Limb, Priority = ask.Priority, Resume = ask.Resume,
-                    });
+                    Requests.Add(new MetaRequest(
+                        ask.Id, ask.Layer, "fidget", at, duration: ask.Duration, tags: ask.Tags.ToList(), limb: ask.Limb,
+                        priority: ask.Priority, resume: ask.Resume));
                     break;
                 case "action":
                     GraphAction action = FindAction(graph, ask.Action, ask.Layer);
                     double begin = ask.Stroke == null ? at : Math.Max(0.0, ask.Stroke.Value - Lead(action));
-                    Requests.Add(new Request
-                    {
-                        Id = ask.Id, Layer = action.Layer, Kind = action.Kind, Start = begin, Action = action.Id, Priority = ask.Priority,
-                        Stroke = ask.Stroke, Hold = ask.Hold, Prepare = ask.Prepare,
-                    });
+                    Requests.Add(new MetaRequest(
+                        ask.Id, action.Layer, action.Kind, begin, action: action.Id, priority: ask.Priority,
+                        stroke: ask.Stroke, hold: ask.Hold, prepare: ask.Prepare));
                     break;
                 case "stance":
                     string stance, layer = FindStance(graph, ask.Stance, ask.Layer, out stance);
-                    Requests.Add(new Request
-                    {
-                        Id = ask.Id, Layer = layer, Kind = "transition", Start = at, Stance = stance, Priority = ask.Priority,
-                    });
+                    Requests.Add(new MetaRequest(ask.Id, layer, "transition", at, stance: stance, priority: ask.Priority));
                     Items.Add(new StayFrom(ask.Id, at, layer, ask.Stay));
                     break;
                 case "change": // whichever arm was seen to move: stances are joined by few transitions, and mostly of both
-                    Requests.Add(new Request { Id = ask.Id, Layer = ask.Layer, Kind = "transition", Start = at, Priority = ask.Priority });
+                    Requests.Add(new MetaRequest(ask.Id, ask.Layer, "transition", at, priority: ask.Priority));
                     break;
                 case "nod":
                 case "shake":
@@ -153,23 +140,22 @@ namespace Metagraph
         }
 
         /// <summary>Nods are gestures tagged so; where none is, the likeliest of those called so, whatever stance it needs.</summary>
-        private static Request Head(Graph graph, Ask ask, double at)
+        private static MetaRequest Head(Graph graph, Ask ask, double at)
         {
             string word = ask.Do;
             List<GraphAction> gestures = graph.Layers["head"].Actions.FindAll(x => x.Kind == "gesture" && x.HasTags(ask.Tags));
-            var request = new Request { Id = ask.Id, Layer = "head", Kind = "gesture", Start = at, Priority = ask.Priority };
             if (gestures.Exists(x => x.Tags.Contains(word)))
             {
-                request.Tags = new[] { word }.Concat(ask.Tags).ToArray();
-                return request;
+                List<string> tagged = new[] { word }.Concat(ask.Tags).ToList();
+                return new MetaRequest(ask.Id, "head", "gesture", at, tags: tagged, priority: ask.Priority);
             }
-            request.Among = gestures.Where(x => x.Name.ToLowerInvariant().Contains(word)).Select(x => x.Id).ToArray();
-            if (request.Among.Length == 0)
+            List<string> among = gestures.Where(x => x.Name.ToLowerInvariant().Contains(word)).Select(x => x.Id).ToList();
+            if (among.Count == 0)
             {
                 string tags = ask.Tags.Length > 0 ? " with the tags " + string.Join(", ", ask.Tags) : "";
                 throw new AskException("the head layer has no gesture tagged or called '" + word + "'" + tags);
             }
-            return request;
+            return new MetaRequest(ask.Id, "head", "gesture", at, priority: ask.Priority, among: among);
         }
 
         /// <summary>How long before its stroke any gesture with an ask's tags begins.</summary>

@@ -161,7 +161,7 @@ namespace Metagraph
 
         private double Chance(string what, int number, string purpose)
         {
-            return Choice.Uniform(seed, what, number.ToString(System.Globalization.CultureInfo.InvariantCulture), purpose);
+            return ChoiceRules.Uniform(seed, what, number.ToString(System.Globalization.CultureInfo.InvariantCulture), purpose);
         }
 
         private Manner MannerAt(double seconds)
@@ -213,7 +213,7 @@ namespace Metagraph
                 double length = (BreathLeast + BreathChance * Chance("breath", n, "length")) / rate;
                 length *= 1 + 2 * life.Stillness; // slower, too, but never halting
                 double depth = ways.Breathing * (BreathLeast + BreathChance * Chance("breath", n, "depth"));
-                at = at ?? -length * Choice.Uniform(seed, "breath", "first");
+                at = at ?? -length * ChoiceRules.Uniform(seed, "breath", "first");
                 if (at >= drawn)
                 {
                     break;
@@ -291,7 +291,7 @@ namespace Metagraph
         private Lane Blinks(Lane lane)
         {
             double shut = life.BlinkClose + life.BlinkOpen, mean = life.Blinks > 0 && calm > 0 ? 60 / life.Blinks : Inf;
-            double last = -0.5 * Math.Min(mean, 10.0) * Choice.Uniform(seed, "blink", "first");
+            double last = -0.5 * Math.Min(mean, 10.0) * ChoiceRules.Uniform(seed, "blink", "first");
             last = lane.Count > 0 ? lane.Starts[lane.Count - 1] : last;
             var accents = new List<KeyValuePair<double, bool>>();
             if (calm > 0 && life.AccentBlinks > 0)
@@ -347,7 +347,7 @@ namespace Metagraph
 
         private double Chance(string what, string purpose, int number)
         {
-            return Choice.Uniform(seed, what, purpose, number.ToString(System.Globalization.CultureInfo.InvariantCulture));
+            return ChoiceRules.Uniform(seed, what, purpose, number.ToString(System.Globalization.CultureInfo.InvariantCulture));
         }
     }
 }

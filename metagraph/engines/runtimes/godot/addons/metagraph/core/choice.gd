@@ -1,58 +1,47 @@
-# Keyed randomness: every draw is a hash of (seed, words), in 32-bit integers. Nothing is remembered between draws.
+# Keyed randomness: every draw is a hash of (seed, key, purpose), in 32-bit integers that any language can mix alike.
+#
+# Nothing is remembered between draws, so changing one request leaves the draws of all others as they were.
+#
+# Translated from metagraph/playback/choice.py; change that, and translate anew.
 
-const MASK = 0xFFFFFFFF
-const OFFSET = 0x811C9DC5  # FNV-1a's, 32 bits
-const PRIME = 0x01000193
-# MurmurHash3's factors less 2^32: so products stay within 64 signed bits, and their low 32 bits are the same.
-const MIX_A = 0x85EBCA6B - 0x100000000
-const MIX_B = 0xC2B2AE35 - 0x100000000
-
-var shim
+const Hashing = preload("hashing.gd")
 
 
-func _init(engine_shim):
-	shim = engine_shim
-
-
-# Returns 32 scrambled bits.
-static func mix(value):
-	value &= MASK
-	value ^= value >> 16
-	value = (value * MIX_A) & MASK
-	value ^= value >> 13
-	value = (value * MIX_B) & MASK
-	return value ^ (value >> 16)
-
-
-# Returns the 32-bit hash of a seed and words: FNV-1a over their UTF-8 bytes, each word closed by a zero byte, then mixed.
-func key32(seed32, words):
-	var value = (OFFSET ^ mix(seed32)) & MASK
+# Return the 32-bit hash of a seed and words: FNV-1a over their UTF-8 bytes, each word closed by a zero byte, then mixed.
+#
+# The seed, mixed, is xored into FNV's offset basis.
+static func key32(seed_, words):
+	var value = Hashing.begun(seed_)
 	for word in words:
-		value = _absorb(value, word)
-	return mix(value)
+		value = Hashing.absorb(value, word)
+	return Hashing.mix(value)
 
 
-# Returns a number in the open interval (0, 1).
-func uniform(seed32, words):
-	return (key32(seed32, words) + 0.5) / 4294967296.0
+# Return a number in the open interval (0, 1).
+static func uniform(seed_, words):
+	return _unit(key32(seed_, words))
 
 
-# Returns one of the ids of `weights` {id: weight}, id k with probability weight_k / sum; "" where no weight is positive.
-# Each id runs its own race, so that adding one changes the choice only where that one wins.
-func pick(seed32, key, purpose, weights):
+# Return one of the ids, id k with probability weight_k / sum.
+#
+# Each id runs its own race, the shortest of exponential times -log(u_k) / weight_k wins; so adding or removing one candidate
+# changes the choice only where that candidate wins. Raises ValueError when no weight is positive.
+static func pick(seed_, key, purpose, weights):
 	var best = ""
 	var shortest = INF
-	var begun = _absorb(_absorb((OFFSET ^ mix(seed32)) & MASK, key), purpose)
+	var start = Hashing.absorb(Hashing.absorb(Hashing.begun(seed_), key), purpose)
 	for ident in weights:
-		if weights[ident] > 0:
-			var time = -log((mix(_absorb(begun, ident)) + 0.5) / 4294967296.0) / weights[ident]
+		var weight = weights[ident]
+		if weight > 0:
+			var time = -log(_unit(Hashing.mix(Hashing.absorb(start, ident)))) / weight
 			if time < shortest or (time == shortest and ident < best):
 				best = ident
 				shortest = time
+	if best == "":
+		push_error("nothing to choose from")
+		return null
 	return best
 
 
-func _absorb(value, word):
-	for byte in shim.utf8(word):
-		value = ((value ^ byte) * PRIME) & MASK
-	return (value * PRIME) & MASK  # the closing zero byte
+static func _unit(bits):
+	return (bits + 0.5) / 4294967296.0

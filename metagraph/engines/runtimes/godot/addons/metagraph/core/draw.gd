@@ -1,6 +1,7 @@
 # One extension of a life schedule: lanes filled up to `drawn`. Each event depends only on the one before it, on its own number and
 # on what is asked meanwhile.
 
+const Choice = preload("choice.gd")
 const Util = preload("util.gd")
 const Lane = preload("lane.gd")
 const Wanted = preload("wanted.gd")
@@ -70,7 +71,7 @@ func begin(from_time):
 
 
 func _chance(words):
-	return graph.choice.uniform(seed32, words)
+	return Choice.uniform(seed32, words)
 
 
 # Returns what the mode at a time makes of the dials.

@@ -3,7 +3,7 @@
 
 const Util = preload("util.gd")
 const Check = preload("check.gd")
-const Choice = preload("choice.gd")
+const Model = preload("model.gd")
 const Clip = preload("clip.gd")
 const Glb = preload("glb.gd")
 const Life = preload("life.gd")
@@ -16,7 +16,6 @@ const PLANNER_USUAL = {memory = 0.0, rest = 0.0, lookahead = 0.1, hurry = 2.0, l
 var error = ""
 var problems = []
 var shim
-var choice
 var text
 var names = []  # [J] joints, parents before children
 var parents = []  # [J], -1 for a root
@@ -43,7 +42,6 @@ var _index = {}  # layer/kind/stance -> actions, in the order they were placed
 # json: the export's text. bytes: its GLB's.
 func _init(json, bytes):
 	shim = load(CORE + "shim%d.gd" % Engine.get_version_info()["major"])
-	choice = Choice.new(shim)
 	text = Text.new(shim)
 	error = _read(json, bytes)
 
@@ -118,10 +116,10 @@ func _read_layer(layer, data):
 		kinds[action.kind] = true
 		var node = "%s/%s/%s" % [layer, action.kind, action.stance]
 		_index[node] = _index.get(node, []) + [action]
-	var markov = data.markov.duplicate()
-	markov.tags = [] if data.markov.tags == null else data.markov.tags
-	markov.lengths = [] if data.markov.lengths == null else data.markov.lengths
-	markov.modes = [] if data.markov.modes == null else data.markov.modes
+	var own = data.markov
+	var markov = Model.Markov.new(
+		layer, own.states, own.matrix, own.gap, own.positive, own.negative, own.get("tags"), own.get("lengths"), own.get("modes")
+	)
 	var reach = []  # [joint, weight] of those it moves
 	for joint in range(names.size()):
 		var weight = data.weights.get(parts[joint], 0.0)

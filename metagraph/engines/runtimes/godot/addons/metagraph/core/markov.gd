@@ -1,86 +1,117 @@
-# The model that performs when nobody asks for anything: a first-order chain over (limb, kind), see docs/format.md.
+# The Markov model that performs when nobody asks for anything: a first-order chain over (limb, kind).
+#
+# The arms matrix is the paper's (Borer et al., figure 11), learned from annotated casual conversation. Body and head have no
+# published matrix; theirs are ours, shaped on the paper's labels: the head nods and now and then changes its tilt, the body
+# mostly rests, shifts and fidgets. So are the shares of what is performed while one is said to idle, listen or talk: hands
+# gesture with one's own speech, the head nods at the other's.
+#
+# Translated from metagraph/playback/markov.py; change that, and translate anew.
 
-const Request = preload("request.gd")
+const Words = preload("words.gd")
+const Choice = preload("choice.gd")
+const MetaPlan = preload("meta_plan.gd")
 const Util = preload("util.gd")
-const PERFORMED = ["gesture", "fidget", "transition"]  # as in a row of `modes`
-const START = {number = 0, state = -1, time = 0.0}  # before meta action `number`, in state `state` (-1: none yet), which ended at `time`
+const KINDS = ["gesture", "fidget", "transition"]  # as in `Markov.modes`
 
 
-# Returns [meta actions that start before `until` seconds, the cursor behind them], writing on from a cursor.
-# Each draw is keyed by the meta action's number, so writing in many goes gives what writing in one does. kinds {kind: true}:
-# what the graph has; states of other kinds are passed over.
-static func write(choice, model, layer, seed32, until, kinds, cursor):
+static func BEGIN():
+	return MetaPlan.Cursor.new()
+
+
+# Return the meta actions that start before `until` seconds, from the cursor on, and the cursor before the first one left out.
+#
+# Rests are drawn between 0.35 and 1.65 times the mean gap, windows as `length` says. kinds: what the graph has; states of other
+# kinds are passed over, so that half-filled graphs perform too.
+#
+# Each draw is keyed by the meta action's number, so a longer horizon only appends, and writing on from a cursor gives bit for bit
+# what writing in one go does. A chain that cannot leave a row of zeros starts again from any state.
+static func write(chain, seed_, until, kinds = null, cursor = null):
+	if cursor == null:
+		cursor = BEGIN()
 	var number = cursor.number
 	var state = cursor.state
 	var time = cursor.time
 	var open_to = []
-	for each in model.states:
-		open_to.append(1.0 if kinds.has(each[1]) else 0.0)
+	for pair in chain.states:
+		var kind2 = pair[1]
+		open_to.append(1.0 if (kinds == null or kinds.has(kind2)) else 0.0)
 	var out = []
-	while _any(open_to):
-		var key = "auto/%s/%d" % [layer, number]
-		var row = open_to
-		if state >= 0 and state < open_to.size():
-			row = []
-			for i in range(open_to.size()):
-				row.append(model.matrix[state][i] * open_to[i])
-			if not _any(row):
-				row = open_to
-		var weights = {}
-		for i in range(row.size()):
-			weights[str(i)] = row[i]
-		var start = time + model.gap * (0.35 + 1.3 * choice.uniform(seed32, [key, "gap"]))
-		if start >= until:
+	while true:
+		var is_any = false
+		for p in open_to:
+			if p > 0:
+				is_any = true
+				break
+		if not is_any:
 			break
-		state = int(choice.pick(seed32, key, "state", weights))
-		var limb = model.states[state][0]
-		var kind = model.states[state][1]
-		var seconds = _length(choice, model, state, seed32, key)
-		var tags = []
-		if model.tags.size() > 0:
-			for tag in model.tags[state].split(" ", false):
-				tags.append(tag)
-		elif kind == "gesture":
-			var draw = choice.uniform(seed32, [key, "tag"])
-			if draw < model.positive:
+		var key = "auto/%s/%d" % [chain.layer, number]
+		var start = time + chain.gap * (0.35 + 1.3 * Choice.uniform(seed_, [key, "gap"]))
+		if not (start < until):  # nor when it is no number
+			break
+		state = int(Choice.pick(seed_, key, "state", _row(chain, state, open_to)))
+		var both = chain.states[state]
+		var limb = both[0]
+		var kind = both[1]
+		var seconds = length(chain, state, seed_, key)
+		var tags = Util.list(Util.words(chain.tag(state)))
+		if kind == "gesture" and chain.tags.size() == 0:
+			var draw = Choice.uniform(seed_, [key, "tag"])
+			if draw < chain.positive:
 				tags = ["positive"]
-			elif draw < model.positive + model.negative:
+			elif draw < chain.positive + chain.negative:
 				tags = ["negative"]
-		var asked = Request.make(key, layer, kind, start, {duration = seconds, tags = tags, limb = limb, priority = 0})
-		out.append({request = asked, start = start, end = start + seconds, part = 0, written = true, key = key})
-		number += 1
+		var request = MetaPlan.MetaRequest.new(key, chain.layer, kind, start, seconds, null, tags, limb, null, MetaPlan.WRITTEN)
+		out.append(MetaPlan.MetaAction.new(request, start, start + seconds, 0, true))
+		number = number + 1
 		time = start + seconds
-	return [out, {number = number, state = state, time = time}]
+	return [out, MetaPlan.Cursor.new(number, state, time)]
 
 
-# Returns whether something the model wrote is performed while somebody idles, listens or talks; null where that is not known.
-static func performs(choice, model, seed32, meta, mode):
-	var place = PERFORMED.find(meta.request.kind)
-	if model.modes.size() == 0 or mode == null or place < 0:
+# Return how likely each state is after a state (-1: before the first), by its place; any that may be where nothing leads on.
+static func _row(chain, state, open_to):
+	var row = Util.list(open_to)
+	if 0 <= state and state < row.size():
+		var found = []
+		for n in range(chain.matrix[state].size()):
+			var p = chain.matrix[state][n]
+			var may = open_to[n]
+			found.append(p * may)
+		row = found
+	var is_any = false
+	for p in row:
+		if p > 0:
+			is_any = true
+			break
+	if not is_any:
+		row = Util.list(open_to)
+	var found2 = {}
+	for i in range(row.size()):
+		var p = row[i]
+		found2[str(i)] = p
+	return found2
+
+
+# Whether something the model wrote is performed while somebody idles, listens or talks (`Markov.modes`). What is left out leaves
+# the rest as it was, so that it does not matter when a mode became known.
+static func performs(chain, seed_, meta, mode):
+	if chain.modes.size() == 0 or mode == null or not KINDS.has(meta.request.kind):
 		return true
-	var share = model.modes[Util.MODES.find(mode)][place]
-	return share >= 1 or choice.uniform(seed32, [meta.request.id, "mode"]) < share
+	var share = chain.modes[Words.MODES.find(mode)][KINDS.find(meta.request.kind)]
+	return share >= 1 or Choice.uniform(seed_, [meta.request.id, "mode"]) < share
 
 
-static func _any(weights):
-	for weight in weights:
-		if weight > 0:
-			return true
-	return false
-
-
-# Returns how many seconds a meta action lasts: 1 to 3, or log-normal where the model has lengths.
-static func _length(choice, model, state, seed32, key):
-	var u = choice.uniform(seed32, [key, "length"])
-	if model.lengths.size() == 0:
+# Return how many seconds meta action `key` lasts: 1 to 3, evenly, where the model has no lengths.
+#
+# Else log-normal with the state's mean m and standard deviation s, from two uniform draws u, v in (0, 1) by Box and Muller, which
+# any language can do alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z - a / 2)`.
+static func length(chain, state, seed_, key):
+	var u = Choice.uniform(seed_, [key, "length"])
+	if chain.lengths.size() == 0:
 		return 1.0 + 2.0 * u
-	var mean = model.lengths[state][0]
-	var share = model.lengths[state][1] / mean
-	var spread = _log1p(share * share)
-	var z = sqrt(-2.0 * log(u)) * cos(2.0 * PI * choice.uniform(seed32, [key, "length2"]))
+	var both = chain.lengths[state]
+	var mean = both[0]
+	var deviation = both[1]
+	var share = deviation / mean
+	var spread = Util.log1p(share * share)
+	var z = sqrt(-2.0 * log(u)) * cos(2.0 * PI * Choice.uniform(seed_, [key, "length2"]))
 	return mean * exp(sqrt(spread) * z - spread / 2.0)
-
-
-static func _log1p(x):
-	var u = 1.0 + x
-	return x if u == 1.0 else log(u) * x / (u - 1.0)

@@ -5,7 +5,8 @@
 # stretched}. A rest is {stance, action, start: when its loop begins, fade_start, fade: how it takes over from the loop before}.
 
 const Util = preload("util.gd")
-const Replan = preload("replan.gd")
+const Choice = preload("choice.gd")
+const MetaPlan = preload("meta_plan.gd")
 const Shape = preload("shape.gd")
 const FITS = 1e-6  # seconds by which sums of times may be off
 const REMEMBERED = 32  # draws of a stance and kind that spacing can look back on
@@ -246,8 +247,15 @@ func _draw(candidates, key, now):
 	var weights = {}
 	for action in candidates:
 		weights[action.id] = action.likelihood / Util.most(_count(action.id, now), 1.0)
-	var chosen = graph.choice.pick(seed32, key, "action", weights)
-	return candidates[0] if chosen == "" else of.actions[chosen]
+	return _picked(candidates, key, "action", weights)
+
+
+# Draws one of some actions by weights {id: weight}; the first where none has any.
+func _picked(actions, key, purpose, weights):
+	for ident in weights:
+		if weights[ident] > 0:
+			return of.actions[Choice.pick(seed32, key, purpose, weights)]
+	return actions[0]
 
 
 # Leaves out what needs more other actions before it plays again; where that leaves nothing, all need one less, and so on.
@@ -310,8 +318,7 @@ func _loop(at, key):
 	var weights = {}
 	for action in loops:
 		weights[action.id] = action.likelihood
-	var chosen = graph.choice.pick(seed32, key, "loop", weights)
-	return loops[0] if chosen == "" else of.actions[chosen]
+	return _picked(loops, key, "loop", weights)
 
 
 # Where a stance has several loops, changes between them in long rests, at a loop's end.
@@ -339,10 +346,7 @@ func vary_rests(end):
 
 
 func _tell(meta, outcome, message, played = false):
-	reports.append({
-		request = meta.request.id, outcome = outcome, message = message, layer = of.layer, at = meta.start, played = played,
-		written = meta.written
-	})
+	reports.append(MetaPlan.Report.new(meta.request.id, outcome, message, of.layer, meta.start, played, meta.written))
 
 
 # Returns each meta action with when the next more important one begins, and the next as important that was asked for.
@@ -351,7 +355,7 @@ static func _bounds(metas):
 	var first = []  # [rank, written, start] of the next such
 	for n in range(metas.size() - 1, -1, -1):
 		var meta = metas[n]
-		var rank = Replan.rank(meta)
+		var rank = meta.rank
 		var limit = INF
 		var wish = INF
 		var own = null

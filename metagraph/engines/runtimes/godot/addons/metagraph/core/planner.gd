@@ -7,6 +7,7 @@
 
 const Util = preload("util.gd")
 const Markov = preload("markov.gd")
+const MetaPlan = preload("meta_plan.gd")
 const Replan = preload("replan.gd")
 const Pick = preload("pick.gd")
 const Track = preload("track.gd")
@@ -19,7 +20,7 @@ static func empty_plan(seed32):
 	var layers = {}
 	for layer in Util.LAYERS:
 		var past = {free = 0.0, stance = "", uses = {}, recent = {}, ended = {}}
-		layers[layer] = {layer = layer, metas = [], cues = [], rests = [], past = past, cursor = Markov.START, written = []}
+		layers[layer] = {layer = layer, metas = [], cues = [], rests = [], past = past, cursor = Markov.BEGIN(), written = []}
 	return {
 		seed32 = seed32, end = 0.0, layers = layers, reports = [], requests = [], track = Track.empty_track(), life = Schedule.empty_life()
 	}
@@ -66,7 +67,7 @@ static func _meta(request, settings):
 	var length = settings.window if request.duration == null else Util.most(0.0, request.duration)
 	if request.stroke != null:
 		length = Util.most(length, request.stroke - request.start + Pick.FITS)
-	return {request = request, start = request.start, end = request.start + length, part = 0, written = false, key = request.id}
+	return MetaPlan.MetaAction.new(request, request.start, request.start + length)
 
 
 # Returns [a layer's plan, its reports, old and new]. again {id: true}: requests that replace what was asked before.
@@ -85,8 +86,7 @@ static func _extend_layer(graph, plan, layer, now, asked, again, end, begin, idl
 	var cursor = old.cursor
 	again = again.duplicate()
 	if idle:
-		var model = graph.layers[layer].markov
-		var more = Markov.write(graph.choice, model, layer, plan.seed32, end, graph.layers[layer].kinds, old.cursor)
+		var more = Markov.write(graph.layers[layer].markov, plan.seed32, end, graph.layers[layer].kinds, old.cursor)
 		cursor = more[1]
 		for meta in old.written + more[0]:
 			if meta.start >= now:
@@ -117,10 +117,7 @@ static func _extend_layer(graph, plan, layer, now, asked, again, end, begin, idl
 		for meta in future + asked:
 			if not meta.written:
 				var why = "the %s layer has no stance with a loop to begin in" % layer
-				reports.append({
-					request = meta.request.id, outcome = "no-stance", message = why, layer = layer, at = meta.start, played = false,
-					written = false
-				})
+				reports.append(MetaPlan.Report.new(meta.request.id, "no-stance", why, layer, meta.start))
 		return [{
 			layer = layer, metas = done + future + asked, cues = [], rests = [], past = old.past, cursor = cursor, written = written
 		}, reports]
@@ -146,7 +143,7 @@ static func _extend_layer(graph, plan, layer, now, asked, again, end, begin, idl
 	for meta in placed[0]:
 		var leaves = meta.request.kind == "transition" and Track.stays_at(plan.track, layer, meta.start)
 		var mode = Track.told_mode(plan.track, meta.start)
-		if not meta.written or (not leaves and Markov.performs(graph.choice, graph.layers[layer].markov, plan.seed32, meta, mode)):
+		if not meta.written or (not leaves and Markov.performs(graph.layers[layer].markov, plan.seed32, meta, mode)):
 			metas.append(meta)
 	performer.perform(metas, end)
 	performer.vary_rests(end)

@@ -1,17 +1,15 @@
-# Temporal replanning: meta actions that may clash become a meta plan that does not. Greedy, by start time and then priority.
+# Temporal replanning: meta actions that may clash become a meta plan that does not (Borer et al., section 6.1).
 #
-# A meta action is {request, start, end: the window it may use, part: n for the n-th remainder after a cut, written: by a
-# model, key: what keys its draws}.
+# Greedy, by start time and then priority. The running action is never touched. Where two overlap, the more important one keeps
+# its time; the other is delayed past it, or cut where it begins, and then goes on with its remainder if it asked to.
+#
+# Translated from metagraph/playback/replan.py; change that, and translate anew.
 
+const MetaPlan = preload("meta_plan.gd")
 const Util = preload("util.gd")
 
 
-# Returns how important a meta action is; what a model wrote gives way to all that is asked for.
-static func rank(meta):
-	return -INF if meta.written else float(meta.request.priority)
-
-
-# Returns [metas, reports]: new requests wait until `free` seconds, the end of the running action; what would wait too long is past.
+# Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past.
 static func delay(asked, free, settings):
 	var metas = []
 	var reports = []
@@ -20,41 +18,55 @@ static func delay(asked, free, settings):
 		if late <= 0:
 			metas.append(meta)
 		elif late > settings.wait:
-			reports.append(_told(meta, "past", "asked for %.1f s before anything could start" % late))
+			reports.append(_told(meta, "past", "asked for at %.2f s, %.1f s before anything could start" % [meta.start, late]))
 		else:
-			metas.append(Util.but(meta, {start = free, end = free + (meta.end - meta.start)}))
-			reports.append(_told(meta, "late", "waits %.2f s for the running action" % late, true))
+			metas.append(MetaPlan.MetaAction.new(meta.request, free, free + (meta.end - meta.start), meta.part, meta.written))
+			reports.append(_told(meta, "late", "waits %.2f s for the running action" % [late], true))
 	return [metas, reports]
 
 
-# Returns [the meta plan, ascending and without overlaps; what became of the rest]. What is asked for is placed first; what a
-# model wrote fits into the gaps, from `busy` seconds on.
-static func replan(metas, settings, busy):
-	var asked = []
-	var written = []
-	for meta in metas:
-		if meta.written:
-			written.append(meta)
-		else:
-			asked.append(meta)
-	var placed = _placed(asked, settings)
-	var fitted = _fitted(written, placed[0], settings.shortest, busy)
-	return [Util.by(placed[0] + fitted[0], "start", "end"), placed[1] + fitted[1]]
+# Return the meta plan, ascending and without overlaps, and what became of the rest.
+#
+# What is asked for is placed first; what a model wrote fits into the gaps, from `busy` seconds on. Meta actions that do not
+# overlap come back as they are, so a plan that is placed again stays as it is. Of equal start and priority, the id that sorts
+# first goes first.
+static func replan(metas, settings, busy = -INF):
+	var every = Util.list(metas)
+	var found = []
+	for m in every:
+		if not m.written:
+			found.append(m)
+	var both = _placed(found, settings)
+	var placed = both[0]
+	var reports = both[1]
+	var found2 = []
+	for m in every:
+		if m.written:
+			found2.append(m)
+	var both2 = _fitted(found2, placed, settings.shortest, busy)
+	var written = both2[0]
+	var told = both2[1]
+	var keys = []
+	for m in placed + written:
+		keys.append([m.start, m.end])
+	return [Util.ordered(placed + written, keys), reports + told]
 
 
-# Returns [what is left of what a model wrote beside what is placed: the first stretch of each that is long enough; reports].
+# Return what is left of what a model wrote beside what is placed: the first stretch of each that is long enough.
 static func _fitted(written, placed, shortest, busy):
 	var out = []
 	var reports = []
+	var starts = []
+	for m in placed:
+		starts.append(m.start)
 	var keys = []
-	for meta in written:
-		keys.append([meta.start, meta.request.id])
+	for m in written:
+		keys.append([m.start, m.request.id])
 	for meta in Util.ordered(written, keys):
 		var start = Util.most(meta.start, Util.most(busy, out[-1].end if out.size() > 0 else busy))
 		var end = meta.end
 		var beside = null
-		for n in range(Util.most(0, Util.after(placed, "start", start) - 1), placed.size()):
-			var other = placed[n]
+		for other in Util.part(placed, Util.most(0, Util.right_of(starts, start) - 1), placed.size()):
 			if other.start >= end:
 				break
 			if other.end <= start:
@@ -67,24 +79,36 @@ static func _fitted(written, placed, shortest, busy):
 		if start == meta.start and end == meta.end:
 			out.append(meta)
 		elif end - start >= shortest:
-			out.append(Util.but(meta, {start = start, end = end}))
+			out.append(MetaPlan.MetaAction.new(meta.request, start, end, meta.part, meta.written))
 			if end < meta.end and beside != null:
-				reports.append(_told(meta, "cut", "is cut at %.2f s for '%s', which is asked for" % [end, beside.request.id], true))
+				reports.append(_told(
+					meta,
+					"cut",
+					"is cut at %.2f s for '%s', which is asked for" % [end, beside.request.id],
+					true
+				))
 		else:
-			reports.append(_told(meta, "covered", _no_time(beside) if beside != null else "no time left beside what plays"))
+			var words = _no_time(beside) if beside != null else "no time left beside what plays"
+			reports.append(_told(meta, "covered", words))
 	return [out, reports]
 
 
+# Return what decides who is placed first.
+static func _order(meta):
+	return [meta.start, -meta.request.priority, meta.request.id, meta.part]
+
+
 static func _placed(metas, settings):
-	var queue = []
 	var keys = []
-	for meta in metas:
-		_push(queue, keys, meta)
-	var reports = []
+	for item in metas:
+		keys.append(_order(item))
+	var queue = Util.ordered(metas, keys)
+	var at = 0  # what is before it was looked at
 	var placed = []
-	while queue.size() > 0:
-		var meta = queue.pop_front()
-		keys.pop_front()
+	var reports = []
+	while at < queue.size():
+		var meta = queue[at]
+		at += 1
 		var last = placed[-1] if placed.size() > 0 else null
 		if last == null or last.end <= meta.start:
 			placed.append(meta)
@@ -93,38 +117,49 @@ static func _placed(metas, settings):
 			placed.pop_back()
 			var kept = meta.start - last.start >= settings.shortest
 			if kept:
-				placed.append(Util.but(last, {end = meta.start}))
+				placed.append(MetaPlan.MetaAction.new(last.request, last.start, meta.start, last.part, last.written))
 			# What was never begun goes on as itself, so that its draws stay the same.
-			var part = last.part + 1 if kept else last.part
-			var key = last.request.id if part == 0 else "%s+%d" % [last.request.id, part]
-			var rest = Util.but(last, {start = meta.end, part = part, key = key})
+			var rest = MetaPlan.MetaAction.new(
+				last.request,
+				meta.end,
+				last.end,
+				last.part + 1 if kept else last.part,
+				last.written
+			)
 			var resumes = last.request.resume and rest.end - rest.start >= settings.shortest
 			if resumes:
-				_push(queue, keys, rest)
-			var words = "is cut" if kept else "gives way"
-			words += " at %.2f s for '%s', which is more important" % [meta.start, meta.request.id]
-			if resumes:
-				words += " and goes on at %.2f s" % meta.end
+				var own = _order(rest)
+				var place = at
+				while place < queue.size() and not Util.less(own, _order(queue[place])):
+					place += 1
+				queue.insert(place, rest)
+			var word = "is cut" if kept else "gives way"
+			var after = " and goes on at %.2f s" % [meta.end] if resumes else ""
 			var outcome = "resumed" if resumes else ("cut" if kept else "covered")
-			reports.append(_told(last, outcome, words, kept or resumes))
-			_push(queue, keys, meta)  # it may reach back over what was placed before, too
+			var message = "%s at %.2f s for '%s', which is more important%s" % [word, meta.start, meta.request.id, after]
+			reports.append(_told(last, outcome, message, kept or resumes))
+			var own2 = _order(meta)
+			var place2 = at
+			while place2 < queue.size() and not Util.less(own2, _order(queue[place2])):
+				place2 += 1
+			queue.insert(place2, meta)
 		elif last.end - meta.request.start > settings.wait:
 			reports.append(_told(meta, "covered", _no_time(last)))
 		else:
-			_push(queue, keys, Util.but(meta, {start = last.end, end = last.end + (meta.end - meta.start)}))
-			var waits = last.end - meta.request.start
-			reports.append(_told(meta, "late", "waits %.2f s for '%s'" % [waits, last.request.id], true))
+			var later = MetaPlan.MetaAction.new(
+				meta.request,
+				last.end,
+				last.end + (meta.end - meta.start),
+				meta.part,
+				meta.written
+			)
+			var own3 = _order(later)
+			var place3 = at
+			while place3 < queue.size() and not Util.less(own3, _order(queue[place3])):
+				place3 += 1
+			queue.insert(place3, later)
+			reports.append(_told(meta, "late", "waits %.2f s for '%s'" % [last.end - meta.request.start, last.request.id], true))
 	return [placed, reports]
-
-
-# Puts a meta action into the queue, behind those that come as early.
-static func _push(queue, keys, meta):
-	var key = [meta.start, -meta.request.priority, meta.request.id, meta.part]
-	var place = queue.size()
-	while place > 0 and Util.less(key, keys[place - 1]):
-		place -= 1
-	queue.insert(place, meta)
-	keys.insert(place, key)
 
 
 static func _no_time(other):
@@ -132,7 +167,4 @@ static func _no_time(other):
 
 
 static func _told(meta, outcome, message, played = false):
-	return {
-		request = meta.request.id, outcome = outcome, message = message, layer = meta.request.layer, at = meta.start, played = played,
-		written = meta.written
-	}
+	return MetaPlan.Report.new(meta.request.id, outcome, message, meta.request.layer, meta.start, played, meta.written)

@@ -1,12 +1,11 @@
 # A request: what is asked of a layer, by an agent or by a model.
 
+const MetaPlan = preload("meta_plan.gd")
 
-# Returns one. action, stance: ids; stroke, hold, duration: seconds or null.
+
+# Returns one. more {field: value}: action, stance: ids; stroke, hold, duration: seconds or null.
 static func make(ident, layer, kind, start, more):
-	var out = {
-		id = ident, layer = layer, kind = kind, start = float(start), duration = null, action = null, tags = [], limb = null,
-		stance = null, priority = 1, resume = false, stroke = null, hold = null, prepare = true, among = []
-	}
+	var out = MetaPlan.MetaRequest.new(ident, layer, kind, float(start))
 	for name in more:
-		out[name] = more[name]
+		out.set(name, more[name])
 	return out

@@ -27,10 +27,11 @@ static func but(record, changes):
 	return out
 
 
-# Returns items from place `first` to before `last`.
+# Returns items from place `first` to before `last`; negative places count from the end, those beyond are the ends.
 static func part(items, first, last):
+	var count = items.size()
 	var out = []
-	for n in range(first, last):
+	for n in range(within(first + count if first < 0 else first, 0, count), within(last + count if last < 0 else last, 0, count)):
 		out.append(items[n])
 	return out
 
@@ -113,8 +114,10 @@ static func by(items, field, second = null):
 	return ordered(items, keys)
 
 
-# Returns whether key `a` comes before key `b`, place by place.
+# Returns whether key `a` comes before key `b`, place by place where they are lists.
 static func less(a, b):
+	if typeof(a) != TYPE_ARRAY:
+		return a < b
 	for n in range(a.size()):
 		if a[n] < b[n]:
 			return true
@@ -196,3 +199,81 @@ static func vector(numbers):
 # Returns the unit quaternion of four numbers, xyzw.
 static func quaternion(numbers, shim):
 	return shim.quat(numbers[0], numbers[1], numbers[2], numbers[3]).normalized()
+
+
+# Returns a list of its own with the same items.
+static func list(items):
+	return Array(items)
+
+
+# Returns the words of a text.
+static func words(text):
+	return Array(text.split(" ", false))
+
+
+# Returns ln(1 + x), near 0 too.
+static func log1p(x):
+	var u = 1.0 + x
+	return x if u == 1.0 else log(u) * x / (u - 1.0)
+
+
+# Returns the largest of some numbers, or `other` of none.
+static func most_of(items, other = null):
+	for n in range(items.size()):
+		other = items[n] if n == 0 else most(other, items[n])
+	return other
+
+
+# Returns the smallest of some numbers, or `other` of none.
+static func least_of(items, other = null):
+	for n in range(items.size()):
+		other = items[n] if n == 0 else least(other, items[n])
+	return other
+
+
+# Returns the sum of some numbers.
+static func sum(items):
+	var out = 0
+	for item in items:
+		out += item
+	return out
+
+
+# Returns a number without its sign.
+static func absolute(x):
+	return -x if x < 0 else x
+
+
+# Appends items to a list.
+static func extend(items, more):
+	for item in more:
+		items.append(item)
+
+
+# Puts something into a set, which is a record of what is in it.
+static func add_to(items, item):
+	items[item] = true
+
+
+# Returns texts as one, with another between them.
+static func joined(items, between):
+	var out = ""
+	for n in range(items.size()):
+		out += items[n] if n == 0 else between + items[n]
+	return out
+
+
+# Returns a list from its end to its beginning.
+static func backwards(items):
+	var out = []
+	for item in items:
+		out.push_front(item)
+	return out
+
+
+# Returns [key, value] of each entry of a record.
+static func entries(record):
+	var out = []
+	for key in record:
+		out.append([key, record[key]])
+	return out

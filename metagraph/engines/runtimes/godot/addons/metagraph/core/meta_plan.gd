@@ -1,0 +1,117 @@
+# Requests, meta actions and plans: what the planner takes and gives. All values; times are seconds.
+#
+# Translated from metagraph/playback/plan.py; change that, and translate anew.
+
+const ASKED = 1  # default priority of a request
+const WRITTEN = 0  # priority of what the Markov model writes
+
+
+# What an agent or animator asks for, at any level of abstraction.
+#
+# id: unique; it keys the random draws. start: seconds. duration: how long the activity is wanted, None for one action. action: id
+# of a specific action. tags: all of them must be on the action. limb: which arm. stance: id of the stance to go to (kind
+# "transition"). priority: higher wins. resume: whether, when something more important cuts it, its remainder goes on afterwards.
+# stroke: when a gesture's stroke should come; `start` is then the earliest it may begin. hold: seconds its hold should last, None
+# for as long as it was made. prepare: whether its preparation plays. among: ids of the only actions it may be, any where empty.
+class MetaRequest:
+	var id
+	var layer
+	var kind
+	var start
+	var duration
+	var action
+	var tags
+	var limb
+	var stance
+	var priority
+	var resume
+	var stroke
+	var hold
+	var prepare
+	var among
+
+	func _init(
+		id_,
+		layer_,
+		kind_,
+		start_,
+		duration_ = null,
+		action_ = null,
+		tags_ = null,
+		limb_ = null,
+		stance_ = null,
+		priority_ = ASKED,
+		resume_ = false,
+		stroke_ = null,
+		hold_ = null,
+		prepare_ = true,
+		among_ = null
+	):
+		self.id = id_
+		self.layer = layer_
+		self.kind = kind_
+		self.start = start_
+		self.duration = duration_
+		self.action = action_
+		self.tags = tags_ if tags_ != null else []
+		self.limb = limb_
+		self.stance = stance_
+		self.priority = priority_
+		self.resume = resume_
+		self.stroke = stroke_
+		self.hold = hold_
+		self.prepare = prepare_
+		self.among = among_ if among_ != null else []
+
+
+# Where writing stands: before meta action `number`, in state number `state` (-1: none yet), which ended at `time` seconds.
+class Cursor:
+	var number
+	var state
+	var time
+
+	func _init(number_ = 0, state_ = -1, time_ = 0.0):
+		self.number = number_
+		self.state = state_
+		self.time = time_
+
+
+# A request placed in time: `start`..`end` is the window it may use. written: by the Markov model, not asked for. part: 0 for the
+# request itself, n for its n-th remainder after a cut.
+class MetaAction:
+	var request
+	var start
+	var end
+	var part
+	var written
+	var rank  # How important it is: its request's priority; what a model wrote gives way to all that is asked for.
+	var key  # What keys this meta action's random draws.
+
+	func _init(request_, start_, end_, part_ = 0, written_ = false):
+		self.request = request_
+		self.start = start_
+		self.end = end_
+		self.part = part_
+		self.written = written_
+		self.rank = -INF if self.written else float(self.request.priority)
+		self.key = self.request.id if self.part == 0 else "%s+%d" % [self.request.id, self.part]
+
+
+# What became of a meta action that was not simply played as asked. played: whether something of it still plays.
+class Report:
+	var request
+	var outcome
+	var message
+	var layer
+	var at
+	var played
+	var written
+
+	func _init(request_, outcome_, message_, layer_, at_, played_ = false, written_ = false):
+		self.request = request_
+		self.outcome = outcome_
+		self.message = message_
+		self.layer = layer_
+		self.at = at_
+		self.played = played_
+		self.written = written_

@@ -1,0 +1,3 @@
+# The words modes are told apart by.
+
+const MODES = ["idle", "listening", "talking"]

@@ -1,0 +1,40 @@
+/**
+ * The values a project is made of. All are frozen; mappings in them are never changed in place.
+ *
+ * Ids are made once from the project's counter and never change; names are free text for people.
+ *
+ * Translated from metagraph/graph/model.py; change that, and translate anew.
+ */
+
+
+/**
+ * A first-order model over (limb, kind) that writes meta actions when nobody asks for any (Borer et al., 7.3).
+ *
+ * matrix: rows of probabilities, each summing to 1. gap: mean seconds of rest between two actions. positive, negative: share
+ * of gestures asked for with that tag, where tags are not part of the states. tags: one text a state, the tags (blanks
+ * between them) it asks for; empty when tags are not part of the states. lengths: (mean, standard deviation) seconds of each
+ * state's actions; empty where that is not known. modes: what is performed of what it writes while one is said to idle, to
+ * listen and to talk, a row each: shares of gestures, fidgets and transitions, 0..1; empty where the mode makes no
+ * difference.
+ *
+ * layer: string; states: [string, string][]; matrix: number[][]; gap: number; positive: number; negative: number; tags:
+ * string[]; lengths: [number, number][]; modes: number[][].
+ */
+export class Markov {
+  constructor(layer, states, matrix, gap = 2.5, positive = 0, negative = 0, tags = [], lengths = [], modes = []) {
+    this.layer = layer;
+    this.states = states;
+    this.matrix = matrix;
+    this.gap = gap;
+    this.positive = positive;
+    this.negative = negative;
+    this.tags = tags;
+    this.lengths = lengths;
+    this.modes = modes;
+  }
+
+  /** Return the tags a state asks for, "" for none. */
+  tag(state) {
+    return this.tags.length > 0 ? this.tags[state] : "";
+  }
+}

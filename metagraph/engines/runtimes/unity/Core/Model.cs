@@ -1,0 +1,59 @@
+// Translated from metagraph/graph/model.py; change that, and translate anew.
+using System;
+using System.Collections.Generic;
+using System.Linq;
+
+namespace Metagraph
+{
+    /// <summary>
+    /// A first-order model over (limb, kind) that writes meta actions when nobody asks for any (Borer et al., 7.3).
+    ///
+    /// matrix: rows of probabilities, each summing to 1. gap: mean seconds of rest between two actions. positive, negative: share
+    /// of gestures asked for with that tag, where tags are not part of the states. tags: one text a state, the tags (blanks
+    /// between them) it asks for; empty when tags are not part of the states. lengths: (mean, standard deviation) seconds of each
+    /// state's actions; empty where that is not known. modes: what is performed of what it writes while one is said to idle, to
+    /// listen and to talk, a row each: shares of gestures, fidgets and transitions, 0..1; empty where the mode makes no
+    /// difference.
+    /// </summary>
+    public sealed class Markov
+    {
+        public readonly string Layer;
+        public readonly List<(string, string)> States;
+        public readonly List<List<double>> Matrix;
+        public readonly double Gap;
+        public readonly double Positive;
+        public readonly double Negative;
+        public readonly List<string> Tags;
+        public readonly List<(double, double)> Lengths;
+        public readonly List<List<double>> Modes;
+
+        public Markov(
+            string layer,
+            List<(string, string)> states,
+            List<List<double>> matrix,
+            double gap = 2.5,
+            double positive = 0.0,
+            double negative = 0.0,
+            List<string> tags = null,
+            List<(double, double)> lengths = null,
+            List<List<double>> modes = null
+        )
+        {
+            Layer = layer;
+            States = states;
+            Matrix = matrix;
+            Gap = gap;
+            Positive = positive;
+            Negative = negative;
+            Tags = tags ?? new List<string>();
+            Lengths = lengths ?? new List<(double, double)>();
+            Modes = modes ?? new List<List<double>>();
+        }
+
+        /// <summary>Return the tags a state asks for, "" for none.</summary>
+        public string Tag(int state)
+        {
+            return Tags.Count > 0 ? Tags[state] : "";
+        }
+    }
+}

@@ -1,0 +1,487 @@
+"""Prints modules as JavaScript (ES 2020 modules with JSDoc)."""
+
+from __future__ import annotations
+
+import json
+
+from metagraph.engines.translation import tree as x
+from metagraph.engines.translation.layout import Break, Document, Group, Nest, listed
+from metagraph.engines.translation.printing import (
+    ALONE,
+    CHOICE,
+    COMPARE,
+    NOT,
+    PLUS,
+    POWER,
+    TIMES,
+    UNARY,
+    Printer,
+    TranslationError,
+    camel,
+)  # fmt: skip
+
+
+class JavaScript(Printer):
+    """One module, `name.js`."""
+
+    STEP = "  "
+    WIDTH = 125
+    LANGUAGE = "javascript"
+
+    def text(self) -> str:
+        for part in self.module.parts:
+            if isinstance(part, x.Constant):
+                self.constant(part)
+            elif isinstance(part, x.Record):
+                self.record(part)
+            else:
+                self.out.append("")
+                self.function(part)
+        body = self.out
+        self.out = []
+        about = [f" * {line}".rstrip() for line in self.wrapped(self.module.about, "", 3)]
+        self.out += ["/**", *about, " *", f" * {self.source()}", " */", ""]
+        here = self.known(self.module.name)
+        for module, names in sorted(self.used.items()):
+            if self.known(module) != here:
+                self.line(
+                    (
+                        "import ",
+                        listed("{", sorted(names), "}", ","),
+                        f' from "./{self.known(module)}.js";',
+                    )
+                )
+        if self.helpers:
+            helpers = sorted(self.helpers)
+            self.line(("import ", listed("{", helpers, "}", ","), ' from "./basics.js";'))
+        head = [o.replace("{", "{ ").replace("}", " }") if o.startswith("import {") else o for o in self.out]
+        gap = [] if not body or body[0] == "" or not (self.used or self.helpers) else [""]
+        return "\n".join([*head, *gap, *body]).strip() + "\n"
+
+    # --- declarations
+
+    def constant(self, node: x.Constant) -> None:
+        self.comments(node.comments)
+        export = "export " if node.public else ""
+        self.line(
+            (f"{export}const {self.constant_name(node.name)} = ", self.plain(node.value), ";"), node.beside
+        )
+
+    def record(self, node: x.Record) -> None:
+        self.out.append("")
+        fields = "; ".join(f"{camel(f.name)}: {self.type(f.type)}" for f in node.fields)
+        self.documented(f"{node.about}\n\n{fields}.")
+        self.line(f"export class {node.name} {{")
+        self.depth += 1
+        given = [self.parameter(f) for f in node.fields]
+        self.line(("constructor", listed("(", given, ")", ","), " {"))
+        self.depth += 1
+        for f in node.fields:
+            self.line(f"this.{camel(f.name)} = {self.word(camel(f.name))};")
+        self.depth -= 1
+        self.line("}")
+        for method in node.methods:
+            self.out.append("")
+            self.method(method)
+        self.depth -= 1
+        self.line("}")
+
+    def method(self, node: x.Function) -> None:
+        self.documented(node.about)
+        given = listed("(", [self.parameter(p) for p in node.parameters], ")", ",")
+        self.line((("get " if node.property else "") + camel(node.name), given, " {"))
+        self.block(node.body)
+        self.line("}")
+
+    def function(self, node: x.Function) -> None:
+        self.comments(node.comments)
+        types = [f"@param {{{self.documented_type(p)}}} {self.word(camel(p.name))}" for p in node.parameters]
+        back = [] if node.returns == x.NONE else [f"@returns {{{self.type(node.returns)}}}"]
+        self.documented(node.about, [*types, *back])
+        given: list[Document] = []
+        for p in node.parameters:
+            given.append(self.parameter(p))
+        export = "export " if node.public else ""
+        self.line((f"{export}function {self.function_name(node.name)}", listed("(", given, ")", ","), " {"))
+        self.block(node.body)
+        self.line("}")
+
+    def parameter(self, node: x.Parameter) -> Document:
+        name = self.word(camel(node.name))
+        if node.rest:
+            return f"...{name}"
+        return name if node.default is None else (f"{name} = ", self.plain(node.default))
+
+    def documented(self, about: str, tags: list[str] | None = None) -> None:
+        found = self.wrapped(about, " * ") if about else []
+        found += [one for tag in tags or [] for one in self.wrapped(tag, " * ")]
+        if len(found) == 1:
+            self.line(f"/** {found[0][3:]} */")
+        elif found:
+            self.line("/**")
+            for one in found:
+                self.line(one)
+            self.line(" */")
+
+    def documented_type(self, node: x.Parameter) -> str:
+        return f"...{self.type(node.type.of[0])}" if node.rest else self.type(node.type)
+
+    def type(self, kind: x.Type) -> str:
+        """Return a type as JSDoc writes it."""
+        match kind.kind:
+            case "int" | "float" | "bits":
+                return "number"
+            case "str":
+                return "string"
+            case "bool":
+                return "boolean"
+            case "optional":
+                return f"?{self.type(kind.bare)}"
+            case "list":
+                inner = self.type(kind.of[0]) if kind.of else "*"
+                return f"({inner})[]" if inner[:1] in "?(" else f"{inner}[]"
+            case "tuple":
+                return "[" + ", ".join(self.type(o) for o in kind.of) + "]"
+            case "map":
+                return f"Map<{self.type(kind.of[0])}, {self.type(kind.of[1])}>"
+            case "set":
+                return f"Set<{self.type(kind.of[0])}>"
+            case "record":
+                return kind.name
+        return "*"
+
+    # --- statements
+
+    def braced(self, body: tuple[x.Statement, ...]) -> None:
+        self.block(body)
+        self.line("}")
+
+    def statement(self, node: x.Statement) -> None:
+        self.comments(node.comments)
+        beside = node.beside
+        match node:
+            case x.Declare():
+                word = "let" if node.changes or node.value is None else "const"
+                value: Document = "" if node.value is None else (" = ", self.plain(node.value))
+                self.line((f"{word} {self.local(node.variable)}", value, ";"), beside)
+            case x.Assign(target=x.Item() as item, operator="") if item.of.type.bare.kind == "map":
+                given = [self.plain(item.place), self.plain(node.value)]
+                self.line((self.strong(item.of, ALONE), listed(".set(", given, ")"), ";"), beside)
+            case x.Assign():
+                self.line(
+                    (self.target(node.target), f" {node.operator}= ", self.plain(node.value), ";"), beside
+                )
+            case x.Unpack():
+                names = listed("[", [self.target(t) for t in node.targets], "]")
+                self.line(("const " if node.new else "", names, " = ", self.plain(node.value), ";"), beside)
+            case x.Do():
+                self.line((self.plain(node.value), ";"), beside)
+            case x.Return():
+                value = "" if node.value is None else (" ", self.plain(node.value))
+                self.line(("return", value, ";"), beside)
+            case x.Raise():
+                self.line(("throw new Error(", self.plain(node.message), ");"), beside)
+            case x.Leave():
+                self.line(f"{node.word};", beside)
+            case x.If():
+                self.conditional(node, "if ")
+            case x.While():
+                self.line(("while (", self.plain(node.test), ") {"), beside)
+                self.braced(node.body)
+            case x.ForEach():
+                self.line((*self.loop(node.names, node.over), " {"), beside)
+                self.braced(node.body)
+
+    def conditional(self, node: x.If, lead: str) -> None:
+        self.line((lead, "(", self.plain(node.test), ") {"), node.beside)
+        self.block(node.then)
+        if len(node.other) == 1 and isinstance(node.other[0], x.If) and not node.other[0].comments:
+            self.conditional(node.other[0], "} else if ")
+            return
+        if node.other:
+            self.line("} else {")
+            self.block(node.other)
+        self.line("}")
+
+    def loop(self, names: tuple[x.Local, ...], over: x.Expression) -> tuple[Document, ...]:
+        words = [self.local(n) for n in names]
+        name = words[0] if len(words) == 1 else f"[{', '.join(words)}]"
+        if isinstance(over, x.Builtin) and over.name == "range":
+            given = [self.plain(a) for a in over.arguments]
+            first, last = ("0", given[0]) if len(given) == 1 else given[:2]
+            return (f"for (let {name} = ", first, f"; {name} < ", last, f"; {name}++)")
+        if isinstance(over, x.Builtin) and over.name == "enumerate":
+            return (f"for (const {name} of ", self.strong(over.arguments[0], ALONE), ".entries())")
+        if isinstance(over, x.Builtin) and over.name == "map_items":
+            return (f"for (const {name} of ", self.plain(over.arguments[0]), ")")
+        return (f"for (const {name} of ", self.items(over), ")")
+
+    def items(self, over: x.Expression) -> Document:
+        """Return what gives the items of something one by one."""
+        if over.type.kind == "map":
+            return (self.strong(over, ALONE), ".keys()")
+        return self.plain(over)
+
+    def target(self, node: x.Expression) -> Document:
+        if isinstance(node, x.Item) and node.of.type.kind == "map":
+            raise TranslationError(f"{self.module.name}: an item of a map is set")
+        return self.plain(node)
+
+    # --- expressions
+
+    def local(self, node: x.Local) -> str:
+        return self.word(camel(node.name))
+
+    def function_name(self, name: str) -> str:
+        """A module's own functions keep their underscore, so that variables may be called as they are."""
+        return "_" * name.startswith("_") + self.word(camel(name))
+
+    def constant_name(self, name: str) -> str:
+        return name if name.isupper() or name.strip("_").isupper() else camel(name)
+
+    def operation(self, node: x.Builtin) -> tuple[Document, int]:
+        if node.name in ("any", "all", "first", "first_or") and isinstance(
+            node.arguments[0], x.Comprehension
+        ):
+            return self.searched(node, node.arguments[0])
+        if node.arguments:
+            kind = f"{node.name}:{node.arguments[0].type.bare.kind}"
+            if kind in self.operations:
+                node = x.Builtin(node.type, kind, node.arguments)
+        return super().operation(node)
+
+    def helper(self, text: str) -> str:
+        return text.replace("$", "")
+
+    def searched(self, node: x.Builtin, found: x.Comprehension) -> tuple[Document, int]:
+        """any, all, next: of what a comprehension gives."""
+        (clause,) = found.clauses
+        names = self.names(clause.names)
+        over = (
+            self.strong(clause.over, ALONE)
+            if clause.over.type.kind != "map"
+            else ("[...", self.strong(clause.over, ALONE), ".keys()]")
+        )
+        tests = list(clause.tests)
+        if node.name in ("any", "all"):
+            if node.name == "all" and tests:
+                over = (over, ".filter(", self.arrow(names, tests), ")")
+                tests = []
+            word = "some" if node.name == "any" else "every"
+            return (over, f".{word}(", self.arrow(names, [*tests, found.item]), ")"), ALONE
+        if found.item in clause.names and len(clause.names) == 1:
+            one: Document = (over, ".find(", self.arrow(names, tests), ")") if tests else (over, "[0]")
+        else:
+            one = (self.strong(found, ALONE), "[0]")
+        if node.name == "first":
+            return one, ALONE
+        return (one, " ?? ", self.strong(node.arguments[1], NOT)), CHOICE
+
+    def names(self, names: tuple[x.Local, ...]) -> str:
+        words = [self.local(n) for n in names]
+        return f"({words[0]})" if len(words) == 1 else f"([{', '.join(words)}])"
+
+    def arrow(self, names: str, tests: list[x.Expression]) -> Document:
+        body = tests[0] if len(tests) == 1 else x.Logic(x.BOOL, "and", tuple(tests))
+        return Group((f"{names} =>", Nest((Break(" "), self.plain(body)))))
+
+    def expression(self, node: x.Expression) -> tuple[Document, int]:
+        match node:
+            case x.Value():
+                return self.literal(node), ALONE if not str(node.value).startswith("-") else UNARY
+            case x.Local():
+                return self.local(node), ALONE
+            case x.Global():
+                is_function = node.type.kind == "function"
+                name = self.function_name(node.name) if is_function else self.constant_name(node.name)
+                self.used.setdefault(node.module, set()).add(name)
+                return name, ALONE
+            case x.This():
+                return "this", ALONE
+            case x.Known():
+                return self.expression(node.of)
+            case x.Member():
+                return (self.strong(node.of, ALONE), f".{camel(node.name)}"), ALONE
+            case x.Call():
+                return (self.strong(node.function, ALONE), listed("(", self.given(node), ")", ",")), ALONE
+            case x.New():
+                self.used.setdefault(node.type.module, set()).add(node.type.name)
+                return (
+                    f"new {node.type.name}",
+                    listed("(", [self.plain(a) for a in node.arguments], ")", ","),
+                ), ALONE
+            case x.Replaced():
+                self.helpers.add("but")
+                changes = [(f"{camel(n)}: ", self.plain(v)) for n, v in node.changes]
+                pairs = Group(
+                    ("{ ", *[d for n, c in enumerate(changes) for d in ((", ", c) if n else (c,))], " }")
+                )
+                return ("but(", self.plain(node.of), ", ", pairs, ")"), ALONE
+            case x.Compared():
+                return self.compared(node)
+            case x.Either():
+                parts = (
+                    self.strong(node.test, NOT),
+                    Break(" "),
+                    "? ",
+                    self.strong(node.then, NOT),
+                    Break(" "),
+                    ": ",
+                    self.plain(node.other),
+                )
+                return Group(Nest(parts)), CHOICE
+            case x.Item():
+                return self.item(node), ALONE
+            case x.Slice():
+                ends = [e for e in (node.first, node.last) if e is not None]
+                first: list[Document] = ["0"] if node.first is None and node.last is not None else []
+                return (
+                    self.strong(node.of, ALONE),
+                    listed(".slice(", [*first, *(self.plain(e) for e in ends)], ")"),
+                ), ALONE
+            case x.Gathered():
+                inner = listed(
+                    "[",
+                    [
+                        ("...", self.plain(i)) if n in node.spread else self.plain(i)
+                        for n, i in enumerate(node.items)
+                    ],
+                    "]",
+                    ",",
+                )
+                return (inner if node.type.kind != "set" else ("new Set(", inner, ")")), ALONE
+            case x.Mapped():
+                pairs_ = [listed("[", [self.plain(k), self.plain(v)], "]") for k, v in node.items]
+                return ("new Map(", listed("[", pairs_, "]", ",") if pairs_ else "", ")"), ALONE
+            case x.Comprehension():
+                return self.comprehension(node), ALONE
+            case x.Lambda():
+                names = (
+                    self.names(node.names).strip("()")
+                    if len(node.names) == 1
+                    else ", ".join(self.local(n) for n in node.names)
+                )
+                return (f"({names}) => ", self.plain(node.body)), CHOICE
+            case x.Formatted():
+                return self.formatted(node), ALONE
+            case x.Binary(operator="//"):
+                return (
+                    "Math.floor(",
+                    self.strong(node.left, TIMES),
+                    " / ",
+                    self.strong(node.right, UNARY),
+                    ")",
+                ), ALONE
+            case x.Binary(operator="%"):
+                self.helpers.add("modulo")
+                return ("modulo(", self.plain(node.left), ", ", self.plain(node.right), ")"), ALONE
+            case x.Binary(operator="**"):
+                return (self.strong(node.left, ALONE), " ** ", self.strong(node.right, ALONE)), POWER
+        return super().expression(node)
+
+    def given(self, node: x.Call) -> list[Document]:
+        if not node.rest:
+            return [self.plain(a) for a in node.arguments]
+        *first, last = node.arguments
+        if isinstance(last, x.Gathered) and not last.spread:
+            return [self.plain(a) for a in (*first, *last.items)]
+        return [*(self.plain(a) for a in first), ("...", self.plain(last))]
+
+    def literal(self, node: x.Value) -> str:
+        value = node.value
+        if value is None or isinstance(value, bool | str):
+            return json.dumps(value, ensure_ascii=False)
+        if isinstance(value, float) and value in (float("inf"), float("-inf")):
+            return "Infinity" if value > 0 else "-Infinity"
+        return (
+            repr(int(value))
+            if isinstance(value, float) and value == int(value) and abs(value) < 1e15
+            else repr(value)
+        )
+
+    def compared(self, node: x.Compared) -> tuple[Document, int]:
+        left, right = node.left, node.right
+        kind = left.type.bare.kind
+        words = {"==": "===", "!=": "!==", "is": "===", "is not": "!=="}
+        word = words.get(node.operator, node.operator)
+        if kind in ("list", "tuple", "map", "set", "record") and node.operator in ("==", "!="):
+            raise TranslationError(
+                f"{self.module.name}: whether two {kind}s are equal; compare what tells them apart"
+            )
+        if kind == "str" and node.operator not in words:
+            self.helpers.add("compareText")
+            return ("compareText(", self.plain(left), ", ", self.plain(right), f") {word} 0"), COMPARE
+        parts = self.strong(left, PLUS), Break(" "), f"{word} ", self.strong(right, PLUS)
+        return Group(Nest(parts)), COMPARE
+
+    def item(self, node: x.Item) -> Document:
+        of = self.strong(node.of, ALONE)
+        if node.of.type.bare.kind == "map":
+            return (of, ".get(", self.plain(node.place), ")")
+        if isinstance(node.place, x.Negated) and isinstance(node.place.of, x.Value):
+            if isinstance(node.of, x.Local | x.Member):
+                return (of, "[", of, f".length - {node.place.of.value}]")
+            self.helpers.add("fromEnd")
+            return ("fromEnd(", of, f", {node.place.of.value})")
+        return (of, "[", self.plain(node.place), "]")
+
+    def comprehension(self, node: x.Comprehension) -> Document:
+        if node.key is not None:
+            pair = x.Gathered(x.Type("tuple", (node.key.type, node.item.type)), (node.key, node.item))
+            return (
+                "new Map(",
+                self.comprehension(x.Comprehension(x.Type("list", (pair.type,)), pair, node.clauses)),
+                ")",
+            )
+        if node.type.kind == "set":
+            return (
+                "new Set(",
+                self.comprehension(x.Comprehension(x.Type("list", node.type.of), node.item, node.clauses)),
+                ")",
+            )
+        clause, *rest = node.clauses
+        names = self.names(clause.names)
+        over = clause.over
+        if isinstance(over, x.Builtin) and over.name == "enumerate" and not clause.tests and not rest:
+            place, one = (self.local(n) for n in clause.names)
+            return (
+                self.strong(over.arguments[0], ALONE),
+                ".map(",
+                Group((f"({one}, {place}) =>", Nest((Break(" "), self.returned(node.item))))),
+                ")",
+            )
+        base: Document = (
+            ("[...", self.strong(over, ALONE), ".keys()]")
+            if over.type.kind == "map"
+            else self.strong(over, ALONE)
+        )
+        if clause.tests:
+            base = (base, ".filter(", self.arrow(names, list(clause.tests)), ")")
+        if rest:
+            inner = x.Comprehension(node.type, node.item, tuple(rest))
+            return (
+                base,
+                ".flatMap(",
+                Group((f"{names} =>", Nest((Break(" "), self.comprehension(inner))))),
+                ")",
+            )
+        if len(clause.names) == 1 and node.item == clause.names[0]:
+            return base if clause.tests or over.type.kind == "map" else ("[...", base, "]")
+        return (base, ".map(", Group((f"{names} =>", Nest((Break(" "), self.returned(node.item))))), ")")
+
+    def returned(self, node: x.Expression) -> Document:
+        return self.plain(node)
+
+    def formatted(self, node: x.Formatted) -> Document:
+        out: list[Document] = ["`"]
+        for part in node.parts:
+            if isinstance(part, str):
+                out.append(part.replace("\\", "\\\\").replace("`", "\\`").replace("${", "\\${"))
+            elif not part[1]:
+                out += ["${", self.plain(part[0]), "}"]
+            else:
+                out += ["${", self.strong(part[0], ALONE), f".toFixed({part[1].strip('.f')})", "}"]
+        return (*out, "`")
+
+
+__all__ = ["JavaScript"]

@@ -1,0 +1,109 @@
+"""Texts that break where they are too long: Wadler's pretty printer, in little.
+
+A document is a text, several documents, or a group: on one line where it fits, else broken at all its
+own breaks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import chain
+
+
+@dataclass(frozen=True)
+class Break:
+    """A new line where the group is broken, else `flat`."""
+
+    flat: str = ""
+
+
+@dataclass(frozen=True)
+class Nest:
+    """What is indented by a step where its group is broken."""
+
+    of: Document
+
+
+@dataclass(frozen=True)
+class Group:
+    of: Document
+    tail: str = ""  # what is written before the last break where it is broken: a comma
+
+
+@dataclass(frozen=True)
+class Tail:
+    """A text written only where the group is broken."""
+
+    text: str
+
+
+Document = str | Break | Nest | Group | Tail | tuple["Document", ...]
+
+
+def listed(opening: str, items: Sequence[Document], closing: str, trailing: str = "") -> Document:
+    """Return items in brackets, with commas between. trailing: after the last where each has its own line."""
+    if not items:
+        return opening + closing
+    between: list[Document] = []
+    for n, item in enumerate(items):
+        between += [item] if n == 0 else [",", Break(" "), item]
+    return Group((opening, Nest((Break(), *between)), Tail(trailing), Break(), closing))
+
+
+def flat(document: Document) -> str:
+    """Return a document on one line."""
+    if isinstance(document, str):
+        return document
+    if isinstance(document, Break):
+        return document.flat
+    if isinstance(document, Tail):
+        return ""
+    if isinstance(document, tuple):
+        return "".join(flat(d) for d in document)
+    return flat(document.of)
+
+
+def lines(document: Document, indent: int, step: str, width: int, before: int = 0) -> list[str]:
+    """Return a document as lines, the first without its indent. indent: in steps. before: characters in
+    front of the first on its line.
+    """
+    out = [""]
+
+    def place() -> int:
+        return len(out[-1].expandtabs(4)) + (before if len(out) == 1 else 0)
+
+    def put(d: Document, depth: int, broken: bool, after: int) -> None:
+        """after: characters that must fit behind it on its last line."""
+        if isinstance(d, str):
+            out[-1] += d
+        elif isinstance(d, Break):
+            if broken:
+                out[-1] = out[-1].rstrip(" ")
+                out.append(step * depth)
+            else:
+                out[-1] += d.flat
+        elif isinstance(d, Tail):
+            out[-1] += d.text if broken else ""
+        elif isinstance(d, Nest):
+            put(d.of, depth + 1 if broken else depth, broken, after)
+        elif isinstance(d, Group):
+            fits = place() + len(flat(d)) + after <= width
+            put(d.of, depth, not fits, after)
+        else:
+            for n, one in enumerate(d):
+                rest = chain.from_iterable([] if isinstance(r, tuple) else [r] for r in d[n + 1 :])
+                near = 0
+                for r in rest:
+                    if isinstance(r, Break) and broken:
+                        break
+                    near += len(flat(r))
+                    if isinstance(r, Group):
+                        near -= len(flat(r))
+                        break
+                else:
+                    near += after
+                put(one, depth, broken, near)
+
+    put(document, indent, True, 0)
+    return out

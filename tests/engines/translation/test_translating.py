@@ -1,0 +1,154 @@
+"""What is translated says the same in every language, and the runtimes hold what is translated."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from metagraph.engines.translation.listing import RUNTIMES, Translated
+from metagraph.engines.translation.lowering import module_of
+from metagraph.engines.translation.printing import TranslationError
+from metagraph.engines.translation.source import SubsetError
+from metagraph.engines.translation.translating import printed, read, translated, understood
+from tests.engines.translation import every_means
+
+HERE = Path(__file__).parent
+ROOT = HERE.parents[2]
+MEANS = [f.__name__ for f in every_means.MEANS]
+SAID = [f() for f in every_means.MEANS]
+
+
+def test_the_runtimes_hold_what_is_translated_today() -> None:
+    """Else: `.venv/bin/python -m metagraph.engines.translation`."""
+    old = [
+        p.relative_to(RUNTIMES) for p, text in translated().items() if p.read_text(encoding="utf-8") != text
+    ]
+    assert not old
+
+
+@pytest.fixture(scope="module")
+def means() -> dict[str, str]:
+    """The module of all means, in each language."""
+    wanted = ("MEANS",)
+    one = Translated("tests.engines.translation.every_means", "every_means")
+    (source,) = understood([one], ROOT).values()
+    names = {n for d in source.tree.defs for n in [getattr(d, "name", "")] if n} | {"STEP", "WORDS"}
+    source.only = tuple(names - set(wanted))
+    return {Path(path).suffix: text for path, text in printed({one: module_of(source)}, {}).items()}
+
+
+def test_javascript_says_the_same(means: dict[str, str], tmp_path: Path) -> None:
+    if shutil.which("node") is None:
+        pytest.skip("needs Node")
+    (tmp_path / "every_means.mjs").write_text(means[".js"].replace("basics.js", "basics.mjs"))
+    shutil.copy(RUNTIMES / "javascript" / "basics.js", tmp_path / "basics.mjs")
+    calls = ", ".join(f"m.{name}()" for name in MEANS)
+    code = f"import * as m from './every_means.mjs'; for (const said of [{calls}]) console.log(said);"
+    (tmp_path / "all.mjs").write_text(code)
+    done = subprocess.run(["node", "all.mjs"], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert _plain(done.stdout) == SAID, done.stderr
+
+
+def test_csharp_says_the_same(means: dict[str, str], tmp_path: Path) -> None:
+    if shutil.which("mcs") is None or shutil.which("mono") is None:
+        pytest.skip("needs Mono's compiler and runtime (mcs, mono)")
+    (tmp_path / "EveryMeans.cs").write_text(means[".cs"])
+    calls = "\n".join(f"System.Console.WriteLine(Metagraph.EveryMeansRules.{_pascal(n)}());" for n in MEANS)
+    (tmp_path / "All.cs").write_text(f"static class All {{ static void Main() {{ {calls} }} }}")
+    core = [RUNTIMES / "unity" / "Core" / name for name in ("Basics.cs", "Language.cs")]
+    command = ["mcs", "-langversion:7.2", "-out:all.exe", "EveryMeans.cs", "All.cs", *map(str, core)]
+    made = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert made.returncode == 0, made.stdout + made.stderr
+    done = subprocess.run(["mono", "all.exe"], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert _plain(done.stdout) == SAID, done.stderr
+
+
+def test_gdscript_says_the_same(means: dict[str, str], tmp_path: Path) -> None:
+    engine = shutil.which("godot3-server") or shutil.which("godot3")
+    if engine is None:
+        pytest.skip("needs Godot 3")
+    (tmp_path / "every_means.gd").write_text(means[".gd"])
+    shutil.copy(RUNTIMES / "godot" / "addons" / "metagraph" / "core" / "util.gd", tmp_path)
+    (tmp_path / "project.godot").write_text("config_version=4\n")
+    calls = "\n".join(f"\tprint(Means.{name}())" for name in MEANS)
+    script = (
+        f'extends SceneTree\nconst Means = preload("every_means.gd")\n\n\nfunc _init():\n{calls}\n\tquit()\n'
+    )
+    (tmp_path / "all.gd").write_text(script)
+    command = [engine, "--no-window", "-s", "all.gd"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    said = [line for line in _plain(done.stdout) if not line.startswith("Godot Engine")]
+    assert said == SAID, done.stdout + done.stderr
+
+
+def _plain(out: str) -> list[str]:
+    """Return lines, truth values written as Python writes them."""
+    words = {"true": "True", "false": "False"}
+    return [
+        re.sub(r"\b(true|false)\b", lambda m: words[m.group()], line)
+        for line in out.splitlines()
+        if line.strip()
+    ]
+
+
+def _pascal(name: str) -> str:
+    return name.title().replace("_", "")
+
+
+REFUSED = {
+    "def f() -> list[int]:\n    yield 1": "yields",
+    "def f(x):\n    return x": "no types",
+    "def f(**x: int) -> int:\n    return 1": "** arguments",
+    "def f(x: int | str) -> int:\n    return 1": "of several types",
+    "def f(x: str | None) -> int:\n    return 1 if x else 2": "whether a optional is true",
+    "def f(x: list[int]) -> list[int]:\n    return x[::2]": "a slice with a step",
+    "def f(x: list[int]) -> int:\n    with open('a') as g:\n        return len(x)": "WithStmt",
+    "def f(x: dict[str, int]) -> dict[str, int]:\n    return {**x}": "** in a map",
+    "def f(x: float) -> str:\n    return f'{x}'": "a float in a text",
+    "def f(x: float) -> str:\n    return f'{x:.9f}'": "a way to write a number",
+    "def f(x: list[int]) -> int:\n    return max(x, key=lambda n: n)": "max",
+    "def f() -> int:\n    a = b = 1\n    return a + b": "two targets",
+    "def f(x: str) -> str:\n    return x.upper()": "'.upper()' of a str",
+    "class A:\n    @staticmethod\n    def s() -> int:\n        return 1": "decorator",
+}
+
+
+def test_what_is_outside_the_subset_is_refused_with_its_place_and_a_remedy(tmp_path: Path) -> None:
+    modules = {f"m{n}": code for n, code in enumerate(REFUSED)}
+    for name, code in modules.items():
+        (tmp_path / f"{name}.py").write_text(code + "\n")
+    quiet = {n for n, code in modules.items() if "def f(x):" in code or "f() -> list[int]" in code}
+    found = {}
+    for name in modules:
+        one = Translated(name, name)
+        if name in quiet:
+            (tmp_path / f"{name}.py").write_text("# mypy: ignore-errors\n" + modules[name] + "\n")
+    sources = understood([Translated(n, n) for n in modules], tmp_path)
+    for one, source in sources.items():
+        with pytest.raises(SubsetError) as told:
+            module_of(source)
+        found[one.module] = str(told.value)
+    for (name, code), words in zip(modules.items(), REFUSED.values(), strict=True):
+        assert words in found[name], (code, found[name])
+        assert f"{name}.py, line " in found[name] and "; " in found[name]
+
+
+def test_what_no_language_knows_is_told(tmp_path: Path) -> None:
+    (tmp_path / "far.py").write_text("import os\n\n\ndef f() -> str:\n    return os.getcwd()\n")
+    (tmp_path / "same.py").write_text("def f(a: list[int], b: list[int]) -> bool:\n    return a == b\n")
+    for name, words in (
+        ("far", "'os' is used, which is not translated"),
+        ("same", "whether two lists are equal"),
+    ):
+        with pytest.raises(TranslationError, match=words):
+            printed(read([Translated(name, name)], tmp_path), {})
+
+
+def test_what_mypy_finds_wrong_is_told(tmp_path: Path) -> None:
+    (tmp_path / "wrong.py").write_text("def f() -> int:\n    return 'x'\n")
+    with pytest.raises(SubsetError, match=r"wrong.py:2: error"):
+        read([Translated("wrong", "wrong")], tmp_path)
