@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from metagraph.formats.elan import read_elan
-from metagraph.formats.transcript_words import LATEST, Collected, Transcript, count, is_silent
-from metagraph.graph.conversation import SHORTEST, SPOKEN, Segment, Spoken
+from metagraph.formats.transcript_words import LATEST, TO_ALL, Collected, Transcript, count, is_silent
+from metagraph.graph.conversation import EVERYBODY, SHORTEST, SPOKEN, Segment, Spoken
 from metagraph.playback.annotation import IGNORE, guess_role
 from metagraph.playback.annotation import Tier as ElanTier
 from metagraph.speech.textgrid import read_textgrid
@@ -186,11 +186,12 @@ def _segments(out: Collected, tier: _Tier, tiers: Sequence[_Tier]) -> tuple[Segm
         start for t in tiers if t.role == "peaks" and t.whose == tier.whose for _, start, _ in t.rows
     )
     found: list[Segment] = []
+    names = {" ".join(name.casefold().split()): n for n, name in enumerate(out.speakers)}
     unknown: list[str] = []
     over = 0
     for text, start, end in sorted(tier.rows, key=lambda r: r[1:]):
         label, _, words = text.strip().partition(":")
-        kind = label.strip().casefold()
+        kind, _, whom = label.strip().casefold().partition(" to ")
         if kind in ("", "idle"):
             continue
         if kind not in SPOKEN:
@@ -211,6 +212,7 @@ def _segments(out: Collected, tier: _Tier, tiers: Sequence[_Tier]) -> tuple[Segm
                 end,
                 None if peak is None else min(max(peak, start), end),
                 " ".join(words.split()),
+                EVERYBODY if whom == TO_ALL else names.get(whom),
             )
         )
     if unknown and not found:

@@ -102,7 +102,7 @@ def test_the_two_stand_so_far_apart_and_face_each_other(distance: float) -> None
     turned = np.array([[0.0, 0.0, 0.0, 1.0]])
     ahead = np.array([[0.0, 1.0, 0.5]])
     places = []
-    for n, stand in enumerate(stands(distance)):
+    for n, stand in enumerate(stands(talk(distance=distance))):
         _, feet = stand.placed(turned, np.zeros((1, 3)))
         _, nose = stand.placed(turned, ahead)
         places.append(feet[0])
@@ -112,7 +112,7 @@ def test_the_two_stand_so_far_apart_and_face_each_other(distance: float) -> None
 
 def test_what_is_placed_turns_with_its_joints() -> None:
     """A joint's own axes, and what hangs on it, are turned alike."""
-    stand = stands(2.0)[0]
+    stand = stands(talk(distance=2.0))[0]
     rotations, positions = stand.placed(np.tile([0.0, 0.0, 0.0, 1.0], (3, 2, 1)), np.ones((3, 2, 3)))
     assert rotations.shape == (3, 2, 4) and positions.shape == (3, 2, 3)
     assert positions[0, 0] == pytest.approx([0.0, 1.0, -1.0])

@@ -1,4 +1,4 @@
-"""Small dialogs about a conversation: how often each of the two moves with what is said, whose sound is
+"""Small dialogs about a conversation: how often each who talks moves with what is said, whose sound is
 whose.
 """
 
@@ -6,17 +6,21 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import (
+    QBoxLayout,
+    QCheckBox,
     QComboBox,
     QDialog,
     QDialogButtonBox,
     QDoubleSpinBox,
     QFileDialog,
+    QFrame,
     QGridLayout,
     QHBoxLayout,
     QLabel,
     QLineEdit,
+    QScrollArea,
     QToolButton,
     QVBoxLayout,
     QWidget,
@@ -34,6 +38,8 @@ from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import SPOKEN, Conversation, Rates, side_name
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
+from metagraph.speech.duet import stands
+from metagraph.speech.gaze_shares import together
 
 RATES = {
     "clause": ("gestures with its own clauses", "How often the hands move with a clause"),
@@ -52,6 +58,8 @@ BLINKS = {
         "Yang et al. keyed (section 7.3)",
     ),
 }
+ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
+ROWS = 7  # of the grid for each who talks
 ACTORS = {"female": "the woman", "male": "the man"}
 
 
@@ -112,17 +120,44 @@ class SettingDialog(QDialog):
 
 
 def delivered_words(shown: Shown, conversation: Conversation) -> str:
-    """Return what becomes of both sides' rates in what is shown, a line for each; empty where nothing is."""
-    return "\n".join(
+    """Return what becomes of all sides' rates in what is shown, a line for each, and of three or more where
+    they look; empty where nothing is.
+    """
+    rates = [
         f"{side_name(conversation, one.side)}: {told.words()}"
-        for one in shown.both
+        for one in shown.everyone
         for told in one.told
         if told.count
-    )
+    ]
+    looks = together([share for one in shown.everyone for share in one.looks])
+    return "\n".join((*rates, *(f"Whoever is {share.words()}" for share in looks)))
+
+
+class Tall(QScrollArea):
+    """What three or more who talk need: as high as it likes, scrolled where the screen has less. most: pixels
+    it is high at most before.
+    """
+
+    def __init__(self, inside: QWidget, most: int, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.inside = inside
+        self.setWidget(inside)
+        self.setWidgetResizable(True)
+        self.setFrameShape(QFrame.Shape.NoFrame)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.most = most
+
+    def sizeHint(self) -> QSize:
+        inside, bar = self.inside.sizeHint(), self.verticalScrollBar().sizeHint().width()
+        return QSize(inside.width() + bar, min(self.most, inside.height() + 2))
+
+    def minimumSizeHint(self) -> QSize:
+        inside, bar = self.inside.minimumSizeHint(), self.verticalScrollBar().sizeHint().width()
+        return QSize(inside.width() + bar, min(self.most, inside.height() + 2, 160))
 
 
 class RatesDialog(SettingDialog):
-    """How often each of the two moves with what is said, and what becomes of it on stage."""
+    """How often each who talks moves with what is said, and what becomes of it on stage."""
 
     title, text = "Rates", "Change rates"
 
@@ -142,8 +177,7 @@ class RatesDialog(SettingDialog):
     def build(self, layout: QVBoxLayout) -> None:
         layout.addWidget(
             caption(
-                "How often each of the two moves with what is said. Beside: what actors did (Yang et al. "
-                "2020).",
+                "How often each moves with what is said. Beside: what actors did (Yang et al. 2020).",
                 self,
                 True,
             )
@@ -151,14 +185,17 @@ class RatesDialog(SettingDialog):
         grid = QGridLayout()
         grid.setHorizontalSpacing(18)
         grid.setVerticalSpacing(8)
-        for side in (0, 1):
-            grid.addWidget(caption(side_name(self.conversation, side), self), 0, 1 + side)
+        count = len(self.conversation.sides)
+        for side in range(count):
+            whose = caption(side_name(self.conversation, side), self)
+            whose.setWordWrap(True)
+            grid.addWidget(whose, 0, 1 + side)
         for column, actor in enumerate(ACTORS.values()):
-            grid.addWidget(caption(actor.capitalize(), self, True), 0, 3 + column)
-        self.fields: list[dict[str, QDoubleSpinBox]] = [{}, {}]
+            grid.addWidget(caption(actor.capitalize(), self, True), 0, 1 + count + column)
+        self.fields: list[dict[str, QDoubleSpinBox]] = [{} for _ in range(count)]
         for row, (name, (words, tip)) in enumerate(RATES.items(), 1):
             grid.addWidget(QLabel(words.capitalize(), self), row, 0)
-            for side in (0, 1):
+            for side in range(count):
                 field = DoubleSpinBox(self, toolTip=tip, suffix=" %", decimals=0)
                 field.setRange(0, 100)
                 field.setAccessibleName(f"{side_name(self.conversation, side)} {words}")
@@ -169,9 +206,9 @@ class RatesDialog(SettingDialog):
                 did = (
                     f"{100 * getattr(conversation_edits.PAPER[actor], name):.0f} %" if name in SPOKEN else "–"
                 )
-                grid.addWidget(caption(did, self, True), row, 3 + column)
-        for side in (0, 1):
-            row_of = QHBoxLayout()
+                grid.addWidget(caption(did, self, True), row, 1 + count + column)
+        for side in range(count):
+            row_of: QBoxLayout = QHBoxLayout() if count == 2 else QVBoxLayout()
             row_of.setSpacing(2)
             for actor, words in ACTORS.items():
                 button = make_widget(
@@ -195,8 +232,13 @@ class RatesDialog(SettingDialog):
         row_of.addStretch(1)
         layout.addLayout(row_of)
         self.delivered = caption("", self, True)
-        layout.addWidget(self.delivered)
-        layout.addStretch(1)
+        if count == 2:
+            layout.addWidget(self.delivered)
+            layout.addStretch(1)
+        else:
+            self.delivered.setAlignment(Qt.AlignmentFlag.AlignTop)
+            layout.addWidget(Tall(self.delivered, 260, self), 1)
+            self.resize(max(760, 240 + 150 * count), 0)
 
     def refresh(self) -> None:
         """Say what becomes of the rates as they are."""
@@ -208,14 +250,14 @@ class RatesDialog(SettingDialog):
             self.fields[side][name].setValue(100 * getattr(rates, name))
 
     def change(self, project: Project) -> Project:
-        for side in (0, 1):
+        for side in range(len(self.fields)):
             values = {name: round(field.value() / 100, 4) for name, field in self.fields[side].items()}
             project = conversation_edits.set_rates(project, self.ident, side, **values)
         return conversation_edits.change_conversation(project, self.ident, blinks=self.blinks.currentData())
 
 
 class SidesDialog(SettingDialog):
-    """Who the two are, which sound is whose, whose graph moves each, and how far apart they stand."""
+    """Who talks, which sound is whose, whose graph moves each, and where they stand."""
 
     title, text = "Sounds and names", "Change sounds and names"
 
@@ -225,18 +267,22 @@ class SidesDialog(SettingDialog):
         self.sounds: list[QLineEdit] = []
         self.channels: list[QComboBox] = []
         self.movers: list[QLineEdit] = []
-        grid = QGridLayout()
+        self.places: list[tuple[QCheckBox, QDoubleSpinBox, QDoubleSpinBox]] = []
+        count = len(self.conversation.sides)
+        inside = QWidget(self)
+        grid = QGridLayout(inside)
+        grid.setContentsMargins(0, 0, 0, 0)
         grid.setHorizontalSpacing(10)
         grid.setVerticalSpacing(8)
         grid.setColumnStretch(1, 1)
         for side, of in enumerate(self.conversation.sides):
-            top = 6 * side
-            grid.addWidget(caption(("First speaker", "Second speaker")[side], self), top, 0, 1, 3)
+            top, ordinal = ROWS * side, ORDINALS[side]
+            grid.addWidget(caption(f"{ordinal.capitalize()} speaker", inside), top, 0, 1, 3)
             name, sound, channel, mover = (
-                QLineEdit(of.name, self),
-                QLineEdit(of.audio or "", self),
-                ComboBox(self),
-                QLineEdit(self),
+                QLineEdit(of.name, inside),
+                QLineEdit(of.audio or "", inside),
+                ComboBox(inside),
+                QLineEdit(inside),
             )
             mover.setText(of.project or "")
             mover.setToolTip("The project whose graph and character move this one")
@@ -250,8 +296,8 @@ class SidesDialog(SettingDialog):
                 ),
                 top + 1,
             ):
-                widget.setAccessibleName(f"{words} of the {('first', 'second')[side]} speaker")
-                grid.addWidget(QLabel(words, self), row, 0)
+                widget.setAccessibleName(f"{words} of the {ordinal} speaker")
+                grid.addWidget(QLabel(words, inside), row, 0)
                 grid.addWidget(widget, row, 1)
                 if isinstance(widget, QLineEdit):
                     widget.setPlaceholderText(empty)
@@ -259,10 +305,12 @@ class SidesDialog(SettingDialog):
                 (top + 2, "Choose a sound file", self.choose),
                 (top + 4, "Choose a project", self.choose_project),
             ):
-                button = make_widget(QToolButton, self, text="Choose…", toolTip=tip)
+                button = make_widget(QToolButton, inside, text="Choose…", toolTip=tip)
                 button.clicked.connect(lambda _=False, side=side, choose=choose: choose(side))
                 grid.addWidget(button, row, 2)
-            grid.setRowMinimumHeight(top + 5, 6)
+            grid.addWidget(QLabel("Stands", inside), top + 5, 0)
+            grid.addLayout(self._place_row(inside, side), top + 5, 1)
+            grid.setRowMinimumHeight(top + 6, 6)
             self.names.append(name)
             self.sounds.append(sound)
             self.channels.append(channel)
@@ -271,15 +319,53 @@ class SidesDialog(SettingDialog):
             sound.editingFinished.connect(
                 lambda side=side: self._show_channels(side, self.channels[side].currentData())
             )
+        layout.addWidget(inside if count == 2 else Tall(inside, 440, self), 1)
+        between = "the two" if count == 2 else "neighbours in the circle"
         self.distance = DoubleSpinBox(
-            self, suffix=" m", decimals=2, singleStep=0.1, toolTip="How far apart the two stand"
+            self, suffix=" m", decimals=2, singleStep=0.1, toolTip=f"How far apart {between} stand"
         )
         self.distance.setRange(0.2, 20)
         self.distance.setValue(self.conversation.distance)
-        self.distance.setAccessibleName("Distance between the two")
-        grid.addWidget(QLabel("Distance", self), 12, 0)
-        grid.addWidget(self.distance, 12, 1, Qt.AlignmentFlag.AlignLeft)
-        layout.addLayout(grid)
+        self.distance.setAccessibleName(f"Distance between {between}")
+        row_of = QHBoxLayout()
+        row_of.addWidget(QLabel("Distance", self))
+        row_of.addWidget(self.distance)
+        row_of.addStretch(1)
+        layout.addLayout(row_of)
+
+    def _place_row(self, parent: QWidget, side: int) -> QHBoxLayout:
+        """A place of one's own: to the right, and towards the viewer."""
+        of = self.conversation.sides[side]
+        own = QCheckBox("at a place of its own", parent)
+        own.setChecked(of.place is not None)
+        own.setAccessibleName(f"The {ORDINALS[side]} speaker stands at a place of its own")
+        row = QHBoxLayout()
+        row.addWidget(own)
+        fields = []
+        here = stands(self.conversation)[side]
+        for at, words, tip in (
+            (here.x, "right", "Metres to the right of the middle; less than 0 to the left"),
+            (here.z, "nearer", "Metres towards the viewer; less than 0 away"),
+        ):
+            field = DoubleSpinBox(parent, suffix=f" m {words}", decimals=2, singleStep=0.1, toolTip=tip)
+            field.setRange(-50, 50)
+            field.setValue(at)
+            field.setAccessibleName(f"{words} of the {ORDINALS[side]} speaker")
+            field.setEnabled(own.isChecked())
+            own.toggled.connect(field.setEnabled)
+            row.addWidget(field)
+            fields.append(field)
+        row.addStretch(1)
+        self.places.append((own, fields[0], fields[1]))
+        return row
+
+    def _place(self, side: int) -> tuple[float, float] | None:
+        """Return where a side stands, None in the circle; as it was, to what is shown of it."""
+        own, right, nearer = self.places[side]
+        if not own.isChecked():
+            return None
+        place, was = (round(right.value(), 3), round(nearer.value(), 3)), self.conversation.sides[side].place
+        return was if was is not None and tuple(round(x, 2) for x in was) == place else place
 
     def _show_channels(self, side: int, chosen: int | None) -> None:
         """Offer the channels that the sound has, as far as that is known."""
@@ -326,7 +412,7 @@ class SidesDialog(SettingDialog):
         return None if own is not None and own.exists() and whole.samefile(own) else text
 
     def change(self, project: Project) -> Project:
-        for side in (0, 1):
+        for side in range(len(self.names)):
             sound = self.sounds[side].text().strip() or None
             channel = self.channels[side].currentData() if sound is not None else None
             project = conversation_edits.change_side(
@@ -337,6 +423,7 @@ class SidesDialog(SettingDialog):
                 audio=sound,
                 channel=channel,
                 project=self._mover(side),
+                place=self._place(side),
             )
         distance = round(self.distance.value(), 3)
         if distance == round(self.conversation.distance, 2):  # as it was, to what is shown of it

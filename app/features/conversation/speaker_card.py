@@ -1,24 +1,36 @@
-"""What was read of one of the two, on a card."""
+"""What was read of one who talks, on a card."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QLineEdit, QWidget
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QFrame,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QToolButton,
+    QWidget,
+)
 
 from app.features.conversation.conversation_panel import PLURALS
 from app.features.conversation.conversation_settings import caption
 from app.features.conversation.word_lists import language_name
 from app.look.plural import many
 from app.look.theme import SOUND_MARKS
+from app.widgets.making import make_widget
 from metagraph.graph.conversation import SPOKEN, Side
 
 
 class Card(QFrame):
-    """One of the two: name, sound, words, and how many segments."""
+    """One who talks: name, sound, words, and how many segments. taken: whether it is in the conversation; of
+    two both are. earlier: lets it stand before the one on its left.
+    """
 
-    def __init__(self, title: str, parent: QWidget) -> None:
+    def __init__(self, title: str, parent: QWidget, first: bool = True) -> None:
         super().__init__(parent)
         self.setObjectName("card")
         grid = QGridLayout(self)
@@ -26,7 +38,21 @@ class Card(QFrame):
         grid.setHorizontalSpacing(12)
         grid.setVerticalSpacing(6)
         grid.setColumnStretch(1, 1)
-        grid.addWidget(caption(title, self), 0, 0, 1, 2)
+        row_of = QHBoxLayout()
+        row_of.addWidget(caption(title, self), 1)
+        self.taken = QCheckBox("Takes part", self)
+        self.taken.setChecked(True)
+        self.taken.setToolTip("Whether this speaker is in the conversation, with a character of its own")
+        self.taken.setAccessibleName(f"The {title.lower()} takes part")
+        self.earlier = make_widget(
+            QToolButton, self, text="←", toolTip="Before the one on the left: who stands where"
+        )
+        self.earlier.setAccessibleName(f"Move the {title.lower()} one place forward")
+        self.earlier.setEnabled(not first)
+        for choice in (self.taken, self.earlier):
+            choice.hide()
+            row_of.addWidget(choice)
+        grid.addLayout(row_of, 0, 0, 1, 2)
         self.name = QLineEdit(self)
         self.name.setPlaceholderText(title)
         self.name.setAccessibleName(f"Name of the {title.lower()}")

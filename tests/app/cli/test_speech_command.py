@@ -90,8 +90,10 @@ def test_bad_usage_says_what_is_right(
 ) -> None:
     assert main(["speech", str(files[0]), "-o", str(tmp_path / "a.mp4")]) == 1
     assert ".eaf, .TextGrid, .json" in capsys.readouterr().err
-    assert main(["speech", *[str(files[0])] * 3]) == 1
-    assert "one or two sounds" in capsys.readouterr().err
+    assert main(["speech", *[str(files[0])] * 9]) == 1
+    assert "up to 8 sound files" in capsys.readouterr().err
+    assert main(["speech", *[str(files[0])] * 3, "--words", *[str(files[1])] * 2]) == 1
+    assert "3 sounds and 2 transcripts" in capsys.readouterr().err
     assert main(["speech", str(tmp_path / "gone.wav")]) == 1
     assert "there is no such sound file" in capsys.readouterr().err
 

@@ -64,7 +64,7 @@ def staged(drive, talking):
     drive.files.open(talking)
     drive.wait(lambda: drive.document.folder == talking.parent and drive.performance.skeleton() is not None)
     drive.session.onstage.set_conversation("v9000")
-    drive.wait(lambda: drive.performance.shown.partner is not None)
+    drive.wait(lambda: bool(drive.performance.shown.others))
     return drive
 
 
@@ -92,7 +92,7 @@ def test_improvised_takes_the_conversation_off_stage(staged):
     staged.timeline.stage.setFocus()
     QTest.keyClick(staged.timeline.stage, Qt.Key.Key_Up)
     assert staged.session.onstage.conversation is None
-    staged.wait(lambda: staged.performance.shown.partner is None)
+    staged.wait(lambda: not staged.performance.shown.others)
 
 
 def test_both_are_heard_each_where_it_speaks(staged):
@@ -129,9 +129,7 @@ def test_kept_as_performances_both_can_be_played_and_undone_at_once(staged):
     )
     assert {line.channel for line in staged.document.project.lines.values()} == {0, 1}
     staged.wait(
-        lambda: (
-            staged.performance.shown.partner is None and bool(staged.performance.shown.plan.track.speeches)
-        )
+        lambda: not staged.performance.shown.others and bool(staged.performance.shown.plan.track.speeches)
     )
     staged.document.undo_stack.undo()
     assert (
@@ -156,7 +154,7 @@ def test_a_side_moved_by_another_project_uses_that_ones_clips_and_one_that_canno
             "v9000",
             folder,
         )
-        assert shown.both[1].project.settings.alpha == alpha
+        assert shown.everyone[1].project.settings.alpha == alpha
         assert any("missing" in note for note in shown.notes) == told
 
 
@@ -209,7 +207,7 @@ def test_a_side_can_move_with_a_clip_instead_of_its_graph_and_still_speaks_and_a
     assert np.array_equal(moved.pose(1.0).rotations, moved.pose(np.array([1.0])).rotations[0])
     assert moved.pose(100.0) is not None, "beyond its end it holds its last pose"
     assert moved.plan.track.speeches == still.plan.track.speeches != ()
-    assert moved.partner.motion is None
+    assert moved.others[0].motion is None
     assert lost.motion is None and any("missing" in note for note in lost.notes)
 
 
