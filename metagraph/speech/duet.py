@@ -20,6 +20,7 @@ from metagraph.graph.conversation import Conversation, Side, others_of
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line, Performance, Point
 from metagraph.motion import rotation
+from metagraph.playback.life.body import body_of
 from metagraph.playback.life.voice import Voice
 from metagraph.playback.plan import Plan
 from metagraph.speech.delivered import Delivered, delivered
@@ -50,14 +51,17 @@ class Stand:
         )
         return rotation.multiply(np.broadcast_to(about, rotations.shape), rotations), moved
 
-    def seen(self, other: Stand, height: float) -> Point:
-        """Return where a point that high above another's place is, in the space of who stands here."""
-        x, z = other.x - self.x, other.z - self.z
-        return (
-            round(x * cos(self.turn) - z * sin(self.turn), 6),
-            height,
-            round(x * sin(self.turn) + z * cos(self.turn), 6),
-        )
+    def world(self, point: Point) -> Point:
+        """Return where a point of this one's space is, metres."""
+        x, y, z = point
+        turned = x * cos(self.turn) + z * sin(self.turn), z * cos(self.turn) - x * sin(self.turn)
+        return turned[0] + self.x, y, turned[1] + self.z
+
+    def own(self, point: Point) -> Point:
+        """Return where a point that all see is in this one's space, metres."""
+        x, y, z = point[0] - self.x, point[1], point[2] - self.z
+        turned = x * cos(self.turn) - z * sin(self.turn), x * sin(self.turn) + z * cos(self.turn)
+        return round(turned[0], 6), y, round(turned[1], 6)
 
 
 @dataclass(frozen=True)
@@ -137,12 +141,18 @@ def duet(
     """Return all characters' plans. ident: the conversation's id. projects: of each side. heard: their
     voices.
     """
-    heights, places = [round(_head(project), 3) for project in projects], stands(conversation)
+    places = stands(conversation)
+    ahead = len(places) == 2 and all(side.place is None for side in conversation.sides)
     movers: list[Mover] = []
     driven = []
     for n in range(len(conversation.sides)):
         known = _with_voice(conversation, ident, n, projects[n], heard[n])
-        heads = tuple(_eye_to_eye(conversation, places, heights, n, m) for m in others_of(conversation, n))
+        heads = tuple(
+            (0.0, round(_head(projects[m]), 3), conversation.distance)
+            if ahead
+            else places[n].own(places[m].world(_eyes(projects[m])))
+            for m in others_of(conversation, n)
+        )
         performance, plan = drive(conversation, n, *known, heads)
         driven.append((known, heads, performance))
         movers.append(Mover(n, known[0], plan))
@@ -156,15 +166,6 @@ def duet(
         looks = gaze_shares(conversation, n, known[0], plan)
         parts.append(DuetPart(known[0], performance, plan, places[n], told, looks))
     return Duet(tuple(parts), conversation.length)
-
-
-def _eye_to_eye(
-    conversation: Conversation, places: Sequence[Stand], heights: Sequence[float], n: int, m: int
-) -> Point:
-    """Return where the head of m is in the space of n; of two who face each other straight ahead."""
-    if len(places) == 2 and all(side.place is None for side in conversation.sides):
-        return 0.0, heights[m], conversation.distance
-    return places[n].seen(places[m], heights[m])
 
 
 def _with_voice(
@@ -197,3 +198,11 @@ def _head(project: Project) -> float:
         return HEAD
     head = anatomy.roles(project).get("head")
     return HEAD if head is None else float(project.skeleton.globals(project.skeleton.rest)[1][head, 1])
+
+
+def _eyes(project: Project) -> Point:
+    """Return where a character's eyes are, metres, in its own space."""
+    if project.skeleton is None or body_of(project).empty:
+        return 0.0, round(_head(project), 3), 0.0
+    x, y, z = (round(v, 3) for v in body_of(project).eyes_at_rest)
+    return x, y, z
