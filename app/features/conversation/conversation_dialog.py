@@ -122,7 +122,7 @@ class ImportDialog(QDialog):
         self.grid = QGridLayout(inside)
         self.grid.setContentsMargins(0, 0, 0, 0)
         self.grid.setSpacing(10)
-        self.tall = Tall(inside, 300, self)
+        self.tall = Tall(inside, 330, self)  # two rows of cards; more are scrolled
         layout.addWidget(self.tall)
         self._deal(2)
         # All sides' lists, or the first one's and the second one's where two speak different languages.
@@ -156,17 +156,17 @@ class ImportDialog(QDialog):
             card.earlier.clicked.connect(lambda _=False, n=n: self.move_earlier(n))
             card.taken.toggled.connect(lambda _: self._show_parts())
             self.cards.append(card)
-        across = 2 if count == 4 else min(3, count)
         self.swap.setVisible(count == 2)
         for n, card in enumerate(self.cards):
             for widget in (card.taken, card.earlier):
                 widget.setVisible(count > 2)
-            row, column = divmod(n, across)
-            self.grid.addWidget(card, row, 2 * column if count == 2 else column)
-        for column in range(3):
-            self.grid.setColumnStretch(column, int(column != 1 if count == 2 else column < across))
+            self.grid.addWidget(card, n // 2, 2 * (n % 2))
+            card.show()  # at once: how high the cards are is asked for below
+        self.grid.setColumnStretch(0, 1)
+        self.grid.setColumnStretch(2, 1)
         if count == 2:
             self.grid.addWidget(self.swap, 0, 1)
+        self.grid.activate()
         self.tall.setFixedHeight(self.tall.sizeHint().height())
 
     def _show_parts(self) -> None:
@@ -341,7 +341,7 @@ class ImportDialog(QDialog):
                 of = read.sides[side]
                 label.setText(f"{side_name(read, side)}: {language_name(of.language) or 'no words'}")
             label.setVisible(apart and not several)
-            lists.set_low(apart)
+            lists.set_low(apart or several)
         self.lists.setVisible(not (apart and several))
         self.others.setVisible(apart and not several)
         if apart and several and read is not None:

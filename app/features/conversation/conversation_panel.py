@@ -146,10 +146,14 @@ class ConversationPanel(QWidget):
         """Say how many clauses get a gesture, beside how many were asked for."""
         told = [t for one in self.performance.shown.everyone for t in one.told[:1] if t.count]
         done, asked = (
-            listed([f"{100 * share:.0f} %" for share in shares])
+            [f"{100 * share:.0f} %" for share in shares]
             for shares in ([t.performed / t.count for t in told], [t.asked for t in told])
         )
-        return f". Gestures go with {done} of the clauses, {asked} were asked for" if told else ""
+        if not told:
+            return ""
+        if len(told) > 2 and len(set(asked)) == 1:
+            asked = asked[:1]
+        return f". Gestures go with {listed(done)} of the clauses, {listed(asked)} were asked for"
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)

@@ -191,7 +191,9 @@ class RatesDialog(SettingDialog):
             whose.setWordWrap(True)
             grid.addWidget(whose, 0, 1 + side)
         for column, actor in enumerate(ACTORS.values()):
-            grid.addWidget(caption(actor.capitalize(), self, True), 0, 1 + count + column)
+            told = caption(actor.capitalize(), self, True)
+            told.setWordWrap(count == 2)  # of more the fields need the room
+            grid.addWidget(told, 0, 1 + count + column)
         self.fields: list[dict[str, QDoubleSpinBox]] = [{} for _ in range(count)]
         for row, (name, (words, tip)) in enumerate(RATES.items(), 1):
             grid.addWidget(QLabel(words.capitalize(), self), row, 0)
@@ -206,7 +208,9 @@ class RatesDialog(SettingDialog):
                 did = (
                     f"{100 * getattr(conversation_edits.PAPER[actor], name):.0f} %" if name in SPOKEN else "–"
                 )
-                grid.addWidget(caption(did, self, True), row, 1 + count + column)
+                told = caption(did, self, True)
+                told.setWordWrap(count == 2)
+                grid.addWidget(told, row, 1 + count + column)
         for side in range(count):
             row_of: QBoxLayout = QHBoxLayout() if count == 2 else QVBoxLayout()
             row_of.setSpacing(2)
@@ -238,7 +242,7 @@ class RatesDialog(SettingDialog):
         else:
             self.delivered.setAlignment(Qt.AlignmentFlag.AlignTop)
             layout.addWidget(Tall(self.delivered, 260, self), 1)
-            self.resize(max(760, 240 + 150 * count), 0)
+            self.resize(max(800, 260 + 150 * count), 600)
 
     def refresh(self) -> None:
         """Say what becomes of the rates as they are."""
@@ -262,7 +266,7 @@ class SidesDialog(SettingDialog):
     title, text = "Sounds and names", "Change sounds and names"
 
     def build(self, layout: QVBoxLayout) -> None:
-        self.resize(720, 0)
+        self.resize(720, 0 if len(self.conversation.sides) == 2 else 620)
         self.names: list[QLineEdit] = []
         self.sounds: list[QLineEdit] = []
         self.channels: list[QComboBox] = []
@@ -319,7 +323,7 @@ class SidesDialog(SettingDialog):
             sound.editingFinished.connect(
                 lambda side=side: self._show_channels(side, self.channels[side].currentData())
             )
-        layout.addWidget(inside if count == 2 else Tall(inside, 440, self), 1)
+        layout.addWidget(inside if count == 2 else Tall(inside, 520, self), 1)
         between = "the two" if count == 2 else "neighbours in the circle"
         self.distance = DoubleSpinBox(
             self, suffix=" m", decimals=2, singleStep=0.1, toolTip=f"How far apart {between} stand"
@@ -340,6 +344,7 @@ class SidesDialog(SettingDialog):
         own.setChecked(of.place is not None)
         own.setAccessibleName(f"The {ORDINALS[side]} speaker stands at a place of its own")
         row = QHBoxLayout()
+        row.setSpacing(10)
         row.addWidget(own)
         fields = []
         here = stands(self.conversation)[side]

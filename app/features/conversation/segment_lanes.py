@@ -20,7 +20,8 @@ from metagraph.speech.addressing import turns_of
 
 GAP = 8.0  # pixels between two
 WORDS, SEGMENTS, TALLEST = 17.0, 26.0, 190.0  # pixels of the words, of the segments, of a side at most
-LOW = 74.0  # pixels of a side at least
+LEGIBLE = 18.0  # pixels segments need for their words
+LOW, LOWER = 74.0, 52.0  # pixels of a side at least: of two, and of more
 HERTZ = (60.0, 500.0)  # from the bottom to the top of a waveform; an octave is as high everywhere
 AXIS = (100.0, 200.0, 400.0)
 NEAREST = 400.0  # pixels a second at most
@@ -41,13 +42,17 @@ class SegmentLane:
 
 def least(sides: int) -> int:
     """Return how many pixels the lanes of so many need."""
-    return round(sides * LOW + (sides - 1) * GAP + 4 + RULER)
+    return round(sides * _low(sides) + (sides - 1) * GAP + 4 + RULER)
+
+
+def _low(sides: int) -> float:
+    return LOW if sides == 2 else LOWER
 
 
 def lanes(width: float, height: float, sides: int = 2) -> tuple[SegmentLane, ...]:
     """Return the lanes of all who talk, one under the other."""
-    each = min(TALLEST, max(LOW, (height - RULER - (sides - 1) * GAP - 4) / sides))
-    segments = min(SEGMENTS, each * 0.28)
+    each = min(TALLEST, max(_low(sides), (height - RULER - (sides - 1) * GAP - 4) / sides))
+    segments = min(SEGMENTS, max(LEGIBLE, each * 0.28))
     out = []
     for side in range(sides):
         top, wide = RULER + side * (each + GAP), max(1.0, width - LEFT)
