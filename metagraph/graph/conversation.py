@@ -185,7 +185,7 @@ class Conversation(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid
             if odd is not None:
                 whom = "its own speaker" if odd.to == n else f"side {odd.to}, which is not there"
                 raise ValueError(
-                    f"side {n}: segment '{odd.kind}' at {odd.start:g} s is said to {whom}; to is "
+                    f"segment '{odd.kind}' of side {n} at {odd.start:g} s is said to {whom}; to is "
                     f"another side, from 0, or {EVERYBODY} for everybody"
                 )
 

@@ -4,6 +4,7 @@ with a remedy.
 
 from __future__ import annotations
 
+import json
 import shutil
 from concurrent.futures import CancelledError
 from pathlib import Path
@@ -20,7 +21,7 @@ from metagraph.formats.conversations import Read, read_conversation
 from metagraph.graph.conversation import Segment, Side
 from metagraph.graph.conversation_edits import add_conversation
 from metagraph.graph.model import Project
-from tests.speech import talk
+from tests.speech import group, talk
 
 SPEECH = Path(__file__).resolve().parents[3] / "shared" / "data" / "praatio-speech"
 RATE = 16000
@@ -303,3 +304,108 @@ def test_real_recordings_make_sides() -> None:
         0
     ].peak == pytest.approx(0.6, abs=0.1)
     assert bobby.segments and all(s.kind == "clause" for s in bobby.segments)
+
+
+# --- more than two
+
+
+@pytest.fixture(scope="module")
+def three() -> talk.Talk:
+    return group.spoken()
+
+
+def named_cues(path: Path, spoken: talk.Talk, way: str, head: str = "") -> Path:
+    """Write what was said as subtitles. way: how a name stands before words."""
+    rows = sorted(spoken.said, key=lambda s: s.start)
+    cues = [
+        f"{int(s.start // 60):02d}:{s.start % 60:06.3f} --> {int(s.end // 60):02d}:{s.end % 60:06.3f}\n"
+        + way.format(group.NAMES[s.side])
+        + s.text
+        for s in rows
+    ]
+    path.write_text(head + "\n\n".join(cues) + "\n")
+    return path
+
+
+def heard_of(read: Read) -> list[tuple[str, int | None, int]]:
+    return [(s.name, s.channel, len(s.words)) for s in read.conversation.sides]
+
+
+def test_three_channels_are_three_who_talk_by_loudness(tmp_path: Path, three: talk.Talk) -> None:
+    read = read_conversation([sound(tmp_path / "a.wav", *three.samples, rate=three.rate)])
+    assert [s.channel for s in read.conversation.sides] == [0, 1, 2]
+    for n, side in enumerate(read.conversation.sides):
+        own = [(s.start, s.end) for s in three.said if s.side == n]
+        inside = [
+            any(a - 0.3 < s.start and s.end < b + 0.3 for a, b in own) or s.end - s.start > 1
+            for s in side.segments
+        ]
+        assert side.segments and all(inside)
+
+
+def test_a_file_for_each_of_three_with_one_transcript_or_one_for_each(
+    tmp_path: Path, three: talk.Talk
+) -> None:
+    audio = [sound(tmp_path / f"{n}.wav", three.samples[n], rate=three.rate) for n in range(3)]
+    whole = named_cues(tmp_path / "all.vtt", three, "<v {}>", "WEBVTT\n\n")
+    read = read_conversation(audio[::-1], [whole])
+    assert [s.name for s in read.conversation.sides] == ["Cleo", "Ben", "Ann"], (
+        "whose words are whose is heard"
+    )
+    each = []
+    for n in range(3):
+        path = tmp_path / f"words {n}.ctm"
+        path.write_text("".join(f"x A {a} {b - a} {w}\n" for w, a, b in three.words[n]))
+        each.append(path)
+    read = read_conversation(audio, each)
+    assert [s.name for s in read.conversation.sides] == ["words 0", "words 1", "words 2"] and not read.notes
+    turned = read_conversation(audio, [each[1], each[2], each[0]])
+    assert said(turned, "better than the other way round", "Give them in the order of the sides")
+    with pytest.raises(ValueError, match="3 sounds and 2 transcripts"):
+        read_conversation(audio, each[:2])
+
+
+@pytest.mark.parametrize("way", ["<v {}>", "{}: ", "[{}] ", "({}) ", "[{}]: "])
+def test_one_channel_is_shared_by_three_whom_a_transcript_names(
+    tmp_path: Path, three: talk.Talk, way: str
+) -> None:
+    mono = sound(tmp_path / "mono.wav", three.samples.sum(0), rate=three.rate)
+    head = "WEBVTT\n\n" if way.startswith("<") else ""
+    read = read_conversation([mono], [named_cues(tmp_path / "a.vtt", three, way, head)])
+    counted = [(name, None, len(words)) for name, words in zip(group.NAMES, three.words, strict=False)]
+    assert heard_of(read) == counted
+    kinds = [[s.kind for s in side.segments] for side in read.conversation.sides]
+    assert "hesitation" in kinds[1] and "response" in kinds[2]
+
+
+def test_three_named_in_a_diarised_transcript_of_two_channels_share_one(
+    tmp_path: Path, three: talk.Talk
+) -> None:
+    two = np.stack([three.samples[0] + three.samples[2], three.samples[1]])
+    path = tmp_path / "a.json"
+    rows = [
+        {"start": s.start, "end": s.end, "text": s.text, "speaker": f"SPEAKER_0{s.side}"}
+        for s in sorted(three.said, key=lambda s: s.start)
+    ]
+    path.write_text(json.dumps({"segments": rows}))
+    read = read_conversation([sound(tmp_path / "a.wav", *two, rate=three.rate)], [path])
+    assert [s.channel for s in read.conversation.sides] == [0, 1, 0]
+    assert said(read, "names 3 speakers of 2 channels", "some share one")
+
+
+def test_channels_in_which_nothing_is_heard_are_left_out_of_more_than_two(
+    tmp_path: Path, three: talk.Talk
+) -> None:
+    quiet = np.zeros_like(three.samples[0])
+    some = (three.samples[0], quiet, three.samples[1], quiet)
+    read = read_conversation([sound(tmp_path / "a.wav", *some, rate=three.rate)])
+    assert [s.channel for s in read.conversation.sides] == [0, 2]
+    assert said(read, "channel 2, channel 4 left out")
+
+
+def test_of_more_speakers_than_may_talk_those_who_say_most_are_kept(tmp_path: Path) -> None:
+    rows = [(f"S{n}", n + 0.1 * k) for n in range(10) for k in range(2 + (n > 1))]
+    (tmp_path / "a.ctm").write_text("".join(f"x {who} {at:.2f} 0.08 so\n" for who, at in rows))
+    read = read_conversation([sound(tmp_path / "a.wav", buzz(11))], [tmp_path / "a.ctm"])
+    assert [s.name for s in read.conversation.sides] == [f"S{n}" for n in range(2, 10)]
+    assert said(read, "10 speakers", "'S0', 'S1'")
