@@ -10,7 +10,9 @@ from pathlib import Path
 from metagraph.graph.conversation import MOST_SPEAKERS
 
 SOUNDS = (".wav", ".flac", ".ogg", ".mp3")
-UNLIKE = 0.5  # seconds by which sounds of one conversation differ in length at most
+# Three sounds or more are of one conversation where they differ in length by so many seconds at most, and are
+# longer than lines of dialogue, which may be alike by chance.
+UNLIKE, LONG = 0.5, 10.0
 TRANSCRIPTS = (".textgrid", ".eaf", ".vtt", ".srt", ".json", ".ctm", ".tsv")
 
 
@@ -23,16 +25,16 @@ def kinds_of(paths: Sequence[Path]) -> tuple[tuple[Path, ...], tuple[Path, ...]]
 
 
 def converses(paths: Sequence[Path]) -> bool:
-    """Whether files dropped on the window are a conversation: two sounds, or more that last as long as each
-    other, a sound and its words, or a sound with a channel for each. A single sound with one channel is a
-    line of dialogue, and so is each of many.
+    """Whether files dropped on the window are a conversation: two sounds, or more that last long and as
+    long as each other, a sound and its words, or a sound with a channel for each. A single sound with one
+    channel is a line of dialogue, and so is each of many.
     """
     sounds, transcripts = kinds_of(paths)
     if not sounds or len(sounds) > MOST_SPEAKERS or len(sounds) + len(transcripts) < len(paths):
         return False
     if len(sounds) > 2:
         lasts = [seconds_of(p) for p in sounds]
-        return max(lasts) - min(lasts) <= UNLIKE and min(lasts) > 0
+        return max(lasts) - min(lasts) <= UNLIKE and min(lasts) >= LONG
     return len(sounds) == 2 or bool(transcripts) or 2 <= channels_of(sounds[0]) <= MOST_SPEAKERS
 
 
