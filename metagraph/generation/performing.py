@@ -108,11 +108,15 @@ def side_sound(conversation: Conversation, side: int, folder: Path) -> tuple[Arr
     """
     count = max(1, round(conversation.length * SOUND_RATE))
     out, notes = np.zeros((2, count), np.float32), []
+    heard_once: set[tuple[int, str | None, int | None]] = set()  # several may share one sound
     for n in (side, *others_of(conversation, side)):
         of = conversation.sides[n]
         if of.audio is None:
             notes.append(f"{side_name(conversation, n)} has no sound: who speaks when is all that is heard.")
             continue
+        if (key := (int(n != side), of.audio, of.channel)) in heard_once:
+            continue
+        heard_once.add(key)
         recording = read_recording(folder / of.audio, LONGEST)
         samples = recording.samples
         one = samples.mean(0) if of.channel is None else samples[min(of.channel, len(samples) - 1)]

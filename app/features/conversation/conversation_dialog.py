@@ -350,6 +350,7 @@ class ImportDialog(QDialog):
                 for n in self.order
             ]
             self.whose[0].setText(f"Each has lists of its own, to be changed later: {', '.join(each)}")
+            self.whose[0].setWordWrap(True)
             self.whose[0].setVisible(True)
 
     def _typed(self) -> None:

@@ -143,17 +143,18 @@ class ConversationPanel(QWidget):
             self.title.say(f"{who}, {minutes}:{seconds:02d}{self._delivered()}")
 
     def _delivered(self) -> str:
-        """Say how many clauses get a gesture, beside how many were asked for."""
+        """Say how many clauses get a gesture, beside how many were asked for: of more than two in all."""
         told = [t for one in self.performance.shown.everyone for t in one.told[:1] if t.count]
-        done, asked = (
-            [f"{100 * share:.0f} %" for share in shares]
-            for shares in ([t.performed / t.count for t in told], [t.asked for t in told])
-        )
         if not told:
             return ""
-        if len(told) > 2 and len(set(asked)) == 1:
-            asked = asked[:1]
-        return f". Gestures go with {listed(done)} of the clauses, {listed(asked)} were asked for"
+        shares = [(t.performed / t.count, t.asked) for t in told]
+        if len(told) > 2:
+            whole = sum(t.count for t in told)
+            shares = [(sum(t.performed for t in told) / whole, sum(t.asked * t.count for t in told) / whole)]
+        done, asked = (
+            listed([f"{100 * share:.0f} %" for share in some]) for some in zip(*shares, strict=True)
+        )
+        return f". Gestures go with {done} of the clauses, {asked} were asked for"
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
