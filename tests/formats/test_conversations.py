@@ -21,6 +21,9 @@ from metagraph.formats.conversations import Read, read_conversation
 from metagraph.graph.conversation import Segment, Side
 from metagraph.graph.conversation_edits import add_conversation
 from metagraph.graph.model import Project
+from metagraph.speech.addressing import turns_of
+from sample_clips.make import three as maker
+from sample_clips.make.talk import MissingError
 from tests.speech import group, talk
 
 SPEECH = Path(__file__).resolve().parents[3] / "shared" / "data" / "praatio-speech"
@@ -406,3 +409,17 @@ def test_of_more_speakers_than_may_talk_those_who_say_most_are_kept(tmp_path: Pa
     read = read_conversation([sound(tmp_path / "a.wav", buzz(11))], [tmp_path / "a.ctm"])
     assert [s.name for s in read.conversation.sides] == [f"S{n}" for n in range(2, 10)]
     assert said(read, "10 speakers", "'S0', 'S1'")
+
+
+def test_three_who_speak_a_language_each_are_read_each_in_theirs_and_name_each_other(tmp_path: Path) -> None:
+    try:
+        spoken = maker.three()
+    except MissingError as error:
+        pytest.skip(str(error))
+    maker.write_cues(tmp_path / "a.vtt", spoken.said)
+    audio = sound(tmp_path / "a.wav", *spoken.samples, rate=spoken.rate)
+    made = read_conversation([audio], [tmp_path / "a.vtt"]).conversation
+    assert [(s.name, s.language) for s in made.sides] == [("Ann", "en"), ("Uwe", "de"), ("Zoé", "fr")]
+    kinds = [{s.text for s in side.segments if s.kind == "response"} for side in made.sides]
+    assert kinds == [{"great"}, {"genau"}, {"d'accord", "oui"}]
+    assert [(t.side, t.to) for t in turns_of(made)] == [(0, 1), (1, 0), (2, 0), (0, 2), (2, 0)]
