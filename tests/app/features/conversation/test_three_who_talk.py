@@ -14,6 +14,7 @@ from app.features.conversation.segment_lanes import lanes
 from app.features.conversation.word_lists import WordsDialog
 from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import EVERYBODY, Conversation, Rates
+from tests.app.painted_text import faults
 from tests.speech.group import NAMES, group, said, spoken
 from tests.speech.talk import write_sound, write_words
 
@@ -45,6 +46,7 @@ def test_three_are_dropped_put_in_order_and_one_left_out(drive: Any, tmp_path: P
     drive.wait(dialog.go.isEnabled, 120)
     assert len(dialog.cards) == 3 and not dialog.swap.isVisible()
     assert all(card.isVisible() and card.taken.isVisible() for card in dialog.cards)
+    assert not [fault for fault in faults(dialog) if fault.endswith("is cut")]
     for card, name in zip(dialog.cards, NAMES, strict=False):
         card.name.clear()
         QTest.keyClicks(card.name, name)
@@ -68,6 +70,7 @@ def test_each_has_a_lane_a_name_and_a_plan_of_its_own(drive: Any) -> None:
     places = lanes(view.width(), view.height(), 3)
     assert view.minimumHeight() <= view.height() and places[2].whole.bottom() <= view.height()
     drive.wait(lambda: "Ann, Ben and Cleo" in panel.title.words)
+    assert not faults(panel)
     for side in (2, 1, 0):
         drive.click((view, QPoint(30, round(places[side].wave.top()) + 6)))
         assert drive.session.onstage.side == side
@@ -118,6 +121,7 @@ def test_names_rates_places_and_lists_of_each_are_set(drive: Any) -> None:
 
     drive.actions["side_sounds"].trigger()
     sides = dialog_of(drive, SidesDialog)
+    assert not faults(sides)
     sides.names[2].setText("Cleopatra")
     own, right, nearer = sides.places[2]
     assert not right.isEnabled()
@@ -132,6 +136,7 @@ def test_names_rates_places_and_lists_of_each_are_set(drive: Any) -> None:
     assert now() is before, "what is not touched stays as it is"
     drive.actions["rates"].trigger()
     rates = dialog_of(drive, RatesDialog)
+    assert not faults(rates)
     rates.take(2, Rates(clause=0.2))
     rates.accept()
     assert [round(s.rates.clause, 2) for s in now().sides] == [0.75, 0.75, 0.2]
@@ -139,6 +144,7 @@ def test_names_rates_places_and_lists_of_each_are_set(drive: Any) -> None:
     words = dialog_of(drive, WordsDialog)
     words.apart.setChecked(True)
     assert all(whole.isVisible() for whole, _, _ in words.rows) and len(words.rows) == 3
+    assert not faults(words)
     words.rows[2][2].edits[0].setPlainText("aye")
     words.accept()
     assert now().sides[2].segments[0].kind == "response" and now().sides[0].segments[0].kind == "clause"
