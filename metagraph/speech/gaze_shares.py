@@ -19,7 +19,7 @@ from metagraph.speech.addressing import roles_of
 from metagraph.speech.drive import partner_points
 
 FACE = 0.14  # metres round the middle of a head that are its face, hair and chin with it
-STEP = 0.1  # seconds between samples
+STEP, MOST = 0.1, 6000  # seconds between samples at least, and samples at most
 Doing = Literal["addressed", "aside", "speaking", "speaking to all"]
 NAMES: dict[Doing, tuple[str, str]] = {
     "addressed": ("addressed, looks", "at the speaker"),
@@ -69,8 +69,9 @@ def gaze_shares(conversation: Conversation, side: int, project: Project, plan: P
     gaze = gaze_of(plan.life, project.life, body_of(project), project.points)
     found: dict[Doing, list[int]] = {doing: [0, 0, 0] for doing in NAMES}
     roles, place = roles_of(conversation, side), 0
-    for n in range(int(conversation.length / STEP)):
-        at = (n + 0.5) * STEP
+    step = max(STEP, conversation.length / MOST)
+    for n in range(int(conversation.length / step)):
+        at = (n + 0.5) * step
         while place + 1 < len(roles) and roles[place].end <= at:
             place += 1
         role = roles[place]
@@ -84,7 +85,7 @@ def gaze_shares(conversation: Conversation, side: int, project: Project, plan: P
         found[doing][0] += 1
         found[doing][1 if main else 2] += seen is not None
     return tuple(
-        GazeShare(doing, count * STEP, main / count, others / count)
+        GazeShare(doing, count * step, main / count, others / count)
         for doing, (count, main, others) in found.items()
         if count
     )

@@ -13,6 +13,7 @@ This says at whose face one looks, if at any: how often and how far gaze leaves 
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -44,6 +45,8 @@ class LookAtFace:
 def looks_of(conversation: Conversation, side: int) -> tuple[LookAtFace, ...]:
     """Return whose face a side looks at from when on, by time; the first at 0."""
     others = others_of(conversation, side)
+    if len(others) == 1:
+        return (LookAtFace(0.0, others[0]),)
     roles, turns = roles_of(conversation, side), turns_of(conversation)
     seen: Counter[str] = Counter()
     found: list[LookAtFace] = []
@@ -56,7 +59,8 @@ def looks_of(conversation: Conversation, side: int) -> tuple[LookAtFace, ...]:
         if role.part in ("addressed", "aside") and n and role.turn is not None:
             least, more = FORESEEN if before is not None and before.to == role.turn.side else NOTICED
             start = max(0.0, min(start + least + more * draw("lag"), role.end))
-        found = [look for look in found if look.at < start]
+        while found and found[-1].at >= start:  # it looks there sooner
+            found.pop()
         last = found[-1].side if found else _first(roles, others)
         found += [LookAtFace(at, whom) for at, whom in _during(role, start, last, others, turns, draw)]
         before = role.turn or before
@@ -110,8 +114,10 @@ def _next(role: Role, turns: Sequence[Turn]) -> int | None:
     """Return who speaks next, where somebody else does soon after a turn, or into its end."""
     if role.turn is None or role.end < role.turn.end:
         return None
-    for t in turns:
-        if t.side != role.turn.side and role.end - OVERLAP <= t.start <= role.end + ANSWER:
+    for t in turns[bisect_left(turns, role.end - OVERLAP, key=lambda t: t.start) :]:
+        if t.start > role.end + ANSWER:
+            break
+        if t.side != role.turn.side:
             return t.side
     return None
 

@@ -31,6 +31,10 @@ def test_looks_begin_at_once_last_and_never_go_to_oneself(count: int, seed: int)
         assert all(b.at - a.at >= LEAST - 0.01 and a.side != b.side for a, b in pairwise(looks))
 
 
+def test_of_two_each_looks_at_the_other() -> None:
+    assert [(k.at, k.side) for k in looks_of(made_up(2, 1), 1)] == [(0.0, 0)]
+
+
 def test_where_nobody_speaks_one_looks_from_one_to_another_and_nobody_twice() -> None:
     looks = looks_of(group(3, length=60.0), 0)
     assert {k.side for k in looks} == {1, 2} and 10 < len(looks) < 30
