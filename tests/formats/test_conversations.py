@@ -18,6 +18,7 @@ from metagraph.errors import FileError
 from metagraph.formats.conversation_languages import Speaking
 from metagraph.formats.conversation_writers import write_elan, write_json, write_textgrid
 from metagraph.formats.conversations import Read, read_conversation
+from metagraph.formats.transcripts import read_transcript
 from metagraph.graph.conversation import Segment, Side
 from metagraph.graph.conversation_edits import add_conversation
 from metagraph.graph.model import Project
@@ -423,3 +424,33 @@ def test_three_who_speak_a_language_each_are_read_each_in_theirs_and_name_each_o
     kinds = [{s.text for s in side.segments if s.kind == "response"} for side in made.sides]
     assert kinds == [{"great"}, {"genau"}, {"d'accord", "oui"}]
     assert [(t.side, t.to) for t in turns_of(made)] == [(0, 1), (1, 0), (2, 0), (0, 2), (2, 0)]
+
+
+@pytest.mark.skipif(not SPEECH.is_dir(), reason="the recordings of praatIO are not here")
+def test_three_real_voices_one_after_another_are_told_apart_in_channels_and_by_names_in_one(
+    tmp_path: Path,
+) -> None:
+    import soundfile
+
+    voices = [("bobby_16bit_16khz", "bobby_words"), ("mary", "mary"), ("damon_set_test", "damon_set_test")]
+    heard, at = np.zeros((3, 0)), 0.0
+    lines = []
+    for n, (name, words) in enumerate(voices):
+        samples, rate = soundfile.read(str(SPEECH / f"{name}.wav"), always_2d=True)
+        one = samples[:, 0][:: max(1, rate // RATE)][: 4 * RATE]
+        part = np.zeros((3, len(one) + RATE // 2))
+        part[n, : len(one)] = one
+        (found,) = read_transcript(SPEECH / f"{words}.TextGrid").speakers.values()
+        lines += [f"x {group.NAMES[n]} {at + w.start:.3f} {w.end - w.start:.3f} {w.text}" for w in found]
+        heard, at = np.concatenate([heard, part], 1), at + part.shape[1] / RATE
+    (tmp_path / "all.ctm").write_text("\n".join(lines))
+    apart = read_conversation([sound(tmp_path / "a.wav", *heard)], [tmp_path / "all.ctm"])
+    assert [(s.name, s.channel) for s in apart.conversation.sides] == [("Ann", 0), ("Ben", 1), ("Cleo", 2)]
+    mono = read_conversation([sound(tmp_path / "b.wav", heard.sum(0))], [tmp_path / "all.ctm"])
+    for one, other in zip(apart.conversation.sides, mono.conversation.sides, strict=True):
+        assert [s.text for s in one.segments] == [s.text for s in other.segments] and one.segments
+        for a, b in zip(one.segments, other.segments, strict=True):
+            assert a.peak is not None and b.peak == pytest.approx(a.peak, abs=0.05)
+    alone = read_conversation([tmp_path / "a.wav"])
+    starts = [side.segments[0].start for side in alone.conversation.sides]
+    assert starts == sorted(starts) and starts[0] < 1.0, "by loudness, each where it speaks"
