@@ -116,7 +116,7 @@ def word_lists(shell: Shell) -> None:
 def side_sounds(shell: Shell) -> None:
     found = on_stage(shell)
     if found is not None:
-        from app.features.conversation.conversation_settings import SidesDialog
+        from app.features.conversation.sides_dialog import SidesDialog
 
         SidesDialog(shell.document, *found, shell.widget).open()
 

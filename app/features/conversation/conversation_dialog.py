@@ -16,7 +16,6 @@ from PySide6.QtWidgets import (
     QDialog,
     QDialogButtonBox,
     QFileDialog,
-    QGridLayout,
     QHBoxLayout,
     QLabel,
     QLineEdit,
@@ -27,8 +26,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.conversation.conversation_settings import ORDINALS, Tall, caption
-from app.features.conversation.speaker_card import Card
+from app.features.conversation.conversation_settings import caption
+from app.features.conversation.speaker_card import Card, Cards
 from app.features.conversation.word_lists import LanguageBox, Lists, WordLists, language_name
 from app.look.theme import strengthen, theme
 from app.project.document import Document
@@ -90,6 +89,11 @@ class ImportDialog(QDialog):
         document.loaded.connect(self.reject)  # what was read is said relative to the project it was read for
         self.start()
 
+    @property
+    def cards(self) -> list[Card]:
+        """A card for each who was read, as they are to stand."""
+        return self.table.cards
+
     # --- building
 
     def _build(self) -> None:
@@ -109,22 +113,11 @@ class ImportDialog(QDialog):
         row.addWidget(self.language)
         layout.addLayout(row)
         layout.addLayout(self._found())
-        self.cards: list[Card] = []
-        self.swap = make_widget(
-            QToolButton,
-            self,
-            text="⇄",
-            toolTip="Swap the two: who stands left, and is driven by this project's own graph",
-        )
-        self.swap.setAccessibleName("Swap the two")
-        self.swap.clicked.connect(lambda: self.move_earlier(1))
-        inside = QWidget(self)
-        self.grid = QGridLayout(inside)
-        self.grid.setContentsMargins(0, 0, 0, 0)
-        self.grid.setSpacing(10)
-        self.tall = Tall(inside, 330, self)  # two rows of cards; more are scrolled
-        layout.addWidget(self.tall)
-        self._deal(2)
+        self.table = Cards(self)
+        self.swap = self.table.swap
+        self.table.moved.connect(self.move_earlier)
+        self.table.chosen.connect(self._show_parts)
+        layout.addWidget(self.table)
         # All sides' lists, or the first one's and the second one's where two speak different languages.
         self.whose = caption("", self), caption("", self)
         self.lists, self.others = WordLists(self), WordLists(self)
@@ -140,34 +133,6 @@ class ImportDialog(QDialog):
         layout.addLayout(self._foot())
         self.session.look.changed.connect(self._restyle)
         self._restyle()
-
-    def _deal(self, count: int) -> None:
-        """Have a card for each who was read: two beside each other, more in rows."""
-        if len(self.cards) == count:
-            return
-        while self.grid.count():
-            self.grid.takeAt(0)
-        for card in self.cards[count:]:
-            card.deleteLater()
-        del self.cards[count:]
-        inside = self.tall.inside
-        for n in range(len(self.cards), count):
-            card = Card(f"{ORDINALS[n].capitalize()} speaker", inside, n == 0)
-            card.earlier.clicked.connect(lambda _=False, n=n: self.move_earlier(n))
-            card.taken.toggled.connect(lambda _: self._show_parts())
-            self.cards.append(card)
-        self.swap.setVisible(count == 2)
-        for n, card in enumerate(self.cards):
-            for widget in (card.taken, card.earlier):
-                widget.setVisible(count > 2)
-            self.grid.addWidget(card, n // 2, 2 * (n % 2))
-            card.show()  # at once: how high the cards are is asked for below
-        self.grid.setColumnStretch(0, 1)
-        self.grid.setColumnStretch(2, 1)
-        if count == 2:
-            self.grid.addWidget(self.swap, 0, 1)
-        self.grid.activate()
-        self.tall.setFixedHeight(self.tall.sizeHint().height())
 
     def _show_parts(self) -> None:
         """Show who takes part."""
@@ -282,7 +247,7 @@ class ImportDialog(QDialog):
         count = len(read.conversation.sides)
         if count != len(self.order):
             self.order = list(range(count))
-        self._deal(count)
+        self.table.deal(count)
         for card, side in zip(self.cards, self.sides(), strict=True):
             if not card.name.isModified():
                 card.name.setText("" if NUMBERED.fullmatch(side.name) else side.name)

@@ -15,8 +15,7 @@ import numpy as np
 from PySide6.QtCore import QRectF
 
 from app.widgets.lane_geometry import LEFT, RULER, Scale
-from metagraph.graph.conversation import EVERYBODY, Conversation, Segment, Word, side_name
-from metagraph.speech.addressing import turns_of
+from metagraph.graph.conversation import Segment, Word
 
 GAP = 8.0  # pixels between two
 WORDS, SEGMENTS, TALLEST = 17.0, 26.0, 190.0  # pixels of the words, of the segments, of a side at most
@@ -110,20 +109,3 @@ def segment_words(segment: Segment) -> str:
             else "No stress: drag in the waveform above to set it"
         )
     return "\n".join(lines)
-
-
-def addressee_words(conversation: Conversation, side: int, at: int) -> str:
-    """Return a line that says whom a segment is said to; nothing of two, who have nobody else, and of what
-    takes no turn.
-    """
-    segment = conversation.sides[side].segments[at]
-    if len(conversation.sides) < 3:
-        return ""
-    turn = next(
-        (t for t in turns_of(conversation) if t.side == side and t.start <= segment.start < t.end), None
-    )
-    to = segment.to if segment.to is not None else turn.to if turn is not None else None
-    if to is None:
-        return ""
-    whom = "everybody" if to == EVERYBODY else side_name(conversation, to)
-    return f"\nTo {whom}{'' if segment.to is not None else ', as it seems'}"

@@ -21,13 +21,13 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QMenu, QToolTip, QWidget
 
+from app.features.conversation.addressees import addressee_words, offer_addressees
 from app.features.conversation.segment_editing import Editing
 from app.features.conversation.segment_gestures import SegmentDrag, SegmentPan, gesture_for
 from app.features.conversation.segment_hits import NOTHING, SegmentHit, hit_at
 from app.features.conversation.segment_keys import DEEDS, deed_of
 from app.features.conversation.segment_lanes import (
     NEAREST,
-    addressee_words,
     farthest,
     least,
     segment_words,
@@ -41,7 +41,7 @@ from app.widgets.gesture import Hand
 from app.widgets.lane_geometry import LEFT, Scale
 from app.widgets.lane_paint import badge, playhead
 from app.widgets.memo import Once
-from metagraph.graph.conversation import EVERYBODY, Conversation, others_of, side_name
+from metagraph.graph.conversation import Conversation, side_name
 from metagraph.graph.edits import EditError
 
 ZOOM, USUAL = 1.2, 100.0  # of a turn of the wheel; pixels a second to begin with: most words have room
@@ -341,26 +341,8 @@ class SegmentView(QWidget):
                 menu.addSeparator()
             action = menu.addAction(f"{deed.text}\t{deed.shown}", partial(deed.run, self.editing, seconds))
             action.setEnabled(bool(self.editing.chosen) or not deed.needs)
-        self._offer_addressees(menu)
+        offer_addressees(menu, self.editing)
         return menu
-
-    def _offer_addressees(self, menu: QMenu) -> None:
-        """Offer whom the selected segments are said to, where there is more than one to say them to."""
-        of, sides = self.editing.conversation, {side for side, _ in self.editing.chosen}
-        if of is None or len(of.sides) < 3:
-            return
-        whom = menu.addMenu("Said to")
-        whom.setEnabled(len(sides) == 1)
-        if len(sides) != 1:
-            return
-        side = next(iter(sides))
-        now = {of.sides[side].segments[at].to for _, at in self.editing.chosen}
-        choices: list[tuple[str, int | None]] = [("As it is inferred", None), ("Everybody", EVERYBODY)]
-        choices += [(side_name(of, n), n) for n in others_of(of, side)]
-        for words, to in choices:
-            action = whom.addAction(words, partial(self.editing.address, to))
-            action.setCheckable(True)
-            action.setChecked(now == {to})
 
     def _seconds(self) -> float:
         """Return the time keys are about: under the pointer where that is on a segment, else the playhead."""

@@ -14,7 +14,8 @@ from PySide6.QtWidgets import QFileDialog
 
 from app.features.conversation.conversation_commands import converse
 from app.features.conversation.conversation_dialog import ImportDialog
-from app.features.conversation.conversation_settings import RatesDialog, SidesDialog
+from app.features.conversation.conversation_settings import RatesDialog
+from app.features.conversation.sides_dialog import SidesDialog
 from app.features.conversation.word_lists import WordsDialog
 from metagraph.formats.conversations import read_conversation
 from tests.speech.talk import make_conversation

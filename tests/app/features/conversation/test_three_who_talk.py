@@ -9,8 +9,9 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from app.features.conversation.conversation_dialog import ImportDialog
-from app.features.conversation.conversation_settings import RatesDialog, SidesDialog
+from app.features.conversation.conversation_settings import RatesDialog
 from app.features.conversation.segment_lanes import lanes
+from app.features.conversation.sides_dialog import SidesDialog
 from app.features.conversation.word_lists import WordsDialog
 from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import EVERYBODY, Conversation, Rates
