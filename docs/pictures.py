@@ -133,7 +133,7 @@ def on_stage(out: Any, workspace: str, layer: str) -> None:
     if out.session.onstage.conversation != talk:
         out.session.onstage.set_conversation(talk)
         both = talk is not None
-        wait(20000, lambda: (out.performance.shown.partner is not None) == both and not out.jobs.running)
+        wait(20000, lambda: bool(out.performance.shown.others) == both and not out.jobs.running)
     if talk is not None:
         out.session.transport.set_playing(False)
         out.session.transport.seek(TALKING)

@@ -51,7 +51,7 @@ def arguments(parser: ArgumentParser) -> None:
             out.add_argument(
                 "--side",
                 default="1",
-                help="whose motion the takes are: 1 or 2 in the files' order, or a name (default: 1)",
+                help="whose motion the takes are: a number in the files' order, or a name (default: 1)",
             )
         out.set_defaults(run=run)
         return out
@@ -207,14 +207,14 @@ def _takes(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
 
 
 def read_speech(path: Path, side: str) -> tuple[Segment, ...]:
-    """Return what one of the two in a file moves with, `heard_by`. side: 1, 2, or a name. Raises
+    """Return what one of those in a file moves with, `heard_by`. side: a number from 1, or a name. Raises
     FileError.
     """
     import msgspec
 
     from metagraph.errors import FileError
     from metagraph.formats.transcripts import read_transcript
-    from metagraph.graph.conversation import Conversation, Side, heard_by
+    from metagraph.graph.conversation import MOST_SPEAKERS, Conversation, Side, heard_by
 
     made = None
     if path.suffix.lower() == ".json" and path.is_file():
@@ -230,19 +230,20 @@ def read_speech(path: Path, side: str) -> tuple[Segment, ...]:
             n
             for n in dict.fromkeys((*told.speakers, *told.segments))
             if told.segments.get(n) or told.speakers.get(n)
-        ][:2]
+        ][:MOST_SPEAKERS]
         sides = [Side(name=n, segments=tuple(told.segments.get(n, ()))) for n in names]
         length = max(s.end for one in sides for s in one.segments)
         made = Conversation(
             name=path.stem[:200], length=length, sides=(*sides, *(Side() for _ in range(2 - len(sides))))
         )
     names = [s.name for s in made.sides]
-    if side not in ("1", "2", *names):
+    numbers = [str(n + 1) for n in range(len(names))]
+    if side not in (*numbers, *names):
         raise FileError(
             path,
             f"nobody is called '{side}'",
             "its speakers",
-            f"They are {', '.join(f'{n!r}' for n in names)}; or say 1 or 2.",
+            f"They are {', '.join(f'{n!r}' for n in names)}; or say a number from 1 to {len(names)}.",
         )
     return heard_by(made, names.index(side) if side in names else int(side) - 1)
 

@@ -155,7 +155,7 @@ class Stimuli:
             return found[0] if found is not None else None
 
         sound = spoken if made.audio is None else self._audio(made.audio, item)
-        seen = tuple((self._figure(one.project, one.folder or folder), one) for one in shown.both)
+        seen = tuple((self._figure(one.project, one.folder or folder), one) for one in shown.everyone)
         return Source(start, shown.length, sound, seen)
 
     def _conversation(self, name: str, made: Condition, item: Stretch) -> tuple[Shown, Path]:

@@ -28,7 +28,7 @@ def arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument("--clip", help="draw this clip of the project alone")
     parser.add_argument(
-        "--conversation", metavar="NAME", help="draw both sides of this conversation, with their sound"
+        "--conversation", metavar="NAME", help="draw all who talk in this conversation, with their sound"
     )
     parser.add_argument("--size", default="960x540", help="width x height in pixels (default: 960x540)")
     parser.add_argument("--fps", type=float, default=30.0, help="pictures a second of a video (default: 30)")
@@ -130,10 +130,10 @@ def run(options: Namespace) -> int:
             else Shown(project, staged(project, options), options.seconds)
         )
     if options.out.suffix in (".glb", ".bvh"):
-        for one, out in zip(shown.both, _outs(options.out, shown), strict=True):
+        for one, out in zip(shown.everyone, _outs(options.out, shown), strict=True):
             bake_to(out, one, options.seconds, options.fps, one.folder or folder)
     else:
-        seen = [(figure_of(one.project, one.folder or folder), one) for one in shown.both]
+        seen = [(figure_of(one.project, one.folder or folder), one) for one in shown.everyone]
         sound = sound_of(shown, folder, options.seconds) if options.out.suffix == ".mp4" else None
         draw_to(
             options.out,
@@ -151,7 +151,7 @@ def run(options: Namespace) -> int:
 
 
 def _talking(project: Project, options: Namespace, folder: Path) -> Shown:
-    """Return both sides of a conversation of the project, named by id or name."""
+    """Return all sides of a conversation of the project, named by id or name."""
     from app.stage.conversation_plans import ConversationPlans
 
     found = next((i for i, c in project.conversations.items() if options.conversation in (i, c.name)), None)
@@ -168,17 +168,18 @@ def _talking(project: Project, options: Namespace, folder: Path) -> Shown:
 
 
 def _outs(out: Path, shown: Shown) -> list[Path]:
-    """Return a file for each who is shown: both of a conversation have one each, in the character's own
+    """Return a file for each who is shown: all of a conversation have one each, in the character's own
     space.
     """
-    return [out] if shown.partner is None else [out.with_stem(f"{out.stem}-{n + 1}") for n in range(2)]
+    count = len(shown.everyone)
+    return [out] if count == 1 else [out.with_stem(f"{out.stem}-{n + 1}") for n in range(count)]
 
 
 def sound_of(shown: Shown, folder: Path, seconds: float, start: float = 0.0) -> tuple[np.ndarray, int] | None:
     """Return the sound of what is said from a start on, None where nothing is said at all."""
     lines = {
         s.line: line
-        for one in shown.both
+        for one in shown.everyone
         for s in one.plan.track.speeches
         if s.line is not None and (line := one.project.lines.get(s.line)) is not None and line.audio
     }
@@ -190,7 +191,7 @@ def sound_of(shown: Shown, folder: Path, seconds: float, start: float = 0.0) -> 
     for note in notes:
         print(f"note: {note}", file=sys.stderr)
     return mixed(
-        [part for one in shown.both for part in placed(one.plan, sounds)],
+        [part for one in shown.everyone for part in placed(one.plan, sounds)],
         round(start * RATE),
         round(seconds * RATE),
     ), RATE
@@ -223,13 +224,13 @@ def draw_to(
         from preview.sheet import contact_sheet, write_png
 
         times = np.linspace(0, seconds, max(2, frames))
-        small = (max(16, size[0] * 2 * len(seen) // 9), max(16, size[1] * 5 // 9))
+        small = (max(16, size[0] * 2 * min(len(seen), 2) // 9), max(16, size[1] * 5 // 9))
         images = list(pictures(seen, times, small, look))
         labels = [
             f"{t:.2f} s  {', '.join(filter(None, (_doing(shown, t) for _, shown in seen)))}".rstrip()
             for t in times
         ]
-        write_png(out, contact_sheet(images, 8 // len(seen), labels))
+        write_png(out, contact_sheet(images, 8 // min(len(seen), 2), labels))
     else:
         raise ValueError(f"pictures are written as .png, videos as .mp4, not '{out.suffix}'")
 

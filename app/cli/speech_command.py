@@ -1,20 +1,20 @@
-"""`metagraph speech`: what two say to each other, read from sound and words into clauses, responses and
-hesitations.
+"""`metagraph speech`: what two or more say to each other, read from sound and words into clauses, responses
+and hesitations.
 """
 
 from __future__ import annotations
 
 import sys
 from argparse import ArgumentParser, Namespace
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.formats.conversations import Read
-    from metagraph.graph.conversation import Side
+    from metagraph.graph.conversation import Conversation, Side
     from metagraph.graph.model import Project
-    from metagraph.speech.delivered import Delivered
+    from metagraph.speech.duet import DuetPart
 
 OUT = (".eaf", ".TextGrid", ".json")
 
@@ -27,7 +27,7 @@ def arguments(parser: ArgumentParser) -> None:
         "audio",
         type=Path,
         nargs="+",
-        help="a sound with one channel a speaker, or one file for each of the two",
+        help="a sound with one channel a speaker, or one file for each",
     )
     parser.add_argument(
         "--words",
@@ -36,11 +36,16 @@ def arguments(parser: ArgumentParser) -> None:
         nargs="+",
         default=[],
         metavar="FILE",
-        help="what is said: TextGrid, ELAN, WebVTT, SRT, JSON or CTM; one for both, or one for each "
+        help="what is said: TextGrid, ELAN, WebVTT, SRT, JSON or CTM; one for all, or one for each "
         "(default: loudness tells)",
     )
     parser.add_argument("-o", "--out", type=Path, help=f"write words, segments and peaks ({', '.join(OUT)})")
     language_arguments(parser, "as the project is set to, else auto")
+    parser.add_argument(
+        "--speakers",
+        metavar="NAMES",
+        help="who of them takes part, in which order, with commas: 'Ann,Cleo', or numbers (default: all)",
+    )
     parser.add_argument("--project", type=Path, help="keep it in this project")
     parser.add_argument("--name", help="what the conversation is called (default: as the sound)")
 
@@ -50,10 +55,9 @@ def run(options: Namespace) -> int:
     from app.cli.command_output import opened, say
     from app.cli.language_options import speaking_of
     from metagraph.formats.conversations import read_conversation
+    from metagraph.speech.gaze_shares import together
 
     words = [path for some in options.words for path in some]
-    if len(options.audio) > 2 or len(words) > 2:
-        raise ValueError("a conversation of two has one or two sounds, and at most two files with words")
     out: Path | None = options.out
     if out is not None and out.suffix.casefold() not in [s.casefold() for s in OUT]:
         raise ValueError(f"it is written as {', '.join(OUT)}, not as '{out.suffix or out.name}'")
@@ -61,6 +65,8 @@ def run(options: Namespace) -> int:
     project = opened(options.project) if options.project is not None else None
     speaking = speaking_of(options, project.language) if project is not None else speaking_of(options)
     read = read_conversation(options.audio, words, folder, options.name, speaking=speaking)
+    if options.speakers is not None:
+        read = replace(read, conversation=_with_speakers(read.conversation, options.speakers))
     ident = _keep(options.project, project, read) if project is not None else None
     if out is not None:
         _write(out, read, folder)
@@ -82,11 +88,14 @@ def run(options: Namespace) -> int:
                 f"    {found['count']:4} {kind}{'s' if found['count'] != 1 else ' '} {found['seconds']:7.1f} "
                 f"s{more}"
             )
-    told: tuple[tuple[Delivered, ...], ...] = ()
+    parts: tuple[DuetPart, ...] = ()
     if ident is not None:
-        told = _delivered(options.project, ident)
-        for row, of in zip(rows, told, strict=True):
-            lines += [f"  {row['name']}: {t.words()}" for t in of if t.count]
+        parts = _performed(options.project, ident)
+        for row, part in zip(rows, parts, strict=True):
+            lines += [f"  {row['name']}: {t.words()}" for t in part.told if t.count]
+            lines += [f"  {row['name']}, {share.words()}" for share in part.looks]
+        shares = together([share for part in parts for share in part.looks])
+        lines += [f"  whoever is {share.words()}" for share in shares]
         lines.append(f"kept in {options.project} as {ident}")
     if out is not None:
         lines.append(f"written to {out}")
@@ -96,7 +105,8 @@ def run(options: Namespace) -> int:
         "sides": rows,
         "notes": list(read.notes),
         "kept": ident,
-        "delivered": [[asdict(t) for t in of] for of in told],
+        "delivered": [[asdict(t) for t in part.told] for part in parts],
+        "looks": [[asdict(share) for share in part.looks] for part in parts],
         "written": str(out) if out is not None else None,
     }
     say(options, "\n".join(lines), data)
@@ -140,16 +150,30 @@ def _keep(path: Path, project: Project, read: Read) -> str:
     return ident
 
 
-def _delivered(path: Path, ident: str) -> tuple[tuple[Delivered, ...], ...]:
-    """Return what becomes of both sides' rates, where the project's graph moves both."""
+def _with_speakers(conversation: Conversation, chosen: str) -> Conversation:
+    """Return a conversation of those who are named, or numbered from 1, in that order. Raises ValueError."""
+    from metagraph.graph.conversation import side_name, with_sides
+
+    names = [side_name(conversation, n) for n in range(len(conversation.sides))]
+    known = {name.casefold(): n for n, name in reversed(list(enumerate(names)))}
+    known |= {str(n + 1): n for n in range(len(names)) if str(n + 1) not in known}
+    asked = [name.strip() for name in chosen.split(",") if name.strip()]
+    for name in asked:
+        if name.casefold() not in known:
+            there = ", ".join(f"'{x}'" for x in names)
+            raise ValueError(f"nobody is called '{name}'; there are {there}, or numbers from 1")
+    return with_sides(conversation, [known[name.casefold()] for name in asked])
+
+
+def _performed(path: Path, ident: str) -> tuple[DuetPart, ...]:
+    """Return what all sides do, where the project's graph moves all of them."""
     from app.cli.command_output import opened
-    from metagraph.speech.delivered import delivered
-    from metagraph.speech.drive import drive
+    from metagraph.speech.duet import duet
 
     project = opened(path)
     conversation = project.conversations[ident]
-    plans = [drive(conversation, side, project)[1] for side in (0, 1)]
-    return tuple(delivered(conversation, side, project, plan) for side, plan in enumerate(plans))
+    count = len(conversation.sides)
+    return duet(conversation, ident, (project,) * count, (None,) * count).parts
 
 
 def _write(out: Path, read: Read, folder: Path | None) -> None:

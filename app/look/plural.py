@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from functools import lru_cache
 
 FRONT = "@|:"  # what studios put between a character's name and an action's
@@ -12,6 +13,11 @@ _RUN = re.compile(r"[^\W\d_]+|\d+")  # of letters, or of digits
 def many(count: int, noun: str) -> str:
     """Return "1 clip", "2,328 connections"."""
     return f"{count:,} {noun}{'s' if count != 1 else ''}"
+
+
+def listed(words: Sequence[str]) -> str:
+    """Return "Ann", "Ann and Ben", "Ann, Ben and Cleo"."""
+    return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
 
 
 def short(name: str, stance: str) -> str:

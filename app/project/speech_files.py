@@ -7,7 +7,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from metagraph.graph.conversation import MOST_SPEAKERS
+
 SOUNDS = (".wav", ".flac", ".ogg", ".mp3")
+# Three sounds or more are of one conversation where they differ in length by so many seconds at most, and are
+# longer than lines of dialogue, which may be alike by chance.
+UNLIKE, LONG = 0.5, 10.0
 TRANSCRIPTS = (".textgrid", ".eaf", ".vtt", ".srt", ".json", ".ctm", ".tsv")
 
 
@@ -20,13 +25,17 @@ def kinds_of(paths: Sequence[Path]) -> tuple[tuple[Path, ...], tuple[Path, ...]]
 
 
 def converses(paths: Sequence[Path]) -> bool:
-    """Whether files dropped on the window are a conversation: two sounds, a sound and its words, or a sound
-    with two channels. A single sound with one channel is a line of dialogue.
+    """Whether files dropped on the window are a conversation: two sounds, or more that last long and as
+    long as each other, a sound and its words, or a sound with a channel for each. A single sound with one
+    channel is a line of dialogue, and so is each of many.
     """
     sounds, transcripts = kinds_of(paths)
-    if not sounds or len(sounds) > 2 or len(sounds) + len(transcripts) < len(paths):
+    if not sounds or len(sounds) > MOST_SPEAKERS or len(sounds) + len(transcripts) < len(paths):
         return False
-    return len(sounds) == 2 or bool(transcripts) or channels_of(sounds[0]) == 2
+    if len(sounds) > 2:
+        lasts = [seconds_of(p) for p in sounds]
+        return max(lasts) - min(lasts) <= UNLIKE and min(lasts) >= LONG
+    return len(sounds) == 2 or bool(transcripts) or 2 <= channels_of(sounds[0]) <= MOST_SPEAKERS
 
 
 def channels_of(path: Path) -> int:
@@ -37,6 +46,16 @@ def channels_of(path: Path) -> int:
         return int(soundfile.info(str(path)).channels)
     except (soundfile.LibsndfileError, RuntimeError, OSError):
         return 0
+
+
+def seconds_of(path: Path) -> float:
+    """Return how long a sound file is, by its head; 0 where that cannot be read."""
+    import soundfile
+
+    try:
+        return float(soundfile.info(str(path)).duration)
+    except (soundfile.LibsndfileError, RuntimeError, OSError):
+        return 0.0
 
 
 def facts_of(path: Path) -> str:

@@ -1,4 +1,4 @@
-"""A conversation on stage: both characters' plans, made on a job's thread, with what was read for them kept
+"""A conversation on stage: all characters' plans, made on a job's thread, with what was read for them kept
 at hand.
 """
 
@@ -29,7 +29,7 @@ class ConversationPlans:
         self._projects: dict[Key, Project] = {}
 
     def show(self, project: Project, ident: str, folder: Path, side: int = 0) -> Shown:
-        """Return what both play, a side first, the other as its partner. folder: what paths begin at."""
+        """Return what all play, a side first, the others with it. folder: what paths begin at."""
         from metagraph.speech.duet import duet, voices
 
         conversation = project.conversations[ident]
@@ -50,7 +50,7 @@ class ConversationPlans:
         heard, told = self._voices[key]
         made = duet(conversation, ident, projects, heard)
         moved = [_motion(p.project, s, notes) for p, s in zip(made.parts, conversation.sides, strict=True)]
-        both = tuple(
+        everyone = tuple(
             Shown(
                 p.project,
                 p.plan,
@@ -59,13 +59,15 @@ class ConversationPlans:
                 stand=p.stand,
                 motion=moved[n],
                 told=p.told if moved[n] is None else (),
+                looks=p.looks,
                 asks=p.performance.asks,
                 notes=(*notes, *told),
                 folder=folder if s.project is None else (folder / s.project).parent,
             )
             for n, (p, s) in enumerate(zip(made.parts, conversation.sides, strict=True))
         )
-        return replace(both[side], partner=both[1 - side])
+        side = side if side < len(everyone) else 0  # of a conversation that had more
+        return replace(everyone[side], others=tuple(one for one in everyone if one.side != side))
 
     def _project(self, project: Project, path: str | None, folder: Path, notes: list[str]) -> Project:
         """Return the project whose graph moves a side: another one's, or the one at hand where that cannot be
@@ -107,14 +109,14 @@ def _written(path: Path) -> int:
 
 
 def keep(project: Project, ident: str, shown: Shown) -> tuple[Project, tuple[str, ...]]:
-    """Keep what both sides of a conversation do as performances, each with the line it says; return the
+    """Keep what all sides of a conversation do as performances, each with the line it says; return the
     performances' ids.
 
     A side that another project moves is left out: its asks would mean nothing to this one's graph.
     """
     conversation = project.conversations[ident]
     kept: list[str] = []
-    for side, part in zip(conversation.sides, shown.both, strict=True):
+    for side, part in zip(conversation.sides, shown.everyone, strict=True):
         if side.project is not None:
             continue
         for line in {s.line for s in part.plan.track.speeches if s.line is not None} - set(project.lines):

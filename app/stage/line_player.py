@@ -65,10 +65,10 @@ class Sound(QObject):
 
     def _said(self) -> dict[str, Line]:
         """Return the lines of a conversation on stage: they are in no project."""
-        both = self.performance.shown.both if self.performance.shown.partner is not None else ()
+        talking = self.performance.shown.everyone if self.performance.shown.others else ()
         return {
             s.line: one.project.lines[s.line]
-            for one in both
+            for one in talking
             for s in one.plan.track.speeches
             if s.line is not None and s.line in one.project.lines
         }
@@ -108,13 +108,13 @@ class Sound(QObject):
         if (
             not self.sounds
             or shown.clip is not None
-            or not any(one.plan.track.speeches for one in shown.both)
+            or not any(one.plan.track.speeches for one in shown.everyone)
         ):
             self.parts = EMPTY
             return
         from metagraph.speech.soundtrack import placed
 
-        self.parts = [part for one in shown.both for part in placed(one.plan, self.sounds)]
+        self.parts = [part for one in shown.everyone for part in placed(one.plan, self.sounds)]
         self._moved()
 
     @property

@@ -31,7 +31,7 @@ class OnStage(QObject):
         self.conversation: str | None = (
             None  # the conversation on stage, None for none; never while a kept performance is
         )
-        self.side = 0  # of its two, whose plan the timeline shows
+        self.side = 0  # of those who talk, whose plan the timeline shows
 
     def set_mode(self, mode: Mode) -> None:
         """Edit and play the meta-graph, or the manual state machine."""
@@ -57,11 +57,11 @@ class OnStage(QObject):
         if ident is not None:
             self.set_performance(None)
         if ident != self.conversation:
-            self.conversation = ident
+            self.conversation, self.side = ident, min(self.side, 1)  # others may have no third
             self.conversation_changed.emit()
 
     def set_side(self, side: int) -> None:
-        """Let the timeline show the plan of one side of the conversation, 0 or 1."""
+        """Let the timeline show the plan of one side of the conversation, from 0."""
         if side != self.side:
             self.side = side
             self.conversation_changed.emit()
@@ -75,3 +75,5 @@ class OnStage(QObject):
             self.select_requests(tuple(i for i in self.requests if i in there))
         if self.conversation is not None and self.conversation not in after.conversations:
             self.set_conversation(None)
+        elif self.conversation is not None and self.side >= len(after.conversations[self.conversation].sides):
+            self.set_side(0)

@@ -124,7 +124,7 @@ class Performance(QObject):
         return self.requests.kept.length if self.requests.kept is not None else None
 
     def keep_conversation(self) -> None:
-        """Keep what both do as performances, which can be edited ask by ask and exported."""
+        """Keep what all who talk do as performances, which can be edited ask by ask and exported."""
         ident, shown = self.conversation, self.shown
         made: tuple[str, ...] = ()
 
@@ -133,7 +133,7 @@ class Performance(QObject):
             project, made = keep(project, ident or "", shown)
             return project
 
-        if ident is not None and shown.partner is not None:
+        if ident is not None and shown.others:
             self.document.edit("Keep as performances", edit)
             if made:
                 self.session.onstage.set_performance(made[0])

@@ -35,10 +35,11 @@ if TYPE_CHECKING:
     from metagraph.playback.overlay import Overlay
     from metagraph.speech.delivered import Delivered
     from metagraph.speech.duet import Stand
+    from metagraph.speech.gaze_shares import GazeShare
 
 ASIDE = (
     -0.35
-)  # radians the camera goes round two who talk, to see them from the side and not one of them from behind
+)  # radians the camera goes round those who talk, to see them from the side and not one of them from behind
 LEAD = 0.8  # seconds of stance before and after a clip shown in context
 
 
@@ -47,11 +48,11 @@ class Shown:
     """project: the one the plan was made for. length: seconds. clip: the one that plays alone, then without a
     plan. manual: what the manual state machines play, where they do; `plan` then only shows it.
 
-    Of a conversation: partner: the other one. side: 0 or 1, which of the two this is. stand: where it stands.
-    asks: what it is asked. notes: what could not be read. folder: what paths in its project begin at. motion:
-    the clip it moves with instead of its plan, which still says where it looks and what it says; of one that
-    was generated, what is above the hips. told: what becomes of its rates, where a plan moves it. over: what
-    generated motion lays over the plan at a time, live.
+    Of a conversation: others: those it talks with. side: which of them this is, from 0. stand: where it
+    stands. asks: what it is asked. notes: what could not be read. folder: what paths in its project begin at.
+    motion: the clip it moves with instead of its plan, which still says where it looks and what it says; of
+    one that was generated, what is above the hips. told: what becomes of its rates, where a plan moves it.
+    looks: of three or more, where it looks. over: what generated motion lays over the plan at a time, live.
     """
 
     project: Project
@@ -59,7 +60,7 @@ class Shown:
     length: float
     clip: str | None = None
     manual: ManualPlan | None = None
-    partner: Shown | None = None
+    others: tuple[Shown, ...] = ()
     side: int = 0
     stand: Stand | None = None
     asks: tuple[AnyRequest, ...] = ()
@@ -67,14 +68,13 @@ class Shown:
     folder: Path | None = None
     motion: str | None = None
     told: tuple[Delivered, ...] = ()
+    looks: tuple[GazeShare, ...] = ()
     over: Callable[[float], Overlay | None] | None = None
 
     @property
-    def both(self) -> tuple[Shown, ...]:
-        """Who is to be seen: this one alone, or both of a conversation, its first side first."""
-        if self.partner is None:
-            return (self,)
-        return (self, self.partner) if self.side == 0 else (self.partner, self)
+    def everyone(self) -> tuple[Shown, ...]:
+        """Who is to be seen: this one alone, or all of a conversation, its first side first."""
+        return tuple(sorted((self, *self.others), key=lambda one: one.side))
 
     @property
     def skeleton(self) -> Skeleton | None:

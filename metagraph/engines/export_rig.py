@@ -165,6 +165,7 @@ def read_voices(voices: dict[str, c.ExportedVoice]) -> dict[str, Any]:
             np.array(voice.accents, float),
             np.linspace(0.0, max(voice.duration, 1e-3), len(voice.weights)),
             np.array(voice.weights, np.float32),
+            stresses=np.array(voice.accents, float),  # as they are: a conversation's may be near each other
         )
         for line, voice in voices.items()
     }

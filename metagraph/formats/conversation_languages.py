@@ -1,5 +1,5 @@
-"""Which language each of two is read in: what was chosen, or what their words tell; and what there is to say
-of that.
+"""Which language each of those who talk is read in: what was chosen, or what their words tell; and what there
+is to say of that.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ Lists = tuple[tuple[str, ...], tuple[str, ...]]  # responses and hesitations
 
 @dataclass(frozen=True, eq=False)
 class Speaking:
-    """language: a code for both, or `AUTO` for what each one's words tell. otherwise: the code of what is
+    """language: a code for all, or `AUTO` for what each one's words tell. otherwise: the code of what is
     taken where they tell nothing, `AUTO` for English. packs: the languages that are known, by code. lists: of
-    each side, responses and hesitations instead of its language's; None for those.
+    each side, responses and hesitations instead of its language's; None for those, as for sides beyond.
     """
 
     language: str = AUTO
     otherwise: str = AUTO
     packs: Mapping[str, Language] = field(default_factory=languages)
-    lists: tuple[Lists | None, Lists | None] = (None, None)
+    lists: tuple[Lists | None, ...] = ()
 
     def __post_init__(self) -> None:
         if self.language not in (AUTO, *self.packs):
@@ -46,7 +46,7 @@ class Speaking:
 
     def lists_for(self, side: int, language: Language | None) -> Lists:
         """Return responses and hesitations of a side; none in a language that is not known."""
-        given = self.lists[side]
+        given = self.lists[side] if side < len(self.lists) else None
         if given is not None:
             return given
         return (language.responses, language.hesitations) if language is not None else ((), ())
@@ -54,8 +54,8 @@ class Speaking:
 
 def languages_of(
     notes: list[str], called: Sequence[str], told: Sequence[Told], speaking: Speaking
-) -> tuple[Language | None, Language | None]:
-    """Return what each of the two is read in, None where nobody knows; say how that was found."""
+) -> tuple[Language | None, ...]:
+    """Return what each is read in, None where nobody knows; say how that was found."""
     spoken = [_spoken(one, speaking) for one in told]
     if speaking.language != AUTO:
         chosen = speaking.packs[speaking.language]
@@ -66,10 +66,10 @@ def languages_of(
                     f"{name}: its words look {found.language.called}; they are read as {chosen.called}, as "
                     "was chosen."
                 )
-        return chosen, chosen
+        return (chosen,) * len(told)
+    partners = [_partner(spoken, n) for n in range(len(spoken))]
     out: list[Language | None] = []
-    for n, found in enumerate(spoken):
-        partner = spoken[1 - n]
+    for found, partner in zip(spoken, partners, strict=True):
         as_partner = partner.language if partner is not None else None
         if found is None:  # no words: nothing to read, but the lists are the partner's
             out.append(as_partner or speaking.usual)
@@ -79,22 +79,33 @@ def languages_of(
             out.append(None)
         else:
             out.append(found.language or as_partner or speaking.usual)
-    first, second = spoken
-    if first is not None and second is not None and first.language is second.language is not None:
-        notes += _both(first, second) if any(t.segments is None for t in told) else []
-        return out[0], out[1]
+    worded = [s for s in spoken if s is not None]
+    alike = len(worded) == len(spoken) and len({s.language for s in worded}) == 1
+    if alike and worded[0].language is not None:
+        notes += _all_alike(worded) if any(t.segments is None for t in told) else []
+        return tuple(out)
     for n, (name, found) in enumerate(zip(called, spoken, strict=True)):
         if found is not None and told[n].segments is None:
-            notes += _told(name, found, out[n], spoken[1 - n], speaking)
-    return out[0], out[1]
+            notes += _told(name, found, out[n], partners[n], speaking)
+    return tuple(out)
 
 
-def _both(first: Spoken, second: Spoken) -> list[str]:
-    assert first.language is not None
-    if first.language.code == ENGLISH:
+def _partner(spoken: Sequence[Spoken | None], n: int) -> Spoken | None:
+    """Return what the words of those who talk with one tell: of several, of the first whose language they
+    tell.
+    """
+    others = [s for m, s in enumerate(spoken) if m != n and s is not None]
+    return next((s for s in others if s.language is not None), others[0] if others else None)
+
+
+def _all_alike(spoken: Sequence[Spoken]) -> list[str]:
+    assert spoken[0].language is not None
+    if spoken[0].language.code == ENGLISH:
         return []
-    of = f"{first.known:,} of {first.words:,} and {second.known:,} of {second.words:,}"
-    return [f"Both speak {first.language.called}, as {of} words tell; {_BY_LISTS}"]
+    each = [f"{s.known:,} of {s.words:,}" for s in spoken]
+    of = f"{', '.join(each[:-1])} and {each[-1]}"
+    who = "Both" if len(spoken) == 2 else "All"
+    return [f"{who} speak {spoken[0].language.called}, as {of} words tell; {_BY_LISTS}"]
 
 
 def _spoken(told: Told, speaking: Speaking) -> Spoken | None:

@@ -1,5 +1,5 @@
-"""Whose words a transcript's are: its speakers brought to the two sides of a conversation, by what each
-side's sound tells.
+"""Whose words a transcript's are: its speakers brought to the sides of a conversation, by what each side's
+sound tells.
 """
 
 from __future__ import annotations
@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import permutations
 from pathlib import Path
 
 import msgspec
@@ -22,7 +23,9 @@ from metagraph.speech.sound import HeardSound
 
 @dataclass(frozen=True, eq=False)
 class Voice:
-    """One side's sound: where it is from, as it is called in notes, and what is heard there."""
+    """A sound of one side, or of several who share it: where it is from, as it is called in notes, and what
+    is heard there.
+    """
 
     path: Path
     channel: int | None
@@ -38,53 +41,82 @@ class Voice:
 
 @dataclass(frozen=True)
 class Told:
-    """What a transcript says of one side. segments: None where it says nothing of them. path: the
-    transcript's, None without one.
+    """What a transcript says of one side. segments: None where it says nothing of them; whom they are said to
+    is a place among `names`, all who speak in the transcript. path: the transcript's, None without one.
     """
 
     name: str = ""
     words: tuple[Word, ...] = ()
     segments: tuple[Segment, ...] | None = None
     path: Path | None = None
+    names: tuple[str, ...] = ()
 
 
 def sides_of(
-    notes: list[str], voices: Sequence[Voice], told: list[tuple[Path, Transcript]]
-) -> tuple[Told, Told]:
-    """Return what the transcripts say of each side."""
-    if not told:
-        return Told(), Told()
-    if len(told) == 2:
+    notes: list[str], voices: Sequence[Voice], told: list[tuple[Path, Transcript]], most: int
+) -> tuple[tuple[Voice, Told], ...]:
+    """Return the sides: the sound of each, and what the transcripts say of it. voices: one a channel or file,
+    a single one if all share it. most: sides at most.
+
+    Two at least. There are as many as there are voices, or more where the words name more speakers: those
+    share the sound in which they are loudest.
+    """
+    if len(told) > 1:
         return _one_a_side(notes, voices, told)
-    path, transcript = told[0]
-    speakers = _speakers(notes, path, transcript, 2)
-    if not speakers:
-        return Told(), Told()
+    speakers = _speakers(notes, *told[0], most) if told else []
     if len(speakers) == 1:
-        return _one_speaker(notes, voices, path, speakers[0])
-    if voices[0] is voices[1]:
-        return speakers[0], speakers[1]
-    here, crossed = (
-        sum(_loudness(voices, s.words, n ^ swap) for n, s in enumerate(speakers)) for swap in (0, 1)
+        return _one_speaker(notes, voices, told[0][0], speakers[0])
+    if len(voices) == 1:
+        speakers += [Told()] * (2 - len(speakers))
+        return tuple((voices[0], one) for one in speakers)
+    if len(speakers) > len(voices):
+        return _sharing(notes, voices, told[0][0], speakers)
+    of = _best(voices, speakers)
+    return tuple((voice, speakers[of.index(n)] if n in of else Told()) for n, voice in enumerate(voices))
+
+
+def _sharing(
+    notes: list[str], voices: Sequence[Voice], path: Path, speakers: list[Told]
+) -> tuple[tuple[Voice, Told], ...]:
+    """Return more speakers than sounds, each with the one it is loudest in."""
+    out = []
+    for one in speakers:
+        loud = [_loudness(voices, one.words, n) for n in range(len(voices))]
+        out.append((voices[loud.index(max(loud))], one))
+    notes.append(
+        f"{path.name} names {len(speakers)} speakers of {len(voices)} channels: some share one, and there "
+        "only the transcript tells who speaks."
     )
-    if crossed > here:
-        speakers.reverse()
-    return speakers[0], speakers[1]
+    return tuple(out)
+
+
+def _best(voices: Sequence[Voice], speakers: Sequence[Told]) -> tuple[int, ...]:
+    """Return the voice of each speaker, no two the same: those in which they are loudest together; as they
+    come where that says nothing.
+    """
+    loud = [[_loudness(voices, one.words, n) for n in range(len(voices))] for one in speakers]
+    return max(
+        permutations(range(len(voices)), len(speakers)),
+        key=lambda order: sum(loud[k][n] for k, n in enumerate(order)),
+        default=(),
+    )
 
 
 def _speakers(notes: list[str], path: Path, transcript: Transcript, most: int) -> list[Told]:
-    """Return those who speak, in the file's order; of more than two, the two who say most."""
+    """Return those who speak, in the file's order; of more than there may be, those who say most."""
     found = [
-        Told(name, words, transcript.segments.get(name), path) for name, words in transcript.speakers.items()
+        Told(name, words, transcript.segments.get(name), path, tuple(transcript.speakers))
+        for name, words in transcript.speakers.items()
     ]
     speaking = [s for s in found if s.words or s.segments]
-    if len(found) > most and len(speaking) >= most:
+    if len(found) > min(most, 2) <= len(speaking):
         found = speaking
     if len(found) > most:
         kept = sorted(found, key=lambda s: -(len(s.words) or len(s.segments or ())))[:most]
         gone = ", ".join(f"'{s.name}'" if s.name else "one without a name" for s in found if s not in kept)
         notes.append(
-            f"{path.name}: it has {len(found)} speakers; left out of a conversation of two: {gone[:300]}."
+            f"{path.name}: it has {len(found)} speakers; left out of a conversation of "
+            f"{'two' if most <= 2 else most}: {gone[:300]}."
         )
         found = [s for s in found if s in kept]
     return found
@@ -92,74 +124,77 @@ def _speakers(notes: list[str], path: Path, transcript: Transcript, most: int) -
 
 def _one_a_side(
     notes: list[str], voices: Sequence[Voice], told: list[tuple[Path, Transcript]]
-) -> tuple[Told, Told]:
+) -> tuple[tuple[Voice, Told], ...]:
     out = []
     for path, transcript in told:
         found = _speakers(notes, path, transcript, 1)
         one = found[0] if found else Told()
         out.append(one if one.name else replace(one, name=path.stem[:200]))
-    if voices[0] is not voices[1]:
-        here, crossed = (
-            sum(_loudness(voices, s.words, n ^ swap) for n, s in enumerate(out)) for swap in (0, 1)
+    if len(voices) == 1:
+        return tuple((voices[0], one) for one in out)
+    of = _best(voices, out)
+    better, here = (
+        sum(_loudness(voices, one.words, n) for one, n in zip(out, order, strict=True))
+        for order in (of, range(len(out)))
+    )
+    if better > here + 3 * sum(bool(s.words) for s in out):
+        fits = " and ".join(f"{told[k][0].name} fits {voices[n].called}" for k, n in enumerate(of) if k != n)
+        notes.append(
+            f"{fits} better than the other way round; they were not swapped. Give them in the order of the "
+            "sides."
         )
-        if crossed > here + 3 * sum(bool(s.words) for s in out):
-            names = [v.called for v in voices]
-            notes.append(
-                f"{told[0][0].name} fits {names[1]} and {told[1][0].name} {names[0]} better than the other "
-                "way round; they were not "
-                "swapped. Give them in the order of the sides."
-            )
-    return out[0], out[1]
+    return tuple(zip(voices, out, strict=True))
 
 
-def _one_speaker(notes: list[str], voices: Sequence[Voice], path: Path, one: Told) -> tuple[Told, Told]:
-    """Return what one speaker's words are to two sides: each word is whose channel is louder then."""
-    if voices[0] is voices[1]:
+def _one_speaker(
+    notes: list[str], voices: Sequence[Voice], path: Path, one: Told
+) -> tuple[tuple[Voice, Told], ...]:
+    """Return what one speaker's words are to all sides: each word is whose channel is louder then."""
+    if len(voices) == 1:
         notes.append(
             f"{path.name} names no two speakers, and the sound is one: all is taken for the first's. Name "
             "the speakers in the transcript."
         )
-        return one, Told()
+        return (voices[0], one), (voices[0], Told())
     if one.segments is not None or not one.words:
-        first = int(_loudness(voices, one.words, 1) > _loudness(voices, one.words, 0))
+        first = _best(voices, [one])[0]
     else:
         sides = _louder(voices, one.words)
-        share = float(np.mean(sides))
-        if 0.1 < share < 0.9:
+        shares = [float(np.mean([s == n for s in sides])) for n in range(len(voices))]
+        if max(shares) < 0.9:
             notes.append(
                 f"{path.name} names no two speakers; each word is given to the side whose channel is louder "
                 "then."
             )
-            parts = [tuple(w for w, s in zip(one.words, sides, strict=True) if s == n) for n in (0, 1)]
-            return Told(words=parts[0], path=path), Told(words=parts[1], path=path)
-        first = int(share > 0.5)
-    notes.append(
-        f"{path.name} has the words of one speaker, of {voices[first].called}; the other side has none, so "
-        "its loudness tells what it says."
-    )
-    return (one, Told()) if first == 0 else (Told(), one)
+            return tuple(
+                (v, Told(words=tuple(w for w, s in zip(one.words, sides, strict=True) if s == n), path=path))
+                for n, v in enumerate(voices)
+            )
+        first = shares.index(max(shares))
+    rest = "the other side has none, so its loudness tells what it says"
+    if len(voices) > 2:
+        rest = "the others have none, so their loudness tells what they say"
+    notes.append(f"{path.name} has the words of one speaker, of {voices[first].called}; {rest}.")
+    return tuple((v, one if n == first else Told()) for n, v in enumerate(voices))
 
 
 def _louder(voices: Sequence[Voice], words: Sequence[Word]) -> list[int]:
     """Return the side of each word; words said without a pause between them belong together."""
-    apart = [_level(voices[1], w.start, w.end) - _level(voices[0], w.start, w.end) for w in words]
+    levels = [[_level(v, w.start, w.end) for v in voices] for w in words]
+    top = [row.index(max(row)) for row in levels]
     out: list[int] = []
     first = 0
     for n in range(1, len(words) + 1):
-        if (
-            n < len(words)
-            and words[n].start - words[n - 1].end < 0.15
-            and (apart[n] > 0) == (apart[n - 1] > 0)
-        ):
+        if n < len(words) and words[n].start - words[n - 1].end < 0.15 and top[n] == top[n - 1]:
             continue
-        out += [int(float(np.mean(apart[first:n])) > 0)] * (n - first)
+        out += [int(np.argmax(np.mean(levels[first:n], axis=0)))] * (n - first)
         first = n
     return out
 
 
-def _loudness(voices: Sequence[Voice], words: Sequence[Word], side: int) -> float:
-    """Return how loud a side is on average while words are said, dB under its loudest; 0 without words."""
-    return float(np.mean([_level(voices[side], w.start, w.end) for w in words])) if words else 0.0
+def _loudness(voices: Sequence[Voice], words: Sequence[Word], n: int) -> float:
+    """Return how loud a voice is on average while words are said, dB under its loudest; 0 without words."""
+    return float(np.mean([_level(voices[n], w.start, w.end) for w in words])) if words else 0.0
 
 
 def _level(voice: Voice, start: float, end: float) -> float:
@@ -196,7 +231,7 @@ def within(notes: list[str], called: str, told: Told, length: float) -> list[Wor
     return out
 
 
-def tell_unheard(notes: list[str], called: str, words: Sequence[Word], voice: Voice, other: Voice) -> None:
+def tell_unheard(notes: list[str], called: str, words: Sequence[Word], voice: Voice) -> None:
     """Tell of words where nothing is to be heard: the transcript of another recording, or shifted."""
     spoken = activity(voice.heard, None, None)
     heard = sum(any(s.start - 0.2 < (w.start + w.end) / 2 < s.end + 0.2 for s in spoken) for w in words)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import io
 import os
 import re
+from collections import Counter
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from itertools import zip_longest
@@ -19,7 +20,8 @@ from xml.sax.saxutils import escape, quoteattr
 import msgspec
 
 from metagraph.formats.atomic import write_atomically
-from metagraph.graph.conversation import Conversation, Side
+from metagraph.formats.transcript_words import TO_ALL
+from metagraph.graph.conversation import EVERYBODY, Conversation, Side
 
 _CANNOT = re.compile("[\x00-\x08\x0b-\x1f\ud800-\udfff\ufffe\uffff]")
 _PEAK = 0.02  # seconds a peak lasts where points are not known
@@ -141,9 +143,16 @@ def _tiers(conversation: Conversation, peak: float) -> list[tuple[str, str, list
     lasts.
     """
     out: list[tuple[str, str, list[Row]]] = []
-    for name, side in zip(_names(conversation.sides), conversation.sides, strict=True):
+    names = _names(conversation.sides)
+    whom: dict[int | None, str] = {None: "", EVERYBODY: f" to {TO_ALL}"}
+    whom |= {n: f" to {name}" for n, name in enumerate(names)}
+    for name, side in zip(names, conversation.sides, strict=True):
         out.append((name, "words", _apart([(w.start, w.end, w.text) for w in side.words])))
-        rows = [(s.start, s.end, f"{s.kind}: {s.text}" if s.text else s.kind) for s in side.segments]
+        kinds = [f"{s.kind}{whom[s.to]}" for s in side.segments]
+        rows = [
+            (s.start, s.end, f"{kind}: {s.text}" if s.text else kind)
+            for s, kind in zip(side.segments, kinds, strict=True)
+        ]
         out.append((name, "segments", rows))
         peaks = [s.peak for s in side.segments if s.kind == "clause" and s.peak is not None]
         out.append(
@@ -156,9 +165,11 @@ def _tiers(conversation: Conversation, peak: float) -> list[tuple[str, str, list
     return out
 
 
-def _names(sides: Sequence[Side]) -> tuple[str, str]:
-    first, second = (" ".join(s.name.split()) or f"Speaker {n}" for n, s in enumerate(sides, 1))
-    return (first, second) if first.casefold() != second.casefold() else (f"{first} 1", f"{second} 2")
+def _names(sides: Sequence[Side]) -> tuple[str, ...]:
+    """Return what sides are called, no two alike."""
+    names = [" ".join(s.name.split()) or f"Speaker {n}" for n, s in enumerate(sides, 1)]
+    often = Counter(name.casefold() for name in names)
+    return tuple(f"{x} {n}" if often[x.casefold()] > 1 else x for n, x in enumerate(names, 1))
 
 
 def _apart(rows: Sequence[Row]) -> list[Row]:

@@ -1,11 +1,11 @@
-"""Conversations from files: the sound of two, and what they say, in segments a body can answer to."""
+"""Conversations from files: the sound of two or more, and what they say, in segments a body can answer to."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,12 +19,20 @@ from metagraph.formats.conversation_words import Told, Voice, sides_of, tell_unh
 from metagraph.formats.store import kept_path
 from metagraph.formats.transcript_words import count
 from metagraph.formats.transcripts import read_transcript
-from metagraph.graph.conversation import SHORTEST, UNKNOWN, Conversation, Segment, Side
+from metagraph.graph.conversation import (
+    EVERYBODY,
+    MOST_SPEAKERS,
+    SHORTEST,
+    UNKNOWN,
+    Conversation,
+    Segment,
+    Side,
+)
 from metagraph.speech.activity import HUSH, LEAST, activity
 from metagraph.speech.clauses import by_sound, peak_of, segments
 from metagraph.speech.language_packs import Language
 from metagraph.speech.pitch import pitch, smooth
-from metagraph.speech.sound import hear, read_recording
+from metagraph.speech.sound import HeardSound, hear, read_recording
 
 Array = NDArray[Any]
 
@@ -34,6 +42,7 @@ CLIPPED = 1e-4  # share of samples cut off at full scale that is worth a word
 SAME = 1e-4  # of full scale: two channels that differ by less are one
 UNLIKE = 0.5  # seconds two files may differ in length without a word
 _SIDES = ("left", "right")
+_NUMBERS = {2: "two", 3: "three", 4: "four"}
 
 
 @dataclass(frozen=True)
@@ -61,40 +70,51 @@ def read_conversation(
     name: str | None = None,
     cancelled: Callable[[], bool] | None = None,
     speaking: Speaking | None = None,
+    most: int = MOST_SPEAKERS,
 ) -> Read:
-    """Read a conversation of two.
+    """Read a conversation of two or more.
 
-    audio: one file with two channels, the left one side 0's; or two files, one a side; or one with both
-    mixed, when a transcript names the speakers. transcripts: one for both sides, or one a side, in the sides'
-    order; without any, what is loud tells clauses and pauses. folder: what paths are kept relative to, None
+    audio: one file with a channel for each side, the first one side 0's; or a file for each; or one with all
+    mixed, when a transcript names the speakers. transcripts: one for all sides, or one a side, in the sides'
+    order; without any, what is loud tells clauses and pauses. most: sides at most; of more who are named in a
+    transcript those are left out who say least. folder: what paths are kept relative to, None
     for absolute ones. name: the conversation's, else the first file's. speaking: which language, and which
     words make a segment a response or a hesitation; None for what the words tell. Where a transcript holds
     segments, as our exports do, those are kept.
 
     Raises FileError, and CancelledError once `cancelled` says so.
     """
-    if not 1 <= len(audio) <= 2:
-        raise ValueError("a conversation has one or two sound files")
-    if len(transcripts) > 2:
-        raise ValueError("a conversation has one transcript, or one for each of the two")
+    if not 1 <= len(audio) <= most:
+        raise ValueError(f"a conversation has up to {most} sound files, one for each who speaks")
+    if len(transcripts) > 1 and len(audio) > 1 and len(transcripts) != len(audio):
+        raise ValueError(
+            f"there are {len(audio)} sounds and {len(transcripts)} transcripts: give one transcript, or one "
+            "for each sound"
+        )
+    if len(transcripts) > most:
+        raise ValueError(f"a conversation has one transcript, or one for each of up to {most} who speak")
     reading = _Reading(cancelled=cancelled)
     told = [(path, read_transcript(path)) for path in transcripts]
     for path, transcript in told:
         reading.notes += [f"{path.name}: {note}." for note in transcript.notes]
-    voices = _voices(reading, list(audio), bool(told))
-    length = max(_length(v) for v in voices)
-    sides = sides_of(reading.notes, voices, told)
+    voices = _voices(reading, list(audio), bool(told), most)
+    if len(voices) > 1 and 1 < len(told) != len(voices):
+        raise FileError(
+            audio[0],
+            f"has {len(voices)} channels, and there are {len(told)} transcripts",
+            remedy="Give one transcript that names the speakers, or one for each channel.",
+        )
+    found = sides_of(reading.notes, voices, told, most)
+    length = max(_length(v) for v, _ in found)
+    sides = [one for _, one in found]
     speaking = speaking if speaking is not None else Speaking()
-    spoken = languages_of(
-        reading.notes, [_called(v, s) for v, s in zip(voices, sides, strict=True)], sides, speaking
-    )
-    lists = tuple(speaking.lists_for(n, spoken[n]) for n in (0, 1))
-    shared = (
-        0 if spoken[0] is not None or spoken[1] is None else 1
-    )  # the side whose lists are the conversation's
+    spoken = languages_of(reading.notes, [_called(v, one) for v, one in found], sides, speaking)
+    lists = tuple(speaking.lists_for(n, language) for n, language in enumerate(spoken))
+    # the side whose lists are the conversation's
+    shared = next((n for n, language in enumerate(spoken) if language is not None), 0)
     made = tuple(
-        _side(reading, n, voices, sides[n], folder, spoken[n], lists[n], lists[n] != lists[shared])
-        for n in (0, 1)
+        _side(reading, n, found, folder, spoken[n], lists[n], lists[n] != lists[shared])
+        for n in range(len(found))
     )
     title = name or Path(audio[0]).stem
     made_of = Conversation(
@@ -115,74 +135,72 @@ def _length(voice: Voice) -> float:
     return math.floor(voice.heard.duration * 1000 + 1e-6) / 1000
 
 
-def _voices(reading: _Reading, audio: list[Path], worded: bool) -> tuple[Voice, Voice]:
-    """Return both sides' sound; twice the same where they share it."""
-    if len(audio) == 2:
-        return _two_files(reading, audio)
+def _voices(reading: _Reading, audio: list[Path], worded: bool, most: int) -> tuple[Voice, ...]:
+    """Return the sound of each side; a single one if all share it."""
+    if len(audio) > 1:
+        return _files(reading, audio)
     path = audio[0]
     reading.go_on()
     read = read_recording(path, LONGEST, RATE)
     _tell_kind(reading, path, read.really)
     channels = len(read.samples)
-    if channels > 2:
+    if channels > most:
+        asks = "a conversation of two has one for each" if most == 2 else f"a conversation has up to {most}"
         raise FileError(
             path,
-            f"has {channels} channels, a conversation of two has one for each",
-            remedy="Save the two speakers' channels as one file, or as two.",
+            f"has {channels} channels, {asks}",
+            remedy="Save the speakers' channels as one file, or as one for each.",
         )
-    if channels == 2 and (one := _one_sounds(read.samples)) is None:
-        out = []
-        for n, samples in enumerate(read.samples):
-            called = f"{path.name}, {_SIDES[n]} channel"
-            _tell_clipped(reading, called, read.clipped[n])
-            out.append(_voice(reading, path, n, called, samples, read.rate))
-        return out[0], out[1]
-    if channels == 2 and one is not None and one >= 0:
-        silent = _SIDES[1 - one]
-        reading.notes.append(
-            f"{path.name}: the {silent} channel is silent. If both speak in the {_SIDES[one]} one, save that "
-            "alone and add a transcript "
-            "that names the speakers; else check the microphone."
-        )
-        pair = [
-            _voice(reading, path, n, f"{path.name}, {_SIDES[n]} channel", read.samples[n], read.rate)
-            for n in (0, 1)
-        ]
-        _tell_clipped(reading, pair[one].called, read.clipped[one])
-        return pair[0], pair[1]
+    called = [f"{path.name}, {_channel(n, channels)}" for n in range(channels)]
+    sounding = _sounding(read.samples) if channels > 1 else []
+    if len(sounding) > 1 or (channels == 2 and len(sounding) == 1):
+        if channels == 2 and len(sounding) == 1:
+            here, silent = (_SIDES[n] for n in (sounding[0], 1 - sounding[0]))
+            reading.notes.append(
+                f"{path.name}: the {silent} channel is silent. If both speak in the {here} one, save that "
+                "alone and add a transcript "
+                "that names the speakers; else check the microphone."
+            )
+        elif len(sounding) < channels:
+            gone = ", ".join(_channel(n, channels) for n in range(channels) if n not in sounding)
+            reading.notes.append(f"{path.name}: {gone} left out, which nothing is heard in.")
+        kept = range(channels) if channels == 2 else sounding
+        for n in kept:
+            _tell_clipped(reading, called[n], read.clipped[n])
+        return tuple(_voice(reading, path, n, called[n], read.samples[n], read.rate) for n in kept)
     hushed = float(np.abs(read.samples).max()) <= 10 ** (HUSH / 20)
     if hushed and not worded:
         raise FileError(
             path, "is silent", remedy="Check the microphone, or what was exported, and save the sound anew."
         )
-    why = (
-        "is silent"
-        if hushed
-        else "has one channel"
-        if channels == 1
-        else "has the same sound in both channels"
-    )
+    same = "has the same sound in both channels" if channels == 2 else "has one sound in all its channels"
+    why = "is silent" if hushed else "has one channel" if channels == 1 else same
     if not worded:
         raise FileError(
             path,
             f"{why}, so that nobody can tell who speaks",
-            remedy="Give two channels, two files, or a transcript that names the speakers.",
+            remedy="Give a channel or a file for each, or a transcript that names the speakers.",
         )
     _tell_clipped(reading, path.name, max(read.clipped))
-    reading.notes.append(f"{path.name} {why}: both sides share it, and only the transcript tells who speaks.")
-    shared = _voice(reading, path, None, path.name, read.samples.mean(0), read.rate)
-    return shared, shared
+    reading.notes.append(f"{path.name} {why}: all sides share it, and only the transcript tells who speaks.")
+    return (_voice(reading, path, None, path.name, read.samples.mean(0), read.rate),)
 
 
-def _one_sounds(samples: Array) -> int | None:
-    """Return which of two channels has all the sound, -1 where both have the same, None where each has its
-    own.
+def _channel(n: int, channels: int) -> str:
+    return f"{_SIDES[n]} channel" if channels == 2 else f"channel {n + 1}"
+
+
+def _sounding(samples: Array) -> list[int]:
+    """Return which channels `[C, N]` have a sound of their own, all where nobody has; none where all have the
+    same.
     """
     loud = np.abs(samples).max(1)
-    if np.abs(samples[0] - samples[1]).max() < SAME * max(float(loud.max()), 1e-9):
-        return -1
+    if np.abs(samples - samples[:1]).max() < SAME * max(float(loud.max()), 1e-9):
+        return []
     least = 10 ** (HUSH / 20)
-    return None if loud.min() > least or loud.max() <= least else int(loud.argmax())
+    if loud.max() <= least:
+        return list(range(len(samples)))
+    return [n for n in range(len(samples)) if loud[n] > least]
 
 
 def _tell_kind(reading: _Reading, path: Path, really: str) -> None:
@@ -193,8 +211,9 @@ def _tell_kind(reading: _Reading, path: Path, really: str) -> None:
         )
 
 
-def _two_files(reading: _Reading, audio: list[Path]) -> tuple[Voice, Voice]:
+def _files(reading: _Reading, audio: list[Path]) -> tuple[Voice, ...]:
     out, rates = [], []
+    count = _NUMBERS.get(len(audio), len(audio))
     for path in audio:
         reading.go_on()
         read = read_recording(path, LONGEST, RATE)
@@ -202,28 +221,28 @@ def _two_files(reading: _Reading, audio: list[Path]) -> tuple[Voice, Voice]:
         channels = len(read.samples)
         if channels > 1:
             reading.notes.append(
-                f"{path.name} has {channels} channels; as it is one of two files, they are mixed."
+                f"{path.name} has {channels} channels; as it is one of {count} files, they are mixed."
             )
         _tell_clipped(reading, path.name, max(read.clipped))
         out.append(
             _voice(reading, path, None if channels > 1 else 0, path.name, read.samples.mean(0), read.rate)
         )
         rates.append(read.original)
-    if rates[0] != rates[1]:
+    if len(set(rates)) > 1:
+        other = next(n for n, rate in enumerate(rates) if rate != rates[0])
         reading.notes.append(
-            f"{audio[0].name} has {rates[0]} samples a second and {audio[1].name} {rates[1]}; each is read "
-            "at its own. If one runs "
-            "away from the other, record both at the same rate."
+            f"{audio[0].name} has {rates[0]} samples a second and {audio[other].name} {rates[other]}; each "
+            "is read at its own. If one runs away from the other, record both at the same rate."
         )
     lengths = [v.heard.duration for v in out]
-    if abs(lengths[0] - lengths[1]) > UNLIKE:
-        longer = int(lengths[1] > lengths[0])
+    longest, shortest = (lengths.index(f(lengths)) for f in (max, min))
+    if lengths[longest] - lengths[shortest] > UNLIKE:
         reading.notes.append(
-            f"{audio[longer].name} lasts {lengths[longer]:.1f} s and {audio[1 - longer].name} "
-            f"{lengths[1 - longer]:.1f} s; the "
+            f"{audio[longest].name} lasts {lengths[longest]:.1f} s and {audio[shortest].name} "
+            f"{lengths[shortest]:.1f} s; the "
             "shorter one is silent then. Check that both begin at the same moment."
         )
-    return out[0], out[1]
+    return tuple(out)
 
 
 def _voice(
@@ -249,8 +268,7 @@ def _tell_clipped(reading: _Reading, called: str, clipped: float) -> None:
 def _side(
     reading: _Reading,
     n: int,
-    voices: Sequence[Voice],
-    told: Told,
+    found: Sequence[tuple[Voice, Told]],
     folder: Path | None,
     language: Language | None,
     lists: Lists,
@@ -258,24 +276,24 @@ def _side(
 ) -> Side:
     """own: whether the lists are not those of the conversation."""
     reading.go_on()
-    voice, other = voices[n], voices[1 - n]
-    mixed = voice is other
+    voice, told = found[n]
+    shared = any(v is voice for m, (v, _) in enumerate(found) if m != n)
+    partner = _all_of([v.heard for v in dict.fromkeys(v for v, _ in found) if v is not voice])
     called = _called(voice, told)
     words = within(reading.notes, called, told, _length(voice))
     if told.segments is not None:
-        found = _kept(reading, called, told.segments, voice)
-    elif words or not mixed:
-        partner = None if mixed else other.heard
+        segmented = _kept(reading, called, told, voice, [one.name for _, one in found])
+    elif words or not shared:
         if language is not None:
-            found = segments(words, voice.pitch, voice.heard, *lists, partner, language)
+            segmented = segments(words, voice.pitch, voice.heard, *lists, partner, language)
         else:
-            found = by_sound(words, voice.pitch, voice.heard, partner)
+            segmented = by_sound(words, voice.pitch, voice.heard, None if shared else partner)
     else:
-        found = ()
+        segmented = ()
     if not words and told.segments is None:
-        _tell_wordless(reading, called, voice, None if mixed else other, found)
-    elif words and not mixed and told.segments is None:
-        tell_unheard(reading.notes, called, words, voice, other)
+        _tell_wordless(reading, called, voice, shared, segmented, len(found))
+    elif words and not shared and told.segments is None:
+        tell_unheard(reading.notes, called, words, voice)
     path = kept_path(voice.path, folder)
     return Side(
         name=told.name,
@@ -285,16 +303,33 @@ def _side(
         responses=lists[0] if own else None,
         hesitations=lists[1] if own else None,
         words=tuple(words),
-        segments=found,
+        segments=segmented,
     )
+
+
+def _all_of(heard: Sequence[HeardSound]) -> HeardSound | None:
+    """Return what is heard of several as of one: whoever is loudest at each moment. None of nobody."""
+    if len(heard) < 2:
+        return heard[0] if heard else None
+    longest = max(heard, key=lambda h: len(h.level))
+    level = np.array(longest.level)
+    for one in heard:
+        level[: len(one.level)] = np.maximum(level[: len(one.level)], one.level)
+    return replace(longest, level=level)
 
 
 def _called(voice: Voice, told: Told) -> str:
     return f"{told.name} ({voice.called})" if told.name else voice.called
 
 
-def _kept(reading: _Reading, called: str, given: Sequence[Segment], voice: Voice) -> tuple[Segment, ...]:
-    """Return segments a file holds, as far as the sound goes; clauses that have no peak get theirs."""
+def _kept(
+    reading: _Reading, called: str, told: Told, voice: Voice, names: Sequence[str]
+) -> tuple[Segment, ...]:
+    """Return segments a file holds, as far as the sound goes; clauses that have no peak get theirs. names: of
+    the sides.
+    """
+    given = told.segments or ()
+    sides = {n: names.index(name) for n, name in enumerate(told.names) if name in names}
     length, tones = _length(voice), smooth(voice.pitch)
     out = []
     for s in given:
@@ -304,7 +339,8 @@ def _kept(reading: _Reading, called: str, given: Sequence[Segment], voice: Voice
         peak = s.peak
         if s.kind == "clause":
             peak = peak_of(voice.pitch, tones, voice.heard, s.start, end) if peak is None else min(peak, end)
-        out.append(Segment(s.kind, s.start, end, peak, s.text))
+        to = s.to if s.to in (None, EVERYBODY) else sides.get(s.to)
+        out.append(Segment(s.kind, s.start, end, peak, s.text, to))
     if len(out) < len(given):
         reading.notes.append(
             f"{called}: {count(len(given) - len(out), 'segment')} left out, past the end of the sound at "
@@ -314,12 +350,12 @@ def _kept(reading: _Reading, called: str, given: Sequence[Segment], voice: Voice
 
 
 def _tell_wordless(
-    reading: _Reading, called: str, voice: Voice, other: Voice | None, found: Sequence[Segment]
+    reading: _Reading, called: str, voice: Voice, shared: bool, found: Sequence[Segment], sides: int
 ) -> None:
-    if other is None:
+    if shared:
         reading.notes.append(
             f"{called}: no words are known of this side, so it says nothing. Add a transcript that names "
-            "both speakers."
+            f"{'both' if sides == 2 else 'all'} speakers."
         )
         return
     if found:

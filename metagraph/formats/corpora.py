@@ -237,7 +237,7 @@ def _read(name: str, files: _Found) -> Recorded:
     told = [files.words[w] for w in people if w and w in files.words]
     if not told and "" in files.words:
         told = [files.words[""]]
-    read = read_conversation(audio, told, None, name)
+    read = read_conversation(audio, told, None, name, most=2)
     clips: list[Clip | None] = [None, None]
     for side, who in enumerate(people):
         path = files.clips.get(who, files.clips.get("") if side == 0 else None)

@@ -16,6 +16,7 @@ from metagraph.files import read_file
 from metagraph.graph.conversation import SHORTEST, Segment, Word
 
 LATEST = 1e6  # seconds
+TO_ALL = "all"  # in "clause to all: ...", as our exports write whom a segment is said to
 _TEXT = 1000  # characters of a word
 SUFFIXES = (".TextGrid", ".eaf", ".vtt", ".srt", ".json", ".ctm", ".tsv")
 REMEDY = f"Known are {', '.join(SUFFIXES)}: TextGrid, ELAN, WebVTT, SRT, JSON of Whisper or IBM, CTM, tables."

@@ -72,8 +72,8 @@ def _ours(out: Collected, text: str) -> Transcript:
     except (msgspec.ValidationError, msgspec.DecodeError, ValueError) as error:
         raise out.fail(f"is no conversation as 'metagraph speech' writes it: {error}") from None
     names = [side.name or str(n + 1) for n, side in enumerate(read.sides)]
-    if names[0] == names[1]:
-        names = ["1", "2"]
+    if len(set(names)) < len(names):
+        names = [str(n + 1) for n in range(len(names))]
     for name, side in zip(names, read.sides, strict=True):
         out.speakers[name] = []
         for word in side.words:

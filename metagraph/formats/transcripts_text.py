@@ -1,8 +1,8 @@
 """Subtitles, WebVTT and SubRip (SRT), NIST's CTM, and tables of words, as transcripts.
 
 Cues hold sentences: their words share the cue's time by their letters, unless WebVTT gives words times of
-their own. Who speaks, a voice tag (`<v Ann>`) or a name before a colon tells; cues that name nobody go on
-with who spoke before.
+their own. Who speaks, a voice tag (`<v Ann>`), a name before a colon, or one in brackets where most cues
+begin with some ("[Ann] so", "(SPEAKER_00) so"), tells; cues that name nobody go on with who spoke before.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ _VOICE = re.compile(r"<v(?:\.[^\s>]*)?\s+([^>]{1,200})>")
 _TAG = re.compile(r"</?[a-zA-Z][^<>]{0,300}>|\{\\[^{}]{0,100}\}")
 _MARKS = "\u0300-\u036f\u0900-\u109f\u0e00-\u0eff"  # of vowels: none of them is a letter to a pattern
 _NAME = re.compile(rf"\s*(?:[-–>]{{1,2}}\s*)?([^\W\d_][\w .'’{_MARKS}-]{{0,38}}?)\s*(?::\s+|：\s*)(?=\S)")
+_BRACKETED = re.compile(rf"\s*[\[(]\s*([^\W\d_][\w .'’{_MARKS}-]{{0,38}}?)\s*[\])]\s*:?\s*(?=\S)")
 _DASH = re.compile(r"^\s*(?:[-–]|>{1,2})\s*")
 
 
@@ -39,7 +40,7 @@ def read_cues(path: Path, text: str) -> Transcript:
     out = Collected(path)
     cues = list(_cues(out, text))
     timed = any(_INSIDE.search(line) for cue in cues for line in cue.text)
-    names = _names(cues)
+    names = _in_brackets(cues) or _before_colons(cues)
     speaker, shown = "", ""
     for cue in cues:
         lines = [x for x in cue.text if x.strip()]
@@ -96,14 +97,39 @@ def _plain(text: str) -> str:
     return " ".join(html.unescape(_TAG.sub("", _INSIDE.sub("", text))).split())
 
 
-def _names(cues: list[_Cue]) -> frozenset[str]:
+@dataclass(frozen=True)
+class _Names:
+    """Who speaks by what a line begins with, and how it is written there: `way` has the name in its group."""
+
+    way: re.Pattern[str]
+    known: frozenset[str]
+
+    def of(self, line: str) -> tuple[str, str] | None:
+        """Return who says a line, and the rest of it; None where it begins with no name."""
+        plain = _TAG.sub("", line)
+        found = self.way.match(plain)
+        return (found[1], plain[found.end() :]) if found is not None and found[1] in self.known else None
+
+
+def _in_brackets(cues: list[_Cue]) -> _Names | None:
+    """Return the names in brackets that at least half of all cues begin with; a "[laughter]" now and then is
+    none.
+    """
+    firsts = [_BRACKETED.match(_TAG.sub("", cue.text[0])) for cue in cues if cue.text]
+    found = {m[1] for m in firsts if m is not None}
+    often = 2 * sum(m is not None for m in firsts) >= len(firsts)
+    return _Names(_BRACKETED, frozenset(found)) if often and 1 < len(found) <= 12 else None
+
+
+def _before_colons(cues: list[_Cue]) -> _Names:
     """Return the names that stand before a colon: those that come again, or beside others; a single "Note:
     ..." is none.
     """
     found = Counter(m.group(1) for cue in cues for line in cue.text if (m := _NAME.match(_TAG.sub("", line))))
-    return frozenset(
+    known = frozenset(
         found if len(found) > 1 and len(found) <= 12 else (name for name, times in found.items() if times > 1)
     )
+    return _Names(_NAME, known)
 
 
 def _shared(cue: _Cue, lines: list[str]) -> list[tuple[float, float, str]]:
@@ -122,15 +148,14 @@ def _shared(cue: _Cue, lines: list[str]) -> list[tuple[float, float, str]]:
     return out
 
 
-def _voices(text: str, names: frozenset[str]) -> Iterator[tuple[str | None, str]]:
+def _voices(text: str, names: _Names) -> Iterator[tuple[str | None, str]]:
     """Yield who says which part; None where it does not say."""
     parts = _VOICE.split(text)
     for n in range(0, len(parts), 2):
         who = html.unescape(parts[n - 1]).strip() if n else None
         said = parts[n]
-        if who is None and (named := _NAME.match(_TAG.sub("", said))) and named.group(1) in names:
-            who = named.group(1)
-            said = _TAG.sub("", said)[named.end() :]
+        if who is None and (named := names.of(said)) is not None:
+            who, said = named
         if said.strip():
             yield who, _DASH.sub("", said)
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from metagraph.formats.elan import read_elan
-from metagraph.formats.transcript_words import LATEST, Collected, Transcript, count, is_silent
-from metagraph.graph.conversation import SHORTEST, SPOKEN, Segment, Spoken
+from metagraph.formats.transcript_words import LATEST, TO_ALL, Collected, Transcript, count, is_silent
+from metagraph.graph.conversation import EVERYBODY, SHORTEST, SPOKEN, Segment, Spoken
 from metagraph.playback.annotation import IGNORE, guess_role
 from metagraph.playback.annotation import Tier as ElanTier
 from metagraph.speech.textgrid import read_textgrid
@@ -51,6 +51,7 @@ _ROLES = {
     "comments": "other",
     "silences": "other",
 }
+_PARTING = " -_@:/|.()[]\t"  # what stands between a name and what a tier holds
 _PARTED = re.compile(r"\s*[-_@:/|.()\[\]\s]+\s*")
 
 
@@ -108,8 +109,13 @@ def _role(name: str) -> tuple[str, str]:
             if n == 0
             else name.replace(parts[n], "")
         )
-        return rest.strip(" -_@:/|.()[]\t"), role
+        return rest.strip(_PARTING), role
     return name, ""
+
+
+def _bare(name: str) -> str:
+    """Return what speakers' names are compared by."""
+    return " ".join(name.casefold().split()).strip(_PARTING)
 
 
 def _from_tiers(path: Path, tiers: Sequence[_Tier], notes: Iterable[str]) -> Transcript:
@@ -139,15 +145,14 @@ def _from_tiers(path: Path, tiers: Sequence[_Tier], notes: Iterable[str]) -> Tra
         )
     worded = _one_each(out, worded)
     ours = {t.whose for t in tiers if t.role == "segments"}
+    talking = ours.union(t.whose for t in worded)
+    out.speakers |= {t.whose: [] for t in tiers if t.whose in talking}  # in the file's order
     for tier in worded:
-        out.speakers.setdefault(tier.whose, [])
         whole = tier.role == "words" and sum(len(x.split()) > 1 for x, *_ in tier.rows) <= 0.3 * sum(
             not is_silent(x) for x, *_ in tier.rows
         )
         for text, start, end in tier.rows:
             out.add(tier.whose, text, start, end, f"tier '{tier.name}'", whole)
-    for name in ours:
-        out.speakers.setdefault(name, [])
     segments = {t.whose: _segments(out, t, tiers) for t in tiers if t.role == "segments"}
     return out.finished({name: s for name, s in segments.items() if s is not None})
 
@@ -186,11 +191,12 @@ def _segments(out: Collected, tier: _Tier, tiers: Sequence[_Tier]) -> tuple[Segm
         start for t in tiers if t.role == "peaks" and t.whose == tier.whose for _, start, _ in t.rows
     )
     found: list[Segment] = []
+    names = {_bare(name): n for n, name in enumerate(out.speakers)}
     unknown: list[str] = []
     over = 0
     for text, start, end in sorted(tier.rows, key=lambda r: r[1:]):
         label, _, words = text.strip().partition(":")
-        kind = label.strip().casefold()
+        kind, _, whom = label.strip().casefold().partition(" to ")
         if kind in ("", "idle"):
             continue
         if kind not in SPOKEN:
@@ -211,6 +217,7 @@ def _segments(out: Collected, tier: _Tier, tiers: Sequence[_Tier]) -> tuple[Segm
                 end,
                 None if peak is None else min(max(peak, start), end),
                 " ".join(words.split()),
+                EVERYBODY if whom == TO_ALL else names.get(_bare(whom)),
             )
         )
     if unknown and not found:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from metagraph.generation.loudness import gain_of
 from metagraph.generation.networks import ACTIVITY, FPS
 from metagraph.generation.poses import Scale
-from metagraph.graph.conversation import Conversation
+from metagraph.graph.conversation import Conversation, others_of
 from metagraph.speech.activity import activity as spoken
 from metagraph.speech.pitch import pitch
 from metagraph.speech.sound import hear
@@ -225,8 +225,11 @@ def speaking(stretches: Iterable[tuple[float, float]], frames: int) -> Array:
 
 def conversation_activity(conversation: Conversation, side: int, frames: int) -> Array:
     """Return activity `[T, 4]` of a conversation as one side lives it: all of its segments are own speech."""
-    both = [[(s.start, s.end) for s in conversation.sides[n].segments] for n in (side, 1 - side)]
-    return one_hot(speaking(both[0], frames), speaking(both[1], frames))
+    found = [
+        speaking([(s.start, s.end) for s in conversation.sides[n].segments], frames)
+        for n in (side, *others_of(conversation, side))
+    ]
+    return one_hot(found[0], np.any(found[1:], axis=0))  # of several, whoever answers is the partner
 
 
 def voice_activity(own: Array, partner: Array | None, rate: int, frames: int) -> Array:

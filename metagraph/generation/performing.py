@@ -26,7 +26,7 @@ from metagraph.generation.poses import PoseError, PoseRig, rig_of
 from metagraph.generation.sampler import Sampler, clip_of, heard_activity
 from metagraph.generation.stored import Model
 from metagraph.graph import anatomy
-from metagraph.graph.conversation import Conversation, side_name
+from metagraph.graph.conversation import Conversation, others_of, side_name
 from metagraph.graph.model import Project
 from metagraph.graph.project_retargeting import Bringing
 from metagraph.motion.clip import Clip
@@ -102,21 +102,26 @@ def on_project(project: Project, clip: Clip) -> tuple[Clip, tuple[str, ...]]:
 
 
 def side_sound(conversation: Conversation, side: int, folder: Path) -> tuple[Array, tuple[str, ...]]:
-    """Return what is heard in a conversation `[2, N]` at `features.RATE`, one side's own voice first, as long
-    as it lasts, and what is missing, in words. folder: what paths begin at. Raises FileError.
+    """Return what is heard in a conversation `[2, N]` at `features.RATE`, one side's own voice first, then
+    all others' as one, as long as it lasts, and what is missing, in words. folder: what paths begin at.
+    Raises FileError.
     """
     count = max(1, round(conversation.length * SOUND_RATE))
     out, notes = np.zeros((2, count), np.float32), []
-    for row, n in enumerate((side, 1 - side)):
+    heard_once: set[tuple[int, str | None, int | None]] = set()  # several may share one sound
+    for n in (side, *others_of(conversation, side)):
         of = conversation.sides[n]
         if of.audio is None:
             notes.append(f"{side_name(conversation, n)} has no sound: who speaks when is all that is heard.")
             continue
+        if (key := (int(n != side), of.audio, of.channel)) in heard_once:
+            continue
+        heard_once.add(key)
         recording = read_recording(folder / of.audio, LONGEST)
         samples = recording.samples
         one = samples.mean(0) if of.channel is None else samples[min(of.channel, len(samples) - 1)]
         heard = at_rate(one[None], recording.rate)[0][:count]
-        out[row, : len(heard)] = heard
+        out[int(n != side), : len(heard)] += heard
     return out, tuple(notes)
 
 

@@ -227,7 +227,7 @@ def _speech(
     conversation: Conversation | None = None
     notes: tuple[str, ...] = ()
     if transcripts:
-        read = read_conversation(sounds, transcripts, speaking=speaking)
+        read = read_conversation(sounds, transcripts, speaking=speaking, most=2)
         conversation, notes = read.conversation, read.notes
     recordings = [read_recording(p, LONGEST) for p in sounds]
     if len(recordings) > 1:

@@ -16,6 +16,7 @@ import msgspec
 
 from metagraph.graph.conversation import (
     AUTO,
+    EVERYBODY,
     SHORTEST,
     SPOKEN,
     Conversation,
@@ -67,8 +68,8 @@ def change_conversation(project: Project, ident: str, **changes: Any) -> Project
 
 
 def change_side(project: Project, ident: str, side: int, /, **changes: Any) -> Project:
-    """Set fields of one of the two: name, audio, channel, project, take, motion, rates. Raises EditError,
-    also for values out of range.
+    """Set fields of one who talks: name, audio, channel, project, take, motion, place, rates. Raises
+    EditError, also for values out of range.
     """
     of = _conversation(project, ident)
     if "name" in changes:
@@ -77,7 +78,7 @@ def change_side(project: Project, ident: str, side: int, /, **changes: Any) -> P
 
 
 def set_rates(project: Project, ident: str, side: int, **rates: float) -> Project:
-    """Set how often one of the two moves with what is said: clause, response, hesitation, mirror, 0..1.
+    """Set how often one who talks moves with what is said: clause, response, hesitation, mirror, 0..1.
     Raises EditError out of that range.
     """
     of = _conversation(project, ident).sides[side]
@@ -94,7 +95,7 @@ def set_word_lists(
 ) -> Project:
     """Set which words make a segment a response or a hesitation, and label the segments anew by them.
 
-    side: the one whose own lists they are; None: the lists of both, which have none of their own then.
+    side: the one whose own lists they are; None: the lists of all, which have none of their own then.
     language: the code of what they are of, None to leave it. What was labelled otherwise than the lists
     before would, was labelled by hand, and stays as it is; so does what has no words. Only whole segments are
     labelled: none is parted or joined. Raises EditError.
@@ -187,6 +188,19 @@ def relabel_segments(project: Project, ident: str, places: Collection[Place], ki
         project = _set(
             project, ident, side, at, msgspec.structs.replace(_segment(project, ident, side, at), kind=kind)
         )
+    return project
+
+
+def address_segments(project: Project, ident: str, places: Collection[Place], to: int | None) -> Project:
+    """Say whom segments are said to: a side, `EVERYBODY`, or, for None, that it be inferred. Raises EditError
+    for a side that is not there, or the speaker's own.
+    """
+    of = _conversation(project, ident)
+    for side, at in places:
+        if to is not None and to != EVERYBODY and (to == side or not 0 <= to < len(of.sides)):
+            raise EditError("nobody speaks to that one: choose another who talks in the conversation")
+        segment = msgspec.structs.replace(_segment(project, ident, side, at), to=to)
+        project = _set(project, ident, side, at, segment)
     return project
 
 

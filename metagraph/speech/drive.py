@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from metagraph.graph.conversation import Conversation, Segment, heard_by
+from metagraph.graph.conversation import Conversation, Segment, heard_by, others_of
 from metagraph.graph.model import Action, Layer, Mode, Project
 from metagraph.graph.requests import (
     AnyRequest,
@@ -33,16 +33,18 @@ from metagraph.playback.choice import uniform
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan
 from metagraph.playback.running_plan import perform
+from metagraph.speech.addressing import TURN, spans
 from metagraph.speech.gesture_choice import Clause, choose
+from metagraph.speech.group_gaze import looks_of
 from metagraph.speech.peak_blinks import peak_blinks
 
-PARTNER = "partner"  # the named point where the other's head is
+PARTNER = "partner"  # the named point where the other's head is; of several with the other's number, from 1
 TOLERANCE = 0.1  # seconds a stroke may be off its peak (section 7.2)
 ROUNDS = 12  # in which what would come too late is taken back
 CLAUSE, ANSWER, FILL = 3, 2, 1  # priorities: an own clause before an answer before what fills the time
+HEAD: Point = (0.0, 1.6, 1.3)  # metres: where a partner's head is whose height is not known
 PLAIN = ("beat", "explain", "open")  # tags of gestures that go with any words
-TURN = 0.6  # seconds of one's own silence after which one listens
-QUIET = 2.0  # seconds of both's silence after which one idles
+QUIET = 2.0  # seconds of everyone's silence after which one idles
 REST = 3.5  # seconds nobody asks anything of a character after which it may fidget
 FIDGETS = 0.5  # how often it does
 # how often the body changes its stance as one begins to speak, where most shifts of posture are (Cassell et
@@ -55,17 +57,15 @@ def asks_of(
     side: int,
     project: Project,
     line: str | None = None,
-    head: Point = (0.0, 1.6, 1.3),
+    heads: Sequence[Point] = (HEAD,),
     together: bool = True,
 ) -> list[AnyRequest]:
     """Return what a side is asked to do. project: whose graph moves it. line: the project's line with its
-    voice. head: where the partner's head is, metres, in this side's space. together: gestures are chosen so
-    that all have room; else each is asked for by itself, and many come to nothing.
+    voice. heads: where the others' heads are, metres, in this side's space, in the order of their numbers;
+    the last stands for any that are missing. together: gestures are chosen so that all have room; else each
+    is asked for by itself, and many come to nothing.
     """
-    out: list[AnyRequest] = [
-        Place(id=PARTNER, at=0.0, name=PARTNER, point=head),
-        Look(id="look", at=0.0, to=PARTNER),
-    ]
+    out = list(_looks(conversation, side, heads))
     if line is not None:
         out.append(Say(id="voice", at=0.0, line=line, gestures=False))
     out += [
@@ -96,7 +96,7 @@ def asks_of(
             out.append(Nod(id=key, at=s.start, priority=ANSWER))
             busy.append((s.start, s.end + 1.0))
     if "transition" in kinds["body"]:
-        own = _turns(conversation.sides[side].segments)
+        own = spans(conversation.sides[side].segments)
         for n, (start, end) in enumerate(own):
             if end - start > TURN and uniform(conversation.seed, str(side), f"shift {n}") < SHIFTS:
                 out.append(
@@ -110,6 +110,26 @@ def asks_of(
             )
             out.append(Fidget(id=f"fidget {n}", at=round(at, 3), layer=layer, priority=FILL))
     return out
+
+
+def _looks(conversation: Conversation, side: int, heads: Sequence[Point]) -> Iterator[AnyRequest]:
+    """Yield where the others' heads are, and who is looked at when."""
+    others = others_of(conversation, side)
+    if len(others) == 1:
+        yield Place(id=PARTNER, at=0.0, name=PARTNER, point=heads[0])
+        yield Look(id="look", at=0.0, to=PARTNER)
+        return
+    for n, other in enumerate(others):
+        name = f"{PARTNER} {other + 1}"
+        yield Place(id=name, at=0.0, name=name, point=heads[min(n, len(heads) - 1)])
+    for n, look in enumerate(looks_of(conversation, side)):
+        yield Look(id=f"look {n}", at=look.at, to=f"{PARTNER} {look.side + 1}")
+
+
+def partner_points(plan: Plan) -> dict[int, Point]:
+    """Return where the others' heads are in a plan of one of three or more, by the others' numbers."""
+    named = ((p.name.removeprefix(f"{PARTNER} "), p.point) for p in plan.track.places)
+    return {int(number) - 1: point for number, point in named if number.isdecimal()}
 
 
 def drawn_of(conversation: Conversation, side: int) -> frozenset[str]:
@@ -192,7 +212,7 @@ def drive(
     side: int,
     project: Project,
     line: str | None = None,
-    head: Point = (0.0, 1.6, 1.3),
+    heads: Sequence[Point] = (HEAD,),
     together: bool = True,
     more: Sequence[AnyRequest] = (),
 ) -> tuple[Performance, Plan]:
@@ -201,7 +221,7 @@ def drive(
 
     The same asks performed again give the same plan.
     """
-    asks = [*asks_of(conversation, side, project, line, head, together), *more]
+    asks = [*asks_of(conversation, side, project, line, heads, together), *more]
     plan = Plan(conversation.seed, 0.0)
     for _ in range(ROUNDS):
         plan = perform(project, asks, conversation.length, conversation.seed, idle=False)
@@ -257,7 +277,8 @@ def _modes(conversation: Conversation, side: int) -> Iterator[tuple[float, Mode]
     """Yield from when on a side talks, listens or idles: who speaks, with short silences counted to whoever
     spoke before.
     """
-    own, other = (_turns(conversation.sides[n].segments) for n in (side, 1 - side))
+    own = spans(conversation.sides[side].segments)
+    other = [span for n in others_of(conversation, side) for span in spans(conversation.sides[n].segments)]
     edges = sorted({0.0, *(x for start, end in (*own, *other) for x in (start, end))})
     last: Mode | None = None
     for at in edges:
@@ -268,17 +289,6 @@ def _modes(conversation: Conversation, side: int) -> Iterator[tuple[float, Mode]
         if mode != last:
             yield round(at, 3), mode
             last = mode
-
-
-def _turns(segments: tuple[Segment, ...]) -> list[tuple[float, float]]:
-    """Return when someone speaks, with pauses shorter than TURN closed."""
-    out: list[tuple[float, float]] = []
-    for s in segments:
-        if out and s.start - out[-1][1] < TURN:
-            out[-1] = (out[-1][0], s.end)
-        else:
-            out.append((s.start, s.end))
-    return out
 
 
 def _gaps(busy: list[tuple[float, float]], length: float) -> Iterator[tuple[float, float]]:

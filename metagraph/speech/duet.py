@@ -1,10 +1,12 @@
-"""Two characters who talk with each other: each with its own graph and voice, facing the other."""
+"""Characters who talk with each other, mostly two: each with its own graph and voice, two facing each other,
+several in a circle.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import cos, pi, sin
+from math import atan2, cos, hypot, pi, sin
 from pathlib import Path
 from typing import Any
 
@@ -14,16 +16,18 @@ from numpy.typing import NDArray
 
 from metagraph.errors import FileError
 from metagraph.graph import anatomy
-from metagraph.graph.conversation import Conversation, Side
+from metagraph.graph.conversation import Conversation, Side, others_of
 from metagraph.graph.model import Project
-from metagraph.graph.requests import Line, Performance
+from metagraph.graph.requests import Line, Performance, Point
 from metagraph.motion import rotation
+from metagraph.playback.life.body import body_of
 from metagraph.playback.life.voice import Voice
 from metagraph.playback.plan import Plan
 from metagraph.speech.delivered import Delivered, delivered
 from metagraph.speech.drive import drive
+from metagraph.speech.gaze_shares import GazeShare, gaze_shares
 from metagraph.speech.lines import read_spoken
-from metagraph.speech.mirroring import mirrored
+from metagraph.speech.mirroring import Mover, mirrored
 
 Array = NDArray[Any]
 HEAD = 1.6  # metres up, of a skeleton whose head is not known
@@ -47,11 +51,23 @@ class Stand:
         )
         return rotation.multiply(np.broadcast_to(about, rotations.shape), rotations), moved
 
+    def world(self, point: Point) -> Point:
+        """Return where a point of this one's space is, metres."""
+        x, y, z = point
+        turned = x * cos(self.turn) + z * sin(self.turn), z * cos(self.turn) - x * sin(self.turn)
+        return turned[0] + self.x, y, turned[1] + self.z
+
+    def own(self, point: Point) -> Point:
+        """Return where a point that all see is in this one's space, metres."""
+        x, y, z = point[0] - self.x, point[1], point[2] - self.z
+        turned = x * cos(self.turn) - z * sin(self.turn), x * sin(self.turn) + z * cos(self.turn)
+        return round(turned[0], 6), y, round(turned[1], 6)
+
 
 @dataclass(frozen=True)
 class DuetPart:
-    """One of the two. project: its graph, with its voice among the lines. performance: what it is asked.
-    told: what becomes of its rates.
+    """One of them. project: its graph, with its voice among the lines. performance: what it is asked.
+    told: what becomes of its rates. looks: of three or more, where it looks.
     """
 
     project: Project
@@ -59,22 +75,44 @@ class DuetPart:
     plan: Plan
     stand: Stand
     told: tuple[Delivered, ...] = ()
+    looks: tuple[GazeShare, ...] = ()
 
 
 @dataclass(frozen=True)
 class Duet:
     """notes: what could not be read, in words."""
 
-    parts: tuple[DuetPart, DuetPart]
+    parts: tuple[DuetPart, ...]
     length: float
     notes: tuple[str, ...] = ()
 
 
-def stands(distance: float) -> tuple[Stand, Stand]:
-    """Return where two stand who face each other, so many metres apart, seen from the side: the first on the
-    left.
+def stands(conversation: Conversation) -> tuple[Stand, ...]:
+    """Return where the sides of a conversation stand, seen from the front.
+
+    Two face each other, the first on the left. More stand in a circle, the first left of its opening towards
+    the viewer and the others clockwise after it, as far from their neighbours as two would be: in such a
+    circle each has all others in sight (Kendon's F-formation, 1990). Sides with a place of their own stand
+    there and face the middle of the others.
     """
-    return Stand(pi / 2, -distance / 2), Stand(-pi / 2, distance / 2)
+    count, distance = len(conversation.sides), conversation.distance
+    if count == 2:
+        circle = [Stand(pi / 2, -distance / 2), Stand(-pi / 2, distance / 2)]
+    else:
+        far = distance / (2 * sin(pi / count))
+        angles = [pi * (2 * n + 1) / count for n in range(count)]  # from the opening, to the left
+        circle = [Stand(atan2(sin(a), -cos(a)), -far * sin(a), far * cos(a)) for a in angles]
+    if all(side.place is None for side in conversation.sides):
+        return tuple(circle)
+    at = [(c.x, c.z) if s.place is None else s.place for c, s in zip(circle, conversation.sides, strict=True)]
+    return tuple(Stand(_facing(at, n), x, z) for n, (x, z) in enumerate(at))
+
+
+def _facing(at: Sequence[tuple[float, float]], n: int) -> float:
+    """Return how far one is turned who faces the middle of the others; to the viewer right in it."""
+    others = [place for m, place in enumerate(at) if m != n]
+    x, z = (sum(place[k] for place in others) / len(others) - at[n][k] for k in (0, 1))
+    return atan2(x, z) if hypot(x, z) > 1e-3 else 0.0
 
 
 def line_of(side: Side) -> Line:
@@ -82,9 +120,7 @@ def line_of(side: Side) -> Line:
     return Line(text=" ".join(w.text for w in side.words)[:20000], audio=side.audio, channel=side.channel)
 
 
-def voices(
-    conversation: Conversation, folder: Path
-) -> tuple[tuple[Voice | None, Voice | None], tuple[str, ...]]:
+def voices(conversation: Conversation, folder: Path) -> tuple[tuple[Voice | None, ...], tuple[str, ...]]:
     """Return each side's voice, None where its sound is missing, and what could not be read, in words.
     folder: what paths begin at.
     """
@@ -96,31 +132,40 @@ def voices(
         except FileError as error:
             found.append(None)
             notes.append(f"{side.name or f'Speaker {n}'}: {error}")
-    return (found[0], found[1]), tuple(dict.fromkeys(notes))
+    return tuple(found), tuple(dict.fromkeys(notes))
 
 
 def duet(
     conversation: Conversation, ident: str, projects: Sequence[Project], heard: Sequence[Voice | None]
 ) -> Duet:
-    """Return both characters' plans. ident: the conversation's id. projects: of each side. heard: their
+    """Return all characters' plans. ident: the conversation's id. projects: of each side. heard: their
     voices.
     """
-    heads = [_head(project) for project in projects]
-    known = [_with_voice(conversation, ident, n, projects[n], heard[n]) for n in (0, 1)]
-    at = [(0.0, round(heads[1 - n], 3), conversation.distance) for n in (0, 1)]
-    made = [drive(conversation, n, *known[n], at[n]) for n in (0, 1)]
-    taken_up = [
-        tuple(mirrored(conversation, n, known[n][0], made[n][1], known[1 - n][0], made[1 - n][1]))
-        for n in (0, 1)
-    ]
-    parts = []
-    for n, stand in enumerate(stands(conversation.distance)):
-        performance, plan = (
-            drive(conversation, n, *known[n], at[n], more=taken_up[n]) if taken_up[n] else made[n]
+    places = stands(conversation)
+    ahead = len(places) == 2 and all(side.place is None for side in conversation.sides)
+    movers: list[Mover] = []
+    driven = []
+    for n in range(len(conversation.sides)):
+        known = _with_voice(conversation, ident, n, projects[n], heard[n])
+        heads = tuple(
+            (0.0, round(_head(projects[m]), 3), conversation.distance)
+            if ahead
+            else places[n].own(places[m].world(_eyes(projects[m])))
+            for m in others_of(conversation, n)
         )
-        told = delivered(conversation, n, known[n][0], plan)
-        parts.append(DuetPart(known[n][0], performance, plan, stand, told))
-    return Duet((parts[0], parts[1]), conversation.length)
+        performance, plan = drive(conversation, n, *known, heads)
+        driven.append((known, heads, performance))
+        movers.append(Mover(n, known[0], plan))
+    parts = []
+    for n, (known, heads, performance) in enumerate(driven):
+        others, plan = [m for m in movers if m.side != n], movers[n].plan
+        taken_up = tuple(mirrored(conversation, movers[n], others))
+        if taken_up:
+            performance, plan = drive(conversation, n, *known, heads, more=taken_up)
+        told = delivered(conversation, n, known[0], plan)
+        looks = gaze_shares(conversation, n, known[0], plan)
+        parts.append(DuetPart(known[0], performance, plan, places[n], told, looks))
+    return Duet(tuple(parts), conversation.length)
 
 
 def _with_voice(
@@ -153,3 +198,11 @@ def _head(project: Project) -> float:
         return HEAD
     head = anatomy.roles(project).get("head")
     return HEAD if head is None else float(project.skeleton.globals(project.skeleton.rest)[1][head, 1])
+
+
+def _eyes(project: Project) -> Point:
+    """Return where a character's eyes are, metres, in its own space."""
+    if project.skeleton is None or body_of(project).empty:
+        return 0.0, round(_head(project), 3), 0.0
+    x, y, z = (round(v, 3) for v in body_of(project).eyes_at_rest)
+    return x, y, z

@@ -7,7 +7,8 @@ from the hips, so two characters of other studios with other names mirror each o
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,8 @@ from metagraph.graph.conversation import Conversation
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Go
 from metagraph.playback.choice import uniform
-from metagraph.playback.plan import Plan
+from metagraph.playback.plan import Cue, Plan
+from metagraph.speech.addressing import roles_of
 
 Array = NDArray[Any]
 
@@ -28,34 +30,55 @@ OTHER = (0, 1, 3, 2, 5, 4)  # their places in a mirror
 NEARER = 0.8  # of how unlike the present stance is: one that is no more like is not taken up
 
 
-def mirrored(
-    conversation: Conversation, side: int, project: Project, plan: Plan, other: Project, seen: Plan
-) -> Iterator[Go]:
-    """Yield the stances of the body that a side takes up while it listens. project, plan: its own; other,
-    seen: the partner's. Nothing where either has no stances to tell apart, or bodies cannot be compared.
+@dataclass(frozen=True, slots=True)
+class Mover:
+    """A side with the project whose graph moves it, and its plan."""
+
+    side: int
+    project: Project
+    plan: Plan
+
+
+def mirrored(conversation: Conversation, own: Mover, others: Sequence[Mover]) -> Iterator[Go]:
+    """Yield the stances of the body that a side takes up while it listens: of several others, of whose turn
+    it is. Nothing where either has no stances to tell apart, or bodies cannot be compared.
     """
-    share = conversation.sides[side].rates.mirror
-    own, theirs = stance_shapes(project), stance_shapes(other)
-    if share <= 0 or len(own) < 2 or len(theirs) < 2:
+    side, plan = own.side, own.plan.layers["body"]
+    share, shapes = conversation.sides[side].rates.mirror, stance_shapes(own.project)
+    if share <= 0 or len(shapes) < 2:
         return
     taken: tuple[float, str] | None = None
     speaks = [(s.start, s.end) for s in conversation.sides[side].segments]
-    for n, cue in enumerate(seen.layers["body"].cues):
-        at = cue.end + DELAY[0] + DELAY[1] * uniform(conversation.seed, str(side), f"mirror {n}", "when")
-        if cue.then == cue.stance or cue.then not in theirs or at >= conversation.length:
+    theirs = {o.side: stance_shapes(o.project) for o in others}
+    for cue, other, key, at in sorted(_seen(conversation, side, others), key=lambda x: x[3]):
+        shown = theirs[other]
+        if len(shown) < 2 or cue.then == cue.stance or cue.then not in shown or at >= conversation.length:
             continue
         if any(start <= at < end for start, end in speaks):
             continue
-        if uniform(conversation.seed, str(side), f"mirror {n}") >= share:
+        if uniform(conversation.seed, str(side), key) >= share:
             continue
-        wanted = theirs[cue.then][OTHER, :] * (-1, 1, 1)
-        apart = {stance: float(np.linalg.norm(shape - wanted)) for stance, shape in own.items()}
-        best, now = min(apart, key=lambda s: apart[s]), plan.layers["body"].stance_at(at)
-        if taken is not None and plan.layers["body"].stance_at(taken[0]) == now:
+        wanted = shown[cue.then][OTHER, :] * (-1, 1, 1)
+        apart = {stance: float(np.linalg.norm(shape - wanted)) for stance, shape in shapes.items()}
+        best, now = min(apart, key=lambda s: apart[s]), plan.stance_at(at)
+        if taken is not None and plan.stance_at(taken[0]) == now:
             now = taken[1]  # nothing else has changed it since
         if best != now and apart[best] < NEARER * apart.get(now or "", np.inf):
             taken = at, best
-            yield Go(id=f"mirror {n}", at=round(at, 3), layer="body", stance=best, priority=1)
+            yield Go(id=key, at=round(at, 3), layer="body", stance=best, priority=1)
+
+
+def _seen(
+    conversation: Conversation, side: int, others: Sequence[Mover]
+) -> Iterator[tuple[Cue, int, str, float]]:
+    """Yield what others' bodies do, whose it is, its key, and when it would be taken up, seconds."""
+    listens = [r for r in roles_of(conversation, side) if r.part in ("addressed", "aside")]
+    for other in others:
+        for n, cue in enumerate(other.plan.layers["body"].cues):
+            key = f"mirror {n}" if len(others) == 1 else f"mirror {other.side + 1} {n}"
+            at = cue.end + DELAY[0] + DELAY[1] * uniform(conversation.seed, str(side), key, "when")
+            if len(others) == 1 or any(r.whom == other.side and r.start <= cue.end < r.end for r in listens):
+                yield cue, other.side, key, at
 
 
 def stance_shapes(project: Project) -> dict[str, Array]:

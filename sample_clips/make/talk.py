@@ -1,5 +1,5 @@
-"""Speaks conversations of two with eSpeak NG: two channels, and when which word is said, as the synthesiser
-itself tells.
+"""Speaks conversations with eSpeak NG: a channel for each who talks, and when which word is said, as the
+synthesiser itself tells.
 
     python -m sample_clips.make.talk
 
@@ -36,9 +36,9 @@ class MissingError(RuntimeError):
 
 @dataclass(frozen=True)
 class Turn:
-    """What one says without a pause. side: 0 or 1. after: seconds from the end of the turn before, less than
-    0 to talk into it. clauses: each with its stressed word in *stars*; one of a kind other than clause says
-    so before a colon: "response: uh-huh".
+    """What one says without a pause. side: who, from 0. after: seconds from the end of the turn before, less
+    than 0 to talk into it. clauses: each with its stressed word in *stars*; one of a kind other than clause
+    says so before a colon: "response: uh-huh".
     """
 
     side: int
@@ -62,8 +62,8 @@ class Said:
 
 @dataclass(frozen=True)
 class Talk:
-    """samples `[2, N]`, `rate` a second. words: side -> (text, start, end). said: what was written, by side
-    and start.
+    """samples `[C, N]`, a channel a side, `rate` a second. words: side -> (text, start, end). said: what was
+    written, by side and start.
     """
 
     samples: Array
@@ -91,7 +91,8 @@ DIALOGUE = (
     Turn(0, 0.6, ("then *you* should try it", "some *day* next week")),
     Turn(1, 0.3, ("response: absolutely",)),
 )
-VOICES = (("en-us", 38, 165), ("en-us+f3", 58, 175))  # voice, pitch 0..100, words a minute
+SpeakingVoice = tuple[str, int, int]  # name, pitch 0..100, words a minute
+VOICES: tuple[SpeakingVoice, ...] = (("en-us", 38, 165), ("en-us+f3", 58, 175))
 
 
 def write_sound(path: Path, samples: Array, rate: int) -> None:
@@ -117,18 +118,25 @@ def write_words(path: Path, talk: Talk) -> None:
 
 
 @cache
-def speak(turns: Sequence[Turn], noise: float = 0.0006, crosstalk: float | None = None) -> Talk:
-    """Return turns as they sound. Raises MissingError where eSpeak NG is not there."""
+def speak(
+    turns: Sequence[Turn],
+    noise: float = 0.0006,
+    crosstalk: float | None = None,
+    voices: Sequence[SpeakingVoice] = VOICES,
+) -> Talk:
+    """Return turns as they sound, of as many who talk as there are voices. crosstalk: dB of the others in
+    each microphone. Raises MissingError where eSpeak NG is not there.
+    """
     pieces: list[tuple[int, float, Array, list[tuple[str, float, float]], list[Said]]] = []
     at = 0.0
     for turn in turns:
         start = round(at + turn.after, 3)
-        samples, own, parts = _turn(turn, start)
+        samples, own, parts = _turn(turn, start, voices[turn.side])
         pieces.append((turn.side, start, samples, own, parts))
         at = start + len(samples) / RATE
     count = round((max(start + len(samples) / RATE for _, start, samples, *_ in pieces) + 0.8) * RATE)
-    out = np.zeros((2, count))
-    words: list[list[tuple[str, float, float]]] = [[], []]
+    out = np.zeros((len(voices), count))
+    words: list[list[tuple[str, float, float]]] = [[] for _ in voices]
     said: list[Said] = []
     for side, start, samples, own, parts in pieces:
         first = round(start * RATE)
@@ -136,13 +144,15 @@ def speak(turns: Sequence[Turn], noise: float = 0.0006, crosstalk: float | None 
         words[side] += own
         said += parts
     if crosstalk is not None:
-        out = out + 10 ** (crosstalk / 20) * np.roll(out[::-1], 40, 1)
+        out = out + 10 ** (crosstalk / 20) * np.roll(out.sum(0) - out, 40, 1)
     out += noise * np.random.default_rng(7).standard_normal(out.shape)
     by_start = tuple(tuple(sorted(w, key=lambda x: x[1])) for w in words)
     return Talk(out, RATE, by_start, tuple(sorted(said, key=lambda s: (s.side, s.start))))
 
 
-def _turn(turn: Turn, at: float) -> tuple[Array, list[tuple[str, float, float]], list[Said]]:
+def _turn(
+    turn: Turn, at: float, voice: SpeakingVoice
+) -> tuple[Array, list[tuple[str, float, float]], list[Said]]:
     """Return a turn's samples, its words and what they are, in seconds of the conversation."""
     parts = [
         (c.partition(": ")[0] if ": " in c else "clause", c.partition(": ")[2] or c) for c in turn.clauses
@@ -155,7 +165,7 @@ def _turn(turn: Turn, at: float) -> tuple[Array, list[tuple[str, float, float]],
     text = " ".join(
         "<mark name='w'/>" + re.sub(r"\*(\w+)\*", _LOUD, word) for _, c in parts for word in c.split()
     )
-    samples, starts, end = synthesise(text, *VOICES[turn.side])
+    samples, starts, end = synthesise(text, *voice)
     count = sum(len(words) for _, words, _ in plain)
     if len(starts) != count:
         raise AssertionError(f"{len(starts)} words were spoken of the {count} of {text!r}")

@@ -24,6 +24,7 @@ from hypothesis import strategies as st
 from metagraph.engines import export as engine
 from metagraph.engines.contract import FORMAT, schema
 from metagraph.engines.export import ExportError, export, schema_text, to_document
+from metagraph.engines.export_rig import read_voices, voices_of
 from metagraph.engines.reading import read_export
 from metagraph.errors import FileError
 from metagraph.formats.gltf import read_gltf_clips
@@ -33,8 +34,10 @@ from metagraph.graph import edits
 from metagraph.graph.check import check
 from metagraph.graph.expand import connections, size
 from metagraph.graph.model import LAYERS, Markov, Project
+from metagraph.graph.requests import Line
 from metagraph.motion.skeleton import unique_names
 from metagraph.playback import choice, hashing, markov
+from metagraph.playback.life.voice import silent
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import ease, pose_at
 from tests.projects import clip, projects
@@ -491,3 +494,11 @@ def exported_and_valid(project: Project, ids: list[str], tmp_path: Path, idle: i
     assert all(e.motion is not None and e.motion.skeleton == project.skeleton for e in back.clips.values())
     assert len(gltf(made.glb)["animations"]) == 3 + gestures
     khronos(made.glb)
+
+
+def test_stresses_of_a_voice_come_back_however_near_each_other() -> None:
+    """A conversation's are the peaks of its clauses: blinks would come elsewhere without some of them."""
+    spoken = replace(silent(4.0), stresses=np.array([0.5, 1.2, 3.0]))
+    project = Project(lines={"said": Line(text="so")}, voices={"said": spoken})
+    (back,) = read_voices(voices_of(project)).values()
+    assert back.accents.tolist() == [0.5, 1.2, 3.0]

@@ -17,7 +17,7 @@ from metagraph.errors import FileError
 from metagraph.formats.conversation_writers import write_elan, write_json, write_textgrid
 from metagraph.formats.elan import read_elan
 from metagraph.formats.transcripts import read_transcript
-from metagraph.graph.conversation import SPOKEN, Conversation, Segment, Side, Word
+from metagraph.graph.conversation import EVERYBODY, SPOKEN, Conversation, Segment, Side, Word
 from metagraph.speech.textgrid import read_textgrid
 
 WRITERS: dict[str, Callable[[Conversation, Path], None]] = {
@@ -148,3 +148,22 @@ def test_any_conversation_keeps_its_segments(
         back = read_transcript(tmp_path / f"a{suffix}")
         for s, t in zip(found, back.segments["A"], strict=True):
             assert (s.kind, s.start, s.end, s.peak) == (t.kind, t.start, t.end, t.peak), suffix
+
+
+@pytest.mark.parametrize("suffix", WRITERS)
+def test_of_three_whom_each_segment_is_said_to_is_read_back(tmp_path: Path, suffix: str) -> None:
+    rows = ((1, "you"), (EVERYBODY, "all of you"), (None, ""), (2, "to us: now"))
+    ann = Side(
+        name="Ann",
+        segments=tuple(Segment("clause", n, n + 0.9, n + 0.5, text, to) for n, (to, text) in enumerate(rows)),
+    )
+    cleo = Side(name="Cleo Day", segments=(Segment("response", 5, 6, None, "yes", 0),))
+    made = Conversation(name="t", length=9.0, sides=(ann, BEN, cleo))
+    WRITERS[suffix](made, tmp_path / f"a{suffix}")
+    found = read_transcript(tmp_path / f"a{suffix}")
+    assert found.segments == {"Ann": ann.segments, "Ben": BEN.segments, "Cleo Day": cleo.segments}
+
+
+def test_three_of_one_name_stay_apart(tmp_path: Path) -> None:
+    write_textgrid(Conversation(name="t", length=9.0, sides=(ANN, ANN, BEN, ANN)), tmp_path / "a.TextGrid")
+    assert list(read_transcript(tmp_path / "a.TextGrid").speakers) == ["Ann 1", "Ann 2", "Ben", "Ann 4"]

@@ -4,6 +4,7 @@ with a remedy.
 
 from __future__ import annotations
 
+import json
 import shutil
 from concurrent.futures import CancelledError
 from pathlib import Path
@@ -17,10 +18,14 @@ from metagraph.errors import FileError
 from metagraph.formats.conversation_languages import Speaking
 from metagraph.formats.conversation_writers import write_elan, write_json, write_textgrid
 from metagraph.formats.conversations import Read, read_conversation
+from metagraph.formats.transcripts import read_transcript
 from metagraph.graph.conversation import Segment, Side
 from metagraph.graph.conversation_edits import add_conversation
 from metagraph.graph.model import Project
-from tests.speech import talk
+from metagraph.speech.addressing import turns_of
+from sample_clips.make import three as maker
+from sample_clips.make.talk import MissingError
+from tests.speech import group, talk
 
 SPEECH = Path(__file__).resolve().parents[3] / "shared" / "data" / "praatio-speech"
 RATE = 16000
@@ -116,9 +121,9 @@ def test_one_channel_is_shared_when_a_transcript_names_the_speakers(
     spoken = talk.speak()
     mono = sound(tmp_path / "mono.wav", spoken.samples.sum(0), rate=spoken.rate)
     read = read_conversation([mono], [files[1]])
-    assert [s.channel for s in read.conversation.sides] == [None, None] and said(read, "both sides share it")
+    assert [s.channel for s in read.conversation.sides] == [None, None] and said(read, "all sides share it")
     assert counts(read.conversation.sides[1])["response"] == 4
-    with pytest.raises(FileError, match=r"one channel.*Give two channels"):
+    with pytest.raises(FileError, match=r"one channel.*Give a channel"):
         read_conversation([mono])
     double = sound(tmp_path / "double.wav", spoken.samples.sum(0), spoken.samples.sum(0), rate=spoken.rate)
     with pytest.raises(FileError, match="same sound in both"):
@@ -239,9 +244,12 @@ def test_what_is_no_sound_says_so(tmp_path: Path, content: bytes) -> None:
         read_conversation([tmp_path / "gone.wav"])
 
 
-def test_three_channels_are_refused_with_a_remedy(tmp_path: Path) -> None:
-    with pytest.raises(FileError, match=r"3 channels.*Save the two"):
-        read_conversation([sound(tmp_path / "a.wav", buzz(2), buzz(2), buzz(2))])
+def test_more_channels_than_may_talk_are_refused_with_a_remedy(tmp_path: Path) -> None:
+    some = [np.roll(buzz(2), 100 * n) for n in range(9)]
+    with pytest.raises(FileError, match=r"9 channels.*up to 8.*Save the speakers"):
+        read_conversation([sound(tmp_path / "a.wav", *some)])
+    with pytest.raises(FileError, match=r"3 channels.*conversation of two"):
+        read_conversation([sound(tmp_path / "b.wav", *some[:3])], most=2)
 
 
 def test_rates_and_lengths_that_differ_are_told(tmp_path: Path) -> None:
@@ -273,11 +281,11 @@ def test_an_empty_transcript_leaves_it_to_loudness(files: tuple[Path, Path], tmp
     )
 
 
-def test_more_than_two_speakers_are_told(files: tuple[Path, Path], tmp_path: Path) -> None:
+def test_more_speakers_than_there_may_be_are_told(files: tuple[Path, Path], tmp_path: Path) -> None:
     (tmp_path / "t.ctm").write_text(
         "x A 1 0.5 so\nx A 2 0.5 we\nx B 11 0.4 yes\nx B 12 0.4 no\nx C 3 0.5 me\n"
     )
-    read = read_conversation([files[0]], [tmp_path / "t.ctm"])
+    read = read_conversation([files[0]], [tmp_path / "t.ctm"], most=2)
     assert said(read, "3 speakers", "'C'") and [s.name for s in read.conversation.sides] == ["A", "B"]
 
 
@@ -300,3 +308,149 @@ def test_real_recordings_make_sides() -> None:
         0
     ].peak == pytest.approx(0.6, abs=0.1)
     assert bobby.segments and all(s.kind == "clause" for s in bobby.segments)
+
+
+# --- more than two
+
+
+@pytest.fixture(scope="module")
+def three() -> talk.Talk:
+    return group.spoken()
+
+
+def named_cues(path: Path, spoken: talk.Talk, way: str, head: str = "") -> Path:
+    """Write what was said as subtitles. way: how a name stands before words."""
+    rows = sorted(spoken.said, key=lambda s: s.start)
+    cues = [
+        f"{int(s.start // 60):02d}:{s.start % 60:06.3f} --> {int(s.end // 60):02d}:{s.end % 60:06.3f}\n"
+        + way.format(group.NAMES[s.side])
+        + s.text
+        for s in rows
+    ]
+    path.write_text(head + "\n\n".join(cues) + "\n")
+    return path
+
+
+def heard_of(read: Read) -> list[tuple[str, int | None, int]]:
+    return [(s.name, s.channel, len(s.words)) for s in read.conversation.sides]
+
+
+def test_three_channels_are_three_who_talk_by_loudness(tmp_path: Path, three: talk.Talk) -> None:
+    read = read_conversation([sound(tmp_path / "a.wav", *three.samples, rate=three.rate)])
+    assert [s.channel for s in read.conversation.sides] == [0, 1, 2]
+    for n, side in enumerate(read.conversation.sides):
+        own = [(s.start, s.end) for s in three.said if s.side == n]
+        middles = [(s.start + s.end) / 2 for s in side.segments]
+        assert middles and all(any(a - 0.3 < m < b + 0.3 for a, b in own) for m in middles)
+
+
+def test_a_file_for_each_of_three_with_one_transcript_or_one_for_each(
+    tmp_path: Path, three: talk.Talk
+) -> None:
+    audio = [sound(tmp_path / f"{n}.wav", three.samples[n], rate=three.rate) for n in range(3)]
+    whole = named_cues(tmp_path / "all.vtt", three, "<v {}>", "WEBVTT\n\n")
+    read = read_conversation(audio[::-1], [whole])
+    assert [s.name for s in read.conversation.sides] == ["Cleo", "Ben", "Ann"], (
+        "whose words are whose is heard"
+    )
+    each = []
+    for n in range(3):
+        path = tmp_path / f"words {n}.ctm"
+        path.write_text("".join(f"x A {a} {b - a} {w}\n" for w, a, b in three.words[n]))
+        each.append(path)
+    read = read_conversation(audio, each)
+    assert [s.name for s in read.conversation.sides] == ["words 0", "words 1", "words 2"] and not read.notes
+    turned = read_conversation(audio, [each[1], each[2], each[0]])
+    assert said(turned, "better than the other way round", "Give them in the order of the sides")
+    with pytest.raises(ValueError, match="3 sounds and 2 transcripts"):
+        read_conversation(audio, each[:2])
+
+
+@pytest.mark.parametrize("way", ["<v {}>", "{}: ", "[{}] ", "({}) ", "[{}]: "])
+def test_one_channel_is_shared_by_three_whom_a_transcript_names(
+    tmp_path: Path, three: talk.Talk, way: str
+) -> None:
+    mono = sound(tmp_path / "mono.wav", three.samples.sum(0), rate=three.rate)
+    head = "WEBVTT\n\n" if way.startswith("<") else ""
+    read = read_conversation([mono], [named_cues(tmp_path / "a.vtt", three, way, head)])
+    counted = [(name, None, len(words)) for name, words in zip(group.NAMES, three.words, strict=False)]
+    assert heard_of(read) == counted
+    kinds = [[s.kind for s in side.segments] for side in read.conversation.sides]
+    assert "hesitation" in kinds[1] and "response" in kinds[2]
+
+
+def test_three_named_in_a_diarised_transcript_of_two_channels_share_one(
+    tmp_path: Path, three: talk.Talk
+) -> None:
+    two = np.stack([three.samples[0] + three.samples[2], three.samples[1]])
+    path = tmp_path / "a.json"
+    rows = [
+        {"start": s.start, "end": s.end, "text": s.text, "speaker": f"SPEAKER_0{s.side}"}
+        for s in sorted(three.said, key=lambda s: s.start)
+    ]
+    path.write_text(json.dumps({"segments": rows}))
+    read = read_conversation([sound(tmp_path / "a.wav", *two, rate=three.rate)], [path])
+    assert [s.channel for s in read.conversation.sides] == [0, 1, 0]
+    assert said(read, "names 3 speakers of 2 channels", "some share one")
+
+
+def test_channels_in_which_nothing_is_heard_are_left_out_of_more_than_two(
+    tmp_path: Path, three: talk.Talk
+) -> None:
+    quiet = np.zeros_like(three.samples[0])
+    some = (three.samples[0], quiet, three.samples[1], quiet)
+    read = read_conversation([sound(tmp_path / "a.wav", *some, rate=three.rate)])
+    assert [s.channel for s in read.conversation.sides] == [0, 2]
+    assert said(read, "channel 2, channel 4 left out")
+
+
+def test_of_more_speakers_than_may_talk_those_who_say_most_are_kept(tmp_path: Path) -> None:
+    rows = [(f"S{n}", n + 0.1 * k) for n in range(10) for k in range(2 + (n > 1))]
+    (tmp_path / "a.ctm").write_text("".join(f"x {who} {at:.2f} 0.08 so\n" for who, at in rows))
+    read = read_conversation([sound(tmp_path / "a.wav", buzz(11))], [tmp_path / "a.ctm"])
+    assert [s.name for s in read.conversation.sides] == [f"S{n}" for n in range(2, 10)]
+    assert said(read, "10 speakers", "'S0', 'S1'")
+
+
+def test_three_who_speak_a_language_each_are_read_each_in_theirs_and_name_each_other(tmp_path: Path) -> None:
+    try:
+        spoken = maker.three()
+    except MissingError as error:
+        pytest.skip(str(error))
+    maker.write_cues(tmp_path / "a.vtt", spoken.said)
+    audio = sound(tmp_path / "a.wav", *spoken.samples, rate=spoken.rate)
+    made = read_conversation([audio], [tmp_path / "a.vtt"]).conversation
+    assert [(s.name, s.language) for s in made.sides] == [("Ann", "en"), ("Uwe", "de"), ("Zoé", "fr")]
+    kinds = [{s.text for s in side.segments if s.kind == "response"} for side in made.sides]
+    assert kinds == [{"great"}, {"genau"}, {"d'accord", "oui"}]
+    assert [(t.side, t.to) for t in turns_of(made)] == [(0, 1), (1, 0), (2, 0), (0, 2), (2, 0)]
+
+
+@pytest.mark.skipif(not SPEECH.is_dir(), reason="the recordings of praatIO are not here")
+def test_three_real_voices_one_after_another_are_told_apart_in_channels_and_by_names_in_one(
+    tmp_path: Path,
+) -> None:
+    import soundfile
+
+    voices = [("bobby_16bit_16khz", "bobby_words"), ("mary", "mary"), ("damon_set_test", "damon_set_test")]
+    heard, at = np.zeros((3, 0)), 0.0
+    lines = []
+    for n, (name, words) in enumerate(voices):
+        samples, rate = soundfile.read(str(SPEECH / f"{name}.wav"), always_2d=True)
+        one = samples[:, 0][:: max(1, rate // RATE)][: 4 * RATE]
+        part = np.zeros((3, len(one) + RATE // 2))
+        part[n, : len(one)] = one
+        (found,) = read_transcript(SPEECH / f"{words}.TextGrid").speakers.values()
+        lines += [f"x {group.NAMES[n]} {at + w.start:.3f} {w.end - w.start:.3f} {w.text}" for w in found]
+        heard, at = np.concatenate([heard, part], 1), at + part.shape[1] / RATE
+    (tmp_path / "all.ctm").write_text("\n".join(lines))
+    apart = read_conversation([sound(tmp_path / "a.wav", *heard)], [tmp_path / "all.ctm"])
+    assert [(s.name, s.channel) for s in apart.conversation.sides] == [("Ann", 0), ("Ben", 1), ("Cleo", 2)]
+    mono = read_conversation([sound(tmp_path / "b.wav", heard.sum(0))], [tmp_path / "all.ctm"])
+    for one, other in zip(apart.conversation.sides, mono.conversation.sides, strict=True):
+        assert [s.text for s in one.segments] == [s.text for s in other.segments] and one.segments
+        for a, b in zip(one.segments, other.segments, strict=True):
+            assert a.peak is not None and b.peak == pytest.approx(a.peak, abs=0.05)
+    alone = read_conversation([tmp_path / "a.wav"])
+    starts = [side.segments[0].start for side in alone.conversation.sides]
+    assert starts == sorted(starts) and starts[0] < 1.0, "by loudness, each where it speaks"

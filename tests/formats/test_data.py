@@ -15,6 +15,8 @@ from hypothesis import strategies as st
 from metagraph.formats.data import above, from_data, skeleton_data, skeleton_from, to_data
 from metagraph.formats.fields import DataError
 from metagraph.graph import edits, manual_edits
+from metagraph.graph.conversation import EVERYBODY, Conversation, Segment, Side
+from metagraph.graph.conversation_edits import add_conversation
 from metagraph.graph.manual import ANY
 from metagraph.graph.model import LAYERS, Project
 from tests.projects import SKELETON, clip, projects
@@ -308,3 +310,32 @@ def test_whatever_stands_in_a_field_the_error_says_where(chance: random.Random, 
 def test_every_layer_is_there_whatever_the_data_holds() -> None:
     assert set(from_data({"metagraph": 1}).graphs) == set(LAYERS)
     assert replace(from_data({"metagraph": 1}), name="untitled") == Project()
+
+
+def test_what_three_say_to_whom_and_where_they_stand_is_kept_and_of_two_nothing_is_added() -> None:
+    three = Conversation(
+        name="three",
+        length=9.0,
+        sides=(
+            Side(name="a", place=(0.5, -1.0), segments=(Segment("clause", 0, 1, 0.5, "", 2),)),
+            Side(name="b", segments=(Segment("clause", 2, 3, None, "", EVERYBODY),)),
+            Side(name="c", segments=(Segment("clause", 4, 5),)),
+        ),
+    )
+    project = add_conversation(Project(), three)[0]
+    data = to_data(project)
+    assert from_data(data) == project
+    (kept,) = data["conversations"].values()
+    first, second, third = kept["sides"]
+    assert first["place"] == [0.5, -1.0] and first["segments"][0]["to"] == 2
+    assert second["segments"][0]["to"] == -1 and "place" not in second
+    assert set(third["segments"][0]) == {"kind", "start", "end"}
+    assert data["metagraph"] == 1, "files of two are what they were"
+
+
+def test_a_segment_said_to_who_is_not_there_is_told_by_its_place() -> None:
+    side = {"name": "a", "segments": [{"kind": "clause", "start": 0, "end": 1, "to": 3}]}
+    data = {"metagraph": 1, "conversations": {"v1": {"name": "t", "length": 2.0, "sides": [side, {}, {}]}}}
+    with pytest.raises(DataError, match="side 3, which is not there") as caught:
+        from_data({**to_data(Project()), **data})
+    assert caught.value.where.startswith("conversations")

@@ -150,6 +150,13 @@ def test_who_speaks_is_one_of_four():
     assert (second[:, [1, 0, 2, 3]] == first).all()
 
 
+def test_of_three_whoever_else_speaks_is_the_partner():
+    sides = [Side(segments=(Segment("clause", n, n + 1.5),)) for n in (0.0, 1.0, 3.0)]
+    talk = Conversation(name="t", length=6, sides=tuple(sides))
+    first = conversation_activity(talk, 0, 150)
+    assert [int(first[n].argmax()) for n in (0, 30, 40, 70, 80, 130)] == [0, 2, 1, 3, 1, 3]
+
+
 def test_without_words_loudness_tells_who_speaks():
     own, other = babble(8, 3), babble(8, 4)
     own[: 4 * RATE] *= 1e-3

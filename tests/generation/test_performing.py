@@ -118,6 +118,17 @@ def test_sides_hear_their_own_voice_first_and_what_is_missing_is_told(sample, tm
     )
 
 
+def test_of_three_all_others_are_one_voice_each_heard_once(sample, tmp_path):
+    talk = talking(sample, tmp_path).conversations["v1"]
+    ada, ben = side_sound(talk, 0, tmp_path)[0]
+    three = msgspec.structs.replace(talk, sides=(*talk.sides, talk.sides[1]))
+    assert np.allclose(side_sound(three, 0, tmp_path)[0], (ada, ben)), "the third shares the second's channel"
+    other = msgspec.structs.replace(talk, sides=(*talk.sides, talk.sides[0]))
+    assert np.allclose(side_sound(other, 1, tmp_path)[0], (ben, ada))
+    apart = msgspec.structs.replace(talk, sides=(talk.sides[0], *talk.sides))
+    assert np.allclose(side_sound(apart, 0, tmp_path)[0], (ada, ada + ben))
+
+
 def test_a_sound_that_is_gone_is_an_error_that_names_it(sample, tmp_path):
     project = talking(sample, tmp_path)
     (tmp_path / "talk.wav").unlink()

@@ -10,7 +10,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.graph import conversation_edits as c
-from metagraph.graph.conversation import SHORTEST, SPOKEN, Conversation, Segment, Side, Word, lists_of
+from metagraph.graph.conversation import (
+    EVERYBODY,
+    SHORTEST,
+    SPOKEN,
+    Conversation,
+    Segment,
+    Side,
+    Word,
+    lists_of,
+    with_sides,
+)
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
 
@@ -241,3 +251,44 @@ def test_any_edits_keep_segments_sorted_apart_and_inside(
                 end = s.end
     kept = msgspec.json.decode(msgspec.json.encode(now.conversations[ident]), type=Conversation)
     assert kept == now.conversations[ident]
+
+
+# --- more than two
+
+
+def three() -> Project:
+    made = Conversation(
+        name="three",
+        length=9.0,
+        sides=tuple(Side(name=n, segments=(Segment("clause", k, k + 1.0),)) for k, n in enumerate("abc")),
+    )
+    return c.add_conversation(Project(), made)[0]
+
+
+def test_whom_segments_are_said_to_is_set_and_taken_back() -> None:
+    project = three()
+    (ident,) = project.conversations
+    said = c.address_segments(project, ident, {(0, 0), (2, 0)}, 1)
+    assert [s.segments[0].to for s in said.conversations[ident].sides] == [1, None, 1]
+    said = c.address_segments(said, ident, {(2, 0)}, EVERYBODY)
+    assert said.conversations[ident].sides[2].segments[0].to == EVERYBODY
+    both = {(0, 0), (2, 0)}
+    assert c.address_segments(said, ident, both, None) == project
+    for to in (0, 3, -2):
+        with pytest.raises(EditError, match="nobody speaks to that one"):
+            c.address_segments(project, ident, {(0, 0)}, to)
+
+
+def test_some_of_those_who_talk_in_another_order_still_speak_to_the_same() -> None:
+    project = three()
+    (ident,) = project.conversations
+    said = c.address_segments(project, ident, {(0, 0)}, 2)
+    said = c.address_segments(said, ident, {(2, 0)}, 1)
+    whole = said.conversations[ident]
+    assert with_sides(whole, (0, 1, 2)) is whole
+    some = with_sides(whole, (2, 0))
+    assert [s.name for s in some.sides] == ["c", "a"]
+    assert [s.segments[0].to for s in some.sides] == [None, 0]
+    for order in ((0,), (0, 0), (1, 1, 2)):
+        with pytest.raises(ValueError, match="two or more"):
+            with_sides(whole, order)

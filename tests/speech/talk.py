@@ -52,10 +52,15 @@ TURNS = (
 )
 
 
-def speak(turns: Sequence[Turn] = TURNS, noise: float = 0.0006, crosstalk: float | None = None) -> Talk:
+def speak(
+    turns: Sequence[Turn] = TURNS,
+    noise: float = 0.0006,
+    crosstalk: float | None = None,
+    voices: Sequence[maker.SpeakingVoice] = maker.VOICES,
+) -> Talk:
     """Return turns as they sound. Skips the test where eSpeak NG is not there."""
     try:
-        return maker.speak(turns, noise, crosstalk)
+        return maker.speak(turns, noise, crosstalk, voices)
     except MissingError as error:
         pytest.skip(str(error))
 

@@ -1,4 +1,4 @@
-"""Two characters who talk with each other."""
+"""Characters who talk with each other: two, and more."""
 
 from __future__ import annotations
 
@@ -8,10 +8,14 @@ import msgspec
 import numpy as np
 import pytest
 
-from metagraph.graph.conversation import Conversation, Segment, Side, Word
+from metagraph.graph.conversation import Conversation, Rates, Segment, Side, Word, heard_by
 from metagraph.graph.model import Project
+from metagraph.playback.plan import Plan
+from metagraph.speech.drive import drive, partner_points
 from metagraph.speech.duet import duet, stands, voices
+from metagraph.speech.mirroring import Mover, mirrored
 from metagraph.speech.peak_blinks import peak_blinks
+from tests.speech.group import group, said
 
 RATE = 16000
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips"
@@ -102,7 +106,7 @@ def test_the_two_stand_so_far_apart_and_face_each_other(distance: float) -> None
     turned = np.array([[0.0, 0.0, 0.0, 1.0]])
     ahead = np.array([[0.0, 1.0, 0.5]])
     places = []
-    for n, stand in enumerate(stands(distance)):
+    for n, stand in enumerate(stands(talk(distance=distance))):
         _, feet = stand.placed(turned, np.zeros((1, 3)))
         _, nose = stand.placed(turned, ahead)
         places.append(feet[0])
@@ -112,7 +116,7 @@ def test_the_two_stand_so_far_apart_and_face_each_other(distance: float) -> None
 
 def test_what_is_placed_turns_with_its_joints() -> None:
     """A joint's own axes, and what hangs on it, are turned alike."""
-    stand = stands(2.0)[0]
+    stand = stands(talk(distance=2.0))[0]
     rotations, positions = stand.placed(np.tile([0.0, 0.0, 0.0, 1.0], (3, 2, 1)), np.ones((3, 2, 3)))
     assert rotations.shape == (3, 2, 4) and positions.shape == (3, 2, 3)
     assert positions[0, 0] == pytest.approx([0.0, 1.0, -1.0])
@@ -142,3 +146,87 @@ def test_blinks_by_the_papers_rule_are_those_and_no_others(sample: Project) -> N
         peaks = [s.peak for s in side.segments if s.peak is not None]
         expected = peak_blinks(peaks, conversation.length, conversation.seed, str(n))
         assert part.plan.life.blinks.starts.tolist() == pytest.approx(expected, abs=1e-9)
+
+
+def three(**changes: object) -> Conversation:
+    return msgspec.structs.replace(
+        group(3, said(0, 1, 2), said(1, 2.5, 4), said(2, 5, 6), length=8.0),
+        **changes,  # type: ignore[arg-type]
+    )
+
+
+@pytest.mark.parametrize("count", [3, 4, 8])
+def test_several_stand_in_a_circle_as_far_from_their_neighbours_as_two_would(count: int) -> None:
+    found = stands(group(count))
+    places = np.array([(s.x, s.z) for s in found])
+    near = np.linalg.norm(places - np.roll(places, 1, 0), axis=1)
+    assert near == pytest.approx(1.3) and places.mean(0) == pytest.approx([0, 0], abs=1e-9)
+    for stand in found:
+        nose = np.array(stand.world((0.0, 1.0, 0.5)))[[0, 2]]
+        assert np.linalg.norm(nose) == pytest.approx(np.hypot(stand.x, stand.z) - 0.5), "it faces the middle"
+    assert found[0].x < 0 < found[-1].x and found[0].z == pytest.approx(found[-1].z), "open to the viewer"
+
+
+def test_a_point_is_where_it_is_in_anybodys_space() -> None:
+    here, there = stands(group(5))[1:3]
+    point = (0.3, 1.5, -0.7)
+    assert here.world(here.own(there.world(point))) == pytest.approx(there.world(point), abs=1e-5)
+
+
+def test_who_has_a_place_stands_there_and_faces_the_others_and_the_viewer_amid_them() -> None:
+    row = [msgspec.structs.replace(s, place=(float(n - 1), 0.0)) for n, s in enumerate(three().sides)]
+    found = stands(three(sides=tuple(row)))
+    assert [(s.x, s.z) for s in found] == [(-1, 0), (0, 0), (1, 0)]
+    assert [s.turn for s in found] == pytest.approx([np.pi / 2, 0, -np.pi / 2])
+    one = stands(three(sides=(*three().sides[:2], row[2])))
+    assert (one[0].x, one[0].z) == pytest.approx((stands(three())[0].x, stands(three())[0].z))
+
+
+def test_two_with_places_are_looked_at_there(sample: Project) -> None:
+    sides = tuple(
+        msgspec.structs.replace(s, place=p) for s, p in zip(talk().sides, ((0, 0), (0, 2)), strict=True)
+    )
+    made = duet(msgspec.structs.replace(talk(), sides=sides), "v1", (sample, sample), (None, None))
+    x, y, z = made.parts[0].plan.track.places[0].point
+    assert x == pytest.approx(0, abs=0.02) and 1.5 < y < 1.8 and 1.7 < z < 2.0
+
+
+def test_three_look_at_the_eyes_of_each_other(sample: Project) -> None:
+    made = duet(three(), "v1", (sample,) * 3, (None,) * 3)
+    for n, part in enumerate(made.parts):
+        points = partner_points(part.plan)
+        assert sorted(points) == [m for m in range(3) if m != n]
+        for m, point in points.items():
+            seen = np.array(part.stand.world(point)) - np.array(
+                [made.parts[m].stand.x, 0, made.parts[m].stand.z]
+            )
+            assert 1.5 < seen[1] < 1.8 and np.hypot(seen[0], seen[2]) < 0.15
+        assert {look.to for look in part.plan.track.looks} <= {f"partner {m + 1}" for m in points}
+
+
+def test_each_of_three_answers_the_hesitations_of_all_others_once(sample: Project) -> None:
+    um = Segment("hesitation", 3.0, 3.4, None, "um")
+    sides = list(three().sides)
+    sides[1] = msgspec.structs.replace(sides[1], segments=(um,))
+    sides[2] = msgspec.structs.replace(sides[2], segments=(msgspec.structs.replace(um, start=3.2, end=3.8),))
+    heard = heard_by(three(sides=tuple(sides)), 0)
+    assert [(s.kind, s.start, s.end) for s in heard] == [
+        ("clause", 1, 2),
+        ("hesitation", 3.0, 3.4),
+        ("hesitation", 3.4, 3.8),
+    ]
+    always = [msgspec.structs.replace(s, rates=Rates(hesitation=1.0)) for s in sides]
+    made = duet(three(sides=tuple(always)), "v1", (sample,) * 3, (None,) * 3)
+    assert made.parts[0].told[2].drawn == 2 and made.parts[0].told[2].performed >= 1
+
+
+def test_a_listener_mirrors_who_speaks_and_nobody_else(sample: Project) -> None:
+    """Of three: the first speaks, the second moves meanwhile."""
+    speaker = Side(name="Ann", segments=tuple(said(0, 2.0 + 8 * n, 8.0 + 8 * n)[1] for n in range(12)))
+    sides = (speaker, Side(name="Ben"), Side(name="Cleo", rates=Rates(mirror=1.0)))
+    talk = Conversation(name="t", length=100.0, sides=sides)
+    moving = drive(talk, 0, sample)[1]
+    still, own = Plan(1, 100.0), Mover(2, sample, Plan(1, 100.0))
+    with_speaker = list(mirrored(talk, own, [Mover(0, sample, moving), Mover(1, sample, still)]))
+    with_other = list(mirrored(talk, own, [Mover(0, sample, still), Mover(1, sample, moving)]))
+    assert with_speaker and not with_other

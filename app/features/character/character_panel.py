@@ -191,7 +191,7 @@ class PreviewPanel(QWidget):
     def _scene(self) -> Scene:
         """Return what is drawn now; called by the view when it paints."""
         shown, seconds, actors = self.performance.shown, self.session.transport.seconds, []
-        for one in shown.both:
+        for one in shown.everyone:
             pose, skeleton = one.pose(seconds), one.skeleton
             figure = self.figures.of(one) if skeleton is not None else None
             if pose is None or skeleton is None or figure is None:
@@ -209,10 +209,10 @@ class PreviewPanel(QWidget):
         scene = Scene(tuple(actors))
         shape = round(self.view.width() / max(1, self.view.height()), 1)  # it is framed anew for another room
         solid = Scene(tuple(actor for actor in actors if actor.opacity >= 1))  # ghosts do not move the camera
-        framed = (*(actor.figure for actor in solid.actors), *(one.stand for one in shown.both), shape)
+        framed = (*(actor.figure for actor in solid.actors), *(one.stand for one in shown.everyone), shape)
         if actors and self._framed != framed and not self.view.moved_by_hand:
             self._framed = framed
-            aside = ASIDE if shown.partner is not None else 0.0
+            aside = ASIDE if shown.others else 0.0
             self.view.camera = whole_figure(
                 solid.bounds(), self.view.width() / max(1, self.view.height()), aside
             )
@@ -221,7 +221,7 @@ class PreviewPanel(QWidget):
     def _ghosts(self, figure: Figure, seconds: float) -> list[Actor]:
         """Return the moments of an action that are to be seen through, but for those that are now."""
         skin, shown = self.session.onion.skin, self.performance.shown
-        if skin is None or shown.skeleton is None or shown.partner is not None:
+        if skin is None or shown.skeleton is None or shown.others:
             return []
         out = []
         for moment, opacity in skin.moments:

@@ -1,4 +1,4 @@
-"""Two who talk: lanes of sound, words and segments."""
+"""Those who talk: lanes of sound, words and segments."""
 
 from __future__ import annotations
 
@@ -56,6 +56,11 @@ def contribute(shell: Shell) -> Contribution:
         talk = shell.document.project.conversations.get(session.onstage.conversation or "")
         return talk is not None and any(side.motion is not None for side in talk.sides)
 
+    def next_side() -> None:
+        """Show the plan of the next of those who talk."""
+        talk = shell.document.project.conversations.get(session.onstage.conversation or "")
+        session.onstage.set_side((session.onstage.side + 1) % (len(talk.sides) if talk is not None else 2))
+
     staged = lambda: session.onstage.conversation is not None  # noqa: E731
     menu, mine = "&Conversation", ("conversation",)
     return Contribution(
@@ -79,7 +84,7 @@ def contribute(shell: Shell) -> Contribution:
                 "Conversation from &sound…",
                 converse,
                 menus=mine,
-                tip="Read what two say, and let both characters move with it",
+                tip="Read what two or more say, and let a character each move with it",
             ),
             Command(
                 "rename_conversation",
@@ -97,7 +102,7 @@ def contribute(shell: Shell) -> Contribution:
                 "&Rates…",
                 run("rates"),
                 enabled=staged,
-                tip="How often each of the two gestures and nods",
+                tip="How often each gestures and nods",
                 menus=mine,
             ),
             Command(
@@ -117,7 +122,7 @@ def contribute(shell: Shell) -> Contribution:
                 "S&ounds and names…",
                 run("side_sounds"),
                 enabled=staged,
-                tip="Who the two are, and which sound is whose",
+                tip="Who talks, which sound is whose, and where each stands",
                 menus=mine,
             ),
             Command(
@@ -125,9 +130,9 @@ def contribute(shell: Shell) -> Contribution:
                 menu,
                 "stage",
                 "The &other's plan",
-                lambda: session.onstage.set_side(1 - session.onstage.side),
+                next_side,
                 enabled=staged,
-                tip="Whose plan the timeline shows",
+                tip="Whose plan the timeline shows: of several the next one's",
             ),
             Command(
                 "graph_again",
@@ -145,7 +150,7 @@ def contribute(shell: Shell) -> Contribution:
                 "&Keep as performances",
                 performance.keep_conversation,
                 enabled=staged,
-                tip="What both do, as requests that can be edited one by one, and exported",
+                tip="What all of them do, as requests that can be edited one by one, and exported",
             ),
             Command(
                 "write_segments",

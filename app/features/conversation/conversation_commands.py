@@ -15,7 +15,7 @@ from app.project.files import Files
 from app.project.speech_files import SOUNDS, TRANSCRIPTS, beside, kinds_of
 from metagraph.errors import FileError
 from metagraph.graph import conversation_edits
-from metagraph.graph.conversation import Conversation
+from metagraph.graph.conversation import MOST_SPEAKERS, Conversation
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
 
@@ -43,7 +43,7 @@ def converse(shell: Shell, paths: Sequence[Path] = ()) -> None:
     if not paths:
         start = str(shell.document.folder or Path.home())
         names, _ = QFileDialog.getOpenFileNames(
-            shell.widget, "Conversation from sound: one file, or one for each of the two", start, FILTER
+            shell.widget, "Conversation from sound: one file, or one for each who speaks", start, FILTER
         )
         paths = [Path(n) for n in names]
     sounds, transcripts = kinds_of(paths)
@@ -57,8 +57,8 @@ def converse(shell: Shell, paths: Sequence[Path] = ()) -> None:
         shell.document,
         shell.stage.session,
         shell.jobs,
-        sounds[:2],
-        transcripts or beside(sounds[:2]),
+        sounds[:MOST_SPEAKERS],
+        transcripts or beside(sounds[:MOST_SPEAKERS]),
         shell.widget,
     )
     dialog.imported.connect(lambda: shell.show("conversation"))
@@ -93,16 +93,16 @@ def rates(shell: Shell) -> None:
 
 
 def graph_again(shell: Shell) -> None:
-    """Let the graph move both again."""
+    """Let the graph move all who talk again."""
     found = on_stage(shell)
     if found is not None:
 
-        def both(project: Project) -> Project:
-            for side in (0, 1):
+        def everyone(project: Project) -> Project:
+            for side in range(len(found[1].sides)):
                 project = conversation_edits.change_side(project, found[0], side, motion=None)
             return project
 
-        _edit(shell, "Move with the graph again", both)
+        _edit(shell, "Move with the graph again", everyone)
 
 
 def word_lists(shell: Shell) -> None:
@@ -116,7 +116,7 @@ def word_lists(shell: Shell) -> None:
 def side_sounds(shell: Shell) -> None:
     found = on_stage(shell)
     if found is not None:
-        from app.features.conversation.conversation_settings import SidesDialog
+        from app.features.conversation.sides_dialog import SidesDialog
 
         SidesDialog(shell.document, *found, shell.widget).open()
 

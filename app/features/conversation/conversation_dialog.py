@@ -27,7 +27,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.conversation.conversation_settings import caption
-from app.features.conversation.speaker_card import Card
+from app.features.conversation.speaker_card import Card, Cards
 from app.features.conversation.word_lists import LanguageBox, Lists, WordLists, language_name
 from app.look.theme import strengthen, theme
 from app.project.document import Document
@@ -37,7 +37,15 @@ from app.stage.session import Session
 from app.widgets.act_strip import clock
 from app.widgets.making import make_widget
 from metagraph.graph import conversation_edits
-from metagraph.graph.conversation import AUTO, Conversation, Side, lists_of, side_name
+from metagraph.graph.conversation import (
+    AUTO,
+    MOST_SPEAKERS,
+    Conversation,
+    Side,
+    lists_of,
+    side_name,
+    with_sides,
+)
 from metagraph.graph.model import Project
 
 if TYPE_CHECKING:
@@ -66,11 +74,11 @@ class ImportDialog(QDialog):
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
-        self.sounds, self.transcripts = tuple(sounds), tuple(transcripts)[:2]
+        self.sounds, self.transcripts = tuple(sounds), tuple(transcripts)[:MOST_SPEAKERS]
         self.facts = tuple(facts_of(p) for p in self.sounds)
         self.read: Read | None = None
-        self.typed: list[Lists | None] = [None, None]  # lists that were typed, by the sides as they are read
-        self.swapped = False  # the second of what was read is the first of the two
+        self.typed: list[Lists | None] = []  # lists that were typed, by the sides as they are read
+        self.order = [0, 1]  # of the cards: which of those that were read each shows
         self.job: Job | None = None
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle("Conversation from sound")
@@ -80,6 +88,11 @@ class ImportDialog(QDialog):
         self._build()
         document.loaded.connect(self.reject)  # what was read is said relative to the project it was read for
         self.start()
+
+    @property
+    def cards(self) -> list[Card]:
+        """A card for each who was read, as they are to stand."""
+        return self.table.cards
 
     # --- building
 
@@ -100,22 +113,12 @@ class ImportDialog(QDialog):
         row.addWidget(self.language)
         layout.addLayout(row)
         layout.addLayout(self._found())
-        row = QHBoxLayout()
-        row.setSpacing(10)
-        self.cards = (Card("First speaker", self), Card("Second speaker", self))
-        self.swap = make_widget(
-            QToolButton,
-            self,
-            text="⇄",
-            toolTip="Swap the two: who stands left, and is driven by this project's own graph",
-        )
-        self.swap.setAccessibleName("Swap the two")
-        self.swap.clicked.connect(self.swap_sides)
-        row.addWidget(self.cards[0], 1)
-        row.addWidget(self.swap)
-        row.addWidget(self.cards[1], 1)
-        layout.addLayout(row)
-        # Both sides' lists, or the first one's and the second one's where they speak different languages.
+        self.table = Cards(self)
+        self.swap = self.table.swap
+        self.table.moved.connect(self.move_earlier)
+        self.table.chosen.connect(self._show_parts)
+        layout.addWidget(self.table)
+        # All sides' lists, or the first one's and the second one's where two speak different languages.
         self.whose = caption("", self), caption("", self)
         self.lists, self.others = WordLists(self), WordLists(self)
         for label, lists in zip(self.whose, (self.lists, self.others), strict=True):
@@ -130,6 +133,14 @@ class ImportDialog(QDialog):
         layout.addLayout(self._foot())
         self.session.look.changed.connect(self._restyle)
         self._restyle()
+
+    def _show_parts(self) -> None:
+        """Show who takes part."""
+        for card in self.cards:
+            card.setEnabled(True)
+            for widget in (card.name, card.sound, card.words, card.segments):
+                widget.setEnabled(card.taken.isChecked())
+        self.go.setEnabled(self.read is not None and sum(c.taken.isChecked() for c in self.cards) > 1)
 
     def _restyle(self) -> None:
         t = theme(self.session.look.name)
@@ -200,7 +211,7 @@ class ImportDialog(QDialog):
         self.read = None
         sounds, transcripts, folder = self.sounds, self.transcripts, self.document.folder
         language, usual = str(self.language.currentData()), self.document.project.language
-        lists = self.typed[0], self.typed[1]
+        lists = tuple(self.typed)
 
         def work(job: Job) -> Any:
             from metagraph.formats.conversation_languages import Speaking
@@ -233,6 +244,10 @@ class ImportDialog(QDialog):
     def _came(self, read: Read) -> None:
         self.job = None
         self.read = read
+        count = len(read.conversation.sides)
+        if count != len(self.order):
+            self.order = list(range(count))
+        self.table.deal(count)
         for card, side in zip(self.cards, self.sides(), strict=True):
             if not card.name.isModified():
                 card.name.setText("" if NUMBERED.fullmatch(side.name) else side.name)
@@ -253,11 +268,12 @@ class ImportDialog(QDialog):
         self.go.setEnabled(self.read is not None)
         self.files.setText(" · ".join((*self.facts, *(p.name for p in self.transcripts))))
         self.no_words.setEnabled(bool(self.transcripts) and not busy)
-        self.other_words.setVisible(len(self.transcripts) == 2)
+        self.other_words.setVisible(len(self.transcripts) == 2 == len(self.cards))
         self.other_words.setEnabled(not busy)
         self.swap.setEnabled(self.read is not None)
         for n, card in enumerate(self.cards):
             card.show_side(self.sides()[n] if self.read is not None else None)
+        self._show_parts()
         notes = list(self.read.notes) if self.read is not None else [failure] if failure else []
         more = [f"… and {len(notes) - MOST} more"] if len(notes) > MOST else []
         t = theme(self.session.look.name)
@@ -278,48 +294,59 @@ class ImportDialog(QDialog):
     def _show_lists(self) -> None:
         """Show whose words are what, as far as they were not typed."""
         read = self.read.conversation if self.read is not None else None
-        order = (1, 0) if self.swapped else (0, 1)
-        apart = read is not None and lists_of(read, 0) != lists_of(read, 1)
-        for label, lists, side in zip(self.whose, (self.lists, self.others), order, strict=True):
+        apart = read is not None and any(lists_of(read, n) != lists_of(read, 0) for n in self.order)
+        several = len(self.order) > 2
+        for label, lists, side in zip(self.whose, (self.lists, self.others), self.order, strict=False):
             if read is None:
                 lists.show_lists(lists.usual)
-            elif self.typed[side] is None:
+            elif not self.typed or self.typed[side] is None:
                 code = read.sides[side].language
                 lists.show_lists(lists_of(read, side), code)
             if apart and read is not None:
                 of = read.sides[side]
                 label.setText(f"{side_name(read, side)}: {language_name(of.language) or 'no words'}")
-            label.setVisible(apart)
-            lists.set_low(apart)
-        self.others.setVisible(apart)
+            label.setVisible(apart and not several)
+            lists.set_low(apart or several)
+        self.lists.setVisible(not (apart and several))
+        self.others.setVisible(apart and not several)
+        if apart and several and read is not None:
+            each = [
+                f"{side_name(read, n)} {language_name(read.sides[n].language) or 'without words'}"
+                for n in self.order
+            ]
+            self.whose[0].setText(f"Each has lists of its own, to be changed later: {', '.join(each)}")
+            self.whose[0].setWordWrap(True)
+            self.whose[0].setVisible(True)
 
     def _typed(self) -> None:
         """Read by the lists that are typed, after a while."""
-        for lists, side in zip((self.lists, self.others), (1, 0) if self.swapped else (0, 1), strict=True):
-            self.typed[side] = (lists if self.others.isVisible() else self.lists).lists()
+        typed: list[Lists | None] = [self.lists.lists()] * len(self.order)
+        if self.others.isVisible():
+            typed[self.order[1]] = self.others.lists()
+        self.typed = typed
         self._soon.start()
 
     def take_language(self) -> None:
         """Read by the language that is chosen, and by its lists."""
-        self.typed = [None, None]
+        self.typed = []
         self.start()
 
     def sides(self) -> tuple[Side, ...]:
-        """Return the two as they were read, the first first."""
+        """Return those who were read, as their cards stand."""
         assert self.read is not None
-        found = self.read.conversation.sides
-        return found[::-1] if self.swapped else found
+        return tuple(self.read.conversation.sides[n] for n in self.order)
 
     # --- choosing
 
-    def swap_sides(self) -> None:
-        """Let the second be the first."""
-        self.swapped = not self.swapped
-        a, b = self.cards
-        names = (b.name.text(), b.name.isModified()), (a.name.text(), a.name.isModified())
-        for card, (name, typed) in zip(self.cards, names, strict=True):
+    def move_earlier(self, n: int) -> None:
+        """Let one stand before the one before it; of two, swap them."""
+        self.order[n - 1], self.order[n] = self.order[n], self.order[n - 1]
+        a, b = self.cards[n - 1], self.cards[n]
+        states = [(c.name.text(), c.name.isModified(), c.taken.isChecked()) for c in (b, a)]
+        for card, (name, typed, taken) in zip((a, b), states, strict=True):
             card.name.setText(name)
             card.name.setModified(typed)
+            card.taken.setChecked(taken)
         self._show_lists()
         self._show(self.told.text())
 
@@ -328,7 +355,7 @@ class ImportDialog(QDialog):
         self.take_words(self.transcripts[::-1])
 
     def take_words(self, transcripts: Sequence[Path]) -> None:
-        self.transcripts = tuple(transcripts)[-2:]  # one for both, or one for each
+        self.transcripts = tuple(transcripts)[-max(2, len(self.sounds)) :]  # one for all, or one for each
         self.start()
 
     def request_words(self) -> None:
@@ -344,12 +371,14 @@ class ImportDialog(QDialog):
     def made(self) -> Conversation:
         """Return the conversation as it would be added."""
         assert self.read is not None
-        named = (
-            msgspec.structs.replace(s, name=" ".join(c.name.text().split()))
-            for s, c in zip(self.sides(), self.cards, strict=True)
-        )
+        sides = list(self.read.conversation.sides)
+        for n, card in zip(self.order, self.cards, strict=True):
+            sides[n] = msgspec.structs.replace(sides[n], name=" ".join(card.name.text().split()))
         name = " ".join(self.name.text().split()) or self.sounds[0].stem
-        return msgspec.structs.replace(self.read.conversation, name=name, sides=tuple(named))
+        whole = msgspec.structs.replace(self.read.conversation, name=name, sides=tuple(sides))
+        return with_sides(
+            whole, [n for n, c in zip(self.order, self.cards, strict=True) if c.taken.isChecked()]
+        )
 
     def accept(self) -> None:
         """Add it as one undo step, and put it on stage."""

@@ -10,7 +10,7 @@ from app.features.conversation.segment_editing import Editing
 from app.features.conversation.segment_lanes import segment_words
 from app.features.conversation.segment_view import SegmentView
 from app.features.conversation.sound_reading import Sounds
-from app.look.plural import many
+from app.look.plural import listed, many
 from app.look.theme import SOUND_MARKS, theme
 from app.project.document import Document
 from app.project.jobs import Jobs
@@ -67,7 +67,7 @@ class ConversationPanel(QWidget):
         row = QHBoxLayout()
         row.setContentsMargins(12, 0, 12, 2)
         row.setSpacing(8)
-        self.stage = ComboBox(self, toolTip="Which conversation is on stage: it moves both characters")
+        self.stage = ComboBox(self, toolTip="Which conversation is on stage: it moves all its characters")
         self.stage.setAccessibleName("Conversation on stage")
         self.stage.setMinimumWidth(150)
         self.stage.activated.connect(
@@ -126,8 +126,8 @@ class ConversationPanel(QWidget):
         self.legend.setText("&nbsp;&nbsp; ".join(parts))
         if self.session.onstage.mode == "manual":
             self.title.say(
-                "Now the machine you draw moves one character. Back in the meta-graph, both move with what "
-                "is said."
+                "Now the machine you draw moves one character. Back in the meta-graph, all who talk move "
+                "with what is said."
             )
             return
         chosen, found = self.editing.chosen, self.editing.segment(self.editing.last)
@@ -139,17 +139,22 @@ class ConversationPanel(QWidget):
             self.title.say(f"{many(len(chosen), 'segment')} selected", True)
         else:
             minutes, seconds = divmod(round(of.length), 60)
-            both = " and ".join(side_name(of, side) for side in (0, 1))
-            self.title.say(f"{both}, {minutes}:{seconds:02d}{self._delivered()}")
+            who = listed([side_name(of, side) for side in range(len(of.sides))])
+            self.title.say(f"{who}, {minutes}:{seconds:02d}{self._delivered()}")
 
     def _delivered(self) -> str:
-        """Say how many clauses get a gesture, beside how many were asked for."""
-        told = [t for one in self.performance.shown.both for t in one.told[:1] if t.count]
+        """Say how many clauses get a gesture, beside how many were asked for: of more than two in all."""
+        told = [t for one in self.performance.shown.everyone for t in one.told[:1] if t.count]
+        if not told:
+            return ""
+        shares = [(t.performed / t.count, t.asked) for t in told]
+        if len(told) > 2:
+            whole = sum(t.count for t in told)
+            shares = [(sum(t.performed for t in told) / whole, sum(t.asked * t.count for t in told) / whole)]
         done, asked = (
-            " and ".join(f"{100 * share:.0f} %" for share in shares)
-            for shares in ([t.performed / t.count for t in told], [t.asked for t in told])
+            listed([f"{100 * share:.0f} %" for share in some]) for some in zip(*shares, strict=True)
         )
-        return f". Gestures go with {done} of the clauses, {asked} were asked for" if told else ""
+        return f". Gestures go with {done} of the clauses, {asked} were asked for"
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)

@@ -1,22 +1,20 @@
-"""Small dialogs about a conversation: how often each of the two moves with what is said, whose sound is
+"""Small dialogs about a conversation: how often each who talks moves with what is said, whose sound is
 whose.
 """
 
 from __future__ import annotations
 
-from pathlib import Path
-
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import (
-    QComboBox,
+    QBoxLayout,
     QDialog,
     QDialogButtonBox,
     QDoubleSpinBox,
-    QFileDialog,
+    QFrame,
     QGridLayout,
     QHBoxLayout,
     QLabel,
-    QLineEdit,
+    QScrollArea,
     QToolButton,
     QVBoxLayout,
     QWidget,
@@ -24,16 +22,15 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import strengthen
 from app.project.document import Document
-from app.project.speech_files import SOUNDS, channels_of
 from app.stage.performance import Performance
 from app.stage.playback_source import Shown
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
-from metagraph.formats.store import SUFFIX, relative
 from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import SPOKEN, Conversation, Rates, side_name
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
+from metagraph.speech.gaze_shares import together
 
 RATES = {
     "clause": ("gestures with its own clauses", "How often the hands move with a clause"),
@@ -52,6 +49,7 @@ BLINKS = {
         "Yang et al. keyed (section 7.3)",
     ),
 }
+ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
 ACTORS = {"female": "the woman", "male": "the man"}
 
 
@@ -112,17 +110,44 @@ class SettingDialog(QDialog):
 
 
 def delivered_words(shown: Shown, conversation: Conversation) -> str:
-    """Return what becomes of both sides' rates in what is shown, a line for each; empty where nothing is."""
-    return "\n".join(
+    """Return what becomes of all sides' rates in what is shown, a line for each, and of three or more where
+    they look; empty where nothing is.
+    """
+    rates = [
         f"{side_name(conversation, one.side)}: {told.words()}"
-        for one in shown.both
+        for one in shown.everyone
         for told in one.told
         if told.count
-    )
+    ]
+    looks = together([share for one in shown.everyone for share in one.looks])
+    return "\n".join((*rates, *(f"Whoever is {share.words()}" for share in looks)))
+
+
+class Tall(QScrollArea):
+    """What three or more who talk need: as high as it likes, scrolled where the screen has less. most: pixels
+    it is high at most before.
+    """
+
+    def __init__(self, inside: QWidget, most: int, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.inside = inside
+        self.setWidget(inside)
+        self.setWidgetResizable(True)
+        self.setFrameShape(QFrame.Shape.NoFrame)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.most = most
+
+    def sizeHint(self) -> QSize:
+        inside, bar = self.inside.sizeHint(), self.verticalScrollBar().sizeHint().width()
+        return QSize(inside.width() + bar, min(self.most, inside.height() + 2))
+
+    def minimumSizeHint(self) -> QSize:
+        inside, bar = self.inside.minimumSizeHint(), self.verticalScrollBar().sizeHint().width()
+        return QSize(inside.width() + bar, min(self.most, inside.height() + 2, 160))
 
 
 class RatesDialog(SettingDialog):
-    """How often each of the two moves with what is said, and what becomes of it on stage."""
+    """How often each who talks moves with what is said, and what becomes of it on stage."""
 
     title, text = "Rates", "Change rates"
 
@@ -142,8 +167,7 @@ class RatesDialog(SettingDialog):
     def build(self, layout: QVBoxLayout) -> None:
         layout.addWidget(
             caption(
-                "How often each of the two moves with what is said. Beside: what actors did (Yang et al. "
-                "2020).",
+                "How often each moves with what is said. Beside: what actors did (Yang et al. 2020).",
                 self,
                 True,
             )
@@ -151,14 +175,19 @@ class RatesDialog(SettingDialog):
         grid = QGridLayout()
         grid.setHorizontalSpacing(18)
         grid.setVerticalSpacing(8)
-        for side in (0, 1):
-            grid.addWidget(caption(side_name(self.conversation, side), self), 0, 1 + side)
+        count = len(self.conversation.sides)
+        for side in range(count):
+            whose = caption(side_name(self.conversation, side), self)
+            whose.setWordWrap(True)
+            grid.addWidget(whose, 0, 1 + side)
         for column, actor in enumerate(ACTORS.values()):
-            grid.addWidget(caption(actor.capitalize(), self, True), 0, 3 + column)
-        self.fields: list[dict[str, QDoubleSpinBox]] = [{}, {}]
+            told = caption(actor.capitalize(), self, True)
+            told.setWordWrap(count == 2)  # of more the fields need the room
+            grid.addWidget(told, 0, 1 + count + column)
+        self.fields: list[dict[str, QDoubleSpinBox]] = [{} for _ in range(count)]
         for row, (name, (words, tip)) in enumerate(RATES.items(), 1):
             grid.addWidget(QLabel(words.capitalize(), self), row, 0)
-            for side in (0, 1):
+            for side in range(count):
                 field = DoubleSpinBox(self, toolTip=tip, suffix=" %", decimals=0)
                 field.setRange(0, 100)
                 field.setAccessibleName(f"{side_name(self.conversation, side)} {words}")
@@ -169,9 +198,11 @@ class RatesDialog(SettingDialog):
                 did = (
                     f"{100 * getattr(conversation_edits.PAPER[actor], name):.0f} %" if name in SPOKEN else "–"
                 )
-                grid.addWidget(caption(did, self, True), row, 3 + column)
-        for side in (0, 1):
-            row_of = QHBoxLayout()
+                told = caption(did, self, True)
+                told.setWordWrap(count == 2)
+                grid.addWidget(told, row, 1 + count + column)
+        for side in range(count):
+            row_of: QBoxLayout = QHBoxLayout() if count == 2 else QVBoxLayout()
             row_of.setSpacing(2)
             for actor, words in ACTORS.items():
                 button = make_widget(
@@ -195,8 +226,13 @@ class RatesDialog(SettingDialog):
         row_of.addStretch(1)
         layout.addLayout(row_of)
         self.delivered = caption("", self, True)
-        layout.addWidget(self.delivered)
-        layout.addStretch(1)
+        if count == 2:
+            layout.addWidget(self.delivered)
+            layout.addStretch(1)
+        else:
+            self.delivered.setAlignment(Qt.AlignmentFlag.AlignTop)
+            layout.addWidget(Tall(self.delivered, 260, self), 1)
+            self.resize(max(800, 260 + 150 * count), 600)
 
     def refresh(self) -> None:
         """Say what becomes of the rates as they are."""
@@ -208,137 +244,7 @@ class RatesDialog(SettingDialog):
             self.fields[side][name].setValue(100 * getattr(rates, name))
 
     def change(self, project: Project) -> Project:
-        for side in (0, 1):
+        for side in range(len(self.fields)):
             values = {name: round(field.value() / 100, 4) for name, field in self.fields[side].items()}
             project = conversation_edits.set_rates(project, self.ident, side, **values)
         return conversation_edits.change_conversation(project, self.ident, blinks=self.blinks.currentData())
-
-
-class SidesDialog(SettingDialog):
-    """Who the two are, which sound is whose, whose graph moves each, and how far apart they stand."""
-
-    title, text = "Sounds and names", "Change sounds and names"
-
-    def build(self, layout: QVBoxLayout) -> None:
-        self.resize(720, 0)
-        self.names: list[QLineEdit] = []
-        self.sounds: list[QLineEdit] = []
-        self.channels: list[QComboBox] = []
-        self.movers: list[QLineEdit] = []
-        grid = QGridLayout()
-        grid.setHorizontalSpacing(10)
-        grid.setVerticalSpacing(8)
-        grid.setColumnStretch(1, 1)
-        for side, of in enumerate(self.conversation.sides):
-            top = 6 * side
-            grid.addWidget(caption(("First speaker", "Second speaker")[side], self), top, 0, 1, 3)
-            name, sound, channel, mover = (
-                QLineEdit(of.name, self),
-                QLineEdit(of.audio or "", self),
-                ComboBox(self),
-                QLineEdit(self),
-            )
-            mover.setText(of.project or "")
-            mover.setToolTip("The project whose graph and character move this one")
-            mover.setClearButtonEnabled(True)
-            for row, (words, widget, empty) in enumerate(
-                (
-                    ("Name", name, f"Speaker {side + 1}"),
-                    ("Sound", sound, "No sound"),
-                    ("Channel", channel, ""),
-                    ("Moved by", mover, "This project"),
-                ),
-                top + 1,
-            ):
-                widget.setAccessibleName(f"{words} of the {('first', 'second')[side]} speaker")
-                grid.addWidget(QLabel(words, self), row, 0)
-                grid.addWidget(widget, row, 1)
-                if isinstance(widget, QLineEdit):
-                    widget.setPlaceholderText(empty)
-            for row, tip, choose in (
-                (top + 2, "Choose a sound file", self.choose),
-                (top + 4, "Choose a project", self.choose_project),
-            ):
-                button = make_widget(QToolButton, self, text="Choose…", toolTip=tip)
-                button.clicked.connect(lambda _=False, side=side, choose=choose: choose(side))
-                grid.addWidget(button, row, 2)
-            grid.setRowMinimumHeight(top + 5, 6)
-            self.names.append(name)
-            self.sounds.append(sound)
-            self.channels.append(channel)
-            self.movers.append(mover)
-            self._show_channels(side, of.channel)
-            sound.editingFinished.connect(
-                lambda side=side: self._show_channels(side, self.channels[side].currentData())
-            )
-        self.distance = DoubleSpinBox(
-            self, suffix=" m", decimals=2, singleStep=0.1, toolTip="How far apart the two stand"
-        )
-        self.distance.setRange(0.2, 20)
-        self.distance.setValue(self.conversation.distance)
-        self.distance.setAccessibleName("Distance between the two")
-        grid.addWidget(QLabel("Distance", self), 12, 0)
-        grid.addWidget(self.distance, 12, 1, Qt.AlignmentFlag.AlignLeft)
-        layout.addLayout(grid)
-
-    def _show_channels(self, side: int, chosen: int | None) -> None:
-        """Offer the channels that the sound has, as far as that is known."""
-        name = self.sounds[side].text().strip()
-        count = channels_of((self.document.folder or Path()) / name) if name else 0
-        box = self.channels[side]
-        box.clear()
-        box.addItem("All, mixed", None)
-        for n in range(max(count, 0 if chosen is None else chosen + 1)):
-            words = f"{n + 1}" + ((" (left)", " (right)")[n] if count == 2 and n < 2 else "")
-            box.addItem(words, n)
-        box.setCurrentIndex(max(0, box.findData(chosen)))
-
-    def choose(self, side: int) -> None:
-        """Ask for a sound."""
-        if self._ask(self.sounds[side], "Choose a sound", f"Sounds ({' '.join(f'*{s}' for s in SOUNDS)})"):
-            self._show_channels(side, self.channels[side].currentData())
-
-    def choose_project(self, side: int) -> None:
-        """Ask for the project whose graph moves a side."""
-        self._ask(self.movers[side], "Choose a project", f"Projects (*{SUFFIX})")
-
-    def _ask(self, field: QLineEdit, title: str, kinds: str) -> bool:
-        folder = self.document.folder
-        name, _ = QFileDialog.getOpenFileName(self, title, str(folder or Path.home()), kinds)
-        if name:
-            field.setText(relative(Path(name), folder) if folder is not None else Path(name).as_posix())
-        return bool(name)
-
-    def _mover(self, side: int) -> str | None:
-        """Return the path of the project that moves a side, None for the one at hand. Raises EditError where
-        there is none.
-        """
-        text = self.movers[side].text().strip()
-        if not text or text == self.conversation.sides[side].project:
-            return text or None
-        whole = (self.document.folder or Path()) / text
-        if not whole.is_file():
-            raise EditError(
-                f"there is no project at {whole}: choose another, or clear the field to let this project "
-                "move the speaker"
-            )
-        own = self.document.path
-        return None if own is not None and own.exists() and whole.samefile(own) else text
-
-    def change(self, project: Project) -> Project:
-        for side in (0, 1):
-            sound = self.sounds[side].text().strip() or None
-            channel = self.channels[side].currentData() if sound is not None else None
-            project = conversation_edits.change_side(
-                project,
-                self.ident,
-                side,
-                name=self.names[side].text(),
-                audio=sound,
-                channel=channel,
-                project=self._mover(side),
-            )
-        distance = round(self.distance.value(), 3)
-        if distance == round(self.conversation.distance, 2):  # as it was, to what is shown of it
-            return project
-        return conversation_edits.change_conversation(project, self.ident, distance=distance)

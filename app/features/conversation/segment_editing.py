@@ -63,7 +63,7 @@ class Editing(QObject):
         of = self.conversation
         if of is not None:
             self.select(
-                {(side, n) for side in (0, 1) for n in range(len(of.sides[side].segments))}, self.last
+                {(side, n) for side, one in enumerate(of.sides) for n in range(len(one.segments))}, self.last
             )
 
     def step(self, by: int) -> bool:
@@ -74,7 +74,7 @@ class Editing(QObject):
         if of is None:
             return False
         if self.last is None:
-            side = 0 if of.sides[0].segments else 1
+            side = next((n for n, one in enumerate(of.sides) if one.segments), 0)
             return self._select_near(side, self.session.transport.seconds)
         side, at = self.last
         if not 0 <= at + by < len(of.sides[side].segments):
@@ -82,15 +82,17 @@ class Editing(QObject):
         self.select({(side, at + by)})
         return True
 
-    def cross(self, side: int) -> None:
-        """Select what the other of the two says at that time."""
-        found = self.segment(self.last)
+    def cross(self, by: int) -> None:
+        """Select what the one above or below says at that time."""
+        found, of = self.segment(self.last), self.conversation
+        side = (self.last[0] if self.last is not None else 0) + by
+        side = min(max(0, side), len(of.sides) - 1 if of is not None else 0)
         self._select_near(side, found.start if found is not None else self.session.transport.seconds)
 
     def _staged(self) -> None:
         if (
             self.session.onstage.conversation != self._ident
-        ):  # else it is the other of the two that the timeline shows
+        ):  # else it is another of those who talk that the timeline shows
             self._ident = self.session.onstage.conversation
             self.select(())
 
@@ -187,11 +189,15 @@ class Editing(QObject):
             return None
         found = [
             (side, n)
-            for side in (0, 1)
-            for n, s in enumerate(of.sides[side].segments)
+            for side, one in enumerate(of.sides)
+            for n, s in enumerate(one.segments)
             if s.start < seconds < s.end
         ]
         return next((p for p in found if p in self.chosen), found[0] if found else None)
+
+    def address(self, to: int | None) -> None:
+        """Say whom the selected segments are said to; None: it is inferred."""
+        self.change("Say whom segments are said to", conversation_edits.address_segments, self.chosen, to)
 
     def merge(self) -> None:
         """Merge the selected segments of the side, with all between them; a single one with the next."""

@@ -26,7 +26,7 @@ SNAP = 6.0  # pixels within which a dragged time is caught
 
 @dataclass(frozen=True)
 class SegmentHit:
-    """part: of what; side: 0 or 1; at: the place of the segment among its side's."""
+    """part: of what; side: whose, from 0; at: the place of the segment among its side's."""
 
     part: Part
     side: int = 0
@@ -38,7 +38,7 @@ NOTHING = SegmentHit("nothing")
 
 def hit_at(conversation: Conversation, scale: Scale, size: tuple[float, float], point: QPointF) -> SegmentHit:
     """Return what is under a point. size: width and height of all lanes, pixels."""
-    for side, lane in enumerate(lanes(*size)):
+    for side, lane in enumerate(lanes(*size, len(conversation.sides))):
         if not lane.whole.top() <= point.y() <= lane.whole.bottom() + 2:
             continue
         if point.x() < LEFT:

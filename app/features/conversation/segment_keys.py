@@ -97,8 +97,8 @@ DEEDS: tuple[Deed, ...] = (
     ),
     Deed("Next", (_combined(Key.Key_Right),), lambda e, _: e.step(1), needs=False, hidden=True),
     Deed("Previous", (_combined(Key.Key_Left),), lambda e, _: e.step(-1), needs=False, hidden=True),
-    Deed("The first speaker", (_combined(Key.Key_Up),), lambda e, _: e.cross(0), needs=False, hidden=True),
-    Deed("The second speaker", (_combined(Key.Key_Down),), lambda e, _: e.cross(1), needs=False, hidden=True),
+    Deed("The speaker above", (_combined(Key.Key_Up),), lambda e, _: e.cross(-1), needs=False, hidden=True),
+    Deed("The speaker below", (_combined(Key.Key_Down),), lambda e, _: e.cross(1), needs=False, hidden=True),
     *_nudges(),
 )
 _BY_KEY = {key: deed for deed in DEEDS for key in deed.keys}

@@ -1,4 +1,4 @@
-"""Where things stand on the lanes of a conversation: for each of the two a waveform with its pitch, the
+"""Where things stand on the lanes of a conversation: for each who talks a waveform with its pitch, the
 words, and the segments.
 
 Functions of values. Seconds and pixels are the timeline's.
@@ -17,9 +17,10 @@ from PySide6.QtCore import QRectF
 from app.widgets.lane_geometry import LEFT, RULER, Scale
 from metagraph.graph.conversation import Segment, Word
 
-GAP = 8.0  # pixels between the two
+GAP = 8.0  # pixels between two
 WORDS, SEGMENTS, TALLEST = 17.0, 26.0, 190.0  # pixels of the words, of the segments, of a side at most
-LEAST = round(2 * 74 + GAP + 4 + RULER)  # pixels all of it needs
+LEGIBLE = 18.0  # pixels segments need for their words
+LOW, LOWER = 74.0, 52.0  # pixels of a side at least: of two, and of more
 HERTZ = (60.0, 500.0)  # from the bottom to the top of a waveform; an octave is as high everywhere
 AXIS = (100.0, 200.0, 400.0)
 NEAREST = 400.0  # pixels a second at most
@@ -38,12 +39,21 @@ class SegmentLane:
         return self.wave.united(self.segments)
 
 
-def lanes(width: float, height: float) -> tuple[SegmentLane, SegmentLane]:
-    """Return the lanes of the two, one under the other."""
-    each = min(TALLEST, max(74.0, (height - RULER - GAP - 4) / 2))
-    segments = min(SEGMENTS, each * 0.28)
+def least(sides: int) -> int:
+    """Return how many pixels the lanes of so many need."""
+    return round(sides * _low(sides) + (sides - 1) * GAP + 4 + RULER)
+
+
+def _low(sides: int) -> float:
+    return LOW if sides == 2 else LOWER
+
+
+def lanes(width: float, height: float, sides: int = 2) -> tuple[SegmentLane, ...]:
+    """Return the lanes of all who talk, one under the other."""
+    each = min(TALLEST, max(_low(sides), (height - RULER - (sides - 1) * GAP - 4) / sides))
+    segments = min(SEGMENTS, max(LEGIBLE, each * 0.28))
     out = []
-    for side in (0, 1):
+    for side in range(sides):
         top, wide = RULER + side * (each + GAP), max(1.0, width - LEFT)
         tall = each - WORDS - segments
         out.append(
@@ -53,7 +63,7 @@ def lanes(width: float, height: float) -> tuple[SegmentLane, SegmentLane]:
                 QRectF(LEFT, top + tall + WORDS, wide, segments - 2),
             )
         )
-    return out[0], out[1]
+    return tuple(out)
 
 
 def farthest(width: float, length: float) -> float:

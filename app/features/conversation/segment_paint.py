@@ -57,7 +57,7 @@ def paint(painter: QPainter, t: Theme, scene: SegmentScene) -> None:
     painter.fillRect(QRectF(0, 0, scene.width, scene.height), QColor(t.panel))
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     _ruler(painter, t, scene)
-    for side, lane in enumerate(lanes(scene.width, scene.height)):
+    for side, lane in enumerate(lanes(scene.width, scene.height, len(scene.conversation.sides))):
         _titles(painter, t, scene, side, lane)
         painter.save()
         painter.setClipRect(lane.whole.adjusted(0, 0, 0, 2))

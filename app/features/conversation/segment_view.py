@@ -21,11 +21,18 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QMenu, QToolTip, QWidget
 
+from app.features.conversation.addressees import addressee_words, offer_addressees
 from app.features.conversation.segment_editing import Editing
 from app.features.conversation.segment_gestures import SegmentDrag, SegmentPan, gesture_for
 from app.features.conversation.segment_hits import NOTHING, SegmentHit, hit_at
 from app.features.conversation.segment_keys import DEEDS, deed_of
-from app.features.conversation.segment_lanes import LEAST, NEAREST, farthest, segment_words, words_in
+from app.features.conversation.segment_lanes import (
+    NEAREST,
+    farthest,
+    least,
+    segment_words,
+    words_in,
+)
 from app.features.conversation.segment_paint import SegmentScene, empty, paint
 from app.features.conversation.sound_reading import Sounds
 from app.look.theme import theme
@@ -40,9 +47,9 @@ from metagraph.graph.edits import EditError
 ZOOM, USUAL = 1.2, 100.0  # of a turn of the wheel; pixels a second to begin with: most words have room
 EMPTY = (
     "Drop the sound of a conversation here",
-    "one file with a channel for each of the two, or two files; with their words as TextGrid, ELAN, "
+    "one file with a channel for each who speaks, or a file for each; with their words as TextGrid, ELAN, "
     "subtitles or JSON, if there are any.",
-    "What both say then stands here, in clauses, responses and hesitations, and moves two characters.",
+    "What they say then stands here, in clauses, responses and hesitations, and moves a character each.",
 )
 UNCHOSEN = ("No conversation is on stage", "Choose one above, or drop the sound of another here.")
 TEXT = (
@@ -70,14 +77,14 @@ class SegmentView(QWidget):
         self._came = 0  # how often more of a sound has come
         self._by_keys = False
         self._ident: str | None = None  # of the conversation on stage
-        self.setMinimumHeight(LEAST)
+        self.setMinimumHeight(least(2))
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName("Conversation")
         self.setAccessibleDescription(TEXT)
         sounds.changed.connect(self._read)
         editing.changed.connect(self._chosen)
-        self.document.changed.connect(lambda before, after: self.update())
+        self.document.changed.connect(lambda before, after: self._changed())
         self.session.transport.moved.connect(self._playhead)
         self.session.look.changed.connect(self.update)
         self.session.onstage.conversation_changed.connect(self._staged)
@@ -124,6 +131,10 @@ class SegmentView(QWidget):
             if left < LEFT or right > self.width():
                 self.look_at(found.start - 0.3 * (self.width() - LEFT) / self.each)
 
+    def _changed(self) -> None:
+        self._make_room()
+        self.update()
+
     def _chosen(self) -> None:
         self.reveal()
         self.update()
@@ -132,10 +143,16 @@ class SegmentView(QWidget):
         self._stop_dragging()
         if (
             self.session.onstage.conversation != self._ident
-        ):  # else it is the other of the two that the timeline shows
+        ):  # else it is another of those who talk that the timeline shows
             self._ident = self.session.onstage.conversation
             self.first, self.each = 0.0, USUAL
+        self._make_room()
         self.update()
+
+    def _make_room(self) -> None:
+        """Be as high as the lanes need; the panel scrolls where there is less."""
+        of = self.editing.conversation
+        self.setMinimumHeight(least(len(of.sides) if of is not None else 2))
 
     def _read(self) -> None:
         self._came += 1
@@ -179,7 +196,7 @@ class SegmentView(QWidget):
         changed.
         """
         ratio, chosen, s = self.devicePixelRatioF(), self.editing.chosen, self.session
-        heard = tuple(self.sounds.of(of, side) for side in (0, 1))
+        heard = tuple(self.sounds.of(of, side) for side in range(len(of.sides)))
 
         def make() -> QPixmap:
             picture = QPixmap(self.size() * ratio)
@@ -324,6 +341,7 @@ class SegmentView(QWidget):
                 menu.addSeparator()
             action = menu.addAction(f"{deed.text}\t{deed.shown}", partial(deed.run, self.editing, seconds))
             action.setEnabled(bool(self.editing.chosen) or not deed.needs)
+        offer_addressees(menu, self.editing)
         return menu
 
     def _seconds(self) -> float:
@@ -392,7 +410,7 @@ class SegmentView(QWidget):
         if of is None or self.hand.gesture is not None:
             return ""
         if hit.at >= 0:
-            words = segment_words(of.sides[hit.side].segments[hit.at])
+            words = segment_words(of.sides[hit.side].segments[hit.at]) + addressee_words(of, hit.side, hit.at)
             return words + ("\nDrag it to another top of the pitch" if hit.part == "peak" else "")
         if hit.part == "wave":
             seconds = self.scale().seconds(at.x())

@@ -100,7 +100,9 @@ class Sounds(QObject):
         """Read what the conversation on stage needs and is not there yet; what others needed is forgotten."""
         on = self.document.project.conversations.get(self.session.onstage.conversation or "")
         keys = dict.fromkeys(
-            k for side in (0, 1) if on is not None and (k := self._key(on, side)) is not None
+            k
+            for side in range(len(on.sides) if on is not None else 0)
+            if on is not None and (k := self._key(on, side)) is not None
         )
         if set(keys) == set(self.heard) and not self._left():
             return

@@ -1,24 +1,36 @@
-"""What was read of one of the two, on a card."""
+"""What was read of those who talk, on cards."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QLineEdit, QWidget
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QFrame,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QToolButton,
+    QWidget,
+)
 
 from app.features.conversation.conversation_panel import PLURALS
-from app.features.conversation.conversation_settings import caption
+from app.features.conversation.conversation_settings import ORDINALS, Tall, caption
 from app.features.conversation.word_lists import language_name
 from app.look.plural import many
 from app.look.theme import SOUND_MARKS
+from app.widgets.making import make_widget
 from metagraph.graph.conversation import SPOKEN, Side
 
 
 class Card(QFrame):
-    """One of the two: name, sound, words, and how many segments."""
+    """One who talks: name, sound, words, and how many segments. taken: whether it is in the conversation; of
+    two both are. earlier: lets it stand before the one on its left.
+    """
 
-    def __init__(self, title: str, parent: QWidget) -> None:
+    def __init__(self, title: str, parent: QWidget, first: bool = True) -> None:
         super().__init__(parent)
         self.setObjectName("card")
         grid = QGridLayout(self)
@@ -26,7 +38,21 @@ class Card(QFrame):
         grid.setHorizontalSpacing(12)
         grid.setVerticalSpacing(6)
         grid.setColumnStretch(1, 1)
-        grid.addWidget(caption(title, self), 0, 0, 1, 2)
+        row_of = QHBoxLayout()
+        row_of.addWidget(caption(title, self), 1)
+        self.taken = QCheckBox("Takes part", self)
+        self.taken.setChecked(True)
+        self.taken.setToolTip("Whether this speaker is in the conversation, with a character of its own")
+        self.taken.setAccessibleName(f"The {title.lower()} takes part")
+        self.earlier = make_widget(
+            QToolButton, self, text="←", toolTip="Before the one on the left: who stands where"
+        )
+        self.earlier.setAccessibleName(f"Move the {title.lower()} one place forward")
+        self.earlier.setEnabled(not first)
+        for choice in (self.taken, self.earlier):
+            choice.hide()
+            row_of.addWidget(choice)
+        grid.addLayout(row_of, 0, 0, 1, 2)
         self.name = QLineEdit(self)
         self.name.setPlaceholderText(title)
         self.name.setAccessibleName(f"Name of the {title.lower()}")
@@ -56,3 +82,53 @@ class Card(QFrame):
         self.segments.setText(
             "   ".join(f"{SOUND_MARKS[k]} {n:,} {PLURALS[k] if n != 1 else k}" for k, n in counts.items())
         )
+
+
+class Cards(Tall):
+    """A card for each who was read: two beside each other with a button to swap them, more in rows of two.
+    moved: one is to stand before the one before it; its number. chosen: somebody takes part, or no longer.
+    """
+
+    moved = Signal(int)
+    chosen = Signal()
+
+    def __init__(self, parent: QWidget) -> None:
+        inside = QWidget(parent)
+        super().__init__(inside, 330, parent)  # two rows; more are scrolled
+        self.cards: list[Card] = []
+        self.grid = QGridLayout(inside)
+        self.grid.setContentsMargins(0, 0, 0, 0)
+        self.grid.setSpacing(10)
+        self.grid.setColumnStretch(0, 1)
+        self.grid.setColumnStretch(2, 1)
+        self.swap = make_widget(
+            QToolButton,
+            inside,
+            text="⇄",
+            toolTip="Swap the two: who stands left, and is driven by this project's own graph",
+        )
+        self.swap.setAccessibleName("Swap the two")
+        self.swap.clicked.connect(lambda: self.moved.emit(1))
+        self.grid.addWidget(self.swap, 0, 1)
+        self.deal(2)
+
+    def deal(self, count: int) -> None:
+        """Have so many cards."""
+        if len(self.cards) == count:
+            return
+        for card in self.cards[count:]:
+            card.deleteLater()
+        del self.cards[count:]
+        for n in range(len(self.cards), count):
+            card = Card(f"{ORDINALS[n].capitalize()} speaker", self.inside, n == 0)
+            card.earlier.clicked.connect(lambda _=False, n=n: self.moved.emit(n))
+            card.taken.toggled.connect(lambda _: self.chosen.emit())
+            self.cards.append(card)
+            self.grid.addWidget(card, n // 2, 2 * (n % 2))
+            card.show()  # at once: how high the cards are is asked for below
+        self.swap.setVisible(count == 2)
+        for card in self.cards:
+            for choice in (card.taken, card.earlier):
+                choice.setVisible(count > 2)
+        self.grid.activate()
+        self.setFixedHeight(self.sizeHint().height())

@@ -4,6 +4,8 @@ of a conversation.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -15,7 +17,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.conversation.conversation_settings import SettingDialog, asked, caption
+from app.features.conversation.conversation_settings import SettingDialog, Tall, asked, caption
 from app.look.theme import SOUND_MARKS
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
@@ -112,7 +114,7 @@ class WordLists(QWidget):
 
 
 class WordsDialog(SettingDialog):
-    """Which words make a segment a response or a hesitation, of both or of each."""
+    """Which words make a segment a response or a hesitation, of all or of each."""
 
     title, text = "Word lists", "Change word lists"
 
@@ -126,10 +128,15 @@ class WordsDialog(SettingDialog):
         )
         of = self.conversation
         self.apart = QCheckBox("Each has lists of its own", self)
-        self.apart.setChecked(lists_of(of, 0) != lists_of(of, 1))
+        self.sides = range(len(of.sides))
+        self.apart.setChecked(any(lists_of(of, n) != lists_of(of, 0) for n in self.sides))
+        everyone = "Both" if len(self.sides) == 2 else "All"
+        inside = QWidget(self)
+        inner = QVBoxLayout(inside)
+        inner.setContentsMargins(0, 0, 0, 0)
         self.rows: list[tuple[QWidget, LanguageBox, WordLists]] = []
-        for side in (0, 1):
-            whole = QWidget(self)
+        for side in self.sides:
+            whole = QWidget(inside)
             column = QVBoxLayout(whole)
             column.setContentsMargins(0, 0, 0, 0)
             row = QHBoxLayout()
@@ -143,12 +150,13 @@ class WordsDialog(SettingDialog):
             row.addWidget(box)
             column.addLayout(row)
             column.addWidget(lists, 1)
-            layout.addWidget(whole, 1)
+            inner.addWidget(whole, 1)
             self.rows.append((whole, box, lists))
             self.apart.toggled.connect(
-                lambda on, label=name, n=side: label.setText(side_name(of, n) if on else "Both")
+                lambda on, label=name, n=side: label.setText(side_name(of, n) if on else everyone)
             )
-            name.setText(side_name(of, side) if self.apart.isChecked() else "Both")
+            name.setText(side_name(of, side) if self.apart.isChecked() else everyone)
+        layout.addWidget(inside if len(self.sides) == 2 else Tall(inside, 480, self), 1)
         self.lists = self.rows[0][2]
         self._show_other(self.apart.isChecked())
         self.apart.toggled.connect(self._show_other)
@@ -156,7 +164,8 @@ class WordsDialog(SettingDialog):
         self.lists.edits[0].setFocus()
 
     def _show_other(self, on: bool) -> None:
-        self.rows[1][0].setVisible(on)
+        for whole, _, _ in self.rows[1:]:
+            whole.setVisible(on)
         self.resize(620, 580 if on else 420)
 
     def _take_language(self, n: int) -> None:
@@ -164,14 +173,14 @@ class WordsDialog(SettingDialog):
         _, box, lists = self.rows[n]
         code = str(box.currentData())
         if code == AUTO:
-            code = _spoken_by(self.conversation, (n,) if self.apart.isChecked() else (0, 1))
+            code = _spoken_by(self.conversation, (n,) if self.apart.isChecked() else self.sides)
             box.show_code(code)
         pack = languages().get(code)
         if pack is not None:
             lists.show_lists((pack.responses, pack.hesitations), code)
 
     def change(self, project: Project) -> Project:
-        sides: tuple[int | None, ...] = (0, 1) if self.apart.isChecked() else (None,)
+        sides: Sequence[int | None] = self.sides if self.apart.isChecked() else (None,)
         for side in sides:
             _, box, lists = self.rows[side or 0]
             code = str(box.currentData())
@@ -181,7 +190,7 @@ class WordsDialog(SettingDialog):
         return project
 
 
-def _spoken_by(conversation: Conversation, sides: tuple[int, ...]) -> str:
+def _spoken_by(conversation: Conversation, sides: Sequence[int]) -> str:
     """Return the code of what sides' words tell; English where they tell nothing."""
     words = [w.text for side in sides for w in conversation.sides[side].words]
     found = language_spoken(words, tuple(languages().values())).language

@@ -162,7 +162,7 @@ class UsePage(Page):
             chosen = box.currentData()
             box.clear()
             for ident, talk in project.conversations.items():
-                for n in range(2):
+                for n in range(len(talk.sides)):
                     box.addItem(f"{talk.name}: {side_name(talk, n)}", (ident, n))
             if box is self.speech:
                 if self._sound is not None:

@@ -99,7 +99,8 @@ class RatesDialog(QDialog):
         self.who = ComboBox(self)
         self.who.setAccessibleName("Whose rates")
         for ident, talk in document.project.conversations.items():
-            self.who.addItem(f"{talk.name}: both", (ident, (0, 1)))
+            everyone = "both" if len(talk.sides) == 2 else "all"
+            self.who.addItem(f"{talk.name}: {everyone}", (ident, tuple(range(len(talk.sides)))))
             for side, one in enumerate(talk.sides):
                 self.who.addItem(f"{talk.name}: {one.name or f'side {side + 1}'}", (ident, (side,)))
         row_box.addWidget(self.who)

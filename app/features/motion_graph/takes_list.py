@@ -135,7 +135,7 @@ class TakesList(QWidget):
         sides = [
             ((ident, n), side_words(talk, n))
             for ident, talk in project.conversations.items()
-            for n in range(2)
+            for n in range(len(talk.sides))
         ]
         for key, words in [(None, NONE), *sides]:
             action = self.menu.addAction(words, partial(self._tell_speech, clip, key))

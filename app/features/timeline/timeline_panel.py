@@ -118,7 +118,7 @@ class TimelinePanel(QWidget):
         self._words()
 
     def _put_on(self, _: int) -> None:
-        """Put on stage what was chosen: a performance, improvising, or the other of two who talk."""
+        """Put on stage what was chosen: a performance, improvising, or another of those who talk."""
         chosen = self.stage.currentData()
         if isinstance(chosen, int):
             self.session.onstage.set_side(chosen)
@@ -131,8 +131,8 @@ class TimelinePanel(QWidget):
         wanted: list[tuple[str, str | int | None]] = [(IMPROVISED, None)]
         wanted += [(p.name, i) for i, p in self.document.project.performances.items()]
         talk = self.document.project.conversations.get(self.session.onstage.conversation or "")
-        if talk is not None:  # then it is one of the two whose plan is seen
-            wanted += [(f"{talk.name}: {side_name(talk, side)}", side) for side in (0, 1)]
+        if talk is not None:  # then it is one of those who talk whose plan is seen
+            wanted += [(f"{talk.name}: {side_name(talk, side)}", side) for side in range(len(talk.sides))]
         shown = self.session.onstage.performance if talk is None else self.session.onstage.side
         if wanted != [(self.stage.itemText(n), self.stage.itemData(n)) for n in range(self.stage.count())]:
             self.stage.clear()
@@ -328,11 +328,11 @@ class TimelinePanel(QWidget):
                 if self.session.transport.show == "context"
                 else words + lost_words
             )
-        elif shown.partner is not None and self.session.transport.show == "plan":
+        elif shown.others and self.session.transport.show == "plan":
             talk = self.performance.document.project.conversations.get(
                 self.session.onstage.conversation or ""
             )
-            who = side_name(talk, shown.side) if talk is not None else "One of the two"
+            who = side_name(talk, shown.side) if talk is not None else "One who talks"
             gestures = sum(1 for cue in shown.plan.layers["arms"].cues if cue.action.kind == "gesture")
             nods = len(shown.plan.layers["head"].cues)
             if shown.motion is not None:

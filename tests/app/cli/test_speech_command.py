@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from app.cli.parser import main
-from metagraph.formats.store import open_project
+from metagraph.formats.store import absolute, open_project, save_project
 from metagraph.formats.transcripts import read_transcript
-from tests.speech import talk
+from tests.speech import group, talk
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips"
 
@@ -90,8 +90,10 @@ def test_bad_usage_says_what_is_right(
 ) -> None:
     assert main(["speech", str(files[0]), "-o", str(tmp_path / "a.mp4")]) == 1
     assert ".eaf, .TextGrid, .json" in capsys.readouterr().err
-    assert main(["speech", *[str(files[0])] * 3]) == 1
-    assert "one or two sounds" in capsys.readouterr().err
+    assert main(["speech", *[str(files[0])] * 9]) == 1
+    assert "up to 8 sound files" in capsys.readouterr().err
+    assert main(["speech", *[str(files[0])] * 3, "--words", *[str(files[1])] * 2]) == 1
+    assert "3 sounds and 2 transcripts" in capsys.readouterr().err
     assert main(["speech", str(tmp_path / "gone.wav")]) == 1
     assert "there is no such sound file" in capsys.readouterr().err
 
@@ -132,3 +134,45 @@ def test_a_language_that_is_not_there_is_told(
 ) -> None:
     assert main(["speech", str(files[0]), *words]) == 1
     assert said in capsys.readouterr().err
+
+
+# --- more than two
+
+
+@pytest.fixture
+def three(tmp_path: Path) -> tuple[Path, Path]:
+    spoken = group.spoken()
+    audio, words = tmp_path / "three.wav", tmp_path / "three.json"
+    talk.write_sound(audio, spoken.samples, spoken.rate)
+    talk.write_words(words, spoken)
+    return audio, words
+
+
+def test_three_are_kept_and_it_says_where_each_looks(
+    three: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    project = tmp_path / "a.metagraph.yaml"
+    save_project(absolute(open_project(SAMPLE / "sample.metagraph.yaml").project, SAMPLE), project)
+    given = (three[0], "--words", three[1], "--project", project)
+    code, data, _ = run(capsys, *given, "--name", "Three")
+    kept = open_project(project).project.conversations[data["kept"]]
+    assert code == 0 and len(data["sides"]) == len(data["delivered"]) == len(kept.sides) == 3
+    doing = [{share["doing"] for share in looks} for looks in data["looks"]]
+    assert all(found & {"addressed", "aside"} and any("speaking" in d for d in found) for found in doing)
+    assert main(["speech", *map(str, given), "--name", "Again"]) == 0
+    out = capsys.readouterr().out
+    assert "SPEAKER_02, speaking, looks at the one addressed for" in out
+    assert "whoever is addressed, looks at the speaker for" in out
+
+
+def test_who_takes_part_is_chosen_by_name_or_number(
+    three: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    given = (three[0], "--words", three[1], "--speakers")
+    for chosen in ("3, speaker_00", "SPEAKER_02,1"):
+        code, data, _ = run(capsys, *given, chosen)
+        assert code == 0 and [s["name"] for s in data["sides"]] == ["SPEAKER_02", "SPEAKER_00"]
+        assert data["looks"] == []
+    for chosen, why in (("Zoe,1", "nobody is called 'Zoe'"), ("2", "two or more"), ("2,2", "two or more")):
+        assert main(["speech", *map(str, given), chosen]) == 1
+        assert why in capsys.readouterr().err

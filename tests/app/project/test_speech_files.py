@@ -10,8 +10,8 @@ import soundfile
 from app.project.speech_files import beside, channels_of, converses, facts_of, kinds_of
 
 
-def sound(path: Path, channels: int) -> Path:
-    soundfile.write(str(path), np.zeros((800, channels)), 8000)
+def sound(path: Path, channels: int, seconds: float = 0.1) -> Path:
+    soundfile.write(str(path), np.zeros((round(8000 * seconds), channels)), 8000)
     return path
 
 
@@ -24,6 +24,17 @@ def test_two_channels_two_sounds_or_a_sound_with_words_are_a_conversation(tmp_pa
     assert not converses([words])
     assert not converses([mono, stereo, tmp_path / "c.flac"]), "lines of dialogue"
     assert not converses([stereo, tmp_path / "notes.pdf"])
+
+
+def test_three_sounds_are_a_conversation_where_they_last_long_and_as_long_as_each_other(
+    tmp_path: Path,
+) -> None:
+    def some(*lasts: float) -> list[Path]:
+        return [sound(tmp_path / f"{n}.wav", 1, seconds) for n, seconds in enumerate(lasts)]
+
+    assert converses(some(12.0, 12.3, 12.1))
+    assert not converses(some(12.0, 12.0, 14.0)) and not converses(some(1.0, 1.1, 1.2)), "lines of dialogue"
+    assert converses([sound(tmp_path / "b.wav", 3)]) and not converses([sound(tmp_path / "c.wav", 9)])
 
 
 def test_sounds_come_first_by_name_and_what_is_neither_is_left_out() -> None:

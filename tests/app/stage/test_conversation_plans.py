@@ -13,10 +13,11 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from app.stage.conversation_plans import ConversationPlans
+from app.cli.parser import main
+from app.stage.conversation_plans import ConversationPlans, keep
 from metagraph.formats.store import absolute, open_project, save_project
 from metagraph.graph.conversation import Conversation, Segment, Side
-from metagraph.graph.requests import Gesture
+from metagraph.graph.requests import Gesture, Look, Place
 
 ROOT = Path(__file__).parents[3]
 RATE = 16000
@@ -64,7 +65,7 @@ def staged(drive, talking):
     drive.files.open(talking)
     drive.wait(lambda: drive.document.folder == talking.parent and drive.performance.skeleton() is not None)
     drive.session.onstage.set_conversation("v9000")
-    drive.wait(lambda: drive.performance.shown.partner is not None)
+    drive.wait(lambda: bool(drive.performance.shown.others))
     return drive
 
 
@@ -92,7 +93,7 @@ def test_improvised_takes_the_conversation_off_stage(staged):
     staged.timeline.stage.setFocus()
     QTest.keyClick(staged.timeline.stage, Qt.Key.Key_Up)
     assert staged.session.onstage.conversation is None
-    staged.wait(lambda: staged.performance.shown.partner is None)
+    staged.wait(lambda: not staged.performance.shown.others)
 
 
 def test_both_are_heard_each_where_it_speaks(staged):
@@ -129,9 +130,7 @@ def test_kept_as_performances_both_can_be_played_and_undone_at_once(staged):
     )
     assert {line.channel for line in staged.document.project.lines.values()} == {0, 1}
     staged.wait(
-        lambda: (
-            staged.performance.shown.partner is None and bool(staged.performance.shown.plan.track.speeches)
-        )
+        lambda: not staged.performance.shown.others and bool(staged.performance.shown.plan.track.speeches)
     )
     staged.document.undo_stack.undo()
     assert (
@@ -156,7 +155,7 @@ def test_a_side_moved_by_another_project_uses_that_ones_clips_and_one_that_canno
             "v9000",
             folder,
         )
-        assert shown.both[1].project.settings.alpha == alpha
+        assert shown.everyone[1].project.settings.alpha == alpha
         assert any("missing" in note for note in shown.notes) == told
 
 
@@ -209,7 +208,7 @@ def test_a_side_can_move_with_a_clip_instead_of_its_graph_and_still_speaks_and_a
     assert np.array_equal(moved.pose(1.0).rotations, moved.pose(np.array([1.0])).rotations[0])
     assert moved.pose(100.0) is not None, "beyond its end it holds its last pose"
     assert moved.plan.track.speeches == still.plan.track.speeches != ()
-    assert moved.partner.motion is None
+    assert moved.others[0].motion is None
     assert lost.motion is None and any("missing" in note for note in lost.notes)
 
 
@@ -275,3 +274,59 @@ def test_it_is_written_from_the_command_line_as_a_video_with_sound_and_as_motion
         cwd=ROOT, capture_output=True, text=True, timeout=100,
     )  # fmt: skip
     assert wrong.returncode == 1 and "it keeps 'Greeting'" in wrong.stderr
+
+
+# --- more than two
+
+
+@pytest.fixture
+def three(talking: Path) -> Path:
+    """The project file with a third who listens, of a conversation v9000."""
+    opened = open_project(talking).project
+    made = opened.conversations["v9000"]
+    third = Side(name="Cleo", segments=(Segment("clause", 6.5, 7.5, 7.0, "and I", 0),))
+    talk = msgspec.structs.replace(made, sides=(*made.sides, third))
+    save_project(replace(opened, conversations={"v9000": talk}), talking)
+    return talking
+
+
+def test_all_of_three_are_shown_whichever_of_them_is_looked_at(three: Path) -> None:
+    project = open_project(three).project
+    for side in (0, 2, 7):
+        shown = ConversationPlans().show(project, "v9000", three.parent, side)
+        assert shown.side == (side if side < 3 else 0)
+        assert [one.side for one in shown.everyone] == [0, 1, 2] and len(shown.others) == 2
+        assert all(one.stand is not None for one in shown.everyone)
+
+
+def test_what_three_do_is_kept_with_whom_they_look_at_and_plays_the_same(three: Path) -> None:
+    from metagraph.playback.player import pose_at
+    from metagraph.playback.running_plan import perform
+
+    project = open_project(three).project
+    shown = ConversationPlans().show(project, "v9000", three.parent)
+    after, made = keep(project, "v9000", shown)
+    assert [after.performances[i].name for i in made] == [f"Greeting: {n}" for n in ("Ada", "Ben", "Cleo")]
+    times = np.arange(0.0, 8.0, 0.5)
+    for ident, one in zip(made, shown.everyone, strict=True):
+        kept = after.performances[ident]
+        looks = {ask.to for ask in kept.asks if isinstance(ask, Look)}
+        assert len(looks) == 2 and looks <= {ask.name for ask in kept.asks if isinstance(ask, Place)}
+        plan = perform(after, kept.asks, kept.length, kept.seed, idle=kept.idle)
+        mine, theirs = pose_at(plan, after, times), one.pose(times)
+        assert theirs is not None and np.allclose(mine.rotations, theirs.rotations)
+
+
+def test_three_are_written_one_by_one(three: Path, tmp_path: Path) -> None:
+    words = (
+        "render",
+        str(three),
+        "--conversation",
+        "Greeting",
+        "-o",
+        str(tmp_path / "a.bvh"),
+        "--seconds",
+        "1",
+    )
+    assert main(list(words)) == 0
+    assert sorted(p.name for p in tmp_path.glob("a*.bvh")) == ["a-1.bvh", "a-2.bvh", "a-3.bvh"]

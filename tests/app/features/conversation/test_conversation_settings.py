@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QFileDialog, QToolButton
 
 from app.features.conversation.conversation_commands import converse
 from app.features.conversation.conversation_dialog import ImportDialog
-from app.features.conversation.conversation_settings import SidesDialog
+from app.features.conversation.sides_dialog import SidesDialog
 from metagraph.formats.store import save_project
 from metagraph.graph import conversation_edits
 from metagraph.graph.model import Project

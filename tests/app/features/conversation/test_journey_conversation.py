@@ -14,7 +14,8 @@ from PySide6.QtWidgets import QFileDialog
 
 from app.features.conversation.conversation_commands import converse
 from app.features.conversation.conversation_dialog import ImportDialog
-from app.features.conversation.conversation_settings import RatesDialog, SidesDialog
+from app.features.conversation.conversation_settings import RatesDialog
+from app.features.conversation.sides_dialog import SidesDialog
 from app.features.conversation.word_lists import WordsDialog
 from metagraph.formats.conversations import read_conversation
 from tests.speech.talk import make_conversation
@@ -129,12 +130,12 @@ def test_two_who_talk_are_dropped_edited_saved_reopened_and_exported(
 
 
 def test_a_failed_read_says_why_and_keeps_the_dialog(drive: Any, tmp_path: Path) -> None:
-    loud = np.random.default_rng(1).standard_normal((16000, 3)) * 0.1
+    loud = np.random.default_rng(1).standard_normal((16000, 9)) * 0.1
     soundfile.write(str(tmp_path / "three.wav"), loud, 16000)
     converse(drive.shell, (tmp_path / "three.wav",))
     dialog = dialog_of(drive)
     wait_read(drive, dialog)
-    assert "3 channels" in dialog.notes.text()
+    assert "9 channels" in dialog.notes.text()
     assert not dialog.go.isEnabled()
     assert dialog.isVisible()
     assert dialog.again.isVisible()

@@ -31,12 +31,12 @@ def test_dropped_seen_heard_and_written(drive: Any, tmp_path: Path) -> None:
     dialog = next(d for d in drive.window.findChildren(ImportDialog) if d.isVisible())
     drive.wait(dialog.go.isEnabled, 240)  # the first of all has the reader compiled
     QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
-    drive.wait(lambda: drive.performance.shown.partner is not None, 120)
+    drive.wait(lambda: bool(drive.performance.shown.others), 120)
     drive.session.transport.set_playing(False)
 
     talk = drive.document.project.conversations[drive.session.onstage.conversation]
     nods = 0
-    for one in drive.performance.shown.both:
+    for one in drive.performance.shown.everyone:
         peaks = [s.peak for s in talk.sides[one.side].segments if s.kind == "clause"]
         found = strokes(one.project, one.plan)
         asked = [a for a in one.asks if isinstance(a, Gesture | Play)]
@@ -56,7 +56,7 @@ def test_dropped_seen_heard_and_written(drive: Any, tmp_path: Path) -> None:
     rates.blinks.setCurrentIndex(1)
     QTest.mouseClick(rates.go, Qt.MouseButton.LeftButton)
     drive.wait(lambda: any(isinstance(a, Blink) for a in drive.performance.shown.asks))
-    one = drive.performance.shown.both[0]
+    one = drive.performance.shown.everyone[0]
     blinks = one.plan.life.blinks.starts.tolist()
     assert blinks == pytest.approx([a.at for a in one.asks if isinstance(a, Blink)], abs=1e-6)
     drive.actions["undo"].trigger()

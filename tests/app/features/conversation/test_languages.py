@@ -93,9 +93,9 @@ def test_two_who_speak_different_languages_have_lists_each(drive: Any, tmp_path:
     dialog = imported(drive, write(tmp_path, both, "de"))
     assert dialog.others.isVisible() and "German" in dialog.whose[0].text()
     assert dialog.others.lists() == (EN.responses, EN.hesitations)
-    dialog.swap_sides()
+    dialog.move_earlier(1)
     assert dialog.lists.lists() == (EN.responses, EN.hesitations) and "German" in dialog.whose[1].text()
-    dialog.swap_sides()
+    dialog.move_earlier(1)
     dialog.others.edits[0].setPlainText("yeah")
     wait(drive, dialog)
     assert dialog.others.lists()[0] == ("yeah",) and dialog.lists.lists()[0] == DE.responses

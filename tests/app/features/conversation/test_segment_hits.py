@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from PySide6.QtCore import QPointF
 
 from app.features.conversation.segment_hits import SegmentHit, hit_at, pitch_maxima, snapped, word_edges
-from app.features.conversation.segment_lanes import LEAST, farthest, lanes, pitch_y, visible, words_in
+from app.features.conversation.segment_lanes import farthest, lanes, least, pitch_y, visible, words_in
 from app.widgets.lane_geometry import LEFT, RULER, Scale
 from metagraph.graph.conversation import Conversation, Segment, Side, Word
 
@@ -38,7 +38,7 @@ def at(seconds: float, side: int = 0, row: str = "segments") -> SegmentHit:
     return hit_at(TALK, SCALE, SIZE, QPointF(SCALE.x(seconds), lane.center().y()))
 
 
-@pytest.mark.parametrize("height", [LEAST, 240, 500, 1200])
+@pytest.mark.parametrize("height", [least(2), 240, 500, 1200])
 def test_lanes_follow_each_other_and_fit(height: float) -> None:
     first, second = lanes(1000, height)
     rows = [r for lane in (first, second) for r in (lane.wave, lane.words, lane.segments)]
@@ -46,6 +46,15 @@ def test_lanes_follow_each_other_and_fit(height: float) -> None:
     assert all(a.bottom() <= b.top() + 0.01 for a, b in pairwise(rows))
     assert rows[-1].bottom() <= height
     assert all(r.height() > 10 for r in rows)
+
+
+@pytest.mark.parametrize("sides", range(2, 9))
+def test_lanes_of_all_who_talk_lie_under_each_other_in_the_height_they_need(sides: int) -> None:
+    places = lanes(1000, least(sides), sides)
+    assert len(places) == sides and places[-1].whole.bottom() <= least(sides)
+    for above, below in pairwise(places):
+        assert above.whole.bottom() < below.whole.top()
+    assert all(lane.segments.height() >= 15 and lane.wave.height() >= 15 for lane in places)
 
 
 def test_a_segment_is_held_by_its_ends_or_its_body() -> None:

@@ -135,9 +135,7 @@ def test_new_motion_can_move_the_speaker_of_a_conversation_until_the_graph_does_
     drive.wait(lambda: drive.performance.shown.motion == made.id, 60)
     assert made.name in drive.timeline.title.words
     drive.actions["graph_again"].trigger()
-    drive.wait(
-        lambda: drive.performance.shown.partner is not None and drive.performance.shown.motion is None, 60
-    )
+    drive.wait(lambda: bool(drive.performance.shown.others) and drive.performance.shown.motion is None, 60)
     drive.document.undo_stack.undo()
     drive.document.undo_stack.undo()
     assert made.id not in drive.document.project.clips

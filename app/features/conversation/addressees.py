@@ -1,0 +1,47 @@
+"""Whom a segment is said to, where three or more talk: in words, and as a menu to say so."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from PySide6.QtWidgets import QMenu
+
+from app.features.conversation.segment_editing import Editing
+from metagraph.graph.conversation import EVERYBODY, Conversation, others_of, side_name
+from metagraph.speech.addressing import turns_of
+
+
+def offer_addressees(menu: QMenu, editing: Editing) -> None:
+    """Offer whom the selected segments are said to, where there is more than one to say them to."""
+    of, sides = editing.conversation, {side for side, _ in editing.chosen}
+    if of is None or len(of.sides) < 3:
+        return
+    whom = menu.addMenu("Said to")
+    whom.setEnabled(len(sides) == 1)
+    if len(sides) != 1:
+        return
+    side = next(iter(sides))
+    now = {of.sides[side].segments[at].to for _, at in editing.chosen}
+    choices: list[tuple[str, int | None]] = [("As it is inferred", None), ("Everybody", EVERYBODY)]
+    choices += [(side_name(of, n), n) for n in others_of(of, side)]
+    for words, to in choices:
+        action = whom.addAction(words, partial(editing.address, to))
+        action.setCheckable(True)
+        action.setChecked(now == {to})
+
+
+def addressee_words(conversation: Conversation, side: int, at: int) -> str:
+    """Return a line that says whom a segment is said to; nothing of two, who have nobody else, and of what
+    takes no turn.
+    """
+    segment = conversation.sides[side].segments[at]
+    if len(conversation.sides) < 3:
+        return ""
+    turn = next(
+        (t for t in turns_of(conversation) if t.side == side and t.start <= segment.start < t.end), None
+    )
+    to = segment.to if segment.to is not None else turn.to if turn is not None else None
+    if to is None:
+        return ""
+    whom = "everybody" if to == EVERYBODY else side_name(conversation, to)
+    return f"\nTo {whom}{'' if segment.to is not None else ', as it seems'}"

@@ -1,0 +1,207 @@
+"""Who talks in a conversation, which sound is whose, whose graph moves each, and where they stand."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QComboBox,
+    QDoubleSpinBox,
+    QFileDialog,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.features.conversation.conversation_settings import ORDINALS, SettingDialog, Tall, caption
+from app.project.speech_files import SOUNDS, channels_of
+from app.widgets.making import make_widget
+from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
+from metagraph.formats.store import SUFFIX, relative
+from metagraph.graph import conversation_edits
+from metagraph.graph.edits import EditError
+from metagraph.graph.model import Project
+from metagraph.speech.duet import stands
+
+ROWS = 7  # of the grid for each who talks
+
+
+class SidesDialog(SettingDialog):
+    """Who talks, which sound is whose, whose graph moves each, and where they stand."""
+
+    title, text = "Sounds and names", "Change sounds and names"
+
+    def build(self, layout: QVBoxLayout) -> None:
+        self.resize(720, 0 if len(self.conversation.sides) == 2 else 620)
+        self.names: list[QLineEdit] = []
+        self.sounds: list[QLineEdit] = []
+        self.channels: list[QComboBox] = []
+        self.movers: list[QLineEdit] = []
+        self.places: list[tuple[QCheckBox, QDoubleSpinBox, QDoubleSpinBox]] = []
+        count = len(self.conversation.sides)
+        inside = QWidget(self)
+        grid = QGridLayout(inside)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setHorizontalSpacing(10)
+        grid.setVerticalSpacing(8)
+        grid.setColumnStretch(1, 1)
+        for side, of in enumerate(self.conversation.sides):
+            top, ordinal = ROWS * side, ORDINALS[side]
+            grid.addWidget(caption(f"{ordinal.capitalize()} speaker", inside), top, 0, 1, 3)
+            name, sound, channel, mover = (
+                QLineEdit(of.name, inside),
+                QLineEdit(of.audio or "", inside),
+                ComboBox(inside),
+                QLineEdit(inside),
+            )
+            mover.setText(of.project or "")
+            mover.setToolTip("The project whose graph and character move this one")
+            mover.setClearButtonEnabled(True)
+            for row, (words, widget, empty) in enumerate(
+                (
+                    ("Name", name, f"Speaker {side + 1}"),
+                    ("Sound", sound, "No sound"),
+                    ("Channel", channel, ""),
+                    ("Moved by", mover, "This project"),
+                ),
+                top + 1,
+            ):
+                widget.setAccessibleName(f"{words} of the {ordinal} speaker")
+                grid.addWidget(QLabel(words, inside), row, 0)
+                grid.addWidget(widget, row, 1)
+                if isinstance(widget, QLineEdit):
+                    widget.setPlaceholderText(empty)
+            for row, tip, choose in (
+                (top + 2, "Choose a sound file", self.choose),
+                (top + 4, "Choose a project", self.choose_project),
+            ):
+                button = make_widget(QToolButton, inside, text="Choose…", toolTip=tip)
+                button.clicked.connect(lambda _=False, side=side, choose=choose: choose(side))
+                grid.addWidget(button, row, 2)
+            grid.addWidget(QLabel("Stands", inside), top + 5, 0)
+            grid.addLayout(self._place_row(inside, side), top + 5, 1)
+            grid.setRowMinimumHeight(top + 6, 6)
+            self.names.append(name)
+            self.sounds.append(sound)
+            self.channels.append(channel)
+            self.movers.append(mover)
+            self._show_channels(side, of.channel)
+            sound.editingFinished.connect(
+                lambda side=side: self._show_channels(side, self.channels[side].currentData())
+            )
+        layout.addWidget(inside if count == 2 else Tall(inside, 520, self), 1)
+        between = "the two" if count == 2 else "neighbours in the circle"
+        self.distance = DoubleSpinBox(
+            self, suffix=" m", decimals=2, singleStep=0.1, toolTip=f"How far apart {between} stand"
+        )
+        self.distance.setRange(0.2, 20)
+        self.distance.setValue(self.conversation.distance)
+        self.distance.setAccessibleName(f"Distance between {between}")
+        row_of = QHBoxLayout()
+        row_of.addWidget(QLabel("Distance", self))
+        row_of.addWidget(self.distance)
+        row_of.addStretch(1)
+        layout.addLayout(row_of)
+
+    def _place_row(self, parent: QWidget, side: int) -> QHBoxLayout:
+        """A place of one's own: to the right, and towards the viewer."""
+        of = self.conversation.sides[side]
+        own = QCheckBox("at a place of its own", parent)
+        own.setChecked(of.place is not None)
+        own.setAccessibleName(f"The {ORDINALS[side]} speaker stands at a place of its own")
+        row = QHBoxLayout()
+        row.setSpacing(10)
+        row.addWidget(own)
+        fields = []
+        here = stands(self.conversation)[side]
+        for at, words, tip in (
+            (here.x, "right", "Metres to the right of the middle; less than 0 to the left"),
+            (here.z, "nearer", "Metres towards the viewer; less than 0 away"),
+        ):
+            field = DoubleSpinBox(parent, suffix=f" m {words}", decimals=2, singleStep=0.1, toolTip=tip)
+            field.setRange(-50, 50)
+            field.setValue(at)
+            field.setAccessibleName(f"{words} of the {ORDINALS[side]} speaker")
+            field.setEnabled(own.isChecked())
+            own.toggled.connect(field.setEnabled)
+            row.addWidget(field)
+            fields.append(field)
+        row.addStretch(1)
+        self.places.append((own, fields[0], fields[1]))
+        return row
+
+    def _place(self, side: int) -> tuple[float, float] | None:
+        """Return where a side stands, None in the circle; as it was, to what is shown of it."""
+        own, right, nearer = self.places[side]
+        if not own.isChecked():
+            return None
+        place, was = (round(right.value(), 3), round(nearer.value(), 3)), self.conversation.sides[side].place
+        return was if was is not None and tuple(round(x, 2) for x in was) == place else place
+
+    def _show_channels(self, side: int, chosen: int | None) -> None:
+        """Offer the channels that the sound has, as far as that is known."""
+        name = self.sounds[side].text().strip()
+        count = channels_of((self.document.folder or Path()) / name) if name else 0
+        box = self.channels[side]
+        box.clear()
+        box.addItem("All, mixed", None)
+        for n in range(max(count, 0 if chosen is None else chosen + 1)):
+            words = f"{n + 1}" + ((" (left)", " (right)")[n] if count == 2 and n < 2 else "")
+            box.addItem(words, n)
+        box.setCurrentIndex(max(0, box.findData(chosen)))
+
+    def choose(self, side: int) -> None:
+        """Ask for a sound."""
+        if self._ask(self.sounds[side], "Choose a sound", f"Sounds ({' '.join(f'*{s}' for s in SOUNDS)})"):
+            self._show_channels(side, self.channels[side].currentData())
+
+    def choose_project(self, side: int) -> None:
+        """Ask for the project whose graph moves a side."""
+        self._ask(self.movers[side], "Choose a project", f"Projects (*{SUFFIX})")
+
+    def _ask(self, field: QLineEdit, title: str, kinds: str) -> bool:
+        folder = self.document.folder
+        name, _ = QFileDialog.getOpenFileName(self, title, str(folder or Path.home()), kinds)
+        if name:
+            field.setText(relative(Path(name), folder) if folder is not None else Path(name).as_posix())
+        return bool(name)
+
+    def _mover(self, side: int) -> str | None:
+        """Return the path of the project that moves a side, None for the one at hand. Raises EditError where
+        there is none.
+        """
+        text = self.movers[side].text().strip()
+        if not text or text == self.conversation.sides[side].project:
+            return text or None
+        whole = (self.document.folder or Path()) / text
+        if not whole.is_file():
+            raise EditError(
+                f"there is no project at {whole}: choose another, or clear the field to let this project "
+                "move the speaker"
+            )
+        own = self.document.path
+        return None if own is not None and own.exists() and whole.samefile(own) else text
+
+    def change(self, project: Project) -> Project:
+        for side in range(len(self.names)):
+            sound = self.sounds[side].text().strip() or None
+            channel = self.channels[side].currentData() if sound is not None else None
+            project = conversation_edits.change_side(
+                project,
+                self.ident,
+                side,
+                name=self.names[side].text(),
+                audio=sound,
+                channel=channel,
+                project=self._mover(side),
+                place=self._place(side),
+            )
+        distance = round(self.distance.value(), 3)
+        if distance == round(self.conversation.distance, 2):  # as it was, to what is shown of it
+            return project
+        return conversation_edits.change_conversation(project, self.ident, distance=distance)
