@@ -76,7 +76,7 @@ def graphs_of(options: Namespace, project: Project) -> dict[str, LiveGraph]:
             f"take '{clips[0].name}' has another skeleton than the character: bring the takes onto it with "
             "--retarget, or give takes of its own"
         )
-    graph.turns(project)
+    graph.warm(project)
     print(f"note: the motion graph has {kept:,} states and {edges:,} transitions", file=sys.stderr)
     return {NAME: graph}
 

@@ -143,6 +143,11 @@ def arguments(parser: ArgumentParser) -> None:
         "--search", action="append", choices=("exact", "greedy"), help="only this search (default: both)"
     )
     tried.add_argument("--quick", action="store_true", help="all constraints only, without leaving any out")
+    tried.add_argument(
+        "--live",
+        action="store_true",
+        help="instead: motion that is extended while it plays, for speech that is heard or announced",
+    )
     tried.add_argument("--seed", type=int, default=1, help="other paths of the greedy search (default: 1)")
     action(
         "co-occurrence", "count how often hands and head move with what is said", co_occurrence, speech=True
@@ -457,6 +462,8 @@ def evaluate(options: Namespace) -> int:
     clips, speech, _ = paired(options.takes, options.speech, options.side)
     if note := _rates(clips):
         print(f"note: {note}", file=sys.stderr)
+    if options.live:
+        return _evaluate_live(options, clips, speech)
     with _until_stopped() as stopped:
         found = run(
             clips,
@@ -481,6 +488,17 @@ def evaluate(options: Namespace) -> int:
     }
     say(options, table_of(found) + (f"\n{options.out}" if options.out is not None else ""), data)
     return 0 if found.whole else 3
+
+
+def _evaluate_live(options: Namespace, clips: list[Clip], speech: list[tuple[Segment, ...]]) -> int:
+    """Print how motion that is extended while it plays goes with speech that becomes known bit by bit."""
+    from app.cli.command_output import say
+    from metagraph.synthesis.extending_evaluation import held_out, rows_of, table_of
+
+    graphs = held_out(clips, speech, options.k, options.level, options.keys, options.most)
+    rows = list(rows_of(graphs, seed=options.seed, progress=_telling(options, "drives")))
+    say(options, table_of(rows), [asdict(r) for r in rows])
+    return 0
 
 
 def co_occurrence(options: Namespace) -> int:

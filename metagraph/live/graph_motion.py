@@ -83,6 +83,11 @@ class LiveGraph:
         """Whether it can move a project's character."""
         return project.skeleton == self.takes[0].skeleton
 
+    def warm(self, project: Project) -> None:
+        """Work out, and compile, beforehand what the first motion would wait for."""
+        self.turns(project)
+        PathExtender(self.driver).step()
+
     def turns(self, project: Project) -> Array:
         """Return how the joints that are laid over are turned from the base pose at each state `[F, n, 4]`
         float32; worked out once.

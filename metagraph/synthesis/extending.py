@@ -50,7 +50,7 @@ class ExtendingRules:
     lock: int = 2
     horizon: int = 60
     every: int = 3
-    work: int = 400_000
+    work: int = 150_000
     wrong: float = 0.15
     stress: float = 3.0
     edge: float = 0.5
