@@ -36,7 +36,8 @@ SHIFTS = 20  # times that speech is laid elsewhere, to tell what chance gives
 
 @dataclass(frozen=True)
 class LiveRow:
-    """How it went with speech known in one way. how: in words. stresses: how many there were. met: the share
+    """How it went with speech known in one way. how: in words. stresses: how many there were; strokes: how many were shown
+    for each. met: the share
     that a stroke lies within TOLERANCE of, 0..1; answered: from there to LATE after it; chance: met by the
     same motion of speech laid elsewhere. off: median of how much later the nearest stroke is, of those
     answered, seconds. kinds: share of frames with the kind that is heard. jumps: a second; repeated: share of
@@ -47,6 +48,7 @@ class LiveRow:
     how: str
     seconds: float
     stresses: int
+    strokes: float
     met: float
     answered: float
     chance: float
@@ -106,11 +108,12 @@ def row_of(how: str, cases: Sequence[LiveCase], searches: Sequence[tuple[int, fl
     """Return how paths go with the speech that each is for. searches: frames looked at, and seconds."""
     off: list[float] = []
     shifted: list[float] = []
-    alike = frames = 0
+    alike = frames = shown = 0
     looks: list[tuple[int, PathQuality]] = []
     for states, sound, segments, path in cases:
         length = len(path.states)
         strokes = np.flatnonzero(sound.happens(STRESS)[path.states]) / RATE
+        shown += len(strokes)
         peaks = np.array([s.peak for s in segments if s.kind == "clause" and s.peak is not None])
         off += _nearest(strokes, peaks).tolist()
         for n in range(1, SHIFTS + 1):
@@ -134,6 +137,7 @@ def row_of(how: str, cases: Sequence[LiveCase], searches: Sequence[tuple[int, fl
         how,
         frames / RATE,
         len(off),
+        shown / max(1, len(off)),
         float((np.abs(away) <= slack).mean()) if off else 0.0,
         len(near) / len(off) if off else 0.0,
         float((np.abs(np.array(shifted)) <= slack).mean()) if shifted else 0.0,
@@ -241,13 +245,13 @@ def held_out(
 def table_of(rows: Sequence[LiveRow]) -> str:
     """Return rows as a table in text."""
     out = [
-        f"{'speech is':<18}{'met':>6}{'chance':>8}{'answered':>10}{'later by':>10}{'kind':>6}{'jumps/s':>9}"
+        f"{'speech is':<18}{'strokes':>8}{'met':>6}{'chance':>8}{'answered':>10}{'later by':>10}{'kind':>6}{'jumps/s':>9}"
         f"{'again':>7}{'rest':>7}{'takes':>7}{'search':>9}{'most':>9}"
     ]
     for r in rows:
         took = f"{r.middle:>6.1f} ms{r.longest:>6.0f} ms" if r.searches else ""
         out.append(
-            f"{r.how:<18}{r.met:>6.0%}{r.chance:>8.0%}{r.answered:>10.0%}{r.off:>8.2f} s{r.kinds:>6.0%}"
+            f"{r.how:<18}{r.strokes:>8.2f}{r.met:>6.0%}{r.chance:>8.0%}{r.answered:>10.0%}{r.off:>8.2f} s{r.kinds:>6.0%}"
             f"{r.jumps:>9.2f}{r.repeated:>7.1%}{r.rest:>5.1f} s{r.takes_rest:>5.1f} s{took}"
         )
     return "\n".join(out)

@@ -24,6 +24,8 @@ What = Literal["begins", "ends", "stress", "comes", "hush"]
 
 LATE = 0.5  # seconds by which an event that was heard too late may still be answered
 SURE = 0.5  # seconds after which a guess counts half
+RHYTHM = (0.6, 1.6)  # seconds after a stress to the next: clauses have about four words, spoken in 1.3 s
+USUAL = 0.4  # what it counts that it does not come
 DELAYED, TOO_LATE = 0.2, 0.3  # of a missed event: for not coming at once, for not even coming late
 LEAST = 0.2  # what a guess counts at the least
 MOST = 200  # announced segments that are kept
@@ -132,8 +134,25 @@ class SpeechSoFar:
         off = np.maximum(0, np.arange(frames) + first - now) / RATE
         sure = np.where(known, 1.0, np.maximum(LEAST, 0.5 ** (off / SURE))).astype(np.float32)
         window, waits, unmet = self._windows(events, frames, shown)
+        if self.spoken and self.spoken[-1][1] is None and self.spoken[-1][2] == "clause":
+            self._rhythm(round(self.spoken[-1][0] * RATE) - first, shown, window, waits, unmet)
         barred = np.where(window >= 0, 0, np.where(anywhere, 0, STRESS)).astype(np.uint8)
         return ExpectedSpeech(allowed, sure, window, waits, unmet, barred)
+
+    def _rhythm(self, begun: int, shown: Sequence[int], window: Array, waits: Array, unmet: Array) -> None:
+        """Wait for a stress where somebody goes on speaking and none is known: there will be one, nobody can
+        say when.
+        """
+        strokes = [n - len(shown) for n, what in enumerate(shown) if what & STRESS]
+        strokes += np.flatnonzero((window >= 0) & (waits == STRESS)).tolist()
+        last = max([begun, *strokes])
+        a, b = last + round(RHYTHM[0] * RATE), last + round(RHYTHM[1] * RATE)
+        free = np.flatnonzero(window[max(0, a) : max(0, b)] < 0) + max(0, a)
+        if not len(free):
+            return
+        free = _together(free, b)
+        window[free], waits[free] = int(window.max()) + 1, STRESS
+        unmet[free[-1]] += USUAL
 
     def _windows(
         self, events: dict[int, int], frames: int, shown: Sequence[int]
