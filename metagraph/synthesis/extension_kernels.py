@@ -137,7 +137,7 @@ def extend(
                 more, has = _frame(u, x, has, shown, prices, rules[0])
                 so_far += more
                 done += 1
-            if so_far >= total[best]:
+            if so_far >= total[best] or done >= work:
                 break
             ends = x + 1 >= shown.stops[x]
             lasted = n + 1 + (since - 1 if node == 0 else 0)

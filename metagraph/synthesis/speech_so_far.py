@@ -162,7 +162,7 @@ class SpeechSoFar:
         """
         window, waits = np.full(frames, -1, np.int32), np.full(frames, STRESS, np.uint8)
         unmet, late = np.zeros(frames, np.float32), round(LATE * RATE)
-        closes: dict[int, int] = {}
+        closes: dict[int, tuple[int, int]] = {}
         # What is wanted when nothing can be done about it any more is not waited for; a stress goes first.
         for number, (at, what) in enumerate(sorted(events.items(), key=lambda e: (-e[1], e[0]))):
             if at < -late or at - self.slack >= frames:
@@ -181,10 +181,10 @@ class SpeechSoFar:
             # The later the worse: part of it for each frame, the rest where the window closes.
             after = free[free > at] if (free > at).any() else free[-1:]
             unmet[after] += DELAYED / len(after)
-            closes[number] = int(free[-1])
-        for number, close in closes.items():
+            closes[number] = int(free[-1]), at + late
+        for number, (close, latest) in closes.items():
             last = close
-            while waits[close] == STRESS and last + 1 < min(frames, close + late) and window[last + 1] < 0:
+            while waits[close] == STRESS and last < min(frames - 1, latest) and window[last + 1] < 0:
                 last += 1
                 window[last], waits[last] = number, STRESS
             unmet[close] += 1 - DELAYED - TOO_LATE
