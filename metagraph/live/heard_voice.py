@@ -27,6 +27,7 @@ HOP = 0.01  # seconds between two looks at the pitch
 FALLS = 1.0  # semitones by which the voice has to fall, and to have risen, about a stress
 APART = 0.45  # seconds between two stresses
 GAP = 0.08  # seconds without a tone after which a rise begins anew
+TONELESS = 0.5  # seconds of sound without a tone that are no voice any more
 NEAR = 15  # tones that tell how high the voice is
 
 
@@ -43,7 +44,8 @@ class HeardVoice:
             0.0,
             -np.inf,
         )  # the highest since the last trough, the trough
-        self._last, self._toned = -APART, 0.0  # when the last stress was, and the last tone
+        self._last, self._toned = -np.inf, -np.inf  # when the last stress was, and the last tone
+        self._loud, self._since = False, start  # whether there is sound, and since when
 
     @property
     def now(self) -> float:
@@ -53,19 +55,25 @@ class HeardVoice:
     def hear(self, samples: Array) -> list[SpeechNews]:
         """Take in a frame; return what it tells. samples: `[SIZE]`, -1..1."""
         begun, out = self.now, []
-        speaks = self._voice.hear(samples)
+        loud = self._voice.hear(samples)
         self.heard += len(samples)
-        if speaks and not self.speaks:
-            out.append(SpeechNews("begins", begun))
+        if loud and not self._loud:
+            self._since = begun
             self._top, self._low = -np.inf, -np.inf
-        if speaks:
-            out += self._stresses(samples, begun)
-        else:
+        stresses = self._stresses(samples, begun) if loud else self._stressed(begun)
+        if not loud:
             self._sound = np.concatenate([self._sound, samples])[-PIECE * EVERY :]
-        if self.speaks and not speaks:
-            out += self._stressed(begun)
-            out.append(SpeechNews("ends", max(self.start, self.now - GOES_ON * SIZE / RATE)))
-        self.speaks = speaks
+        # What is loud is a voice where it has a pitch: noise has none.
+        voiced = loud and self._toned >= self._since - HOP and self.now - self._toned < TONELESS
+        if voiced and not self.speaks:
+            out.append(SpeechNews("begins", self._since))
+        if self.speaks or voiced:
+            out += stresses
+        if self.speaks and not voiced:
+            ended = self._toned if loud else self.now - GOES_ON * SIZE / RATE
+            out.append(SpeechNews("ends", max(self.start, ended)))
+            self._since = self.now
+        self.speaks, self._loud = voiced, loud
         return out
 
     def _stresses(self, samples: Array, begun: float) -> list[SpeechNews]:

@@ -30,19 +30,19 @@ Array = NDArray[Any]
 HEARD = None  # instead of seconds ahead: it is only heard
 AHEAD: tuple[float | None, ...] = (HEARD, 0.0, 0.5, 1.0, 2.0)
 # Seconds after which `live.heard_voice` knows that somebody begins to speak, was stressed, has ended.
-BEGUN, STRESSED, ENDED = 0.04, 0.14, 0.2
+BEGUN, STRESSED, ENDED = 0.08, 0.14, 0.2
 SHIFTS = 20  # times that speech is laid elsewhere, to tell what chance gives
 
 
 @dataclass(frozen=True)
 class LiveRow:
-    """How it went with speech known in one way. how: in words. stresses: how many there were; strokes: how many were shown
-    for each. met: the share
-    that a stroke lies within TOLERANCE of, 0..1; answered: from there to LATE after it; chance: met by the
-    same motion of speech laid elsewhere. off: median of how much later the nearest stroke is, of those
-    answered, seconds. kinds: share of frames with the kind that is heard. jumps: a second; repeated: share of
-    frames; rest, takes_rest: seconds, as `PathQuality` has them. searches: a second; work: frames looked at
-    by the most laborious; middle, longest: milliseconds a search takes.
+    """How it went with speech known in one way. how: in words. stresses: how many there were; strokes: how
+    many were shown for each. met: the share that a stroke lies within TOLERANCE of, 0..1; answered: from
+    there to LATE after it; chance: met by the same motion of speech laid elsewhere. off: median of how much
+    later the nearest stroke is, of those answered, seconds. kinds: share of frames with the kind that is
+    heard. jumps: a second; repeated: share of frames; rest, takes_rest: seconds, as `PathQuality` has them.
+    searches: a second; work: frames looked at by the most laborious; middle, longest: milliseconds a search
+    takes.
     """
 
     how: str
@@ -244,14 +244,11 @@ def held_out(
 
 def table_of(rows: Sequence[LiveRow]) -> str:
     """Return rows as a table in text."""
-    out = [
-        f"{'speech is':<18}{'strokes':>8}{'met':>6}{'chance':>8}{'answered':>10}{'later by':>10}{'kind':>6}{'jumps/s':>9}"
-        f"{'again':>7}{'rest':>7}{'takes':>7}{'search':>9}{'most':>9}"
-    ]
+    names = ("strokes", "met", "chance", "answered", "later by", "kind", "jumps/s", "again", "rest", "takes")
+    out = [f"{'speech is':<18}" + "".join(f"{name:>9}" for name in (*names, "search", "most"))]
     for r in rows:
+        shares = f"{r.strokes:>9.2f}{r.met:>9.0%}{r.chance:>9.0%}{r.answered:>9.0%}{r.off:>7.2f} s"
+        looks = f"{r.kinds:>9.0%}{r.jumps:>9.2f}{r.repeated:>9.1%}{r.rest:>7.1f} s{r.takes_rest:>7.1f} s"
         took = f"{r.middle:>6.1f} ms{r.longest:>6.0f} ms" if r.searches else ""
-        out.append(
-            f"{r.how:<18}{r.strokes:>8.2f}{r.met:>6.0%}{r.chance:>8.0%}{r.answered:>10.0%}{r.off:>8.2f} s{r.kinds:>6.0%}"
-            f"{r.jumps:>9.2f}{r.repeated:>7.1%}{r.rest:>5.1f} s{r.takes_rest:>5.1f} s{took}"
-        )
+        out.append(f"{r.how:<18}{shares}{looks}{took}")
     return "\n".join(out)
