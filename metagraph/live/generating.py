@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
 from metagraph.live.generated_motion import GeneratedMotion
-from metagraph.live.graph_motion import GraphMotion, KeptMotion, LiveGraph
+from metagraph.live.graph_motion import MOST_TOLD, GraphMotion, KeptMotion, LiveGraph
 from metagraph.live.laid_motion import LaidMotion
 from metagraph.live.messages import Generate, Hear, Reply, rounded
 from metagraph.playback.overlay import Overlay
@@ -63,6 +63,8 @@ class Generating:
         """Let other motion, or none, follow."""
         if isinstance(self.motion, GraphMotion):
             self.kept = [*self.kept, self.motion.kept()][-KEPT:]
+            while len(self.kept) > 1 and sum(len(kept.told) for kept in self.kept) > MOST_TOLD:
+                del self.kept[0]
         self.motion = motion
 
     def hear(self, client: int, message: Hear, now: float) -> Reply:

@@ -45,7 +45,7 @@ GONE = 0.3  # seconds without sound after which there is none any more
 BEHIND = 15  # frames it may be late before some are left out
 NEWS = 64  # that may wait for the next frame
 FARTHEST = 60.0  # seconds ahead that a clause may be announced
-MOST_TOLD = 200_000  # of what became known, that is kept to make the motion again
+MOST_TOLD = 100_000  # of what became known, that is kept to make the motion again
 AHEAD = 1.0  # seconds by which the character knows what it is going to say itself
 MUTE = ("partner", "none")  # who may speak while it does not
 
@@ -153,6 +153,7 @@ class GraphMotion(LaidMotion):
         self._speaks: bool | None = None  # as it was told; None: loudness tells
         self._poses: dict[int, Array] = {}
         self._first = now
+        self._until: int | None = None  # the frame from which on no more is kept of what became known
 
     @property
     def note(self) -> str:
@@ -180,7 +181,7 @@ class GraphMotion(LaidMotion):
             return voices
         if len(self._sound) + len(voices[0]) > WAITS * SAMPLES:
             return f"more than {WAITS:g} s of sound would wait: send it as it is heard, not faster"
-        if len(self._news) + len(message.comes) > NEWS:
+        if len(self._news) + len(message.comes) + 2 * (message.speaks is not None) > NEWS:
             return "too much at once; try again in a moment"
         for clause in message.comes:
             begins = now + (clause.after or 0.0) if clause.at is None else clause.at
@@ -252,20 +253,22 @@ class GraphMotion(LaidMotion):
         self._know(plan, now)
         for _ in range(due):
             news, self._news = self._news, []
-            if len(self.told) + len(news) <= MOST_TOLD:
+            if len(self.told) + len(news) > MOST_TOLD and self._until is None:
+                self._until = self.path.frame + 1
+            if self._until is None:
                 self.told += [(self.path.frame + 1, one) for one in news]
             self.path.step(news)
         for frame in [f for f in self._poses if f < self.path.frame - 1]:
             del self._poses[frame]
 
     def kept(self) -> KeptMotion:
-        """Return what the motion so far can be made again of."""
+        """Return what the motion so far can be made again of; up to where more became known than is kept."""
         return KeptMotion(
             graph=self.name,
             size=self.graph.size,
             seed=self.wish.seed,
             begun=self._first,
-            frames=self.path.frame + 1,
+            frames=self.path.frame + 1 if self._until is None else self._until,
             told=tuple(self.told),
         )
 

@@ -27,7 +27,9 @@ Told = tuple[int, SpeechNews]  # the frame before which something became known
 
 FADE = 10  # frames after a transition in which what was shown fades; as many as `assemble` blends in all
 WAYS_OUT = 8  # where a take ends and no transition leads on: the most alike it goes on with
-BEHIND = 6.0  # seconds of past that are kept
+BEHIND = 6.0  # seconds for which what is known of speech is kept
+SEEN = 40.0  # seconds for which it is known what was shown
+LONG_AGO = 0.25  # of the price of what was shown a moment ago: what was shown in all that time
 NOISE = 0.05  # of the threshold: what chance may make a transition dearer by
 LOOK, AHEAD = (
     30,
@@ -43,7 +45,8 @@ class ExtendingRules:
     """How a path is extended. lock: frames ahead of what is shown that are not changed any more; horizon:
     frames that are planned beyond; every: frames between two searches, at least. work: frames a search looks
     at, at most. wrong: the price of a frame with what is not heard; stress, edge: of one that does not come;
-    bar: of one that should not; again: of a frame that was shown within `jumps.recent`: of the threshold.
+    bar: of one that should not; again: of a frame that was shown within `jumps.recent`, less of one
+    that was shown within SEEN seconds: of the threshold.
     jumps: `ruled_search.JumpRules`.
     """
 
@@ -151,7 +154,7 @@ class PathExtender:
         )
         events = STRESS * graph.heard.happens(STRESS) | EDGE * graph.heard.happens(EDGE)
         self._events = events.astype(np.uint8)
-        self._recent = np.zeros(len(graph.states), np.uint8)
+        self._recent = np.zeros(len(graph.states), np.float32)
         self._shown = Shown(graph.heard.kinds, self._events, graph.stops, self._recent)
         self._lines = np.full(len(graph.states) + self.rules.horizon + 1, np.inf, np.float32)
         self._searched = -(10**6)
@@ -218,8 +221,10 @@ class PathExtender:
             want.barred,
             rules.bar * limit * want.sure,
         )
-        recent = self._recent_of(first)
-        self._recent[recent] = 1
+        shown = np.array(self.states(self._first, first), np.int64)
+        recent = round(rules.jumps.recent * RATE)
+        self._recent[shown] = LONG_AGO
+        self._recent[shown[max(0, len(shown) - recent) :]] = 1.0
         numbers = np.array(
             [rules.again * limit, MISSING * limit, AHEAD * limit / RATE, LOOK, NOISE * limit], np.float32
         )
@@ -239,17 +244,13 @@ class PathExtender:
             self._lines,
             NODES,
         )
-        self._recent[recent] = 0
+        self._recent[shown] = 0.0
         self.found += 1
         del self._way[first - self._first :]
         self._way += way.tolist()
 
-    def _recent_of(self, first: int) -> Array:
-        """Return the states that were shown within `jumps.recent` seconds before a frame."""
-        return np.array(self.states(first - round(self.rules.jumps.recent * RATE), first), np.int64)
-
     def _forget(self) -> None:
-        over = self.frame - round(BEHIND * RATE) - self._first
+        over = self.frame - round(SEEN * RATE) - self._first
         if over > 0:
             del self._way[:over]
             self._first += over

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from time import perf_counter
+from time import process_time
 from typing import Any
 
 import numpy as np
@@ -41,7 +41,7 @@ class LiveRow:
     there to LATE after it; chance: met by the same motion of speech laid elsewhere. off: median of how much
     later the nearest stroke is, of those answered, seconds. kinds: share of frames with the kind that is
     heard. jumps: a second; repeated: share of frames; rest, takes_rest: seconds, as `PathQuality` has them.
-    searches: a second; work: frames looked at by the most laborious; middle, longest: milliseconds a search
+    searches: a second; work: frames looked at by the most laborious; middle, longest: milliseconds of the processor a search
     takes.
     """
 
@@ -88,7 +88,7 @@ def extended(
     graph: DriverGraph, segments: Iterable[Segment], seconds: float, ahead: float | None, seed: int = 1
 ) -> tuple[Path, list[tuple[int, float]]]:
     """Return the path that is extended while speech goes on, and of each search the frames it looked at and
-    the seconds it took.
+    the seconds of the processor it took.
     """
     extender, news, place = PathExtender(graph, seed), news_of(segments, ahead), 0
     way, searches = np.empty(max(1, round(seconds * RATE)), np.int64), []
@@ -96,10 +96,10 @@ def extended(
         first = place
         while place < len(news) and news[place][0] * RATE <= frame:
             place += 1
-        found, begun = extender.found, perf_counter()
+        found, begun = extender.found, process_time()
         extender.step(one for _, one in news[first:place])
         if extender.found > found:
-            searches.append((extender.spent, perf_counter() - begun))
+            searches.append((extender.spent, process_time() - begun))
         way[frame] = extender.at(frame)
     return Path(way, 0.0, np.flatnonzero(np.diff(way) != 1) + 1), searches
 

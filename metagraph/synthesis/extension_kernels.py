@@ -18,8 +18,8 @@ Array = Any
 
 class Shown(NamedTuple):
     """What is known of states. kinds `[F]` uint8: bits of what was heard there. events `[F]` uint8: STRESS
-    and EDGE. stops `[F]`: the first state behind a run that goes through each. recent `[F]` uint8: 1 where it
-    was shown a moment ago.
+    and EDGE. stops `[F]`: the first state behind a run that goes through each. recent `[F]` float32: 1 where
+    it was shown a moment ago, less where that is longer ago.
     """
 
     kinds: Array
@@ -53,8 +53,7 @@ def _frame(t: Any, x: Any, met: Any, shown: Any, prices: Any, again: Any) -> Any
         total += prices.wrong[t]
     if shown.events[x] & prices.barred[t] != 0:
         total += prices.bar[t]
-    if shown.recent[x]:
-        total += again
+    total += again * shown.recent[x]
     if prices.window[t] >= 0:
         if t > 0 and prices.window[t] != prices.window[t - 1]:
             met = False

@@ -272,6 +272,22 @@ def test_what_was_moved_is_kept_and_made_again(session, graph, tmp_path) -> None
         made_again(less, one, "again")
 
 
+def test_no_more_is_kept_of_what_became_known_than_may_be(session, graph, monkeypatch) -> None:
+    for module in ("graph_motion", "generating"):
+        monkeypatch.setattr(f"metagraph.live.{module}.MOST_TOLD", 5)
+    for _ in range(3):
+        motion = begin(session)
+        for _ in range(3):
+            ask(
+                session, {"do": "hear", "comes": [{"in": 0.5, "duration": 1.0}, {"in": 1.6, "duration": 1.0}]}
+            )
+            go_on(session, 0.2)
+    kept = motion.kept()
+    assert len(kept.told) == 4 and kept.frames < motion.path.frame
+    assert kept.frames > kept.told[-1][0]  # as far as it can be made again
+    assert [len(one.told) for one in session.generating.motions()] == [4, 4]
+
+
 def test_frames_fade_from_what_was_shown_without_a_step() -> None:
     driver = talkers_graph()
     turn = np.linspace(0, 1, len(driver.states))

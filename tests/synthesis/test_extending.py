@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path as FilePath
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from metagraph.formats.clips import read_clips
 from metagraph.synthesis.constraints import HeardStates
 from metagraph.synthesis.extending import (
-    BEHIND,
     NODES,
+    SEEN,
     DriverGraph,
     ExtendingRules,
     PathExtender,
@@ -21,14 +23,17 @@ from metagraph.synthesis.extending import (
     replayed,
 )
 from metagraph.synthesis.extending_evaluation import extended, news_of
+from metagraph.synthesis.graph import build
 from metagraph.synthesis.path_quality import quality
 from metagraph.synthesis.ruled_search import FREE, JumpRules
 from metagraph.synthesis.search import Path
 from metagraph.synthesis.speech_so_far import MOST, SpeechNews
-from metagraph.synthesis.states import SynthesisError
+from metagraph.synthesis.states import SynthesisError, states_of
 from tests.synthesis.talking import speech, talkers_graph
 from tests.synthesis.test_search import graph_of
 from tests.thorough import many
+
+REAL = FilePath(__file__).resolve().parents[3] / "shared" / "data" / "smartbody-brad"
 
 
 @pytest.fixture(scope="module")
@@ -132,7 +137,7 @@ def test_ten_minutes_keep_as_much_as_one(graph: DriverGraph) -> None:
         if frame % 300 == 0:
             kept = max(kept, len(extender._way) + len(extender.speech.segments))
     assert place == len(news) > 300
-    assert kept < BEHIND * 30 + 30 + graph.rules.lock + graph.rules.horizon + 20
+    assert kept < SEEN * 30 + 30 + graph.rules.lock + graph.rules.horizon + 20
 
 
 def test_a_take_that_leads_nowhere_goes_on_with_what_is_most_alike() -> None:
@@ -149,6 +154,16 @@ def test_a_run_that_ends_too_soon_is_left_before_the_least_time() -> None:
     rules = ExtendingRules(jumps=JumpRules(run=1.0, apart=0.0, price=0.0, recent=0.0, again=0.0))
     way = shown(PathExtender(driver_graph(graph, silent(40), rules)), 120)
     assert len(way) == 120 and all(0 <= x < 40 for x in way)
+
+
+@pytest.mark.skipif(not REAL.is_dir(), reason="the recordings of others are not there")
+def test_somebody_elses_clips_go_on_for_a_minute_without_standing_still() -> None:
+    clips = [read_clips(path)[0] for path in sorted(REAL.glob("*Idle*.bvh"))[:8]]
+    states = states_of(clips)
+    sound = HeardStates(np.ones(len(states), np.uint8), np.zeros(len(states), bool))
+    way = np.array(shown(PathExtender(driver_graph(build(states), sound)), 1800))
+    looks = quality(states, Path(way, 0.0, np.flatnonzero(np.diff(way) != 1) + 1))
+    assert not looks.stands_still and looks.repeated < 0.2 and (np.diff(way) != 0).all()
 
 
 def test_states_that_were_cut_away_are_not_gone_through(graph: DriverGraph) -> None:
