@@ -34,6 +34,12 @@ class Generating:
         self.kept: list[KeptMotion] = []
         self._read: dict[tuple[str, int], Model] = {}
 
+    def answer(self, client: int, message: Generate | Hear, project: Project, now: float) -> Reply:
+        """Return the reply to a client's message."""
+        if isinstance(message, Hear):
+            return self.hear(client, message, now)
+        return self.generate(client, message, project, now)
+
     def generate(self, client: int, message: Generate, project: Project, now: float) -> Reply:
         """Begin, change or end generated motion; return the reply."""
         ident = message.id or None

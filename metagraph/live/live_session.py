@@ -187,9 +187,7 @@ class LiveSession:
                 str(message.__struct_config__.tag), self.now, 0.0, 0, self.now, client.number
             ):
                 return Reply(id=message.id or None, state="refused", why=BUSY)
-            if isinstance(message, Hear):
-                return self.generating.hear(client.number, message, self.now)
-            return self.generating.generate(client.number, message, self.project, self.now)
+            return self.generating.answer(client.number, message, self.project, self.now)
         if isinstance(message, OwnMessage):
             return self._own(client, message)
         ident = message.id

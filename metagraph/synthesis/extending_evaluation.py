@@ -41,8 +41,8 @@ class LiveRow:
     there to LATE after it; chance: met by the same motion of speech laid elsewhere. off: median of how much
     later the nearest stroke is, of those answered, seconds. kinds: share of frames with the kind that is
     heard. jumps: a second; repeated: share of frames; rest, takes_rest: seconds, as `PathQuality` has them.
-    searches: a second; work: frames looked at by the most laborious; middle, longest: milliseconds of the processor a search
-    takes.
+    searches: a second; work: frames looked at by the most laborious; middle, longest: milliseconds of the
+    processor that a search takes.
     """
 
     how: str
