@@ -79,14 +79,15 @@ def run(options: Namespace) -> int:
     opened = open_whole(options.project)
     for note in opened.notes:
         print(f"note: {note}", file=sys.stderr)
+    graphs = live_graph_options.graphs_of(options, opened.project)
+    voice = live_graph_options.voice_of(options, graphs)
     session = LiveSession(
         opened.project,
         options.seed,
         idle=not options.no_idle,
         models=offered(options.project.resolve().parent),
-        graphs=live_graph_options.graphs_of(options, opened.project),
+        graphs=graphs,
     )
-    voice = live_graph_options.voice_of(options)
     session.warm()
     gc.freeze()  # what was loaded stays; looking through it again and again would show as a hitch
     with contextlib.suppress(KeyboardInterrupt):

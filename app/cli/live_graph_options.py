@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from argparse import ArgumentParser, Namespace
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -53,8 +54,8 @@ def checked(options: Namespace) -> None:
     """Raise ValueError for options that do not go together."""
     if options.takes and not options.speech:
         raise ValueError("--takes needs --speech: what was said in each take, a file called as the take is")
-    if not options.takes and (options.speech or options.voice is not None or options.retarget):
-        raise ValueError("--speech, --voice and --retarget need --takes, long takes to move with")
+    if not options.takes and (options.speech or options.retarget):
+        raise ValueError("--speech and --retarget need --takes, long takes to move with")
     if options.announce is not None and options.voice is None:
         raise ValueError("--announce needs --voice, whose clauses it tells")
     if options.announce is not None and not 0 <= options.announce <= 60:
@@ -62,11 +63,23 @@ def checked(options: Namespace) -> None:
 
 
 def graphs_of(options: Namespace, project: Project) -> dict[str, LiveGraph]:
-    """Return the motion graph of the takes that were given, by name. Raises FileError and ValueError."""
+    """Return the motion graph of the takes that were given, else of the project's own, by name. Raises
+    FileError and ValueError.
+    """
+    from metagraph.live.graph_motion import live_graph, recorded_takes
+
     if not options.takes:
-        return {}
+        own, told = recorded_takes(project)
+        if not own:
+            return {}
+        try:
+            graph = live_graph(own, told)
+            graph.warm(project)
+        except (ValueError, RuntimeError) as error:
+            print(f"note: the project's own takes make no motion graph: {error}", file=sys.stderr)
+            return {}
+        return {NAME: graph}
     from app.cli.takes import paired
-    from metagraph.live.graph_motion import live_graph
 
     clips, speech, _ = paired(options.takes, options.speech, options.side)
     graph = live_graph(_brought(clips, project, options.retarget), speech)
@@ -95,10 +108,14 @@ def _brought(clips: list[Clip], project: Project, retarget: bool) -> list[Clip]:
     ]
 
 
-def voice_of(options: Namespace) -> PlayedVoice | None:
-    """Return the voice that was given, None for none. Raises FileError."""
+def voice_of(options: Namespace, graphs: Mapping[str, LiveGraph]) -> PlayedVoice | None:
+    """Return the voice that was given, None for none. Raises FileError, and ValueError where no graph could
+    move to it.
+    """
     if options.voice is None:
         return None
+    if NAME not in graphs:
+        raise ValueError("--voice needs --takes, long takes to move with, or a project that has its own")
     from metagraph.live.played_voice import read_voice
 
     return read_voice(options.voice, NAME, options.announce)

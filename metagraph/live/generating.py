@@ -23,13 +23,15 @@ KEPT = 100  # pieces of motion of a session that can be made again
 
 class Generating:
     """What of a session is generated. models: names to files, those that clients may choose from. graphs:
-    names to motion graphs, likewise. kept: of motion that graphs made, and that is over.
+    names to motion graphs, likewise, None while they are being made. kept: of motion that graphs made, and
+    that is over.
     """
 
     def __init__(
         self, models: Mapping[str, Path] | None = None, graphs: Mapping[str, LiveGraph] | None = None
     ) -> None:
-        self.models, self.graphs = dict(models or {}), dict(graphs or {})
+        self.models = dict(models or {})
+        self.graphs: dict[str, LiveGraph | None] = dict(graphs or {})
         self.motion: LaidMotion | None = None
         self.kept: list[KeptMotion] = []
         self._read: dict[tuple[str, int], Model] = {}
@@ -52,6 +54,10 @@ class Generating:
         try:
             if message.model in self.graphs:
                 graph = self.graphs[message.model]
+                if graph is None:
+                    raise ValueError(
+                        f"the motion graph '{message.model}' is being made; try again in a moment"
+                    )
                 motion = GraphMotion(client, message.model, graph, message, project, now)
             else:
                 model = self._model(message.model)

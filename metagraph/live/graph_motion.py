@@ -17,7 +17,7 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from metagraph.graph.conversation import Segment
+from metagraph.graph.conversation import Segment, heard_by
 from metagraph.graph.model import Project
 from metagraph.live.heard_voice import RATE as SAMPLES
 from metagraph.live.heard_voice import SIZE, HeardVoice
@@ -125,6 +125,25 @@ def live_graph(
     places = key_states(states, KEYS if keys is None else keys, changes(states, told))
     graph = build(states, limit, places, most)
     return LiveGraph(tuple(c for c, _ in pairs), driver_graph(graph, heard(states, told)))
+
+
+def recorded_takes(project: Project) -> tuple[list[Clip], list[tuple[Segment, ...]]]:
+    """Return the project's own takes, those that were recorded along with a side of a conversation, and what
+    was heard during each; of the project's skeleton.
+    """
+    clips: list[Clip] = []
+    speech: list[tuple[Segment, ...]] = []
+    for conversation in project.conversations.values():
+        for number, side in enumerate(conversation.sides):
+            entry = project.clips.get(side.take or "")
+            clip = None if entry is None else entry.motion
+            if clip is None or clip.skeleton != project.skeleton or clip.frames < 2:
+                continue
+            said = [s for s in heard_by(conversation, number) if s.start < clip.duration]
+            if said:
+                clips.append(clip)
+                speech.append(tuple(said))
+    return clips, speech
 
 
 class GraphMotion(LaidMotion):

@@ -140,6 +140,11 @@ class LiveSession:
         self._cold = [x for x in project.actions() if x.kind == "gesture"]
         self._told.clear()
 
+    def offer(self, name: str, graph: LiveGraph | None) -> None:
+        """Let clients ask for a motion graph by name from now on; None while it is being made."""
+        self.generating.graphs[name] = graph
+        self._told.clear()
+
     # --- ticks
 
     def tick(self, now: float, heard: Iterable[tuple[int, HeardMessage | Reply]] = ()) -> Out:

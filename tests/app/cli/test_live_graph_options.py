@@ -60,7 +60,7 @@ def options(folder: Path, **more: object) -> Namespace:
     ("given", "told"),
     [
         (["--takes", "x"], "--takes needs --speech"),
-        (["--voice", "x.wav"], "need --takes"),
+        (["--voice", "x.wav"], "needs --takes"),
         (["--speech", "x.eaf"], "need --takes"),
         (["--takes", "x", "--speech", "x.eaf", "--announce", "1"], "--announce needs --voice"),
         (["--takes", "x", "--speech", "y", "--voice", "z", "--announce", "-1"], "0 to 60 seconds"),
@@ -77,7 +77,7 @@ def test_options_that_do_not_go_together_are_said(
 def test_takes_of_another_skeleton_are_refused_or_brought_onto_the_characters(
     folder: Path, sample: Project, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert graphs_of(Namespace(takes=[]), sample) == {}
+    assert graphs_of(Namespace(takes=[]), sample) == {}  # no conversation of it has takes
     (tmp_path / "takes").mkdir()
     for path in sorted((folder / "takes").glob("*.glb")):
         take = read_clips(path)[0]
