@@ -127,7 +127,7 @@ def test_a_flood_of_news_is_searched_for_no_more_often_than_it_may_be(graph: Dri
 
 
 def test_ten_minutes_keep_as_much_as_one(graph: DriverGraph) -> None:
-    extender = PathExtender(replace(graph, rules=replace(graph.rules, every=20, horizon=90)))
+    extender = PathExtender(replace(graph, rules=replace(graph.rules, every=20, work=5_000)))
     news, place, kept = news_of(speech(600.0, 70), 0.5), 0, 0
     for frame in range(18_000):
         first = place
@@ -137,7 +137,7 @@ def test_ten_minutes_keep_as_much_as_one(graph: DriverGraph) -> None:
         if frame % 300 == 0:
             kept = max(kept, len(extender._way) + len(extender.speech.segments))
     assert place == len(news) > 300
-    assert kept < SEEN * 30 + 30 + graph.rules.lock + 90 + 20
+    assert kept < SEEN * 30 + 30 + graph.rules.lock + graph.rules.horizon + 20
 
 
 def test_a_take_that_leads_nowhere_goes_on_with_what_is_most_alike() -> None:
