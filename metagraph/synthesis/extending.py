@@ -95,10 +95,7 @@ def driver_graph(graph: MotionGraph, heard: HeardStates, rules: ExtendingRules |
     last = graph.states.last.copy()
     last[:-1] |= graph.kept[:-1] & ~graph.kept[1:]
     stops = (next_of(last) + 1).astype(np.int32)
-    allowed = ruled(graph, rules.jumps)
-    if allowed is graph:
-        allowed = replace(graph)
-    return DriverGraph(graph, heard, _ways_out(allowed, last), stops, rules)
+    return DriverGraph(graph, heard, _ways_out(ruled(graph, rules.jumps), last), stops, rules)
 
 
 def _ways_out(graph: MotionGraph, last: Array) -> MotionGraph:
