@@ -67,6 +67,8 @@ def compile_all() -> None:
     from metagraph.formats.store import open_project
     from metagraph.playback.crowd import Crowd
     from metagraph.playback.planner import make_plan
+    from metagraph.synthesis.constraints import heard
+    from metagraph.synthesis.extending import PathExtender, driver_graph
     from metagraph.synthesis.graph import build
     from metagraph.synthesis.states import states_of
 
@@ -81,7 +83,9 @@ def compile_all() -> None:
     crowd.poses(1.0)
     crowd.globals(1.0)
     takes = takes_of(project, [i for i in usable(project) if project.clips[i].name.endswith("__stance")])
-    synthesise(build(states_of(takes.clips)), takes, Wish(4.0, ()), "new")
+    graph = build(states_of(takes.clips))
+    synthesise(graph, takes, Wish(4.0, ()), "new")
+    PathExtender(driver_graph(graph, heard(graph.states, [() for _ in takes.clips]))).step()
 
 
 if __name__ == "__main__":

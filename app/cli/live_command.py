@@ -11,6 +11,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.cli import live_graph_options
 from app.cli.kept_options import kept_name, kept_seed
 from metagraph.live import OSC_PORT, PORT
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from metagraph.graph.model import Project
     from metagraph.graph.requests import Performance
     from metagraph.live.live_session import LiveSession
+    from metagraph.live.played_voice import PlayedVoice
     from metagraph.live.server import Options, Server
     from metagraph.live.wire import Batch, Ready, Result
 
@@ -47,8 +49,10 @@ def arguments(parser: ArgumentParser) -> None:
         "--keep",
         metavar="NAME",
         type=kept_name,
-        help="keep what was asked in the project at the end, as a performance",
+        help="keep what was asked in the project at the end, as a performance; and beside it what a motion "
+        "graph moved with",
     )
+    live_graph_options.arguments(parser)
 
 
 def run(options: Namespace) -> int:
@@ -71,25 +75,32 @@ def run(options: Namespace) -> int:
             stdio=not options.no_stdin,
         )
     )
+    live_graph_options.checked(options)
     opened = open_whole(options.project)
     for note in opened.notes:
         print(f"note: {note}", file=sys.stderr)
+    graphs = live_graph_options.graphs_of(options, opened.project)
+    voice = live_graph_options.voice_of(options, graphs)
     session = LiveSession(
         opened.project,
         options.seed,
         idle=not options.no_idle,
         models=offered(options.project.resolve().parent),
+        graphs=graphs,
     )
     session.warm()
     gc.freeze()  # what was loaded stays; looking through it again and again would show as a hitch
     with contextlib.suppress(KeyboardInterrupt):
-        asyncio.run(_play(session, wanted, options.json))
+        asyncio.run(_play(session, wanted, options.json, voice))
     if options.keep is not None:
+        live_graph_options.keep_motion(session, options)
         _keep(session, options)
     return 0
 
 
-async def _play(session: LiveSession, options: Options, as_json: bool) -> None:
+async def _play(
+    session: LiveSession, options: Options, as_json: bool, voice: PlayedVoice | None = None
+) -> None:
     from metagraph.live.server import Server
     from metagraph.live.wire import exchange
 
@@ -100,7 +111,10 @@ async def _play(session: LiveSession, options: Options, as_json: bool) -> None:
     begin = time.monotonic()
 
     def step(batch: Batch | None) -> Result:
-        return exchange(session, time.monotonic() - begin, batch)
+        now = time.monotonic() - begin
+        if voice is not None:
+            voice.play(session, now)
+        return exchange(session, now, batch)
 
     try:
         await server.run(step)

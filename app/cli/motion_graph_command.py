@@ -13,6 +13,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from app.cli.takes import paired, read_speech, read_takes, speech_arguments
+
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.graph.conversation import Segment
     from metagraph.motion.clip import Clip
@@ -21,7 +23,6 @@ if TYPE_CHECKING:  # reading a command line must not wait for arrays
 
 OUT = (".bvh", ".glb")
 SPOKEN = ("clause", "response", "hesitation")
-_SAVED = "Save the conversation's segments from the window, as ELAN or TextGrid."
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -38,21 +39,7 @@ def arguments(parser: ArgumentParser) -> None:
         )
         out.add_argument("--json", action="store_true", help="print what a program can read")
         if speech is not False:  # None: it may be given, and then its changes are key states too
-            out.add_argument(
-                "--speech",
-                type=Path,
-                nargs="+",
-                required=bool(speech),
-                default=[],
-                metavar="FILE",
-                help="what was said in each: .eaf, .TextGrid or a conversation's .json, called as the "
-                "take is",
-            )
-            out.add_argument(
-                "--side",
-                default="1",
-                help="whose motion the takes are: a number in the files' order, or a name (default: 1)",
-            )
+            speech_arguments(out, required=bool(speech))
         out.set_defaults(run=run)
         return out
 
@@ -106,6 +93,9 @@ def arguments(parser: ArgumentParser) -> None:
         help="speech of this take, by number from 1 or by name, which is itself left out",
     )
     wanted.add_argument("--new", type=Path, metavar="FILE", help="speech of this file")
+    wanted.add_argument(
+        "--again", type=Path, metavar="FILE", help="the motion of a live session again, kept by `live --keep`"
+    )
     made.add_argument(
         "--start", type=float, default=0.0, help="from this second of the speech on (default: 0)"
     )
@@ -153,6 +143,11 @@ def arguments(parser: ArgumentParser) -> None:
         "--search", action="append", choices=("exact", "greedy"), help="only this search (default: both)"
     )
     tried.add_argument("--quick", action="store_true", help="all constraints only, without leaving any out")
+    tried.add_argument(
+        "--live",
+        action="store_true",
+        help="instead: motion that is extended while it plays, for speech that is heard or announced",
+    )
     tried.add_argument("--seed", type=int, default=1, help="other paths of the greedy search (default: 1)")
     action(
         "co-occurrence", "count how often hands and head move with what is said", co_occurrence, speech=True
@@ -167,115 +162,13 @@ def run(options: Namespace) -> int:
 # --- what is given
 
 
-def _takes(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
-    """Return takes under the names of their files; of files with several takes, or projects, under the takes'
-    own.
-    """
-    from app.cli.command_output import opened
-    from metagraph.errors import FileError
-    from metagraph.formats.clips import read_clips
-    from metagraph.formats.imports import gather
-
-    out: list[tuple[str, Clip]] = []
-    for path in paths:
-        if not path.exists():
-            raise FileError(
-                path,
-                "there is no such file or folder",
-                "on reading takes",
-                "Give clip files, folders of them, or projects.",
-            )
-        if path.suffix in (".yaml", ".yml"):
-            out += [
-                (Path(c.name).stem, c.motion) for c in opened(path).clips.values() if c.motion is not None
-            ]
-            continue
-        for file in gather([path]):
-            clips = read_clips(file)
-            out += [(file.stem if len(clips) == 1 else c.name, c) for c in clips]
-    if not out:
-        raise FileError(
-            paths[0],
-            "it holds no clips",
-            "on reading takes",
-            "Give clip files, folders of them, or projects.",
-        )
-    twice = next((n for n, _ in out if sum(n == m for m, _ in out) > 1), None)
-    if twice is not None:
-        raise ValueError(f"two takes are called '{twice}', so speech cannot be told apart: rename one")
-    return out
-
-
-def read_speech(path: Path, side: str) -> tuple[Segment, ...]:
-    """Return what one of those in a file moves with, `heard_by`. side: a number from 1, or a name. Raises
-    FileError.
-    """
-    import msgspec
-
-    from metagraph.errors import FileError
-    from metagraph.formats.transcripts import read_transcript
-    from metagraph.graph.conversation import MOST_SPEAKERS, Conversation, Side, heard_by
-
-    made = None
-    if path.suffix.lower() == ".json" and path.is_file():
-        try:
-            made = msgspec.json.decode(path.read_bytes(), type=Conversation)  # as it stands in a project
-        except msgspec.DecodeError:
-            made = None
-    if made is None:
-        told = read_transcript(path)
-        if not any(told.segments.values()):
-            raise FileError(path, "it holds no clauses, responses and hesitations", "", _SAVED)
-        names = [
-            n
-            for n in dict.fromkeys((*told.speakers, *told.segments))
-            if told.segments.get(n) or told.speakers.get(n)
-        ][:MOST_SPEAKERS]
-        sides = [Side(name=n, segments=tuple(told.segments.get(n, ()))) for n in names]
-        length = max(s.end for one in sides for s in one.segments)
-        made = Conversation(
-            name=path.stem[:200], length=length, sides=(*sides, *(Side() for _ in range(2 - len(sides))))
-        )
-    names = [s.name for s in made.sides]
-    numbers = [str(n + 1) for n in range(len(names))]
-    if side not in (*numbers, *names):
-        raise FileError(
-            path,
-            f"nobody is called '{side}'",
-            "its speakers",
-            f"They are {', '.join(f'{n!r}' for n in names)}; or say a number from 1 to {len(names)}.",
-        )
-    return heard_by(made, names.index(side) if side in names else int(side) - 1)
-
-
-def _paired(options: Namespace) -> tuple[list[Clip], list[tuple[Segment, ...]], list[str]]:
-    """Return takes, the speech of each, and their names. Raises ValueError where files do not go together."""
-    takes = _takes(options.takes)
-    files = {path.stem: path for path in options.speech}
-    if len(files) < len(options.speech):
-        raise ValueError("two speech files have one name, so takes cannot be told apart: rename one")
-    missing = [n for n, _ in takes if n not in files]
-    left = [p.name for n, p in files.items() if n not in {name for name, _ in takes}]
-    if missing or left:
-        words = [f"no speech for {', '.join(missing[:5])}"] if missing else []
-        words += [f"no take for {', '.join(left[:5])}"] if left else []
-        raise ValueError(
-            f"{' and '.join(words)}: a speech file is called as its take is, take1.bvh and take1.eaf"
-        )
-    return (
-        [c for _, c in takes],
-        [read_speech(files[n], options.side) for n, _ in takes],
-        [n for n, _ in takes],
-    )
-
-
 def _heard(options: Namespace) -> tuple[States, list[int]]:
     """Return the states of takes, and those where what is heard changes; none without speech."""
     from metagraph.synthesis.constraints import changes
 
     if not options.speech:
-        return _states([c for _, c in _takes(options.takes)]), []
-    clips, speech, _ = _paired(options)
+        return _states([c for _, c in read_takes(options.takes)]), []
+    clips, speech, _ = paired(options.takes, options.speech, options.side)
     states = _states(clips)
     return states, list(changes(states, speech))
 
@@ -439,8 +332,6 @@ def synthesize(options: Namespace) -> int:
     """Write motion that goes with speech."""
     from app.cli.command_output import say
     from metagraph.errors import FileError
-    from metagraph.formats.bvh import write_bvh
-    from metagraph.formats.gltf_writer import write_glb
     from metagraph.graph.conversation import SOUNDS
     from metagraph.synthesis.assemble import assemble
     from metagraph.synthesis.constraints import changes, heard, wanted
@@ -457,7 +348,9 @@ def synthesize(options: Namespace) -> int:
         raise ValueError(
             f"motion is written as {' or '.join(OUT)}, not as '{options.out.suffix or options.out.name}'"
         )
-    clips, speech, names = _paired(options)
+    clips, speech, names = paired(options.takes, options.speech, options.side)
+    if options.again is not None:
+        return _again(options, clips, speech)
     if options.take is not None:
         number = (
             names.index(options.take)
@@ -506,11 +399,7 @@ def synthesize(options: Namespace) -> int:
         print(f"note: {words}", file=sys.stderr)
     looks = quality(states, path)
     clip = assemble(states, clips, path, options.out.stem)
-    options.out.parent.mkdir(parents=True, exist_ok=True)
-    if options.out.suffix == ".bvh":
-        write_bvh(clip, options.out)
-    else:
-        write_glb(options.out, [clip])
+    _write(options.out, clip)
     data = {
         "out": str(options.out),
         "seconds": seconds,
@@ -536,6 +425,32 @@ def synthesize(options: Namespace) -> int:
     return 0
 
 
+def _write(path: Path, clip: Clip) -> None:
+    from metagraph.formats.bvh import write_bvh
+    from metagraph.formats.gltf_writer import write_glb
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if path.suffix == ".bvh":
+        write_bvh(clip, path)
+    else:
+        write_glb(path, [clip])
+
+
+def _again(options: Namespace, clips: list[Clip], speech: list[tuple[Segment, ...]]) -> int:
+    """Write the last motion of a live session once more."""
+    from app.cli.command_output import say
+    from metagraph.live.graph_motion import live_graph
+    from metagraph.live.kept_motion import made_again, read_kept
+
+    kept = read_kept(options.again)[-1]
+    graph = live_graph(clips, speech, options.k, options.level, options.keys, options.most)
+    clip = made_again(graph, kept, options.out.stem)
+    _write(options.out, clip)
+    data = {"out": str(options.out), "seconds": clip.duration, "frames": clip.frames, "begun": kept.begun}
+    say(options, f"{options.out}: {clip.duration:.1f} s, from {kept.begun:.1f} s of the session on", data)
+    return 0
+
+
 def evaluate(options: Namespace) -> int:
     """Print, setting by setting, how much held-out speech finds motion."""
     from app.cli.command_output import say
@@ -544,9 +459,11 @@ def evaluate(options: Namespace) -> int:
     from metagraph.synthesis.search_evaluation import evaluate as run
 
     _checked(options)
-    clips, speech, _ = _paired(options)
+    clips, speech, _ = paired(options.takes, options.speech, options.side)
     if note := _rates(clips):
         print(f"note: {note}", file=sys.stderr)
+    if options.live:
+        return _evaluate_live(options, clips, speech)
     with _until_stopped() as stopped:
         found = run(
             clips,
@@ -573,12 +490,23 @@ def evaluate(options: Namespace) -> int:
     return 0 if found.whole else 3
 
 
+def _evaluate_live(options: Namespace, clips: list[Clip], speech: list[tuple[Segment, ...]]) -> int:
+    """Print how motion that is extended while it plays goes with speech that becomes known bit by bit."""
+    from app.cli.command_output import say
+    from metagraph.synthesis.extending_evaluation import held_out, rows_of, table_of
+
+    graphs = held_out(clips, speech, options.k, options.level, options.keys, options.most)
+    rows = list(rows_of(graphs, seed=options.seed, progress=_telling(options, "drives")))
+    say(options, table_of(rows), [asdict(r) for r in rows])
+    return 0
+
+
 def co_occurrence(options: Namespace) -> int:
     """Print how often each kind of segment goes with which movement, beside chance."""
     from app.cli.command_output import say
     from metagraph.synthesis.cooccurrence import table as count
 
-    clips, speech, _ = _paired(options)
+    clips, speech, _ = paired(options.takes, options.speech, options.side)
     rows = count(clips, speech)
     lines = [f"{'':<34}{'matched':>8}{'total':>7}{'rate':>7}  {'95 %':<13}{'chance':>7}"]
     for r in rows:

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable, Sequence
+from concurrent.futures import Future
 from pathlib import Path
+from threading import Thread
 
 import msgspec
 from PySide6.QtCore import QElapsedTimer, QObject, Qt, QTimer, Signal
@@ -17,6 +19,7 @@ from metagraph.generation.offered import offered
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyRequest, Performance
 from metagraph.live import OSC_PORT, PORT
+from metagraph.live.graph_motion import LiveGraph, live_graph, recorded_takes
 from metagraph.live.live_session import LiveSession
 from metagraph.live.messages import HeardMessage, Reply
 from metagraph.live.relay import Relay
@@ -30,6 +33,7 @@ SHOWN = 300  # requests that are shown in the timeline, the latest
 ANSWERED = 0.2  # seconds between two looks at what becomes of them
 RATED = 1.0  # seconds over which requests are counted
 WINDOW = 0  # the window is a client, too
+TAKES = "takes"  # what clients call the motion graph of the project's own
 
 
 class _Shown(Tape):
@@ -76,11 +80,12 @@ class LiveStage(QObject):
     ) -> None:
         super().__init__(parent)
         self.session = _Counted(project, models=offered(folder))
+        self._graph: Future[LiveGraph] | None = None
         self.session.tape = self.tape = _Shown()
         self.session.join(WINDOW)
         self.options = options or Options(port=PORT, osc=OSC_PORT)
         self.relay: Relay | None = None
-        self.error = ""
+        self.error = self.graph_error = ""
         self._clock = QElapsedTimer()
         self._timer = QTimer(self, interval=TICK)
         self._timer.setTimerType(Qt.TimerType.PreciseTimer)
@@ -96,7 +101,38 @@ class LiveStage(QObject):
         """Begin: open the lines and let time run."""
         self._clock.start()
         self._open(self.options)
+        self._make_graph()
         self._timer.start()
+
+    def _make_graph(self) -> None:
+        """Begin to make the motion graph of the project's own takes, where it has any, beside all else."""
+        project = self.session.project
+        clips, speech = recorded_takes(project)
+        if not clips:
+            return
+        future: Future[LiveGraph] = Future()
+        self._graph = future
+        self.session.offer(TAKES, None)
+
+        def make() -> None:
+            try:
+                graph = live_graph(clips, speech)
+                graph.warm(project)
+                future.set_result(graph)
+            except Exception as error:  # told to who asks for it
+                future.set_exception(error)
+
+        Thread(target=make, name="motion graph", daemon=True).start()
+
+    def _take_graph(self) -> None:
+        """Offer the motion graph once it is made; where there is none, say why."""
+        future, self._graph = self._graph, None
+        error = None if future is None else future.exception()
+        if future is not None and error is None:
+            self.session.offer(TAKES, future.result())
+        else:
+            self.session.generating.graphs.pop(TAKES, None)
+            self.graph_error = str(error)
 
     def _open(self, options: Options) -> None:
         try:
@@ -123,6 +159,8 @@ class LiveStage(QObject):
     def tick(self) -> None:
         """Answer what came in, and go on."""
         now = self.now
+        if self._graph is not None and self._graph.done():
+            self._take_graph()
         if self.relay is None:
             self.session.tick(now)
         else:
@@ -191,7 +229,8 @@ class LiveStage(QObject):
             if clients == 0
             else f"{clients} client{'s' if clients != 1 else ''}, {self.rate:.0f} requests/s"
         )
-        return f"Live at {ready.websocket}: {who}"
+        lacks = f"; its takes make no motion graph: {self.graph_error}" if self.graph_error else ""
+        return f"Live at {ready.websocket}: {who}{lacks}"
 
     def performance(self) -> Performance:
         """Return what was played so far, to be kept."""

@@ -13,7 +13,7 @@ from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.words import MODES
 from metagraph.live import limits, messages
-from metagraph.live.generated_motion import Generating
+from metagraph.live.generating import Generating
 from metagraph.live.ledger import Ledger
 from metagraph.live.pose_stream import Stream
 from metagraph.live.tick_work import Client
@@ -96,9 +96,9 @@ def status(session: DescribedSession) -> bytes:
     return messages.encode(out)
 
 
-def describe(project: Project, models: Sequence[str] = ()) -> bytes:
-    """Return what may be asked of a character: its joints, stances, actions, tags, lines and points. models:
-    those that can generate motion.
+def describe(project: Project, models: Sequence[str] = (), graphs: Sequence[str] = ()) -> bytes:
+    """Return what may be asked of a character: its joints, stances, actions, tags, lines and points. models,
+    graphs: those that can generate motion.
     """
     skeleton, parts = project.skeleton, anatomy.parts(project) if project.skeleton is not None else ()
     layers = {}
@@ -126,6 +126,7 @@ def describe(project: Project, models: Sequence[str] = ()) -> bytes:
         "lines": [{"id": ident, "text": line.text} for ident, line in list(project.lines.items())[:LINES]],
         "points": dict(list(project.points.items())[:POINTS]),
         "models": list(models),
+        "graphs": list(graphs),
     }  # fmt: skip
     return messages.encode(out)
 

@@ -21,7 +21,8 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.live import describe
 from metagraph.live.answers import FoundAnswer, find, owner_of
 from metagraph.live.camera_mimicry import see
-from metagraph.live.generated_motion import Generating
+from metagraph.live.generating import Generating
+from metagraph.live.graph_motion import LiveGraph
 from metagraph.live.happenings import happenings
 from metagraph.live.ledger import Known, Ledger, key_of, told
 from metagraph.live.limits import (
@@ -70,7 +71,7 @@ TOLD = 100  # of what was told to others than those who ask, the last are kept
 
 class LiveSession:
     """One character, played live. Arguments as for `perform`; history: seconds of past that are kept; ahead:
-    of plan. models: those that may be asked to generate motion, by name.
+    of plan. models, graphs: those that may be asked to generate motion, by name.
     """
 
     def __init__(
@@ -82,13 +83,14 @@ class LiveSession:
         ahead: float = 20.0,
         stances: Mapping[Layer, str] | None = None,
         models: Mapping[str, Path] | None = None,
+        graphs: Mapping[str, LiveGraph] | None = None,
     ) -> None:
         self.project, self.history = project, history
         self.running = RunningPlan(project, seed, stances, idle, ahead)
         self.now = 0.0
         self.clients: dict[int, Client] = {}
         self.ledger = Ledger()
-        self.generating = Generating(dict(models or {}))
+        self.generating = Generating(models, graphs)
         self._words = RequestWords(project)
         self._names: set[str] = set()
         self._queue: list[tuple[int, HeardMessage | Reply]] = []
@@ -138,6 +140,11 @@ class LiveSession:
         self._cold = [x for x in project.actions() if x.kind == "gesture"]
         self._told.clear()
 
+    def offer(self, name: str, graph: LiveGraph | None) -> None:
+        """Let clients ask for a motion graph by name from now on; None while it is being made."""
+        self.generating.graphs[name] = graph
+        self._told.clear()
+
     # --- ticks
 
     def tick(self, now: float, heard: Iterable[tuple[int, HeardMessage | Reply]] = ()) -> Out:
@@ -185,9 +192,7 @@ class LiveSession:
                 str(message.__struct_config__.tag), self.now, 0.0, 0, self.now, client.number
             ):
                 return Reply(id=message.id or None, state="refused", why=BUSY)
-            if isinstance(message, Hear):
-                return self.generating.hear(client.number, message)
-            return self.generating.generate(client.number, message, self.project, self.now)
+            return self.generating.answer(client.number, message, self.project, self.now)
         if isinstance(message, OwnMessage):
             return self._own(client, message)
         ident = message.id
@@ -218,7 +223,9 @@ class LiveSession:
             if self.ledger.limits.characters >= BML_PER_TICK:
                 return Reply(id=message.id or None, state="refused", why=BUSY)
             if "project" not in self._told:
-                self._told["project"] = describe.describe(self.project, tuple(self.generating.models))
+                self._told["project"] = describe.describe(
+                    self.project, tuple(self.generating.models), tuple(self.generating.graphs)
+                )
             self.ledger.limits.characters += len(self._told["project"])
             return describe.named(self._told["project"], message.id)
         client.name = message.name or client.name

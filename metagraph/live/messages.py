@@ -85,11 +85,11 @@ Sound = Annotated[bytes, Meta(max_length=48 * 1024)]
 
 
 class Generate(_Own, frozen=True, tag="generate"):
-    """Motion made live by a learned model, of what is heard, in the place of the arms' and the head's layers;
-    what is asked of these by name comes first. model: its name, as describe lists them; null ends it. side:
-    whether the character listens to whom is heard, or speaks itself. seed: other numbers move otherwise.
-    temperature: how much happens by chance. ahead: seconds by which it may lag behind the sound, to know what
-    comes.
+    """Motion made live by a learned model or a motion graph, of what is heard, in the place of the arms' and
+    the head's layers; what is asked of these by name comes first. model: its name, as describe lists models
+    and graphs; null ends it. side: whether the character listens to whom is heard, or speaks itself. seed:
+    other numbers move otherwise. temperature, ahead, of models alone: how much happens by chance, and seconds
+    by which it may lag behind the sound, to know what comes.
     """
 
     model: Annotated[str, Meta(max_length=200)] | None
@@ -99,16 +99,31 @@ class Generate(_Own, frozen=True, tag="generate"):
     ahead: Annotated[float, Meta(ge=0, le=1)] = 0.2
 
 
+class Comes(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
+    """What is going to be said, as a motion graph moves with it. kind: a clause or a response of the
+    character, a hesitation of its partner. at: seconds of the session; in: seconds from now, instead.
+    duration: seconds. stress: seconds from its beginning to its stress; null where nobody knows.
+    """
+
+    kind: Literal["clause", "response", "hesitation"] = "clause"
+    at: Annotated[float, Meta(ge=0, le=1e7)] | None = None
+    after: Annotated[float, Meta(ge=0, le=60)] | None = msgspec.field(default=None, name="in")
+    duration: Annotated[float, Meta(ge=0.04, le=60)]
+    stress: Annotated[float, Meta(ge=0, le=60)] | None = None
+
+
 class Hear(_Own, frozen=True, tag="hear"):
     """What is heard from now on, for motion that is generated. audio: the next samples of the partner of a
     listener, of a speaker itself; other: of the other one at the same time, silence without. 16-bit
     little-endian numbers, 16,000 a second, one channel, in base64. speaks: who speaks from now on, as the
-    character sees it; "sound" lets loudness tell, as at first; nothing said leaves it.
+    character sees it; "sound" lets loudness tell, as at first; nothing said leaves it. comes: what is going
+    to be said, for motion graphs; "partner" and "none" take it back.
     """
 
     audio: Sound = b""
     other: Sound = b""
     speaks: Literal["self", "partner", "both", "none", "sound"] | None = None
+    comes: Annotated[tuple[Comes, ...], Meta(max_length=16)] = ()
 
 
 OwnMessage = Hello | Status | Describe | Keypoints | Generate | Hear

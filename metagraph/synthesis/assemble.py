@@ -43,12 +43,14 @@ def assemble(
     name: str = "synthesised",
     blend: int = BLEND,
     hold_feet: bool = True,
+    onward: bool = False,
 ) -> Clip:
     """Return a path's motion, RATE frames a second. clips: those the states are of. It begins over the
     origin, facing +z; from there the root goes on by what each frame goes on in its take. blend: frames on
     either side of a transition in which one motion fades into the other, by a cosine, rotations along the
     shortest way (slerp). hold_feet: where it goes from piece to piece, feet that stood in the takes stay
-    where they were put down. Raises SynthesisError when the takes are others.
+    where they were put down. onward: all of the blend comes after the transition, as live, where nobody knew
+    of it before. Raises SynthesisError when the takes are others.
     """
     takes = [c for c in clips if c.frames >= 2]
     frames = _frames(takes)
@@ -65,6 +67,8 @@ def assemble(
         # No further than half way to the next transition, and than the takes go on.
         before = min(blend, (jump - edges[number] + 1) // 2)
         after = min(blend, (edges[number + 2] - jump) // 2)
+        if onward:
+            before, after = 0, min(2 * blend, edges[number + 2] - jump)
         _blend(out, frames, states, way, ground, heading, jump, before, after)
     joints = sorted({0, *roots.tolist(), *(j for c in takes for j in c.translated)})
     made = Clip(

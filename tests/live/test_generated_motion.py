@@ -183,6 +183,7 @@ def _renamed(clip, names):
         ({"audio": base64.b64encode(b"abc").decode()}, "two bytes"),
         ({"audio": "no base64!"}, "audio"),
         ({"speaks": "everybody"}, "speaks"),
+        ({"comes": [{"in": 1, "duration": 1}]}, "only motion graphs"),
     ],
 )
 def test_what_is_heard_is_checked(session, request_, words):

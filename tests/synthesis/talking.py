@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,10 @@ from metagraph.graph.conversation import Segment
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
+from metagraph.synthesis.constraints import changes, heard
+from metagraph.synthesis.extending import DriverGraph, driver_graph
+from metagraph.synthesis.graph import build
+from metagraph.synthesis.states import key_states, states_of
 
 CLIPS = Path(__file__).resolve().parents[2] / "sample_clips" / "clips"
 FPS = 30.0
@@ -63,3 +68,21 @@ def talking(name: str, segments: list[Segment], seconds: float, seed: int = 1, f
         np.repeat(base.translations[:1], len(t), 0),
         base.translated,
     )
+
+
+@lru_cache(maxsize=1)
+def talkers(
+    count: int = 4, seconds: float = 20.0
+) -> tuple[tuple[Clip, ...], tuple[tuple[Segment, ...], ...]]:
+    """Takes of somebody who talks, and what is said in each; made once a process."""
+    said = tuple(tuple(speech(seconds, n)) for n in range(count))
+    return tuple(talking(f"take{n}", list(s), seconds, n) for n, s in enumerate(said)), said
+
+
+@lru_cache(maxsize=1)
+def talkers_graph() -> DriverGraph:
+    """The motion graph of `talkers`, made ready to drive; made once a process."""
+    takes, said = talkers()
+    states = states_of(takes)
+    graph = build(states, keys=key_states(states, changes=changes(states, said)))
+    return driver_graph(graph, heard(states, said))

@@ -219,3 +219,20 @@ def test_a_graph_that_falls_apart_says_what_to_do(
     assert "raise k or the level" in run(
         capsys, "build", str(tmp_path / "bend.bvh"), "--k", "2", "--level", "0.01", code=1
     )
+
+
+def test_live_motion_is_evaluated_for_speech_that_is_heard_and_announced(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = json.loads(run(capsys, "evaluate", str(folder / "takes"), *said(folder), "--live", "--json"))
+    assert [r["how"] for r in rows][:2] == ["heard", "told 0 s ahead"] and rows[-1]["how"] == "all known"
+    assert rows[0]["met"] < rows[3]["met"] and all(r["seconds"] == pytest.approx(54, abs=2) for r in rows)
+
+
+def test_a_file_that_is_no_live_motion_is_refused(
+    folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    (tmp_path / "a.json").write_text("{}")
+    words = (str(folder / "takes"), *said(folder), "--again", str(tmp_path / "a.json"), "-o")
+    told = run(capsys, "synthesize", *words, str(tmp_path / "a.bvh"), code=1)
+    assert "no motion that was kept" in told and "live --keep" in told

@@ -1,0 +1,140 @@
+"""What `metagraph live` is told of a motion graph that moves the character, and of a voice that it plays."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentParser, Namespace
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.takes import speech_arguments
+
+if TYPE_CHECKING:  # reading a command line must not wait for arrays
+    from metagraph.graph.model import Project
+    from metagraph.live.graph_motion import LiveGraph
+    from metagraph.live.live_session import LiveSession
+    from metagraph.live.played_voice import PlayedVoice
+    from metagraph.motion.clip import Clip
+
+NAME = "takes"  # what clients call the graph
+SUFFIX = ".motion.json"
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Add the options."""
+    parser.add_argument(
+        "--takes",
+        type=Path,
+        nargs="+",
+        default=[],
+        metavar="PATH",
+        help="long takes: clip files, folders of them, or projects, whose motion graph clients may ask to "
+        f'`generate` motion, as "{NAME}"; with --speech',
+    )
+    speech_arguments(parser, required=False)
+    parser.add_argument(
+        "--retarget", action="store_true", help="bring takes of another skeleton onto the character's"
+    )
+    parser.add_argument(
+        "--voice",
+        type=Path,
+        metavar="FILE",
+        help="a sound file that the character moves to from the start, heard as it plays; with --takes",
+    )
+    parser.add_argument(
+        "--announce",
+        type=float,
+        metavar="SECONDS",
+        help="tell the clauses of --voice so long before they begin (default: they are only heard)",
+    )
+
+
+def checked(options: Namespace) -> None:
+    """Raise ValueError for options that do not go together."""
+    if options.takes and not options.speech:
+        raise ValueError("--takes needs --speech: what was said in each take, a file called as the take is")
+    if not options.takes and (options.speech or options.retarget):
+        raise ValueError("--speech and --retarget need --takes, long takes to move with")
+    if options.announce is not None and options.voice is None:
+        raise ValueError("--announce needs --voice, whose clauses it tells")
+    if options.announce is not None and not 0 <= options.announce <= 60:
+        raise ValueError("--announce is 0 to 60 seconds")
+
+
+def graphs_of(options: Namespace, project: Project) -> dict[str, LiveGraph]:
+    """Return the motion graph of the takes that were given, else of the project's own, by name. Raises
+    FileError and ValueError.
+    """
+    from metagraph.live.graph_motion import live_graph, recorded_takes
+
+    if not options.takes:
+        own, told = recorded_takes(project)
+        if not own:
+            return {}
+        try:
+            graph = live_graph(own, told)
+            graph.warm(project)
+        except (ValueError, RuntimeError) as error:
+            print(f"note: the project's own takes make no motion graph: {error}", file=sys.stderr)
+            return {}
+        return {NAME: graph}
+    from app.cli.takes import paired
+
+    clips, speech, _ = paired(options.takes, options.speech, options.side)
+    graph = live_graph(_brought(clips, project, options.retarget), speech)
+    kept, edges = graph.driver.graph.size
+    if not graph.fits(project):
+        raise ValueError(
+            f"take '{clips[0].name}' has another skeleton than the character: bring the takes onto it with "
+            "--retarget, or give takes of its own"
+        )
+    graph.warm(project)
+    print(f"note: the motion graph has {kept:,} states and {edges:,} transitions", file=sys.stderr)
+    return {NAME: graph}
+
+
+def _brought(clips: list[Clip], project: Project, retarget: bool) -> list[Clip]:
+    if not retarget or project.skeleton is None:
+        return clips
+    from metagraph.graph.project_retargeting import Bringing
+
+    bringing = Bringing(project)
+    return [
+        c
+        if c.skeleton == project.skeleton
+        else bringing.bring(c, bringing.known(c) or bringing.propose(c.skeleton))
+        for c in clips
+    ]
+
+
+def voice_of(options: Namespace, graphs: Mapping[str, LiveGraph]) -> PlayedVoice | None:
+    """Return the voice that was given, None for none. Raises FileError, and ValueError where no graph could
+    move to it.
+    """
+    if options.voice is None:
+        return None
+    if NAME not in graphs:
+        raise ValueError("--voice needs --takes, long takes to move with, or a project that has its own")
+    from metagraph.live.played_voice import read_voice
+
+    return read_voice(options.voice, NAME, options.announce)
+
+
+def keep_motion(session: LiveSession, options: Namespace) -> None:
+    """Keep what the graph's motion can be made again of, in a file beside the project. Raises FileError."""
+    motions = session.generating.motions()
+    if not motions:
+        return
+    from metagraph.file_names import file_stem
+    from metagraph.formats.store import SUFFIX as PROJECT
+    from metagraph.live.kept_motion import write_kept
+
+    stem = file_stem(f"{options.project.name.removesuffix(PROJECT)} - {options.keep}", most=200)
+    path = options.project.resolve().parent / f"{stem}{SUFFIX}"
+    write_kept(path, motions)
+    print(
+        f"what its motion can be made again of is kept in '{path}': metagraph motion-graph synthesize "
+        f"... --again",
+        file=sys.stderr,
+    )

@@ -1,0 +1,136 @@
+"""Long takes and what was said during them, as commands are given them."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # reading a command line must not wait for arrays
+    from metagraph.graph.conversation import Segment
+    from metagraph.motion.clip import Clip
+
+_SAVED = "Save the conversation's segments from the window, as ELAN or TextGrid."
+
+
+def speech_arguments(parser: ArgumentParser, required: bool) -> None:
+    """Add the options that tell what was said during takes, and by whom."""
+    parser.add_argument(
+        "--speech",
+        type=Path,
+        nargs="+",
+        required=required,
+        default=[],
+        metavar="FILE",
+        help="what was said in each take: .eaf, .TextGrid or a conversation's .json, called as the take is",
+    )
+    parser.add_argument(
+        "--side",
+        default="1",
+        help="whose motion the takes are: a number in the files' order, or a name (default: 1)",
+    )
+
+
+def read_takes(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
+    """Return takes under the names of their files; of files with several takes, or projects, under the takes'
+    own.
+    """
+    from app.cli.command_output import opened
+    from metagraph.errors import FileError
+    from metagraph.formats.clips import read_clips
+    from metagraph.formats.imports import gather
+
+    out: list[tuple[str, Clip]] = []
+    for path in paths:
+        if not path.exists():
+            raise FileError(
+                path,
+                "there is no such file or folder",
+                "on reading takes",
+                "Give clip files, folders of them, or projects.",
+            )
+        if path.suffix in (".yaml", ".yml"):
+            out += [
+                (Path(c.name).stem, c.motion) for c in opened(path).clips.values() if c.motion is not None
+            ]
+            continue
+        for file in gather([path]):
+            clips = read_clips(file)
+            out += [(file.stem if len(clips) == 1 else c.name, c) for c in clips]
+    if not out:
+        raise FileError(
+            paths[0],
+            "it holds no clips",
+            "on reading takes",
+            "Give clip files, folders of them, or projects.",
+        )
+    twice = next((n for n, _ in out if sum(n == m for m, _ in out) > 1), None)
+    if twice is not None:
+        raise ValueError(f"two takes are called '{twice}', so speech cannot be told apart: rename one")
+    return out
+
+
+def read_speech(path: Path, side: str) -> tuple[Segment, ...]:
+    """Return what one of those in a file moves with, `heard_by`. side: a number from 1, or a name. Raises
+    FileError.
+    """
+    import msgspec
+
+    from metagraph.errors import FileError
+    from metagraph.formats.transcripts import read_transcript
+    from metagraph.graph.conversation import MOST_SPEAKERS, Conversation, Side, heard_by
+
+    made = None
+    if path.suffix.lower() == ".json" and path.is_file():
+        try:
+            made = msgspec.json.decode(path.read_bytes(), type=Conversation)  # as it stands in a project
+        except msgspec.DecodeError:
+            made = None
+    if made is None:
+        told = read_transcript(path)
+        if not any(told.segments.values()):
+            raise FileError(path, "it holds no clauses, responses and hesitations", "", _SAVED)
+        names = [
+            n
+            for n in dict.fromkeys((*told.speakers, *told.segments))
+            if told.segments.get(n) or told.speakers.get(n)
+        ][:MOST_SPEAKERS]
+        sides = [Side(name=n, segments=tuple(told.segments.get(n, ()))) for n in names]
+        length = max(s.end for one in sides for s in one.segments)
+        made = Conversation(
+            name=path.stem[:200], length=length, sides=(*sides, *(Side() for _ in range(2 - len(sides))))
+        )
+    names = [s.name for s in made.sides]
+    numbers = [str(n + 1) for n in range(len(names))]
+    if side not in (*numbers, *names):
+        raise FileError(
+            path,
+            f"nobody is called '{side}'",
+            "its speakers",
+            f"They are {', '.join(f'{n!r}' for n in names)}; or say a number from 1 to {len(names)}.",
+        )
+    return heard_by(made, names.index(side) if side in names else int(side) - 1)
+
+
+def paired(
+    paths: Sequence[Path], files_of_speech: Sequence[Path], side: str
+) -> tuple[list[Clip], list[tuple[Segment, ...]], list[str]]:
+    """Return takes, the speech of each, and their names. Raises ValueError where files do not go together."""
+    takes = read_takes(paths)
+    files = {path.stem: path for path in files_of_speech}
+    if len(files) < len(files_of_speech):
+        raise ValueError("two speech files have one name, so takes cannot be told apart: rename one")
+    missing = [n for n, _ in takes if n not in files]
+    left = [p.name for n, p in files.items() if n not in {name for name, _ in takes}]
+    if missing or left:
+        words = [f"no speech for {', '.join(missing[:5])}"] if missing else []
+        words += [f"no take for {', '.join(left[:5])}"] if left else []
+        raise ValueError(
+            f"{' and '.join(words)}: a speech file is called as its take is, take1.bvh and take1.eaf"
+        )
+    return (
+        [c for _, c in takes],
+        [read_speech(files[n], side) for n, _ in takes],
+        [n for n, _ in takes],
+    )
