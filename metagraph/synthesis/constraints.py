@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -46,13 +46,15 @@ class WantedSegment:
     """What is to be heard, frame by frame. allowed `[T]` uint8: bits of the SOUNDS a state may have gone
     with. window `[T]` int32: number of the event that has to lie in this frame's window, -1 outside of all.
     events `[T]` uint8: which kind of event that is, STRESS or EDGE. barred `[T]` uint8: bits of the events
-    that must not lie there.
+    that must not lie there. only: frames -> the states `[F]` bool that alone may come then, beside all that;
+    nothing where that is of no account.
     """
 
     allowed: Array
     window: Array
     events: Array | None = None
     barred: Array | None = None
+    only: Mapping[int, Array] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.allowed)
