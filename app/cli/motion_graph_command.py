@@ -13,15 +13,16 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from app.cli.motion_graph_inputs import paired, paired_speech, read_spoken, read_takes, sounds_of
+from app.cli.motion_graph_soft import soft_options, soft_wish
+
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
-    from metagraph.graph.conversation import Segment
     from metagraph.motion.clip import Clip
     from metagraph.synthesis.graph import MotionGraph, Threshold
     from metagraph.synthesis.states import States
 
 OUT = (".bvh", ".glb")
 SPOKEN = ("clause", "response", "hesitation")
-_SAVED = "Save the conversation's segments from the window, as ELAN or TextGrid."
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -141,6 +142,7 @@ def arguments(parser: ArgumentParser) -> None:
     )
     made.add_argument("--seed", type=int, default=1, help="another path of the greedy search (default: 1)")
     made.add_argument("-o", "--out", type=Path, required=True, help="a .bvh or .glb file")
+    soft_options(made)
     tried = action(
         "evaluate",
         "hold out each take, search the others for its speech, and count what is found",
@@ -154,6 +156,7 @@ def arguments(parser: ArgumentParser) -> None:
     )
     tried.add_argument("--quick", action="store_true", help="all constraints only, without leaving any out")
     tried.add_argument("--seed", type=int, default=1, help="other paths of the greedy search (default: 1)")
+    soft_options(tried)
     action(
         "co-occurrence", "count how often hands and head move with what is said", co_occurrence, speech=True
     )
@@ -167,114 +170,13 @@ def run(options: Namespace) -> int:
 # --- what is given
 
 
-def _takes(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
-    """Return takes under the names of their files; of files with several takes, or projects, under the takes'
-    own.
-    """
-    from app.cli.command_output import opened
-    from metagraph.errors import FileError
-    from metagraph.formats.clips import read_clips
-    from metagraph.formats.imports import gather
-
-    out: list[tuple[str, Clip]] = []
-    for path in paths:
-        if not path.exists():
-            raise FileError(
-                path,
-                "there is no such file or folder",
-                "on reading takes",
-                "Give clip files, folders of them, or projects.",
-            )
-        if path.suffix in (".yaml", ".yml"):
-            out += [
-                (Path(c.name).stem, c.motion) for c in opened(path).clips.values() if c.motion is not None
-            ]
-            continue
-        for file in gather([path]):
-            clips = read_clips(file)
-            out += [(file.stem if len(clips) == 1 else c.name, c) for c in clips]
-    if not out:
-        raise FileError(
-            paths[0],
-            "it holds no clips",
-            "on reading takes",
-            "Give clip files, folders of them, or projects.",
-        )
-    twice = next((n for n, _ in out if sum(n == m for m, _ in out) > 1), None)
-    if twice is not None:
-        raise ValueError(f"two takes are called '{twice}', so speech cannot be told apart: rename one")
-    return out
-
-
-def read_speech(path: Path, side: str) -> tuple[Segment, ...]:
-    """Return what one of the two in a file moves with, `heard_by`. side: 1, 2, or a name. Raises
-    FileError.
-    """
-    import msgspec
-
-    from metagraph.errors import FileError
-    from metagraph.formats.transcripts import read_transcript
-    from metagraph.graph.conversation import Conversation, Side, heard_by
-
-    made = None
-    if path.suffix.lower() == ".json" and path.is_file():
-        try:
-            made = msgspec.json.decode(path.read_bytes(), type=Conversation)  # as it stands in a project
-        except msgspec.DecodeError:
-            made = None
-    if made is None:
-        told = read_transcript(path)
-        if not any(told.segments.values()):
-            raise FileError(path, "it holds no clauses, responses and hesitations", "", _SAVED)
-        names = [
-            n
-            for n in dict.fromkeys((*told.speakers, *told.segments))
-            if told.segments.get(n) or told.speakers.get(n)
-        ][:2]
-        sides = [Side(name=n, segments=tuple(told.segments.get(n, ()))) for n in names]
-        length = max(s.end for one in sides for s in one.segments)
-        made = Conversation(
-            name=path.stem[:200], length=length, sides=(*sides, *(Side() for _ in range(2 - len(sides))))
-        )
-    names = [s.name for s in made.sides]
-    if side not in ("1", "2", *names):
-        raise FileError(
-            path,
-            f"nobody is called '{side}'",
-            "its speakers",
-            f"They are {', '.join(f'{n!r}' for n in names)}; or say 1 or 2.",
-        )
-    return heard_by(made, names.index(side) if side in names else int(side) - 1)
-
-
-def _paired(options: Namespace) -> tuple[list[Clip], list[tuple[Segment, ...]], list[str]]:
-    """Return takes, the speech of each, and their names. Raises ValueError where files do not go together."""
-    takes = _takes(options.takes)
-    files = {path.stem: path for path in options.speech}
-    if len(files) < len(options.speech):
-        raise ValueError("two speech files have one name, so takes cannot be told apart: rename one")
-    missing = [n for n, _ in takes if n not in files]
-    left = [p.name for n, p in files.items() if n not in {name for name, _ in takes}]
-    if missing or left:
-        words = [f"no speech for {', '.join(missing[:5])}"] if missing else []
-        words += [f"no take for {', '.join(left[:5])}"] if left else []
-        raise ValueError(
-            f"{' and '.join(words)}: a speech file is called as its take is, take1.bvh and take1.eaf"
-        )
-    return (
-        [c for _, c in takes],
-        [read_speech(files[n], options.side) for n, _ in takes],
-        [n for n, _ in takes],
-    )
-
-
 def _heard(options: Namespace) -> tuple[States, list[int]]:
     """Return the states of takes, and those where what is heard changes; none without speech."""
     from metagraph.synthesis.constraints import changes
 
     if not options.speech:
-        return _states([c for _, c in _takes(options.takes)]), []
-    clips, speech, _ = _paired(options)
+        return _states([c for _, c in read_takes(options.takes)]), []
+    clips, speech = paired_speech(options)
     states = _states(clips)
     return states, list(changes(states, speech))
 
@@ -442,13 +344,14 @@ def synthesize(options: Namespace) -> int:
     from metagraph.formats.gltf_writer import write_glb
     from metagraph.graph.conversation import SOUNDS
     from metagraph.synthesis.assemble import assemble
-    from metagraph.synthesis.constraints import changes, heard, wanted
+    from metagraph.synthesis.constraints import changes, heard
     from metagraph.synthesis.graph import build as build_graph
     from metagraph.synthesis.graph import threshold
     from metagraph.synthesis.path_quality import quality
-    from metagraph.synthesis.relaxing import Answer, Constraints, answer
-    from metagraph.synthesis.ruled_search import FREE, JUMP_RULES, find_path
+    from metagraph.synthesis.relaxing import Constraints, answer
+    from metagraph.synthesis.ruled_search import FREE, JUMP_RULES
     from metagraph.synthesis.search_evaluation import WINDOW, cut
+    from metagraph.synthesis.soft_constraints import SoftMaterial, soft_report
     from metagraph.synthesis.states import key_states
 
     _checked(options)
@@ -456,7 +359,8 @@ def synthesize(options: Namespace) -> int:
         raise ValueError(
             f"motion is written as {' or '.join(OUT)}, not as '{options.out.suffix or options.out.name}'"
         )
-    clips, speech, names = _paired(options)
+    wish = soft_wish(options)
+    clips, spoken, names = paired(options)
     if options.take is not None:
         number = (
             names.index(options.take)
@@ -470,11 +374,16 @@ def synthesize(options: Namespace) -> int:
                 f"there is no take '{options.take}'; there are {', '.join(names[:10])}, or say 1 to "
                 f"{len(names)}"
             )
-        new = speech.pop(number)
+        new = spoken.pop(number)
         clips.pop(number)
+        names.pop(number)
     else:
-        new = read_speech(options.new, options.side)
-    end = max((s.end for s in new), default=0.0)
+        sound = sounds_of(options).get(options.new.stem)
+        if wish.loudness and sound is None:
+            raise ValueError(f"no sound for {options.new.name}: --sounds has none that is called so")
+        new = read_spoken(options.new, options.side, sound)
+    speech = [one.segments for one in spoken]
+    end = max((s.end for s in new.segments), default=0.0)
     if options.start < 0 or (options.start >= end and options.seconds is None):
         place = options.new or Path(options.take)
         raise FileError(
@@ -494,17 +403,26 @@ def synthesize(options: Namespace) -> int:
         "edges" not in options.without,
         FREE if options.free_jumps else JUMP_RULES,
     )
-    said, sound = cut(new, options.start, seconds), heard(states, speech)
-    if options.strict:
-        want = wanted(said, seconds, asked.tolerance, asked.use, asked.peaks, asked.edges)
-        found = Answer(find_path(graph, sound, want, options.search, asked.rules, options.seed), asked)
-    else:
-        found = answer(graph, sound, said, seconds, asked, options.search, options.seed)
+    soft = SoftMaterial(wish, states, clips, spoken, graph.threshold.limit).constraints(
+        new, options.start, seconds, options.tolerance
+    )
+    found = answer(
+        graph,
+        heard(states, speech),
+        cut(new.segments, options.start, seconds),
+        seconds,
+        asked,
+        options.search,
+        options.seed,
+        soft=soft,
+        strict=options.strict,
+    )
     path = found.path
     if words := found.words():
         print(f"note: {words}", file=sys.stderr)
+    told = soft_report(soft, states, path, found.retiming)
     looks = quality(states, path)
-    clip = assemble(states, clips, path, options.out.stem)
+    clip = assemble(states, clips, path, options.out.stem, retiming=found.retiming)
     options.out.parent.mkdir(parents=True, exist_ok=True)
     if options.out.suffix == ".bvh":
         write_bvh(clip, options.out)
@@ -526,10 +444,12 @@ def synthesize(options: Namespace) -> int:
         "rest_of_takes": looks.source,
         "stands_still": looks.stands_still,
     }
+    if wish.asks:
+        data["beside"] = told.data()
     say(
         options,
         f"{options.out}: {seconds:.1f} s with {len(path.jumps)} transitions, cost {path.cost:.3g}, of "
-        f"{data['takes']} takes; {looks.words()}",
+        f"{data['takes']} takes; {looks.words()}" + (f"\n{told.told()}" if told.told() else ""),
         data,
     )
     return 0
@@ -539,17 +459,19 @@ def evaluate(options: Namespace) -> int:
     """Print, setting by setting, how much held-out speech finds motion."""
     from app.cli.command_output import say
     from metagraph.formats.atomic import write_atomically
-    from metagraph.synthesis.search_evaluation import SETTINGS, csv_of, table_of
+    from metagraph.synthesis.evaluation_table import csv_of, table_of
+    from metagraph.synthesis.search_evaluation import SETTINGS
     from metagraph.synthesis.search_evaluation import evaluate as run
 
     _checked(options)
-    clips, speech, _ = _paired(options)
+    wish = soft_wish(options)
+    clips, spoken, _ = paired(options)
     if note := _rates(clips):
         print(f"note: {note}", file=sys.stderr)
     with _until_stopped() as stopped:
         found = run(
             clips,
-            speech,
+            [one.segments for one in spoken],
             SETTINGS[:1] if options.quick else SETTINGS,
             options.search or ("greedy", "exact"),
             options.k,
@@ -559,6 +481,8 @@ def evaluate(options: Namespace) -> int:
             seed=options.seed,
             progress=_telling(options, "cases"),
             cancelled=stopped,
+            wish=wish,
+            spoken=spoken,
         )
     if options.out is not None:
         write_atomically(options.out, csv_of(found.cases).encode())
@@ -577,7 +501,7 @@ def co_occurrence(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.synthesis.cooccurrence import table as count
 
-    clips, speech, _ = _paired(options)
+    clips, speech = paired_speech(options)
     rows = count(clips, speech)
     lines = [f"{'':<34}{'matched':>8}{'total':>7}{'rate':>7}  {'95 %':<13}{'chance':>7}"]
     for r in rows:

@@ -216,11 +216,11 @@ def segment(
 ) -> Any:  # fmt: skip
     """Find ways through the frames t0 .. t1 - 1 of one segment from runs that are kept, depth first.
 
-    Runs `[N]`: since when (at), in which state (own), at what cost before t0, or before they came (price), and
-    whether an open event was met by t0 (mets). best `[2 F]`: all -1, and left so. least: frames between two transitions. Returns all
-    runs, given ones first: what each branches off, at, own, price; and what came through: `[C, 5]` int32 the
-    run it branches off at a frame in a state (frame -1: it is that run itself), how far it goes, 2 x its last
-    state + met; its cost `[C]`; and the next random number.
+    Runs `[N]`: since when (at), in which state (own), at what cost before t0, or before they came (price),
+    and whether an open event was met by t0 (mets). best `[2 F]`: all -1, and left so. least: frames between
+    two transitions. Returns all runs, given ones first: what each branches off, at, own, price; and what came
+    through: `[C, 5]` int32 the run it branches off at a frame in a state (frame -1: it is that run itself),
+    how far it goes, 2 x its last state + met; its cost `[C]`; and the next random number.
     """
     made = given = len(at)
     off = np.full(given, -1, np.int32)

@@ -91,8 +91,8 @@ def find_path(
     charged: FrameCosts | None = None,
 ) -> Path:
     """Return a path that has what is wanted, by rules for its jumps: the one of the lowest price, which is of
-    all that keep to them ("exact"), or a cheap one, other with other seeds ("greedy"). charged: what frames cost,
-    which both searches count. Raises SynthesisError where there is none.
+    all that keep to them ("exact"), or a cheap one, other with other seeds ("greedy"). charged: what frames
+    cost, which both searches count. Raises SynthesisError where there is none.
     """
     allowed = _allowed(graph, rules)
     try:

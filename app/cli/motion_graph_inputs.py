@@ -1,0 +1,162 @@
+"""What `metagraph motion-graph` is given: takes, and the speech each was recorded with."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # reading a command line must not wait for arrays
+    from metagraph.graph.conversation import Conversation, Segment
+    from metagraph.motion.clip import Clip
+    from metagraph.synthesis.prosody_costs import SpokenTake
+
+_SAVED = "Save the conversation's segments from the window, as ELAN or TextGrid."
+LONGEST = 7200.0  # seconds of a sound
+KEPT = 16000  # samples a second that are kept of one
+
+
+def read_takes(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
+    """Return takes under the names of their files; of files with several takes, or projects, under the takes'
+    own.
+    """
+    from app.cli.command_output import opened
+    from metagraph.errors import FileError
+    from metagraph.formats.clips import read_clips
+    from metagraph.formats.imports import gather
+
+    out: list[tuple[str, Clip]] = []
+    for path in paths:
+        if not path.exists():
+            raise FileError(
+                path,
+                "there is no such file or folder",
+                "on reading takes",
+                "Give clip files, folders of them, or projects.",
+            )
+        if path.suffix in (".yaml", ".yml"):
+            out += [
+                (Path(c.name).stem, c.motion) for c in opened(path).clips.values() if c.motion is not None
+            ]
+            continue
+        for file in gather([path]):
+            clips = read_clips(file)
+            out += [(file.stem if len(clips) == 1 else c.name, c) for c in clips]
+    if not out:
+        raise FileError(
+            paths[0],
+            "it holds no clips",
+            "on reading takes",
+            "Give clip files, folders of them, or projects.",
+        )
+    twice = next((n for n, _ in out if sum(n == m for m, _ in out) > 1), None)
+    if twice is not None:
+        raise ValueError(f"two takes are called '{twice}', so speech cannot be told apart: rename one")
+    return out
+
+
+def read_side(path: Path, side: str) -> tuple[Conversation, int]:
+    """Return the conversation in a file, and which of the two is meant. side: 1, 2, or a name. Raises
+    FileError.
+    """
+    import msgspec
+
+    from metagraph.errors import FileError
+    from metagraph.formats.transcripts import read_transcript
+    from metagraph.graph.conversation import Conversation, Side
+
+    made = None
+    if path.suffix.lower() == ".json" and path.is_file():
+        try:
+            made = msgspec.json.decode(path.read_bytes(), type=Conversation)  # as it stands in a project
+        except msgspec.DecodeError:
+            made = None
+    if made is None:
+        told = read_transcript(path)
+        if not any(told.segments.values()):
+            raise FileError(path, "it holds no clauses, responses and hesitations", "", _SAVED)
+        names = [
+            n
+            for n in dict.fromkeys((*told.speakers, *told.segments))
+            if told.segments.get(n) or told.speakers.get(n)
+        ][:2]
+        sides = [
+            Side(name=n, segments=tuple(told.segments.get(n, ())), words=tuple(told.speakers.get(n, ())))
+            for n in names
+        ]
+        length = max(s.end for one in sides for s in one.segments)
+        made = Conversation(
+            name=path.stem[:200], length=length, sides=(*sides, *(Side() for _ in range(2 - len(sides))))
+        )
+    names = [s.name for s in made.sides]
+    if side not in ("1", "2", *names):
+        raise FileError(
+            path,
+            f"nobody is called '{side}'",
+            "its speakers",
+            f"They are {', '.join(f'{n!r}' for n in names)}; or say 1 or 2.",
+        )
+    return made, names.index(side) if side in names else int(side) - 1
+
+
+def read_spoken(path: Path, side: str, sound: Path | None = None) -> SpokenTake:
+    """Return what one of the two in a file moves with, `heard_by`, with its words; and how it is said. sound:
+    of the recording, None where there is none; where it has a channel for each of the two, of its own. Raises
+    FileError.
+    """
+    from metagraph.graph.conversation import heard_by
+    from metagraph.speech.prosody import prosody
+    from metagraph.speech.sound import read_head, read_sound
+    from metagraph.synthesis.prosody_costs import SpokenTake
+
+    made, number = read_side(path, side)
+    of, segments = made.sides[number], heard_by(made, number)
+    samples, rate = None, 0
+    if sound is not None:
+        channel = of.channel if of.channel is not None else number if read_head(sound)[1] >= 2 else None
+        samples, rate = read_sound(sound, channel, LONGEST, KEPT)
+    return SpokenTake(segments, of.words, prosody(segments, of.words, samples, rate))
+
+
+def paired(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[str]]:
+    """Return takes, the speech of each, and their names. Raises ValueError where files do not go together."""
+    takes = read_takes(options.takes)
+    files = {path.stem: path for path in options.speech}
+    if len(files) < len(options.speech):
+        raise ValueError("two speech files have one name, so takes cannot be told apart: rename one")
+    missing = [n for n, _ in takes if n not in files]
+    left = [p.name for n, p in files.items() if n not in {name for name, _ in takes}]
+    if missing or left:
+        words = [f"no speech for {', '.join(missing[:5])}"] if missing else []
+        words += [f"no take for {', '.join(left[:5])}"] if left else []
+        raise ValueError(
+            f"{' and '.join(words)}: a speech file is called as its take is, take1.bvh and take1.eaf"
+        )
+    sounds = sounds_of(options)
+    if sounds and (deaf := [n for n, _ in takes if n not in sounds]):
+        raise ValueError(
+            f"no sound for {', '.join(deaf[:5])}: a sound is called as its take is, take1.bvh and take1.wav"
+        )
+    return (
+        [c for _, c in takes],
+        [read_spoken(files[n], options.side, sounds.get(n)) for n, _ in takes],
+        [n for n, _ in takes],
+    )
+
+
+def sounds_of(options: Namespace) -> dict[str, Path]:
+    """Return the sounds that were given, under the names of their files; none where there is no such option.
+    Raises ValueError where two have one name.
+    """
+    given = getattr(options, "sounds", [])
+    out = {path.stem: path for path in given}
+    if len(out) < len(given):
+        raise ValueError("two sounds have one name, so takes cannot be told apart: rename one")
+    return out
+
+
+def paired_speech(options: Namespace) -> tuple[list[Clip], list[tuple[Segment, ...]]]:
+    """Return takes, and what was heard during each. Raises ValueError where files do not go together."""
+    clips, spoken, _ = paired(options)
+    return clips, [one.segments for one in spoken]
