@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 from metagraph.graph.conversation import SOUNDS, Segment, Sound
 from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.constraints import EDGE, STRESS, TOLERANCE, HeardStates, WantedSegment, wanted
+from metagraph.synthesis.frame_costs import together
 from metagraph.synthesis.graph import MotionGraph
 from metagraph.synthesis.iconic_words import only_words
-from metagraph.synthesis.retiming import Retiming, keeps_to
+from metagraph.synthesis.retiming import FARTHER, NEARER, Retiming, keeps_to, timing_cost
 from metagraph.synthesis.ruled_search import FREE, JUMP_RULES, JumpRules, Search, find_path
 from metagraph.synthesis.search import Path
 from metagraph.synthesis.soft_constraints import NOTHING, SoftConstraints
@@ -165,7 +166,12 @@ def answer(
 
     def tried(kept: Constraints) -> Path:
         want = kept.wanted(segments, seconds, soft)
-        return find_path(graph, heard, want, search, kept.rules, seed, cancelled, soft.charged)
+        charged = soft.charged
+        if soft.free is not None:
+            kinds = charged.kinds if charged is not None else ()
+            price = NEARER if kept.tolerance <= asked.tolerance else FARTHER
+            charged = together([*kinds, timing_cost(heard, want, graph.threshold.limit, price)])
+        return find_path(graph, heard, want, search, kept.rules, seed, cancelled, charged)
 
     def tried_or_none(kept: Constraints) -> Path | None:
         try:

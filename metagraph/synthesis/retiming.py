@@ -19,6 +19,7 @@ from metagraph.motion.clip import Clip
 from metagraph.suggest.tracks import RATE, poses_of, times_of
 from metagraph.synthesis.constraints import EDGE, STRESS, HeardStates, WantedSegment
 from metagraph.synthesis.cooccurrence import activation, speeds
+from metagraph.synthesis.frame_costs import FrameCost
 from metagraph.synthesis.graph import BLEND
 from metagraph.synthesis.standing_feet import standing
 from metagraph.synthesis.states import SynthesisError
@@ -31,6 +32,8 @@ RAMP = 5  # frames in which speed rises or falls
 STROKE = 0.5  # of the fastest moment of a movement of a hand: what is faster is its stroke
 SLOW = 0.1  # metres a second: a hand that is slower, seen from its shoulder, does nothing that shows
 STEP = 0.1  # frames: how exactly events are moved
+NEARER = 0.1  # of the graph's threshold: what an event costs that is as far off as it may be
+FARTHER = 3.0  # likewise where more is allowed than was asked for: what is retimed into it has to be near
 EASY = 0.01  # what moving by a frame costs beside being off by one
 
 
@@ -223,6 +226,32 @@ def _moved(goal: Array, room: Array) -> Array:
         at = int(before[at])
         out.append(at)
     return np.asarray(steps[out[::-1]])
+
+
+def timing_cost(
+    heard: HeardStates, wanted: WantedSegment, limit: float, price: float = NEARER
+) -> FrameCost | None:
+    """Return what frames cost in which an event comes early or late, so that there is less to retime: none
+    where it is in time, as much as `price` of the graph's threshold (limit, metres) where it is off by as
+    much as it may be, its square between. None where no event is wanted.
+    """
+    frames, order = len(wanted), list(wanted.places.items())
+    inside = np.flatnonzero(wanted.window >= 0)
+    if not len(inside):
+        return None
+    place, what = np.array(order).T
+    number = wanted.window[inside]
+    away = np.abs(inside - place[number])
+    most = int(away.max())
+    if not most:
+        return None
+    kinds = (STRESS, EDGE)
+    rows = np.concatenate(
+        [(np.arange(most + 1)[:, None] / most) ** 2 * heard.happens(kind) for kind in kinds]
+    )
+    at = np.full(frames, -1, np.int32)
+    at[inside] = away + (what[number] == EDGE) * (most + 1)
+    return FrameCost("timing", at, (price * limit * rows).astype(np.float32))
 
 
 def keeps_to(way: Array, moments: Array, heard: HeardStates, wanted: WantedSegment) -> bool:
