@@ -27,6 +27,7 @@ from metagraph.synthesis.states import SynthesisError
 Array = NDArray[Any]
 
 WIDER = 2.0  # times the tolerance: what is tried first
+PARTS = (1.0, 0.5, 0.25)  # of the speed that may be changed: less is tried where more would lose something
 FAR = 1.0  # seconds: an event farther off than that is none
 
 
@@ -84,7 +85,7 @@ class Answer:
         """Return what was given up and missed, "" where nothing was."""
         if not self.given_up:
             return ""
-        missed = ", ".join(m.words() for m in self.misses[:3]) or "nothing is missed"
+        missed = ", ".join(m.words() for m in self.misses[:3]) or "no start, end or stress is missed"
         more = f" and {len(self.misses) - 3} more" if len(self.misses) > 3 else ""
         return f"given up: {', '.join(self.given_up)}; {missed}{more}"
 
@@ -243,12 +244,17 @@ def _retimed(
     where it does. What it kept to before it does not lose: else it is not retimed.
     """
     reach = float(round(kept.tolerance * RATE))
-    retiming = soft.retimed(path, heard, kept.wanted(segments, seconds, soft), reach)
-    if retiming is None:
-        return None, kept
-    for one in dict.fromkeys((replace(kept, tolerance=asked.tolerance), kept)):
-        if keeps_to(path.states, retiming.moments, heard, one.wanted(segments, seconds, soft)):
-            return retiming, one
+    held = kept.wanted(segments, seconds, soft)
+    exactly = replace(kept, tolerance=asked.tolerance)
+    nearer = exactly.wanted(segments, seconds, soft)
+    for part in PARTS:
+        retiming = soft.retimed(path, heard, held, reach, part)
+        if retiming is None:
+            break
+        if keeps_to(path.states, retiming.moments, heard, nearer):
+            return retiming, exactly
+        if keeps_to(path.states, retiming.moments, heard, held):
+            return retiming, kept
     return None, kept
 
 

@@ -40,8 +40,8 @@ EASY = 0.01  # what moving by a frame costs beside being off by one
 @dataclass(frozen=True, eq=False)
 class Retiming:
     """moments `[T]`: the frame of a path, with its fraction, that is shown at each frame. off, was: how far
-    events are from where they are wanted, seconds on average, after and before. events: how many. moved:
-    seconds by which the one that was moved most was. changed: seconds of motion at another speed.
+    events are from where they are wanted, seconds (root mean square), after and before. events: how many.
+    moved: seconds by which the one that was moved most was. changed: seconds of motion at another speed.
     """
 
     moments: Array
@@ -143,18 +143,14 @@ def retime(
     knots = np.array([0, *(e for e, _ in pairs), frames - 1])
     goal = np.array([0.0, *(g - e for e, g in pairs), 0.0])
     share = most / (1 + most)  # of time: so neither faster nor slower than asked for
-    bumps = [_bumps(steady, a, b) for a, b in zip(knots[:-1].tolist(), knots[1:].tolist(), strict=True)]
-    room = share * RAMP * np.array([len(b) for b in bumps])
+    shapes = [_changeable(steady, a, b) for a, b in zip(knots[:-1].tolist(), knots[1:].tolist(), strict=True)]
+    room = share * np.array([shape.sum() for shape in shapes])
     moved = _moved(goal, room)
     if not np.abs(moved).max() > STEP / 2:
         return None
-    slowness = np.ones(frames - 1)  # frames shown for each of the path's
-    within = np.arange(frames - 1) + 0.5
-    for some, by in zip(bumps, np.diff(moved).tolist(), strict=True):
-        for centre in some if by else ():
-            near = np.abs(within - centre) < RAMP
-            shape = 0.5 + 0.5 * np.cos(np.pi * (within[near] - centre) / RAMP)
-            slowness[near] += by / len(some) * shape / shape.sum()
+    slowness = 1 + np.concatenate(  # frames shown for each of the path's
+        [by / max(s.sum(), 1e-9) * s for s, by in zip(shapes, np.diff(moved).tolist(), strict=True)]
+    )
     shown = np.concatenate([[0.0], np.cumsum(slowness)])
     shown *= (frames - 1) / shown[-1]
     moments = np.interp(np.arange(frames), shown, np.arange(frames))
@@ -163,8 +159,8 @@ def retime(
     was = np.abs([e - g for e, g in pairs]) / RATE
     return Retiming(
         moments,
-        float(off.mean()),
-        float(was.mean()),
+        float(np.sqrt(np.mean(off**2))),
+        float(np.sqrt(np.mean(was**2))),
         len(pairs),
         float(np.abs(shown[events] - events).max()) / RATE,
         float((np.abs(slowness - 1) > 0.01).sum()) / RATE,
@@ -193,15 +189,18 @@ def _pairs(
     return out
 
 
-def _bumps(steady: Array, a: int, b: int) -> list[float]:
-    """Return the middles of what changes speed between two frames: each reaches RAMP frames to either side,
-    and the next begins in its middle, so that together they are level.
+def _changeable(steady: Array, a: int, b: int) -> Array:
+    """Return `[b - a]` how much speed may change between the frames a and b, 0..1: all that it may in each
+    stretch that is not steady, but for its ends, where it rises and falls by a cosine. Stretches too short to
+    rise and fall in have none.
     """
-    return [
-        a + first + RAMP * (n + 1.0)
-        for first, after in _stretches(~steady[a:b])
-        for n in range((after - first) // RAMP - 1)
-    ]
+    out = np.zeros(b - a)
+    for first, after in _stretches(~steady[a:b]):
+        if after - first >= 2 * RAMP:
+            within = np.arange(after - first) + 0.5
+            end = np.minimum(within, within[::-1])
+            out[first:after] = 0.5 - 0.5 * np.cos(np.pi * np.minimum(end / RAMP, 1))
+    return out
 
 
 def _moved(goal: Array, room: Array) -> Array:

@@ -92,12 +92,14 @@ class SoftConstraints:
     known: tuple[tuple[Measure, Array, Array], ...] = ()
 
     def retimed(
-        self, path: Path, heard: HeardStates, want: WantedSegment, reach: float | None
+        self, path: Path, heard: HeardStates, want: WantedSegment, reach: float | None, part: float = 1.0
     ) -> Retiming | None:
-        """Return how a path is retimed, as `retiming.retime` does; None where it is not."""
+        """Return how a path is retimed, as `retiming.retime` does, by some part of what speed may change;
+        None where it is not.
+        """
         if self.free is None:
             return None
-        return retime(path.states, path.jumps, heard, want, self.free, self.most, reach)
+        return retime(path.states, path.jumps, heard, want, self.free, part * self.most, reach)
 
 
 NOTHING = SoftConstraints()
