@@ -130,7 +130,7 @@ def retime(
 
     Between two events there is so much time to be won or lost, by speed at its highest in all that is free
     there. How far each is moved is the best by that (dynamic programming): squares of what they are then off
-    are least.
+    are least, and none is farther off than it was by more than a frame's rounding.
     """
     checked_share(most)
     pairs = _pairs(way, heard, wanted.places, reach)
@@ -205,7 +205,8 @@ def _changeable(steady: Array, a: int, b: int) -> Array:
 
 def _moved(goal: Array, room: Array) -> Array:
     """Return by how many frames each knot is moved, the first and the last by none: two neighbours by no more
-    than `room` apart, and squares of what is then missing least.
+    than `room` apart, none farther off than it was, or than a frame, and squares of what is then missing
+    least.
     """
     most = float(np.abs(goal).max())
     steps = np.arange(-round(most / STEP), round(most / STEP) + 1) * STEP
@@ -216,7 +217,9 @@ def _moved(goal: Array, room: Array) -> Array:
     for number in range(1, len(goal)):
         ways = cost[:, None] + np.where(apart <= room[number - 1] + 1e-9, EASY * apart**2, np.inf)
         back.append(ways.argmin(0))
-        cost = ways.min(0) + (steps - goal[number]) ** 2
+        missing = np.abs(steps - goal[number])
+        worse = missing > max(abs(goal[number]), 1.0) + 1e-9
+        cost = np.where(worse, np.inf, ways.min(0) + missing**2)
         if number == len(goal) - 1:
             cost = np.where(nothing, cost, np.inf)
     at = int(cost.argmin())
