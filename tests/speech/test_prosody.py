@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from metagraph.formats.transcripts import read_transcript
 from metagraph.graph.conversation import Segment, Word
 from metagraph.speech.loudness import loudness, loudness_within
 from metagraph.speech.prosody import letters, prosody
+from metagraph.speech.sound import read_sound
 
 RATE = 8000
 
@@ -65,3 +69,14 @@ def test_nothing_said_and_nothing_known_is_no_error() -> None:
     assert np.isnan(unknown.rate).all() and np.isnan(unknown.loudness).all()
     beyond = prosody([Segment("clause", 9.0, 10.0)], (), tone(1, 0.1), RATE)
     assert np.isnan(beyond.loudness).all()
+
+
+def test_real_speech_has_the_rate_of_speech_by_its_words_and_by_its_sound(shared_data: Path) -> None:
+    folder = shared_data / "praatio-speech"
+    (words,) = read_transcript(folder / "bobby_words.TextGrid").speakers.values()
+    samples, rate = read_sound(folder / "bobby.wav")
+    segments = [Segment("clause", words[0].start, words[-1].end)]
+    told, heard = prosody(segments, words, samples, rate), prosody(segments, (), samples, rate)
+    assert 8 < told.rate[0] < 25, "letters a second"
+    assert 2 < heard.rate[0] < 8, "syllables a second"
+    assert -45 < told.loudness[0] < -10 and told.loudness[0] == heard.loudness[0]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path as Folder
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from metagraph.formats.clips import read_clips
 from metagraph.graph.conversation import Segment
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
@@ -20,6 +22,7 @@ from metagraph.synthesis.relaxing import Constraints, answer, misses
 from metagraph.synthesis.retiming import keeps_to, retimable, retime, timing_cost
 from metagraph.synthesis.search import Path
 from metagraph.synthesis.soft_constraints import SoftConstraints, SoftWish
+from metagraph.synthesis.standing_feet import standing
 from metagraph.synthesis.states import SynthesisError, states_of
 from tests.synthesis.talking import speech, talking
 from tests.synthesis.test_search import graph_of
@@ -174,3 +177,22 @@ def test_retimed_motion_has_its_stroke_at_the_stress_and_its_feet_where_they_sto
         place = at(moved, foot)[:, [0, 2]]
         assert np.linalg.norm(place - place[0], axis=-1).max() < 0.01
     assert np.abs(np.linalg.norm(moved.rotations, axis=-1) - 1).max() < 1e-4
+
+
+def test_feet_of_other_studios_takes_stay_where_they_stood_when_they_are_retimed(shared_data: Folder) -> None:
+    names = ("bow_active", "bow_angry")
+    takes = [read_clips(shared_data / "bandai-namco-1" / f"dataset-1_{name}_001.bvh")[0] for name in names]
+    states = states_of(takes)
+    jump, there = 110, int(states.starts[1])
+    way = np.concatenate([np.arange(jump), there + np.arange(10, int(len(states) - there))])
+    said: list[list[Segment]] = [[clause(1.9, 2.1, 2.5)], []]  # while the bow is held
+    wants = wanted([clause(1.97, 2.17, 2.57)], len(way) / 30)
+    found = retime(way, np.array([jump]), heard(states, said), wants, retimable(takes), 0.3)
+    assert found is not None and found.off < found.was
+    made = assemble(states, takes, Path(way, 0.0, np.array([jump])), retiming=found)
+    roles, standing_there = find_roles(made.skeleton), standing(made.skeleton, made.poses())
+    for side, there_it_stands in standing_there.items():
+        place = made.skeleton.globals(made.poses())[1][:, roles[f"{side}_foot"]][:, [0, 2]]
+        both = there_it_stands[1:] & there_it_stands[:-1]
+        slide = 30 * np.linalg.norm(np.diff(place, axis=0), axis=-1)[both]
+        assert np.quantile(slide, 0.9) < 0.05, "metres a second"
