@@ -11,20 +11,25 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
-from weakref import WeakKeyDictionary
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.suggest.tracks import RATE
-from metagraph.synthesis.constraints import EDGE, STRESS, HeardStates, WantedSegment
+from metagraph.synthesis.constraints import HeardStates, WantedSegment
 from metagraph.synthesis.frame_costs import FrameCosts, PaidAlong
 from metagraph.synthesis.graph import MotionGraph
+from metagraph.synthesis.search_lookups import (
+    EVENTS,
+    charges_of,
+    closes_at,
+    fits_of,
+    links_of,
+    meets_of,
+    speech_of,
+)
 from metagraph.synthesis.states import SynthesisError
-
-if TYPE_CHECKING:
-    from metagraph.synthesis.greedy_search_kernels import Charges, Links, Speech
 
 Array = NDArray[Any]
 Cancelled = Callable[[], bool] | None
@@ -37,13 +42,11 @@ DEEPER = (
     (6, 1),
     (6, 2),
 )  # transitions one after another in a stretch, branches more: when a search comes to an end
-CHEAPEST = 32  # transitions of a state that are always tried
 TRIES = 16  # and at most so many by chance
 LONGEST = 60  # frames of a stretch that is searched at once
 LOOK = 90  # frames beyond a stretch: who goes on that long by itself is not held to be dear
 AHEAD = 0.05  # of the threshold: what a second less of that counts as
 APART = 3  # frames: ends of kept candidates
-EVENTS = (STRESS, EDGE)  # in the order of rows that are looked up
 MOST = 4_000_000_000  # bytes of way back that are kept at once
 
 
@@ -142,8 +145,8 @@ def _best_within(
     landed = np.empty((run, 2, states), np.float32)
     sources, runs = np.empty((run, 2, states), np.int32), np.zeros((2, states), np.int32)
     cost = np.full((2, states), np.inf, np.float32)
-    fits = _fits(graph, heard, wanted, 0)
-    met = fits & _meets(happening, wanted, 0)
+    fits = fits_of(graph, heard, wanted, 0)
+    met = fits & meets_of(happening, wanted, 0)
     cost[0, fits & ~met] = 0
     cost[1, met] = 0
     good = fits.astype(np.int32)
@@ -152,7 +155,7 @@ def _best_within(
     for t in range(1, frames):
         _go_on(cancelled)
         new = np.full((2, states), np.inf, np.float32)
-        fits = _fits(graph, heard, wanted, t)
+        fits = fits_of(graph, heard, wanted, t)
         place = t % run
         if paid is None:
             leap(cost, landed[place], sources[place], *links, fits, most)
@@ -164,7 +167,7 @@ def _best_within(
             landed[place] -= paid.before.astype(np.float32)
         good[1:], good[0] = np.where(first[1:], 0, good[:-1]), 0
         good = np.where(fits, good + 1, 0).astype(np.int32)
-        follow(cost, new, back[t], follows, fits, _meets(happening, wanted, t), most)
+        follow(cost, new, back[t], follows, fits, meets_of(happening, wanted, t), most)
         for ago in range(1 if t == frames - 1 else run, run + 1):  # at the end a run may be cut short
             if ago <= t:
                 place = (t - ago + 1) % run
@@ -187,7 +190,7 @@ def _best_within(
     way = np.empty(frames, np.int64)
     t, b, s = frames - 1, int(met_at), int(state)
     while True:
-        if _closes(wanted, t):
+        if closes_at(wanted, t):
             b = 1  # at the end of its window its stress was met
         before = int(back[t, b, s]) if t else 0
         length = 1 if before >= 0 else int(runs[b, s]) if t == frames - 1 else run
@@ -267,12 +270,12 @@ def _greedy(
     from metagraph.synthesis.greedy_search_kernels import segment
 
     frames, chance = len(wanted), np.random.default_rng(seed)
-    fits = np.flatnonzero(_fits(graph, heard, wanted, 0))
+    fits = np.flatnonzero(fits_of(graph, heard, wanted, 0))
     if not len(fits):
         raise SynthesisError(_stuck(0))
     own = np.sort(chance.choice(fits, min(STARTS * saved, len(fits)), replace=False)).astype(np.int32)
     at, cost, met = np.zeros(len(own), np.int32), np.zeros(len(own), np.float32), np.zeros(len(own), bool)
-    links, speech, charges = _links(graph), _speech(graph, heard, wanted), _charges(charged, frames)
+    links, speech, charges = links_of(graph), speech_of(graph, heard, wanted), charges_of(charged, frames)
     best_at = np.full(2 * len(graph.states), -1, np.int32)
     ahead = AHEAD * graph.threshold.limit / RATE
     random = np.uint64(chance.integers(1 << 62))
@@ -351,91 +354,9 @@ def _stretches(wanted: WantedSegment) -> list[int]:
     return out
 
 
-_LINKS: WeakKeyDictionary[MotionGraph, Links] = WeakKeyDictionary()
-
-
-def _links(graph: MotionGraph) -> Links:
-    """Return a graph's transitions, and the cheapest of each state; those are looked for once."""
-    from metagraph.synthesis.greedy_search_kernels import Links, cheapest
-
-    found = _LINKS.get(graph)
-    if found is None:
-        found = Links(
-            graph.starts, graph.targets, graph.costs, *cheapest(graph.starts, graph.costs, CHEAPEST)
-        )
-        _LINKS[graph] = found
-    return found
-
-
-def _speech(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment) -> Speech:
-    from metagraph.synthesis.greedy_search_kernels import Speech, next_of, until_of
-
-    events = np.array([EVENTS.index(wanted.event(t)) for t in range(len(wanted))], np.int32)
-    barred = np.array([wanted.bars(t) for t in range(len(wanted))], np.uint8)
-    only = np.zeros(len(wanted), np.int64)  # frames that only some states may come at are each by itself
-    only[[t for t in wanted.only if t < len(wanted)]] = [1 + t for t in wanted.only if t < len(wanted)]
-    new = np.ones(len(wanted), bool)
-    new[1:] = (np.diff(wanted.allowed) != 0) | (np.diff(wanted.window) != 0) | (np.diff(barred) != 0)
-    new[1:] |= np.diff(only) != 0
-    begins = np.flatnonzero(new)
-    ends = np.append(begins[1:], len(wanted))
-    alike = np.stack([wanted.allowed[begins], barred[begins], only[begins]], 1)
-    _, firsts, rows = np.unique(alike, axis=0, return_index=True, return_inverse=True)
-    last = graph.states.last
-    until = np.stack([until_of(_fits(graph, heard, wanted, int(t)), last) for t in begins[firsts]])
-    stresses, closes = wanted.window >= 0, np.array([_closes(wanted, t) for t in range(len(wanted))])
-    stretch = (np.cumsum(new) - 1).astype(np.int32)
-    return Speech(
-        stretch,
-        ends,
-        rows.reshape(-1),
-        until,
-        stresses[begins],
-        closes[ends - 1],
-        stresses,
-        closes,
-        events[begins],
-        np.stack([next_of(heard.happens(what)) for what in EVENTS]),
-        next_of(last) + 1,
-    )
-
-
-def _charges(charged: FrameCosts | None, frames: int) -> Charges:
-    """Return what frames cost as the greedy search looks it up."""
-    from metagraph.synthesis.greedy_search_kernels import Charges
-
-    if charged is None:
-        return Charges(np.full(frames, -1, np.int32), np.full(frames, frames), np.zeros((0, 1)))
-    at, rows = charged.sums
-    new = np.flatnonzero(np.diff(at)) + 1
-    ends = np.repeat([*new.tolist(), frames], np.diff([0, *new.tolist(), frames]))
-    return Charges(at, ends, np.pad(np.cumsum(rows, axis=1, dtype=np.float64), ((0, 0), (1, 0))))
-
-
-def _fits(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment, t: int) -> Array:
-    fits = graph.kept & ((heard.kinds & wanted.allowed[t]) != 0)
-    if barred := wanted.bars(t):
-        fits &= ~heard.happens(barred)
-    if t in wanted.only:
-        fits &= wanted.only[t]
-    return np.asarray(fits)
-
-
-def _meets(happening: Sequence[Array], wanted: WantedSegment, t: int) -> Array:
-    """Return `[F]` which states are the event that the window of a frame waits for."""
-    if wanted.window[t] < 0:
-        return np.zeros(len(happening[0]), bool)
-    return happening[EVENTS.index(wanted.event(t))]
-
-
-def _closes(wanted: WantedSegment, t: int) -> bool:
-    """Return whether an event has to have been met by now."""
-    return bool(wanted.window[t] >= 0 and (t + 1 == len(wanted) or wanted.window[t + 1] != wanted.window[t]))
-
-
 def _close(cost: Array, wanted: WantedSegment, t: int) -> None:
     """Forget ways on which the event was not met whose window ends; the others begin anew."""
-    if _closes(wanted, t):
+    if closes_at(wanted, t):
         cost[0] = cost[1]
         cost[1] = np.inf
 
