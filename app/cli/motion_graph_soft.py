@@ -66,8 +66,8 @@ def soft_options(parser: ArgumentParser) -> None:
         type=float,
         default=0.0,
         metavar="PERCENT",
-        help="play it faster and slower by up to so much, where that does not show and brings starts, ends "
-        "and stresses nearer (default: 0; 15 is little seen)",
+        help="play it faster and slower by up to so much, outside of strokes, steps and transitions, where "
+        "that brings starts, ends and stresses nearer (default: 0; try 15)",
     )
 
 

@@ -76,7 +76,7 @@ def together(kinds: Iterable[FrameCost | None]) -> FrameCosts | None:
     some = tuple(kind for kind in kinds if kind is not None and (kind.at >= 0).any())
     if not some:
         return None
-    size = 12 * sum(kind.rows.size for kind in some)
+    size = 16 * sum(kind.rows.size for kind in some)
     if size > MOST:
         raise SynthesisError(
             f"what is compared frame by frame would take {size / 1e9:.1f} GB: ask for less at a time"

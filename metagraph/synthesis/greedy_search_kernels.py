@@ -65,8 +65,6 @@ class Charges(NamedTuple):
 def charged(t: Any, after: Any, state: Any, charges: Any) -> Any:
     """Return what the frames t .. after - 1 cost of a run that is in a state at frame t."""
     total = 0.0
-    if len(charges.sums) == 0:
-        return np.float32(total)
     while t < after:
         count = min(after, charges.ends[t]) - t
         row = charges.rows[t]
@@ -223,6 +221,7 @@ def segment(
     how far it goes, 2 x its last state + met; its cost `[C]`; and the next random number.
     """
     made = given = len(at)
+    paying = len(charges.sums) > 0
     off = np.full(given, -1, np.int32)
     level = np.zeros(given, np.int32)
     found, paid, count = np.empty((1024, 5), np.int32), np.empty(1024, np.float32), 0
@@ -250,7 +249,9 @@ def segment(
                 end = reach(begin, state, met, speech)
             if end >= t1:
                 through = _met(begin, t1, state, met, speech)
-                all_of_it = so_far + charged(begin, t1, state, charges)
+                all_of_it = so_far
+                if paying:
+                    all_of_it += charged(begin, t1, state, charges)
                 count = _note(
                     run, all_of_it, -1, state, end, state + t1 - 1 - begin, through, count, found, paid, best
                 )
@@ -264,7 +265,7 @@ def segment(
                 if t >= begin and speech.stresses[t]:
                     row = speech.events[speech.stretch[t]]
                     met = not speech.closes[t] and (met or speech.peak_at[row, x] == x)
-                if t >= begin:
+                if paying and t >= begin:
                     so_far += charged(t, t + 1, x, charges)
                 if at[run] > 0 and t - at[run] + 1 < least:  # it came here a moment ago
                     continue
@@ -293,9 +294,11 @@ def segment(
                         continue
                     if far >= t1:
                         through = _met(t + 1, t1, target, met, speech)
+                        if paying:
+                            total += charged(t + 1, t1, target, charges)
                         count = _note(
                             run,
-                            total + charged(t + 1, t1, target, charges),
+                            total,
                             t + 1,
                             target,
                             far,
@@ -309,7 +312,9 @@ def segment(
                     elif far > end:  # what leads on cheapest, and chance, tell where to go deeper
                         random = _next(random)
                         chance = np.float32(random >> np.uint64(40)) / np.float32(1 << 24)
-                        dear = links.costs[place] + charged(t + 1, min(far, t1), target, charges)
+                        dear = links.costs[place]
+                        if paying:
+                            dear += charged(t + 1, min(far, t1), target, charges)
                         worth = dear / (far - end) * (np.float32(0.5) + chance)
                         spot = picks
                         if picks == branches:

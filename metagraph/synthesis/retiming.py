@@ -1,7 +1,7 @@
 """Motion of a path played a little faster or slower, so that what it was made with comes when it is heard
 (the future work of Yang et al., section 9).
 
-Speed is changed within runs alone, and only where it does not show: not in strokes of a hand, not while a
+Speed is changed within runs alone, and only where it shows least: not in strokes of a hand, not while a
 foot steps, not where one take fades into another. It rises and falls by a cosine. The sound stays as it is:
 the motion is fitted to it.
 """
@@ -73,13 +73,13 @@ class Retiming:
 def checked_share(most: float) -> float:
     """Return a share by which speed may change. Raises SynthesisError where it is none."""
     if not 0 <= most <= HIGHEST:
-        raise SynthesisError(f"speed may change by 0 to {HIGHEST:.0%}, not by {most:.0%}: more would show")
+        raise SynthesisError(f"speed may change by 0 to {HIGHEST:.0%}, not by {most:.0%}")
     return most
 
 
 def retimable(takes: Sequence[Clip]) -> Array:
-    """Return `[F]` at which states of takes speed may change without showing: no hand is in its stroke, and
-    no foot steps.
+    """Return `[F]` at which states of takes speed may change: no hand is in its stroke, and no foot
+    steps.
 
     A hand's stroke is what is faster than STROKE of the fastest moment of a movement, which is what is faster
     than the take's own threshold (equation 1) and than SLOW.

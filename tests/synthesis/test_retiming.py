@@ -1,4 +1,4 @@
-"""Motion is played faster and slower where that does not show, so that it comes when it is heard."""
+"""Motion is played faster and slower where that shows least, so that it comes when it is heard."""
 
 from __future__ import annotations
 

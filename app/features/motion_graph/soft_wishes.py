@@ -55,8 +55,8 @@ class SoftWishes(QWidget):
         )
         self.speed.setAccessibleName("Speed may change by")
         self.speed.setToolTip(
-            "Plays it faster and slower where that does not show, not in strokes, steps and transitions, so "
-            "that starts, ends and stresses come when they are heard; 15 % is little seen"
+            "Plays it faster and slower, outside of strokes, steps and transitions, so that starts, ends and "
+            "stresses come when they are heard; try 15 %"
         )
         for words, field in (
             ("Beside: as loud", self.loudness),
