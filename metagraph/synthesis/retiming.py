@@ -66,7 +66,7 @@ class Retiming:
         """Return it in words."""
         return (
             f"{self.changed:.1f} s at another speed: {self.events} starts, ends and stresses "
-            f"{1000 * self.off:.0f} ms off on average instead of {1000 * self.was:.0f}"
+            f"{1000 * self.off:.0f} ms off (root mean square) instead of {1000 * self.was:.0f}"
         )
 
 
