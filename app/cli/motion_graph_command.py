@@ -13,7 +13,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from app.cli.motion_graph_inputs import paired, paired_speech, read_spoken, read_takes, sounds_of
+from app.cli.motion_graph_inputs import beside, paired, paired_speech, read_spoken, read_takes
 from app.cli.motion_graph_soft import soft_options, soft_wish
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
@@ -378,10 +378,12 @@ def synthesize(options: Namespace) -> int:
         clips.pop(number)
         names.pop(number)
     else:
-        sound = sounds_of(options).get(options.new.stem)
+        sound, transcript = (
+            beside(options, what).get(options.new.stem) for what in ("sounds", "transcripts")
+        )
         if wish.loudness and sound is None:
             raise ValueError(f"no sound for {options.new.name}: --sounds has none that is called so")
-        new = read_spoken(options.new, options.side, sound)
+        new = read_spoken(options.new, options.side, sound, transcript)
     speech = [one.segments for one in spoken]
     end = max((s.end for s in new.segments), default=0.0)
     if options.start < 0 or (options.start >= end and options.seconds is None):

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
-    from metagraph.graph.conversation import Conversation, Segment
+    from metagraph.graph.conversation import Conversation, Segment, Word
     from metagraph.motion.clip import Clip
     from metagraph.synthesis.prosody_costs import SpokenTake
 
@@ -100,10 +100,12 @@ def read_side(path: Path, side: str) -> tuple[Conversation, int]:
     return made, names.index(side) if side in names else int(side) - 1
 
 
-def read_spoken(path: Path, side: str, sound: Path | None = None) -> SpokenTake:
+def read_spoken(
+    path: Path, side: str, sound: Path | None = None, transcript: Path | None = None
+) -> SpokenTake:
     """Return what one of the two in a file moves with, `heard_by`, with its words; and how it is said. sound:
-    of the recording, None where there is none; where it has a channel for each of the two, of its own. Raises
-    FileError.
+    of the recording, None where there is none; where it has a channel for each of the two, of its own.
+    transcript: where its words are, None where they are in the file itself. Raises FileError.
     """
     from metagraph.graph.conversation import heard_by
     from metagraph.speech.prosody import prosody
@@ -112,11 +114,27 @@ def read_spoken(path: Path, side: str, sound: Path | None = None) -> SpokenTake:
 
     made, number = read_side(path, side)
     of, segments = made.sides[number], heard_by(made, number)
+    words = of.words if transcript is None else _words_of(transcript, of.name, number)
     samples, rate = None, 0
     if sound is not None:
         channel = of.channel if of.channel is not None else number if read_head(sound)[1] >= 2 else None
         samples, rate = read_sound(sound, channel, LONGEST, KEPT)
-    return SpokenTake(segments, of.words, prosody(segments, of.words, samples, rate))
+    return SpokenTake(segments, words, prosody(segments, words, samples, rate))
+
+
+def _words_of(path: Path, name: str, number: int) -> tuple[Word, ...]:
+    """Return the words of one of the two in a transcript: who is called so, else whose number it is; those of
+    the only one. Raises FileError.
+    """
+    from metagraph.errors import FileError
+    from metagraph.formats.transcripts import read_transcript
+
+    speakers = read_transcript(path).speakers
+    if len(speakers) == 1 or name in speakers:
+        return speakers[name] if name in speakers else next(iter(speakers.values()))
+    if number < len(speakers):
+        return list(speakers.values())[number]
+    raise FileError(path, "it holds no words", "", "Give a transcript with words and their times.")
 
 
 def paired(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[str]]:
@@ -133,26 +151,28 @@ def paired(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[str]]
         raise ValueError(
             f"{' and '.join(words)}: a speech file is called as its take is, take1.bvh and take1.eaf"
         )
-    sounds = sounds_of(options)
-    if sounds and (deaf := [n for n, _ in takes if n not in sounds]):
-        raise ValueError(
-            f"no sound for {', '.join(deaf[:5])}: a sound is called as its take is, take1.bvh and take1.wav"
-        )
+    sounds, transcripts = beside(options, "sounds"), beside(options, "transcripts")
+    for some, what, ending in ((sounds, "sound", "wav"), (transcripts, "transcript", "srt")):
+        if some and (without := [n for n, _ in takes if n not in some]):
+            raise ValueError(
+                f"no {what} for {', '.join(without[:5])}: it is called as the take is, take1.bvh and "
+                f"take1.{ending}"
+            )
     return (
         [c for _, c in takes],
-        [read_spoken(files[n], options.side, sounds.get(n)) for n, _ in takes],
+        [read_spoken(files[n], options.side, sounds.get(n), transcripts.get(n)) for n, _ in takes],
         [n for n, _ in takes],
     )
 
 
-def sounds_of(options: Namespace) -> dict[str, Path]:
-    """Return the sounds that were given, under the names of their files; none where there is no such option.
-    Raises ValueError where two have one name.
+def beside(options: Namespace, what: str) -> dict[str, Path]:
+    """Return the sounds or transcripts that were given, under the names of their files; none where there is
+    no such option. Raises ValueError where two have one name.
     """
-    given = getattr(options, "sounds", [])
+    given = getattr(options, what, [])
     out = {path.stem: path for path in given}
     if len(out) < len(given):
-        raise ValueError("two sounds have one name, so takes cannot be told apart: rename one")
+        raise ValueError(f"two {what} have one name, so takes cannot be told apart: rename one")
     return out
 
 

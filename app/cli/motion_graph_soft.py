@@ -25,6 +25,15 @@ def soft_options(parser: ArgumentParser) -> None:
         "channels each has its own",
     )
     group.add_argument(
+        "--transcripts",
+        type=Path,
+        nargs="+",
+        default=[],
+        metavar="FILE",
+        help="words with their times, called likewise, where the files of --speech hold none: .TextGrid, "
+        ".srt, .vtt, .json …",
+    )
+    group.add_argument(
         "--loudness",
         type=float,
         default=0.0,

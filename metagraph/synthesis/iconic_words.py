@@ -105,7 +105,7 @@ def word_places(
     tolerance: float = TOLERANCE,
 ) -> tuple[WordPlace, ...]:
     """Return where new speech, from a second of it on, says what is wished, by time; where two wishes want
-    the same moment the earlier one has it.
+    the same moment the first of them has it.
 
     At a frame so far from the middle of a word, a state may come that is as far from the middle of such a
     word in its take, give or take the tolerance, seconds. Raises SynthesisError where there are not as many
@@ -118,8 +118,8 @@ def word_places(
         raise SynthesisError(
             f"no words of {whose} have times, so none can be looked for: give transcripts with words"
         )
-    frames, out = max(1, round(seconds * RATE)), []
-    taken = np.zeros(frames, bool)
+    frames = max(1, round(seconds * RATE))
+    taken, found = np.zeros(frames, bool), []
     for wish in wishes:
         middles = [
             (number, (a + b) / 2 * RATE)
@@ -128,14 +128,20 @@ def word_places(
         ]
         for a, b, text in spans(new.words, wish.said):
             middle = ((a + b) / 2 - start) * RATE
-            first = max(0, round((a - start) * RATE) - AROUND)
-            after = min(frames, round((b - start) * RATE) + AROUND)
-            if not 0 <= middle < frames or taken[first:after].any():
-                continue
-            taken[first:after] = True
-            near = _near(states, middles, middle, first, after, tolerance * RATE)
-            out.append(WordPlace(text, middle / RATE, (first, after), near))
-    return tuple(sorted(out, key=lambda p: p.at))
+            first, after = max(0, round((a - start) * RATE)), min(frames, round((b - start) * RATE))
+            if 0 <= middle < frames and not taken[first:after].any():
+                taken[first:after] = True
+                found.append((first, max(first + 1, after), middle, text, middles))
+    found.sort(key=lambda one: one[0])
+    out = []
+    for number, (first, after, middle, text, middles) in enumerate(found):
+        before = found[number - 1][1] if number else -frames  # what is between two words each has half of
+        then = found[number + 1][0] if number + 1 < len(found) else 2 * frames
+        first = max(0, first - min(AROUND, (first - before) // 2))
+        after = min(frames, after + min(AROUND, (then - after + 1) // 2))
+        near = _near(states, middles, middle, first, after, tolerance * RATE)
+        out.append(WordPlace(text, middle / RATE, (first, after), near))
+    return tuple(out)
 
 
 def _near(

@@ -88,6 +88,11 @@ def test_words_beyond_the_window_and_words_no_take_says_want_nothing() -> None:
     assert word_cost(places[:1], 60, 2.0, 1.0) is None and words_told(()) == ""
     begins = word_places([word_wish("big")], graph.states, [new], new, 0.3, 1.0)
     assert [p.frames for p in begins] == [(0, 3 + AROUND)]
+    close = words(("big", 1.0, 1.2), ("round", 1.3, 1.5), ("round", 1.5, 1.7))
+    beside = word_places(wishes, graph.states, [new], close, 0.0, 2.0)
+    assert [p.frames for p in beside] == [(30 - AROUND, 38), (38, 45), (45, 51 + AROUND)]
+    twice = word_places([word_wish("big"), word_wish("big")], graph.states, [new], close, 0.0, 2.0)
+    assert len(twice) == 1, "one moment wants one motion"
     with pytest.raises(SynthesisError, match="no words of the new speech have times"):
         word_places(wishes, graph.states, [new], words(), 0.0, 2.0)
     with pytest.raises(SynthesisError, match="no words of the takes have times"):

@@ -274,6 +274,12 @@ def test_loudness_rate_words_and_speed_are_asked_for_and_told(
     assert re.search(r"loudness 0\.\d\d spreads off.*words from where a take says them.*paid", text)
     new = ["--new", str(aloud_folder / "take1.json"), "-s", "5", "-o", out, "--rate", "0.5"]
     assert "rate" in run(capsys, "synthesize", *asked(aloud_folder), *new)
+    cues = [f"{n}\n00:00:{n:02},000 --> 00:00:{n:02},900\nround" for n in range(1, 17)]
+    for n in range(3):
+        (tmp_path / f"take{n}.srt").write_text("\n\n".join(cues))
+    transcripts = ["--transcripts", *(str(tmp_path / f"take{n}.srt") for n in range(3))]
+    told = json.loads(run(capsys, "synthesize", *given, *transcripts, "--word", "round", "--json"))["beside"]
+    assert [w["text"] for w in told["words"]] == ["round"] * 9 and all(w["known"] for w in told["words"])
     rows = json.loads(
         run(capsys, "evaluate", *asked(aloud_folder), *beside, "--quick", "--search", "exact", "--json")
     )["rows"]
@@ -293,6 +299,7 @@ def test_wishes_that_cannot_be_are_told(
         ([*deaf, "--loudness", "1"], "give those of the recordings with --sounds"),
         ([*few, "--loudness", "1"], "no sound for take1"),
         ([*new, "--loudness", "1"], "no sound for other.json"),
+        ([*given, "--transcripts", other], "no transcript for take0"),
         ([*given, "--words-must"], "say which, with --word or --words"),
         ([*given, "--word", "= huge"], "names no word"),
         ([*given, "--retime", "90"], "speed may change by 0 to 50%"),
