@@ -206,16 +206,28 @@ def words_shown(places: Sequence[WordPlace], states: States, way: Array) -> tupl
     return tuple(out)
 
 
-def words_told(shown: Sequence[WordShown]) -> str:
-    """Return what became of words, in words; "" where none was wished."""
-    if not shown:
-        return ""
-    met = sum(w.met for w in shown)
-    parts = [f"{met} of {len(shown)} words from where a take says them"]
+def unsaid(wishes: Sequence[WordWish], new: SpokenTake, start: float, seconds: float) -> tuple[str, ...]:
+    """Return the wishes, by name, of which nothing is said in new speech, from a second of it on."""
+    return tuple(
+        wish.name
+        for wish in wishes
+        if not any(start <= (a + b) / 2 < start + seconds for a, b, _ in spans(new.words, wish.said))
+    )
+
+
+def words_told(shown: Sequence[WordShown], never: Sequence[str] = ()) -> str:
+    """Return what became of words, in words; "" where none was wished. never: `unsaid`."""
+    parts = []
+    if shown:
+        met = sum(w.met for w in shown)
+        parts.append(f"{met} of {len(shown)} words from where a take says them")
     missed = [f"'{w.text}' at {w.at:.1f} s" for w in shown if w.known and not w.met]
     absent = list(dict.fromkeys(f"'{w.text}'" for w in shown if not w.known))
     if missed:
         parts.append(f"missed: {', '.join(missed[:5])}{' and more' if len(missed) > 5 else ''}")
     if absent:
         parts.append(f"no take says {', '.join(absent[:5])}")
+    if never:
+        more = f" and {len(never) - 5} more" if len(never) > 5 else ""
+        parts.append(f"not said now: {', '.join(repr(w) for w in never[:5])}{more}")
     return "; ".join(parts)

@@ -20,6 +20,7 @@ from metagraph.synthesis.iconic_words import (
     WordPlace,
     WordShown,
     WordWish,
+    unsaid,
     word_cost,
     word_places,
     words_shown,
@@ -81,7 +82,7 @@ NO_WISH = SoftWish()
 class SoftConstraints:
     """A wish for some seconds of speech. charged: what frames cost. places: the words that want motion. hard:
     whether they have to be met. free `[F]`: where speed may change, None for nowhere; most: by what share.
-    known: of each measure how states and frames are said.
+    known: of each measure how states and frames are said. unsaid: words that were asked for and are not said.
     """
 
     charged: FrameCosts | None = None
@@ -90,6 +91,7 @@ class SoftConstraints:
     free: Array | None = None
     most: float = 0.0
     known: tuple[tuple[Measure, Array, Array], ...] = ()
+    unsaid: tuple[str, ...] = ()
 
     def retimed(
         self, path: Path, heard: HeardStates, want: WantedSegment, reach: float | None, part: float = 1.0
@@ -139,7 +141,8 @@ class SoftMaterial:
         places = word_places(wish.words, self.states, self.takes, new, start, seconds, tolerance)
         frames = max(1, round(seconds * RATE))
         charged = together([*kinds, word_cost(places, frames, wish.price, self.limit)])
-        return SoftConstraints(charged, places, wish.hard, self.free, wish.retime, tuple(known))
+        never = unsaid(wish.words, new, start, seconds)
+        return SoftConstraints(charged, places, wish.hard, self.free, wish.retime, tuple(known), never)
 
 
 def _unknown(measure: Measure, whose: str) -> str:
@@ -151,13 +154,15 @@ def _unknown(measure: Measure, whose: str) -> str:
 @dataclass(frozen=True)
 class SoftReport:
     """What became of a wish. paid: what each kind of cost came to, metres. matches: how it is said. words:
-    those that wanted motion. retiming: in words, "" where speed is as in the takes; off, was: seconds events
-    are off on average, after and before it, None where there was none.
+    those that wanted motion. unsaid: those that were asked for and are not said. retiming: in words, "" where
+    speed is as in the takes; off, was: seconds events are off (root mean square), after and before it, None
+    where there was none.
     """
 
     paid: dict[str, float]
     matches: tuple[ProsodyMatch, ...]
     words: tuple[WordShown, ...]
+    unsaid: tuple[str, ...] = ()
     retiming: str = ""
     off: float | None = None
     was: float | None = None
@@ -165,7 +170,7 @@ class SoftReport:
     def told(self) -> str:
         """Return it in words, "" where nothing was asked for."""
         parts = [m.words() for m in self.matches]
-        if words := words_told(self.words):
+        if words := words_told(self.words, self.unsaid):
             parts.append(words)
         if self.paid:
             parts.append(f"paid {', '.join(f'{cost:.3g} m for {name}' for name, cost in self.paid.items())}")
@@ -189,6 +194,7 @@ def soft_report(
         paid,
         tuple(m for m in matches if m is not None),
         words_shown(soft.places, states, way),
+        soft.unsaid,
         retiming.words() if retiming is not None else "",
         retiming.off if retiming is not None else None,
         retiming.was if retiming is not None else None,

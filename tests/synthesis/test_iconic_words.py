@@ -13,6 +13,7 @@ from metagraph.synthesis.iconic_words import (
     WordWish,
     only_words,
     spans,
+    unsaid,
     word_cost,
     word_places,
     word_wish,
@@ -88,6 +89,10 @@ def test_words_beyond_the_window_and_words_no_take_says_want_nothing() -> None:
     assert word_cost(places[:1], 60, 2.0, 1.0) is None and words_told(()) == ""
     begins = word_places([word_wish("big")], graph.states, [new], new, 0.3, 1.0)
     assert [p.frames for p in begins] == [(0, 3 + AROUND)]
+    assert unsaid([*wishes, word_wish("ball, cube")], new, 0.0, 2.0) == ("ball",)
+    assert unsaid(wishes, new, 4.0, 2.0) == ("round",)
+    assert words_told((), ("ball",)) == "not said now: 'ball'"
+    assert words_told((), [str(n) for n in range(7)]).endswith("'4' and 2 more")
     close = words(("big", 1.0, 1.2), ("round", 1.3, 1.5), ("round", 1.5, 1.7))
     beside = word_places(wishes, graph.states, [new], close, 0.0, 2.0)
     assert [p.frames for p in beside] == [(30 - AROUND, 38), (38, 45), (45, 51 + AROUND)]
