@@ -96,7 +96,7 @@ def test_words_and_speed_are_told_and_what_is_paid(studio: Studio) -> None:
     _, _, new = recorded(103, 20, 0.0)
     wish = SoftWish(0.25, 0.25, WORDS, hard=True, retime=0.15)
     soft = studio.material(wish).constraints(new, 2.0, 10.0)
-    found = answer(studio.graph, sound, cut(new.segments, 2.0, 10.0), 10.0, soft=soft)
+    found = answer(studio.graph, sound, cut(new.segments, 2.0, 10.0), 10.0, None, "greedy", soft=soft)
     report = soft_report(soft, studio.states, found.path, found.retiming)
     assert set(report.paid) == {"loudness", "rate", "words"} and [m.measure for m in report.matches] == [
         "loudness",
