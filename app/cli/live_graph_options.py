@@ -79,9 +79,9 @@ def graphs_of(options: Namespace, project: Project) -> dict[str, LiveGraph]:
             print(f"note: the project's own takes make no motion graph: {error}", file=sys.stderr)
             return {}
         return {NAME: graph}
-    from app.cli.takes import paired
+    from app.cli.takes import paired_speech
 
-    clips, speech, _ = paired(options.takes, options.speech, options.side)
+    clips, speech = paired_speech(options)
     graph = live_graph(_brought(clips, project, options.retarget), speech)
     kept, edges = graph.driver.graph.size
     if not graph.fits(project):

@@ -13,7 +13,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from app.cli.takes import paired, read_speech, read_takes, speech_arguments
+from app.cli.motion_graph_soft import soft_options, soft_wish
+from app.cli.takes import beside, paired, paired_speech, read_spoken, read_takes, speech_arguments
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
     from metagraph.graph.conversation import Segment
@@ -131,6 +132,7 @@ def arguments(parser: ArgumentParser) -> None:
     )
     made.add_argument("--seed", type=int, default=1, help="another path of the greedy search (default: 1)")
     made.add_argument("-o", "--out", type=Path, required=True, help="a .bvh or .glb file")
+    soft_options(made)
     tried = action(
         "evaluate",
         "hold out each take, search the others for its speech, and count what is found",
@@ -149,6 +151,7 @@ def arguments(parser: ArgumentParser) -> None:
         help="instead: motion that is extended while it plays, for speech that is heard or announced",
     )
     tried.add_argument("--seed", type=int, default=1, help="other paths of the greedy search (default: 1)")
+    soft_options(tried)
     action(
         "co-occurrence", "count how often hands and head move with what is said", co_occurrence, speech=True
     )
@@ -168,7 +171,7 @@ def _heard(options: Namespace) -> tuple[States, list[int]]:
 
     if not options.speech:
         return _states([c for _, c in read_takes(options.takes)]), []
-    clips, speech, _ = paired(options.takes, options.speech, options.side)
+    clips, speech = paired_speech(options)
     states = _states(clips)
     return states, list(changes(states, speech))
 
@@ -334,13 +337,14 @@ def synthesize(options: Namespace) -> int:
     from metagraph.errors import FileError
     from metagraph.graph.conversation import SOUNDS
     from metagraph.synthesis.assemble import assemble
-    from metagraph.synthesis.constraints import changes, heard, wanted
+    from metagraph.synthesis.constraints import changes, heard
     from metagraph.synthesis.graph import build as build_graph
     from metagraph.synthesis.graph import threshold
     from metagraph.synthesis.path_quality import quality
-    from metagraph.synthesis.relaxing import Answer, Constraints, answer
-    from metagraph.synthesis.ruled_search import FREE, JUMP_RULES, find_path
+    from metagraph.synthesis.relaxing import Constraints, answer
+    from metagraph.synthesis.ruled_search import FREE, JUMP_RULES
     from metagraph.synthesis.search_evaluation import WINDOW, cut
+    from metagraph.synthesis.soft_constraints import SoftMaterial, soft_report
     from metagraph.synthesis.states import key_states
 
     _checked(options)
@@ -348,9 +352,10 @@ def synthesize(options: Namespace) -> int:
         raise ValueError(
             f"motion is written as {' or '.join(OUT)}, not as '{options.out.suffix or options.out.name}'"
         )
-    clips, speech, names = paired(options.takes, options.speech, options.side)
+    wish = soft_wish(options)
+    clips, spoken, names = paired(options)
     if options.again is not None:
-        return _again(options, clips, speech)
+        return _again(options, clips, [one.segments for one in spoken])
     if options.take is not None:
         number = (
             names.index(options.take)
@@ -364,11 +369,18 @@ def synthesize(options: Namespace) -> int:
                 f"there is no take '{options.take}'; there are {', '.join(names[:10])}, or say 1 to "
                 f"{len(names)}"
             )
-        new = speech.pop(number)
+        new = spoken.pop(number)
         clips.pop(number)
+        names.pop(number)
     else:
-        new = read_speech(options.new, options.side)
-    end = max((s.end for s in new), default=0.0)
+        sound, transcript = (
+            beside(options, what).get(options.new.stem) for what in ("sounds", "transcripts")
+        )
+        if wish.loudness and sound is None:
+            raise ValueError(f"no sound for {options.new.name}: --sounds has none that is called so")
+        new = read_spoken(options.new, options.side, sound, transcript)
+    speech = [one.segments for one in spoken]
+    end = max((s.end for s in new.segments), default=0.0)
     if options.start < 0 or (options.start >= end and options.seconds is None):
         place = options.new or Path(options.take)
         raise FileError(
@@ -388,17 +400,26 @@ def synthesize(options: Namespace) -> int:
         "edges" not in options.without,
         FREE if options.free_jumps else JUMP_RULES,
     )
-    said, sound = cut(new, options.start, seconds), heard(states, speech)
-    if options.strict:
-        want = wanted(said, seconds, asked.tolerance, asked.use, asked.peaks, asked.edges)
-        found = Answer(find_path(graph, sound, want, options.search, asked.rules, options.seed), asked)
-    else:
-        found = answer(graph, sound, said, seconds, asked, options.search, options.seed)
+    soft = SoftMaterial(wish, states, clips, spoken, graph.threshold.limit).constraints(
+        new, options.start, seconds, options.tolerance
+    )
+    found = answer(
+        graph,
+        heard(states, speech),
+        cut(new.segments, options.start, seconds),
+        seconds,
+        asked,
+        options.search,
+        options.seed,
+        soft=soft,
+        strict=options.strict,
+    )
     path = found.path
     if words := found.words():
         print(f"note: {words}", file=sys.stderr)
+    told = soft_report(soft, states, path, found.retiming)
     looks = quality(states, path)
-    clip = assemble(states, clips, path, options.out.stem)
+    clip = assemble(states, clips, path, options.out.stem, retiming=found.retiming)
     _write(options.out, clip)
     data = {
         "out": str(options.out),
@@ -416,10 +437,12 @@ def synthesize(options: Namespace) -> int:
         "rest_of_takes": looks.source,
         "stands_still": looks.stands_still,
     }
+    if wish.asks:
+        data["beside"] = told.data()
     say(
         options,
         f"{options.out}: {seconds:.1f} s with {len(path.jumps)} transitions, cost {path.cost:.3g}, of "
-        f"{data['takes']} takes; {looks.words()}",
+        f"{data['takes']} takes; {looks.words()}" + (f"\n{told.told()}" if told.told() else ""),
         data,
     )
     return 0
@@ -455,19 +478,21 @@ def evaluate(options: Namespace) -> int:
     """Print, setting by setting, how much held-out speech finds motion."""
     from app.cli.command_output import say
     from metagraph.formats.atomic import write_atomically
-    from metagraph.synthesis.search_evaluation import SETTINGS, csv_of, table_of
+    from metagraph.synthesis.evaluation_table import csv_of, table_of
+    from metagraph.synthesis.search_evaluation import SETTINGS
     from metagraph.synthesis.search_evaluation import evaluate as run
 
     _checked(options)
-    clips, speech, _ = paired(options.takes, options.speech, options.side)
+    wish = soft_wish(options)
+    clips, spoken, _ = paired(options)
     if note := _rates(clips):
         print(f"note: {note}", file=sys.stderr)
     if options.live:
-        return _evaluate_live(options, clips, speech)
+        return _evaluate_live(options, clips, [one.segments for one in spoken])
     with _until_stopped() as stopped:
         found = run(
             clips,
-            speech,
+            [one.segments for one in spoken],
             SETTINGS[:1] if options.quick else SETTINGS,
             options.search or ("greedy", "exact"),
             options.k,
@@ -477,6 +502,8 @@ def evaluate(options: Namespace) -> int:
             seed=options.seed,
             progress=_telling(options, "cases"),
             cancelled=stopped,
+            wish=wish,
+            spoken=spoken,
         )
     if options.out is not None:
         write_atomically(options.out, csv_of(found.cases).encode())
@@ -506,7 +533,7 @@ def co_occurrence(options: Namespace) -> int:
     from app.cli.command_output import say
     from metagraph.synthesis.cooccurrence import table as count
 
-    clips, speech, _ = paired(options.takes, options.speech, options.side)
+    clips, speech = paired_speech(options)
     rows = count(clips, speech)
     lines = [f"{'':<34}{'matched':>8}{'total':>7}{'rate':>7}  {'95 %':<13}{'chance':>7}"]
     for r in rows:

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from argparse import ArgumentParser
+from argparse import ArgumentParser, Namespace
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # reading a command line must not wait for arrays
-    from metagraph.graph.conversation import Segment
+    from metagraph.graph.conversation import Conversation, Segment, Word
     from metagraph.motion.clip import Clip
+    from metagraph.synthesis.prosody_costs import SpokenTake
 
 _SAVED = "Save the conversation's segments from the window, as ELAN or TextGrid."
+LONGEST = 7200.0  # seconds of a sound
+KEPT = 16000  # samples a second that are kept of one
 
 
 def speech_arguments(parser: ArgumentParser, required: bool) -> None:
@@ -71,15 +74,15 @@ def read_takes(paths: Sequence[Path]) -> list[tuple[str, Clip]]:
     return out
 
 
-def read_speech(path: Path, side: str) -> tuple[Segment, ...]:
-    """Return what one of those in a file moves with, `heard_by`. side: a number from 1, or a name. Raises
-    FileError.
+def read_side(path: Path, side: str) -> tuple[Conversation, int]:
+    """Return the conversation in a file, and which of them is meant. side: a number from 1, or a name.
+    Raises FileError.
     """
     import msgspec
 
     from metagraph.errors import FileError
     from metagraph.formats.transcripts import read_transcript
-    from metagraph.graph.conversation import MOST_SPEAKERS, Conversation, Side, heard_by
+    from metagraph.graph.conversation import MOST_SPEAKERS, Conversation, Side
 
     made = None
     if path.suffix.lower() == ".json" and path.is_file():
@@ -96,7 +99,10 @@ def read_speech(path: Path, side: str) -> tuple[Segment, ...]:
             for n in dict.fromkeys((*told.speakers, *told.segments))
             if told.segments.get(n) or told.speakers.get(n)
         ][:MOST_SPEAKERS]
-        sides = [Side(name=n, segments=tuple(told.segments.get(n, ()))) for n in names]
+        sides = [
+            Side(name=n, segments=tuple(told.segments.get(n, ())), words=tuple(told.speakers.get(n, ())))
+            for n in names
+        ]
         length = max(s.end for one in sides for s in one.segments)
         made = Conversation(
             name=path.stem[:200], length=length, sides=(*sides, *(Side() for _ in range(2 - len(sides))))
@@ -110,16 +116,51 @@ def read_speech(path: Path, side: str) -> tuple[Segment, ...]:
             "its speakers",
             f"They are {', '.join(f'{n!r}' for n in names)}; or say a number from 1 to {len(names)}.",
         )
-    return heard_by(made, names.index(side) if side in names else int(side) - 1)
+    return made, names.index(side) if side in names else int(side) - 1
 
 
-def paired(
-    paths: Sequence[Path], files_of_speech: Sequence[Path], side: str
-) -> tuple[list[Clip], list[tuple[Segment, ...]], list[str]]:
+def read_spoken(
+    path: Path, side: str, sound: Path | None = None, transcript: Path | None = None
+) -> SpokenTake:
+    """Return what one of those in a file moves with, `heard_by`, with its words; and how it is said. sound:
+    of the recording, None where there is none; where it has a channel for each of them, of its own.
+    transcript: where its words are, None where they are in the file itself. Raises FileError.
+    """
+    from metagraph.graph.conversation import heard_by
+    from metagraph.speech.prosody import prosody
+    from metagraph.speech.sound import read_head, read_sound
+    from metagraph.synthesis.prosody_costs import SpokenTake
+
+    made, number = read_side(path, side)
+    of, segments = made.sides[number], heard_by(made, number)
+    words = of.words if transcript is None else _words_of(transcript, of.name, number)
+    samples, rate = None, 0
+    if sound is not None:
+        channel = of.channel if of.channel is not None else number if read_head(sound)[1] >= 2 else None
+        samples, rate = read_sound(sound, channel, LONGEST, KEPT)
+    return SpokenTake(segments, words, prosody(segments, words, samples, rate))
+
+
+def _words_of(path: Path, name: str, number: int) -> tuple[Word, ...]:
+    """Return the words of one of those in a transcript: who is called so, else whose number it is; those of
+    the only one. Raises FileError.
+    """
+    from metagraph.errors import FileError
+    from metagraph.formats.transcripts import read_transcript
+
+    speakers = read_transcript(path).speakers
+    if len(speakers) == 1 or name in speakers:
+        return speakers[name] if name in speakers else next(iter(speakers.values()))
+    if number < len(speakers):
+        return list(speakers.values())[number]
+    raise FileError(path, "it holds no words", "", "Give a transcript with words and their times.")
+
+
+def paired(options: Namespace) -> tuple[list[Clip], list[SpokenTake], list[str]]:
     """Return takes, the speech of each, and their names. Raises ValueError where files do not go together."""
-    takes = read_takes(paths)
-    files = {path.stem: path for path in files_of_speech}
-    if len(files) < len(files_of_speech):
+    takes = read_takes(options.takes)
+    files = {path.stem: path for path in options.speech}
+    if len(files) < len(options.speech):
         raise ValueError("two speech files have one name, so takes cannot be told apart: rename one")
     missing = [n for n, _ in takes if n not in files]
     left = [p.name for n, p in files.items() if n not in {name for name, _ in takes}]
@@ -129,8 +170,32 @@ def paired(
         raise ValueError(
             f"{' and '.join(words)}: a speech file is called as its take is, take1.bvh and take1.eaf"
         )
+    sounds, transcripts = beside(options, "sounds"), beside(options, "transcripts")
+    for some, what, ending in ((sounds, "sound", "wav"), (transcripts, "transcript", "srt")):
+        if some and (without := [n for n, _ in takes if n not in some]):
+            raise ValueError(
+                f"no {what} for {', '.join(without[:5])}: it is called as the take is, take1.bvh and "
+                f"take1.{ending}"
+            )
     return (
         [c for _, c in takes],
-        [read_speech(files[n], side) for n, _ in takes],
+        [read_spoken(files[n], options.side, sounds.get(n), transcripts.get(n)) for n, _ in takes],
         [n for n, _ in takes],
     )
+
+
+def beside(options: Namespace, what: str) -> dict[str, Path]:
+    """Return the sounds or transcripts that were given, under the names of their files; none where there is
+    no such option. Raises ValueError where two have one name.
+    """
+    given = getattr(options, what, [])
+    out = {path.stem: path for path in given}
+    if len(out) < len(given):
+        raise ValueError(f"two {what} have one name, so takes cannot be told apart: rename one")
+    return out
+
+
+def paired_speech(options: Namespace) -> tuple[list[Clip], list[tuple[Segment, ...]]]:
+    """Return takes, and what was heard during each. Raises ValueError where files do not go together."""
+    clips, spoken, _ = paired(options)
+    return clips, [one.segments for one in spoken]

@@ -4,6 +4,7 @@ other.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import log10, pi, tan
 from typing import Any
 
@@ -33,6 +34,20 @@ def loudness(samples: Array, rate: int) -> float | None:
     gate = OFFSET + 10 * log10(float(heard.mean())) - BELOW
     loud = heard[OFFSET + 10 * np.log10(heard) > gate]
     return OFFSET + 10 * log10(float(loud.mean()))
+
+
+def loudness_within(samples: Array, rate: int, spans: Sequence[tuple[float, float]]) -> Array:
+    """Return how loud each span of seconds is, `[n]` LUFS: the mean of all of it, without gates; NaN where it
+    is silent, or beyond the samples `[N]`.
+    """
+    power = np.concatenate([[0.0], np.cumsum(_weighted(samples, rate) ** 2)])
+    edges = np.clip(np.round(np.reshape(np.asarray(spans, float), (-1, 2)) * rate), 0, len(samples)).astype(
+        int
+    )
+    count = edges[:, 1] - edges[:, 0]
+    mean = np.maximum(power[edges[:, 1]] - power[edges[:, 0]], 0.0) / np.maximum(count, 1)
+    out = OFFSET + 10 * np.log10(np.maximum(mean, 1e-30))
+    return np.where((count > 0) & (out > SILENT), out, np.nan)
 
 
 def _weighted(samples: Array, rate: int) -> Array:

@@ -5,7 +5,7 @@ follow, walking on from where they are (Yang et al., section 7.1).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,13 +15,13 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
 from metagraph.suggest.tracks import RATE, poses_of, rig_of, stands
+from metagraph.synthesis.graph import BLEND
+from metagraph.synthesis.retiming import Retiming
 from metagraph.synthesis.search import Path
 from metagraph.synthesis.standing_feet import held_feet, standing
 from metagraph.synthesis.states import States, SynthesisError
 
 Array = NDArray[Any]
-
-BLEND = 5  # frames before and after a transition that are blended
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,13 +44,15 @@ def assemble(
     blend: int = BLEND,
     hold_feet: bool = True,
     onward: bool = False,
+    retiming: Retiming | None = None,
 ) -> Clip:
     """Return a path's motion, RATE frames a second. clips: those the states are of. It begins over the
     origin, facing +z; from there the root goes on by what each frame goes on in its take. blend: frames on
     either side of a transition in which one motion fades into the other, by a cosine, rotations along the
     shortest way (slerp). hold_feet: where it goes from piece to piece, feet that stood in the takes stay
     where they were put down. onward: all of the blend comes after the transition, as live, where nobody knew
-    of it before. Raises SynthesisError when the takes are others.
+    of it before. retiming: how it is played faster and slower; feet are held by what is then shown. Raises
+    SynthesisError when the takes are others.
     """
     takes = [c for c in clips if c.frames >= 2]
     frames = _frames(takes)
@@ -83,6 +85,11 @@ def assemble(
             "transitions",
         ),
     )
+    if retiming is not None:
+        poses = made.pose_at(retiming.moments / RATE)
+        turns = rotation.continuous(poses.rotations).astype(np.float32)
+        made = replace(made, rotations=turns, translations=poses.translations[:, joints])
+        way = way[retiming.frames]
     if not hold_feet or not len(path.jumps):
         return made
     each = [standing(c.skeleton, poses_of(c)) for c in takes]

@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -46,13 +46,17 @@ class WantedSegment:
     """What is to be heard, frame by frame. allowed `[T]` uint8: bits of the SOUNDS a state may have gone
     with. window `[T]` int32: number of the event that has to lie in this frame's window, -1 outside of all.
     events `[T]` uint8: which kind of event that is, STRESS or EDGE. barred `[T]` uint8: bits of the events
-    that must not lie there.
+    that must not lie there. only: frames -> the states `[F]` bool that alone may come then, beside all that;
+    nothing where that is of no account. places: the frames at which events are wanted, each with its kind, in
+    the order of the windows' numbers.
     """
 
     allowed: Array
     window: Array
     events: Array | None = None
     barred: Array | None = None
+    only: Mapping[int, Array] = field(default_factory=dict)
+    places: Mapping[int, int] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.allowed)
@@ -138,8 +142,9 @@ def wanted(
         barred[some & ~_near(bounds, frames, slack)] |= EDGE
         if peaks:
             barred[some & ~anywhere & ~_near(stresses, frames, slack)] |= STRESS
-    window, kind = _windows(dict.fromkeys(bounds, EDGE) | dict.fromkeys(stresses, STRESS), frames, slack)
-    return WantedSegment(allowed, window, kind, barred)
+    places = dict(sorted((dict.fromkeys(bounds, EDGE) | dict.fromkeys(stresses, STRESS)).items()))
+    window, kind = _windows(places, frames, slack)
+    return WantedSegment(allowed, window, kind, barred, places=places)
 
 
 def _near(places: Sequence[int], frames: int, slack: int) -> Array:
@@ -151,9 +156,11 @@ def _near(places: Sequence[int], frames: int, slack: int) -> Array:
 
 
 def _windows(events: dict[int, int], frames: int, slack: int) -> tuple[Array, Array]:
-    """Return `window` and `events` of WantedSegment. events: kinds by the frames they are wanted at."""
+    """Return `window` and `events` of WantedSegment. events: kinds by the frames they are wanted at, in
+    order.
+    """
     window, kind = np.full(frames, -1, np.int32), np.full(frames, STRESS, np.uint8)
-    places = sorted(events)
+    places = list(events)
     for number, place in enumerate(places):
         first, after = place - slack, place + slack + 1
         if number:

@@ -18,6 +18,7 @@ from metagraph.synthesis.states import LEVEL, STEP, States, SynthesisError, cost
 
 Array = NDArray[Any]
 
+BLEND = 5  # frames before and after a transition that are blended
 MARGIN = 1e-3  # of the range: bounds of the distribution lie that far outside what was seen
 
 

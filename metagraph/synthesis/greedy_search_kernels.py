@@ -50,6 +50,31 @@ class Links(NamedTuple):
     cheap: Array
 
 
+class Charges(NamedTuple):
+    """What frames cost beside transitions. rows `[T]` int32: which row a frame is charged by, -1 for none;
+    ends `[T]`: the first frame after it that is charged by another. sums `[R, F + 1]`: what the states before
+    each cost together. Where nothing is charged there is no row.
+    """
+
+    rows: Array
+    ends: Array
+    sums: Array
+
+
+@compiled
+def charged(t: Any, after: Any, state: Any, charges: Any) -> Any:
+    """Return what the frames t .. after - 1 cost of a run that is in a state at frame t."""
+    total = 0.0
+    while t < after:
+        count = min(after, charges.ends[t]) - t
+        row = charges.rows[t]
+        if row >= 0:
+            total += charges.sums[row, state + count] - charges.sums[row, state]
+        t += count
+        state += count
+    return np.float32(total)
+
+
 @compiled
 def until_of(fits: Array, last: Array) -> Array:
     """Return `[F]` the first state from each on, itself included, that does not fit, or is past the take."""
@@ -184,18 +209,19 @@ def _note(
 
 @compiled_exactly
 def segment(
-    t0: Any, t1: Any, at: Array, own: Array, price: Array, mets: Array, links: Any, speech: Any, best: Array,
-    saved: Any, branches: Any, tries: Any, deepest: Any, least: Any, random: Any,
+    t0: Any, t1: Any, at: Array, own: Array, price: Array, mets: Array, links: Any, speech: Any, charges: Any,
+    best: Array, saved: Any, branches: Any, tries: Any, deepest: Any, least: Any, random: Any,
 ) -> Any:  # fmt: skip
     """Find ways through the frames t0 .. t1 - 1 of one segment from runs that are kept, depth first.
 
-    Runs `[N]`: since when (at), in which state (own), at what cost (price), and whether an open event was
-    met by t0 (mets). best `[2 F]`: all -1, and left so. least: frames between two transitions. Returns all
-    runs, given ones first: what each branches off, at, own, price; and what came through: `[C, 5]` int32 the
-    run it branches off at a frame in a state (frame -1: it is that run itself), how far it goes, 2 x its last
-    state + met; its cost `[C]`; and the next random number.
+    Runs `[N]`: since when (at), in which state (own), at what cost before t0, or before they came (price),
+    and whether an open event was met by t0 (mets). best `[2 F]`: all -1, and left so. least: frames between
+    two transitions. Returns all runs, given ones first: what each branches off, at, own, price; and what came
+    through: `[C, 5]` int32 the run it branches off at a frame in a state (frame -1: it is that run itself),
+    how far it goes, 2 x its last state + met; its cost `[C]`; and the next random number.
     """
     made = given = len(at)
+    paying = len(charges.sums) > 0
     off = np.full(given, -1, np.int32)
     level = np.zeros(given, np.int32)
     found, paid, count = np.empty((1024, 5), np.int32), np.empty(1024, np.float32), 0
@@ -223,8 +249,11 @@ def segment(
                 end = reach(begin, state, met, speech)
             if end >= t1:
                 through = _met(begin, t1, state, met, speech)
+                all_of_it = so_far
+                if paying:
+                    all_of_it += charged(begin, t1, state, charges)
                 count = _note(
-                    run, so_far, -1, state, end, state + t1 - 1 - begin, through, count, found, paid, best
+                    run, all_of_it, -1, state, end, state + t1 - 1 - begin, through, count, found, paid, best
                 )
                 if count + 1 >= len(paid):
                     found, paid = _more(found), _more(paid)
@@ -236,6 +265,8 @@ def segment(
                 if t >= begin and speech.stresses[t]:
                     row = speech.events[speech.stretch[t]]
                     met = not speech.closes[t] and (met or speech.peak_at[row, x] == x)
+                if paying and t >= begin:
+                    so_far += charged(t, t + 1, x, charges)
                 if at[run] > 0 and t - at[run] + 1 < least:  # it came here a moment ago
                     continue
                 first, after = links.starts[x], links.starts[x + 1]
@@ -263,6 +294,8 @@ def segment(
                         continue
                     if far >= t1:
                         through = _met(t + 1, t1, target, met, speech)
+                        if paying:
+                            total += charged(t + 1, t1, target, charges)
                         count = _note(
                             run,
                             total,
@@ -279,7 +312,10 @@ def segment(
                     elif far > end:  # what leads on cheapest, and chance, tell where to go deeper
                         random = _next(random)
                         chance = np.float32(random >> np.uint64(40)) / np.float32(1 << 24)
-                        worth = links.costs[place] / (far - end) * (np.float32(0.5) + chance)
+                        dear = links.costs[place]
+                        if paying:
+                            dear += charged(t + 1, min(far, t1), target, charges)
+                        worth = dear / (far - end) * (np.float32(0.5) + chance)
                         spot = picks
                         if picks == branches:
                             spot = int(np.argmax(score))

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.constraints import HeardStates, WantedSegment
+from metagraph.synthesis.frame_costs import FrameCosts
 from metagraph.synthesis.graph import MotionGraph
 from metagraph.synthesis.search import Path, best, greedy
 from metagraph.synthesis.states import SynthesisError
@@ -87,17 +88,20 @@ def find_path(
     rules: JumpRules = JUMP_RULES,
     seed: int = 1,
     cancelled: Callable[[], bool] | None = None,
+    charged: FrameCosts | None = None,
 ) -> Path:
     """Return a path that has what is wanted, by rules for its jumps: the one of the lowest price, which is of
-    all that keep to them ("exact"), or a cheap one, other with other seeds ("greedy"). Raises SynthesisError
-    where there is none.
+    all that keep to them ("exact"), or a cheap one, other with other seeds ("greedy"). charged: what frames
+    cost, which both searches count. Raises SynthesisError where there is none.
     """
     allowed = _allowed(graph, rules)
     try:
         if search == "exact":
-            path = best(allowed, heard, wanted, cancelled, rules.frames)
+            path = best(allowed, heard, wanted, cancelled, rules.frames, charged)
         else:
-            path = greedy(allowed, heard, wanted, seed, cancelled=cancelled, run=rules.frames)
+            path = greedy(
+                allowed, heard, wanted, seed, cancelled=cancelled, run=rules.frames, charged=charged
+            )
     except SynthesisError as error:
         if rules == FREE or (cancelled is not None and cancelled()):
             raise

@@ -11,19 +11,25 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
-from weakref import WeakKeyDictionary
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.suggest.tracks import RATE
-from metagraph.synthesis.constraints import EDGE, STRESS, HeardStates, WantedSegment
+from metagraph.synthesis.constraints import HeardStates, WantedSegment
+from metagraph.synthesis.frame_costs import FrameCosts, PaidAlong
 from metagraph.synthesis.graph import MotionGraph
+from metagraph.synthesis.search_lookups import (
+    EVENTS,
+    charges_of,
+    closes_at,
+    fits_of,
+    links_of,
+    meets_of,
+    speech_of,
+)
 from metagraph.synthesis.states import SynthesisError
-
-if TYPE_CHECKING:
-    from metagraph.synthesis.greedy_search_kernels import Links, Speech
 
 Array = NDArray[Any]
 Cancelled = Callable[[], bool] | None
@@ -36,21 +42,19 @@ DEEPER = (
     (6, 1),
     (6, 2),
 )  # transitions one after another in a stretch, branches more: when a search comes to an end
-CHEAPEST = 32  # transitions of a state that are always tried
 TRIES = 16  # and at most so many by chance
 LONGEST = 60  # frames of a stretch that is searched at once
 LOOK = 90  # frames beyond a stretch: who goes on that long by itself is not held to be dear
 AHEAD = 0.05  # of the threshold: what a second less of that counts as
 APART = 3  # frames: ends of kept candidates
-EVENTS = (STRESS, EDGE)  # in the order of rows that are looked up
 MOST = 4_000_000_000  # bytes of way back that are kept at once
 
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """states `[T]`: one after another, a frame each. cost: of its transitions together. jumps `[n]`: the
-    frames that come by a transition instead of following. price: what the search made least, where jumps have
-    prices beside what they look like.
+    """states `[T]`: one after another, a frame each. cost: of its transitions together, with what its frames
+    cost where they do. jumps `[n]`: the frames that come by a transition instead of following. price: what
+    the search made least, where jumps have prices beside what they look like.
     """
 
     states: Array
@@ -65,8 +69,10 @@ def best(
     wanted: WantedSegment,
     cancelled: Cancelled = None,
     run: int = 1,
+    charged: FrameCosts | None = None,
 ) -> Path:
-    """Return the cheapest path that has what is wanted. run: frames between two transitions, at least. Raises
+    """Return the cheapest path that has what is wanted. run: frames between two transitions, at least.
+    charged: what frames cost beside transitions; the least of both together is found, as exactly. Raises
     SynthesisError when there is none, saying at what time all end, or when it was cancelled.
 
     Ways dearer than a bound are not followed, which is exact: what is found within it is the cheapest. The
@@ -82,15 +88,16 @@ def best(
         )
     try:
         deepest, more = DEEPER[0]
-        dear = _greedy(graph, heard, wanted, 1, SAVED, BRANCHES + more, deepest, cancelled, run).cost
-        shares = (0.4, 0.7) if run == 1 else (0.75,)  # where jumps have prices, all are nearer to each other
+        dear = _greedy(graph, heard, wanted, 1, SAVED, BRANCHES + more, deepest, cancelled, run, charged).cost
+        # Where jumps have prices, or frames, all are nearer to each other.
+        shares = (0.4, 0.7) if run == 1 and charged is None else (0.75,)
         bounds = [share * dear + 1e-6 for share in shares] + [dear * (1 + 1e-5) + 1e-6]
     except SynthesisError:
         bounds = [share * graph.threshold.limit for share in (1.0, 4.0)]
     back = np.empty((frames, 2, states), np.int32)
     for bound in (*bounds, float("inf")):
         try:
-            return _best_within(graph, heard, wanted, back, bound, cancelled, run)
+            return _best_within(graph, heard, wanted, back, bound, cancelled, run, charged)
         except SynthesisError:
             if bound == float("inf") or (cancelled is not None and cancelled()):
                 raise
@@ -111,9 +118,12 @@ def _best_within(
     bound: float,
     cancelled: Cancelled = None,
     run: int = 1,
+    charged: FrameCosts | None = None,
 ) -> Path:
     """Return the cheapest path of those that cost no more than a bound. back: room for the way back `[T, 2,
-    F]`. Raises SynthesisError when there is none.
+    F]`. charged: what frames cost; then ways are counted without what they paid along their take
+    (`PaidAlong`), so that to follow a take, or to arrive from a jump, is what it is without. Raises
+    SynthesisError when there is none.
     """
     from metagraph.synthesis.greedy_search_kernels import next_of
     from metagraph.synthesis.kernels import arrive, cheap, follow, leap
@@ -128,14 +138,15 @@ def _best_within(
     follows = ~graph.states.last
     first = np.zeros(states, bool)
     first[graph.states.starts[:-1]] = True
+    paid = PaidAlong(charged, first) if charged is not None else None
     happening = [heard.happens(what) for what in EVENTS]
     upcoming = np.stack([next_of(marked) for marked in happening])
     spans = _spans(wanted)
     landed = np.empty((run, 2, states), np.float32)
     sources, runs = np.empty((run, 2, states), np.int32), np.zeros((2, states), np.int32)
     cost = np.full((2, states), np.inf, np.float32)
-    fits = _fits(graph, heard, wanted, 0)
-    met = fits & _meets(happening, wanted, 0)
+    fits = fits_of(graph, heard, wanted, 0)
+    met = fits & meets_of(happening, wanted, 0)
     cost[0, fits & ~met] = 0
     cost[1, met] = 0
     good = fits.astype(np.int32)
@@ -144,12 +155,19 @@ def _best_within(
     for t in range(1, frames):
         _go_on(cancelled)
         new = np.full((2, states), np.inf, np.float32)
-        fits = _fits(graph, heard, wanted, t)
+        fits = fits_of(graph, heard, wanted, t)
         place = t % run
-        leap(cost, landed[place], sources[place], *links, fits, most)
+        if paid is None:
+            leap(cost, landed[place], sources[place], *links, fits, most)
+        else:
+            whole = cost + paid.now.astype(np.float32)
+            cost[whole > most] = np.inf
+            leap(whole, landed[place], sources[place], *links, fits, most)
+            paid.go_on(t)
+            landed[place] -= paid.before.astype(np.float32)
         good[1:], good[0] = np.where(first[1:], 0, good[:-1]), 0
         good = np.where(fits, good + 1, 0).astype(np.int32)
-        follow(cost, new, back[t], follows, fits, _meets(happening, wanted, t), most)
+        follow(cost, new, back[t], follows, fits, meets_of(happening, wanted, t), most)
         for ago in range(1 if t == frames - 1 else run, run + 1):  # at the end a run may be cut short
             if ago <= t:
                 place = (t - ago + 1) % run
@@ -163,12 +181,16 @@ def _best_within(
             break
     if alive < frames - 1:
         raise SynthesisError(_stuck(alive + 1))
+    if paid is not None:
+        cost += paid.now.astype(np.float32)
+        if not cost.min() <= most:  # runs that came along since they were looked at
+            raise SynthesisError(_stuck(frames - 1))
     met_at, state = np.unravel_index(int(cost.argmin()), cost.shape)
     total = float(cost[met_at, state])
     way = np.empty(frames, np.int64)
     t, b, s = frames - 1, int(met_at), int(state)
     while True:
-        if _closes(wanted, t):
+        if closes_at(wanted, t):
             b = 1  # at the end of its window its stress was met
         before = int(back[t, b, s]) if t else 0
         length = 1 if before >= 0 else int(runs[b, s]) if t == frames - 1 else run
@@ -210,6 +232,7 @@ def greedy(
     branches: int = BRANCHES,
     cancelled: Cancelled = None,
     run: int = 1,
+    charged: FrameCosts | None = None,
 ) -> Path:
     """Return a path that has what is wanted, found as the paper's search finds it, a stretch of speech after
     the other.
@@ -220,15 +243,16 @@ def greedy(
     counts as a little cheaper, no two kept ones end within a few frames of each other while there are others,
     what is dearer than more than enough others is not followed, and a search that comes to an end is tried
     again, deeper. saved: how many are kept; branches: how many are gone deeper into of a run; run: frames
-    between two transitions, at least. Raises SynthesisError when it comes to an end before the speech does,
+    between two transitions, at least; charged: what frames cost beside transitions, which counts as those do.
+    Raises SynthesisError when it comes to an end before the speech does,
     though there may be a path, or when it was cancelled.
     """
     *first, last = ((branches + more, deepest) for deepest, more in DEEPER)
     for wide, deep in first:
         with suppress(SynthesisError):
-            return _greedy(graph, heard, wanted, seed, saved, wide, deep, cancelled, run)
+            return _greedy(graph, heard, wanted, seed, saved, wide, deep, cancelled, run, charged)
         _go_on(cancelled)
-    return _greedy(graph, heard, wanted, seed, saved, *last, cancelled, run)
+    return _greedy(graph, heard, wanted, seed, saved, *last, cancelled, run, charged)
 
 
 def _greedy(
@@ -241,16 +265,17 @@ def _greedy(
     deepest: int,
     cancelled: Cancelled,
     least: int = 1,
+    charged: FrameCosts | None = None,
 ) -> Path:
     from metagraph.synthesis.greedy_search_kernels import segment
 
     frames, chance = len(wanted), np.random.default_rng(seed)
-    fits = np.flatnonzero(_fits(graph, heard, wanted, 0))
+    fits = np.flatnonzero(fits_of(graph, heard, wanted, 0))
     if not len(fits):
         raise SynthesisError(_stuck(0))
     own = np.sort(chance.choice(fits, min(STARTS * saved, len(fits)), replace=False)).astype(np.int32)
     at, cost, met = np.zeros(len(own), np.int32), np.zeros(len(own), np.float32), np.zeros(len(own), bool)
-    links, speech = _links(graph), _speech(graph, heard, wanted)
+    links, speech, charges = links_of(graph), speech_of(graph, heard, wanted), charges_of(charged, frames)
     best_at = np.full(2 * len(graph.states), -1, np.int32)
     ahead = AHEAD * graph.threshold.limit / RATE
     random = np.uint64(chance.integers(1 << 62))
@@ -268,6 +293,7 @@ def _greedy(
             met,
             links,
             speech,
+            charges,
             best_at,
             saved,
             branches,
@@ -328,77 +354,9 @@ def _stretches(wanted: WantedSegment) -> list[int]:
     return out
 
 
-_LINKS: WeakKeyDictionary[MotionGraph, Links] = WeakKeyDictionary()
-
-
-def _links(graph: MotionGraph) -> Links:
-    """Return a graph's transitions, and the cheapest of each state; those are looked for once."""
-    from metagraph.synthesis.greedy_search_kernels import Links, cheapest
-
-    found = _LINKS.get(graph)
-    if found is None:
-        found = Links(
-            graph.starts, graph.targets, graph.costs, *cheapest(graph.starts, graph.costs, CHEAPEST)
-        )
-        _LINKS[graph] = found
-    return found
-
-
-def _speech(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment) -> Speech:
-    from metagraph.synthesis.greedy_search_kernels import Speech, next_of, until_of
-
-    events = np.array([EVENTS.index(wanted.event(t)) for t in range(len(wanted))], np.int32)
-    barred = np.array([wanted.bars(t) for t in range(len(wanted))], np.uint8)
-    new = np.ones(len(wanted), bool)
-    new[1:] = (np.diff(wanted.allowed) != 0) | (np.diff(wanted.window) != 0) | (np.diff(barred) != 0)
-    begins = np.flatnonzero(new)
-    ends = np.append(begins[1:], len(wanted))
-    both, rows = np.unique(np.stack([wanted.allowed[begins], barred[begins]], 1), axis=0, return_inverse=True)
-    last = graph.states.last
-    until = np.stack(
-        [
-            until_of(graph.kept & ((heard.kinds & mask) != 0) & ~heard.happens(int(bars)), last)
-            for mask, bars in both
-        ]
-    )
-    stresses, closes = wanted.window >= 0, np.array([_closes(wanted, t) for t in range(len(wanted))])
-    stretch = (np.cumsum(new) - 1).astype(np.int32)
-    return Speech(
-        stretch,
-        ends,
-        rows.reshape(-1),
-        until,
-        stresses[begins],
-        closes[ends - 1],
-        stresses,
-        closes,
-        events[begins],
-        np.stack([next_of(heard.happens(what)) for what in EVENTS]),
-        next_of(last) + 1,
-    )
-
-
-def _fits(graph: MotionGraph, heard: HeardStates, wanted: WantedSegment, t: int) -> Array:
-    fits = graph.kept & ((heard.kinds & wanted.allowed[t]) != 0)
-    barred = wanted.bars(t)
-    return np.asarray(fits & ~heard.happens(barred) if barred else fits)
-
-
-def _meets(happening: Sequence[Array], wanted: WantedSegment, t: int) -> Array:
-    """Return `[F]` which states are the event that the window of a frame waits for."""
-    if wanted.window[t] < 0:
-        return np.zeros(len(happening[0]), bool)
-    return happening[EVENTS.index(wanted.event(t))]
-
-
-def _closes(wanted: WantedSegment, t: int) -> bool:
-    """Return whether an event has to have been met by now."""
-    return bool(wanted.window[t] >= 0 and (t + 1 == len(wanted) or wanted.window[t + 1] != wanted.window[t]))
-
-
 def _close(cost: Array, wanted: WantedSegment, t: int) -> None:
     """Forget ways on which the event was not met whose window ends; the others begin anew."""
-    if _closes(wanted, t):
+    if closes_at(wanted, t):
         cost[0] = cost[1]
         cost[1] = np.inf
 

@@ -4,10 +4,8 @@ et al., sections 8.1, 8.3).
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import astuple, dataclass, fields, replace
+from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import dataclass, replace
 from statistics import fmean, median
 from time import perf_counter
 from typing import Any
@@ -22,7 +20,16 @@ from metagraph.synthesis.constraints import TOLERANCE, HeardStates, changes, hea
 from metagraph.synthesis.cooccurrence import wilson
 from metagraph.synthesis.graph import MotionGraph, build, threshold
 from metagraph.synthesis.path_quality import quality
+from metagraph.synthesis.prosody_costs import SpokenTake
+from metagraph.synthesis.relaxing import Constraints, answer
 from metagraph.synthesis.ruled_search import FREE, JUMP_RULES, JumpRules, Search, find_path
+from metagraph.synthesis.soft_constraints import (
+    NO_WISH,
+    SoftConstraints,
+    SoftMaterial,
+    SoftWish,
+    soft_report,
+)
 from metagraph.synthesis.states import (
     KEYS,
     LEVEL,
@@ -75,7 +82,9 @@ SETTINGS: tuple[Setting, ...] = (
 class Case:
     """One window of a take that was held out. start, length, seconds of the search: seconds. found: whether
     there is motion that does not stand still (`PathQuality`). transitions, cost, repeated, rest: of what was
-    found, 0 where nothing was; `why` says why nothing was found, or not counted.
+    found, 0 where nothing was; `why` says why nothing was found, or not counted. loudness, pace: spreads that
+    what was found is off of how it is said; words: share of the words that are met; off, was: seconds that
+    starts, ends and stresses are off, after retiming and before; None where nobody asked, or nobody knows.
     """
 
     take: str
@@ -90,6 +99,11 @@ class Case:
     why: str = ""
     repeated: float = 0.0
     rest: float = 0.0
+    loudness: float | None = None
+    pace: float | None = None
+    words: float | None = None
+    off: float | None = None
+    was: float | None = None
 
 
 @dataclass(frozen=True)
@@ -111,7 +125,8 @@ class EvaluationRow:
     """All cases of a setting and a search. success: the share that found motion, 0..1, low, high: its 95 %
     interval (Wilson). seconds: median of the searches, whether they found something or not. per_second, cost:
     of those found, transitions a second, and the mean. repeated: mean share of their frames that were shown
-    within 3 s before. rest: seconds of the longest rest in any.
+    within 3 s before. rest: seconds of the longest rest in any. loudness, pace, words, off, was: means of
+    `Case`, None where no case has any.
     """
 
     setting: str
@@ -126,6 +141,11 @@ class EvaluationRow:
     cost: float
     repeated: float
     rest: float
+    loudness: float | None = None
+    pace: float | None = None
+    words: float | None = None
+    off: float | None = None
+    was: float | None = None
 
 
 @dataclass(frozen=True)
@@ -162,7 +182,13 @@ def _row(setting: str, search: Search, cases: Sequence[Case]) -> EvaluationRow:
         fmean(c.cost for c in found) if found else 0.0,
         fmean(c.repeated for c in found) if found else 0.0,
         max((c.rest for c in found), default=0.0),
+        *(_mean(getattr(c, name) for c in found) for name in ("loudness", "pace", "words", "off", "was")),
     )
+
+
+def _mean(values: Iterable[float | None]) -> float | None:
+    known = [v for v in values if v is not None]
+    return fmean(known) if known else None
 
 
 def windows(length: float, window: float = WINDOW, every: float = EVERY) -> list[tuple[float, float]]:
@@ -199,16 +225,20 @@ def evaluate(
     seed: int = 1,
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
+    wish: SoftWish = NO_WISH,
+    spoken: Sequence[SpokenTake] | None = None,
 ) -> Evaluation:
     """Hold out one take after another, build the graph of the rest as `build` does, and search it for what
     was said in the one held out.
 
     speech: what each take goes with, `heard_by`. keys: share of states that are key states. seed: of the
-    greedy search. A take without which there is no graph makes cases that find nothing. Cancelled, it returns
-    what there is. Raises SynthesisError when there are fewer than two takes, not as many speeches, or no case
-    at all.
+    greedy search. wish: what motion should have beside a setting's constraints, for which spoken is what is
+    known of each take's speech. A take without which there is no graph makes cases that find nothing.
+    Cancelled, it returns what there is. Raises SynthesisError when there are fewer than two takes, not as
+    many speeches, or no case at all.
     """
-    takes, speech = _checked(takes, speech)
+    spoken = [SpokenTake(tuple(s)) for s in speech] if spoken is None else spoken
+    takes, speech, spoken = _checked(takes, speech, spoken)
     every_state = states_of(takes)
     _warm(searches)
     lengths = np.diff(every_state.starts) / RATE
@@ -226,6 +256,8 @@ def evaluate(
             graph, sound, seconds = made
             kept, edges = graph.size
             graphs.append(Graph(take.name, kept, len(graph.states), edges, graph.threshold.limit, seconds))
+            rest, theirs = [*takes[:n], *takes[n + 1 :]], [*spoken[:n], *spoken[n + 1 :]]
+            material = SoftMaterial(wish, graph.states, rest, theirs, graph.threshold.limit)
         for start, length in cases[n]:
             said = cut(speech[n], start, length)
             for setting, search in ((s, x) for s in settings for x in searches):
@@ -243,27 +275,28 @@ def evaluate(
                     0.0,
                     made if isinstance(made, str) else "",
                 )
-                done.append(
-                    case if isinstance(made, str) else _tried(case, graph, sound, said, setting, seed)
-                )
+                if not isinstance(made, str):
+                    soft = material.constraints(spoken[n], start, length, setting.tolerance)
+                    case = _tried(case, graph, sound, said, setting, seed, soft)
+                done.append(case)
                 if progress is not None:
                     progress(len(done), total)
     return Evaluation(tuple(done), tuple(graphs), True)
 
 
 def _checked(
-    takes: Sequence[Clip], speech: Sequence[Sequence[Segment]]
-) -> tuple[list[Clip], list[Sequence[Segment]]]:
-    if len(takes) != len(speech):
-        raise SynthesisError(f"{len(takes)} takes, but speech for {len(speech)}")
+    takes: Sequence[Clip], speech: Sequence[Sequence[Segment]], spoken: Sequence[SpokenTake]
+) -> tuple[list[Clip], list[Sequence[Segment]], list[SpokenTake]]:
+    if not len(takes) == len(speech) == len(spoken):
+        raise SynthesisError(f"{len(takes)} takes, but speech for {min(len(speech), len(spoken))}")
     pairs = [
-        (t, s) for t, s in zip(takes, speech, strict=True) if t.frames >= 2
+        some for some in zip(takes, speech, spoken, strict=True) if some[0].frames >= 2
     ]  # one frame is no state of a graph
     if len(pairs) < 2:
         raise SynthesisError(
             "holding one take out needs at least two takes of more than one frame: give more"
         )
-    return [t for t, _ in pairs], [s for _, s in pairs]
+    return [t for t, _, _ in pairs], [s for _, s, _ in pairs], [s for _, _, s in pairs]
 
 
 def _warm(searches: Collection[Search]) -> None:
@@ -313,15 +346,23 @@ def without(states: States, take: int) -> States:
 
 
 def _tried(
-    case: Case, graph: MotionGraph, sound: HeardStates, said: Sequence[Segment], setting: Setting, seed: int
+    case: Case,
+    graph: MotionGraph,
+    sound: HeardStates,
+    said: Sequence[Segment],
+    setting: Setting,
+    seed: int,
+    soft: SoftConstraints,
 ) -> Case:
-    want = wanted(said, case.length, setting.tolerance, setting.use, setting.peaks, setting.edges)
+    asked = Constraints(setting.tolerance, setting.use, setting.peaks, setting.edges, setting.rules)
     begun = perf_counter()
     try:
-        path = find_path(graph, sound, want, case.search, setting.rules, seed)
+        found = answer(graph, sound, said, case.length, asked, case.search, seed, soft=soft, strict=True)
     except SynthesisError as error:
         return replace(case, seconds=perf_counter() - begun, why=str(error))
-    took, looks = perf_counter() - begun, quality(graph.states, path)
+    took, path = perf_counter() - begun, found.path
+    looks, told = quality(graph.states, path), soft_report(soft, graph.states, path, found.retiming)
+    off = {m.measure: m.off for m in told.matches}
     return replace(
         case,
         found=not looks.stands_still,
@@ -331,48 +372,9 @@ def _tried(
         why=f"it {looks.rest_words()}" if looks.stands_still else "",
         repeated=looks.repeated,
         rest=looks.frozen,
+        loudness=off.get("loudness"),
+        pace=off.get("rate"),
+        words=fmean(w.met for w in told.words) if told.words else None,
+        off=told.off,
+        was=told.was,
     )
-
-
-def csv_of(cases: Sequence[Case]) -> str:
-    """Return cases as comma-separated values, a line each, under a line of names."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow([f.name for f in fields(Case)])
-    for case in cases:
-        writer.writerow(
-            [
-                round(v, 6) if isinstance(v, float) else int(v) if isinstance(v, bool) else v
-                for v in astuple(case)
-            ]
-        )
-    return out.getvalue()
-
-
-def table_of(evaluation: Evaluation) -> str:
-    """Return rows as a table in text."""
-    return "\n".join(_lines(evaluation))
-
-
-def _lines(evaluation: Evaluation) -> Iterator[str]:
-    graphs = evaluation.graphs
-    if graphs:
-        yield (
-            f"{len(graphs)} graphs, each without one take: {fmean(g.states for g in graphs):,.0f} states, "
-            f"{fmean(g.kept / g.states for g in graphs):.0%} kept, "
-            f"{fmean(g.transitions for g in graphs):,.0f} transitions, "
-            f"built in {fmean(g.seconds for g in graphs):.2f} s (means)"
-        )
-    yield (
-        f"{'constraints':<20}{'search':<8}{'found':>9}{'success':>9}  "
-        f"{'95 %':<14}{'median':>9}{'jumps/s':>9}{'cost':>9}{'again':>7}{'rest':>7}"
-    )
-    for r in evaluation.rows:
-        interval = f"{r.low:.0%} to {r.high:.0%}"
-        yield (
-            f"{r.setting:<20}{r.search:<8}{f'{r.found}/{r.cases}':>9}{r.success:>9.1%}  "
-            f"{interval:<14}{1000 * r.seconds:>6.0f} ms"
-            f"{r.per_second:>9.2f}{r.cost:>9.3g}{r.repeated:>7.0%}{r.rest:>5.1f} s"
-        )
-    if not evaluation.whole:
-        yield "It was cancelled: these are the cases until then."

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from metagraph.formats.clips import read_clips
-from metagraph.graph.conversation import Segment
+from metagraph.graph.conversation import Segment, Word
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.roles import find_roles
@@ -17,6 +19,8 @@ from metagraph.synthesis.extending import DriverGraph, driver_graph
 from metagraph.synthesis.graph import build
 from metagraph.synthesis.states import key_states, states_of
 
+VOICE = 8000  # samples a second
+WORDS = ("we", "went", "round", "along", "there", "big", "nothing", "river")
 CLIPS = Path(__file__).resolve().parents[2] / "sample_clips" / "clips"
 FPS = 30.0
 
@@ -38,20 +42,27 @@ def speech(seconds: float, seed: int) -> list[Segment]:
         at = b + (0.0 if kind == "clause" and chance.random() < 0.3 else float(chance.uniform(0.25, 1.1)))
 
 
-def talking(name: str, segments: list[Segment], seconds: float, seed: int = 1, fps: float = FPS) -> Clip:
+def talking(
+    name: str,
+    segments: list[Segment],
+    seconds: float,
+    seed: int = 1,
+    fps: float = FPS,
+    sizes: Sequence[float] = (),
+) -> Clip:
     """A take in which the right arm is fastest at the stress of each clause, and answers and hesitations go
-    with a nod.
+    with a nod. sizes: how large the swing of each segment is, 1 where nothing is said.
     """
     base = read_clips(CLIPS / "hands_at_sides__stance.glb")[0]
     chance = np.random.default_rng(seed)
     t = np.arange(round(seconds * fps)) / fps
     roles = find_roles(base.skeleton)
     arm, head = np.zeros(len(t)), np.zeros(len(t))
-    for s in segments:
+    for n, s in enumerate(segments):
         if s.kind == "clause" and s.peak is not None:
             up = 0.5 + 0.5 * np.tanh((t - s.peak) / 0.1)  # fastest at the stress
             down = 0.5 + 0.5 * np.tanh((t - s.end - 0.15) / 0.2)
-            arm += chance.uniform(0.7, 0.9) * (up - down)
+            arm += chance.uniform(0.7, 0.9) * (up - down) * (sizes[n] if len(sizes) else 1.0)
         elif s.kind != "clause":
             inside = (t >= s.start) & (t <= s.end)
             head[inside] += 0.3 * np.sin(np.pi * (t[inside] - s.start) / (s.end - s.start)) ** 2
@@ -86,3 +97,26 @@ def talkers_graph() -> DriverGraph:
     states = states_of(takes)
     graph = build(states, keys=key_states(states, changes=changes(states, said)))
     return driver_graph(graph, heard(states, said))
+
+
+def aloud(
+    segments: Sequence[Segment], seconds: float, seed: int, gain: float = 0.0
+) -> tuple[list[float], tuple[Word, ...], np.ndarray]:
+    """How each segment is said: louder or softer by steps of 6 dB (-1 .. 1), a word of WORDS at each stress
+    among others, fast or slow by another chance; and the sound of it `[N]`, all of it louder by `gain` dB.
+    """
+    chance = np.random.default_rng([seed, 1])
+    samples = 0.001 * chance.standard_normal(round(seconds * VOICE))
+    steps, words = [float(chance.integers(-1, 2)) for _ in segments], []
+    for s, step in zip(segments, steps, strict=True):
+        a, b = round(s.start * VOICE), round(s.end * VOICE)
+        tone = np.sin(2 * np.pi * 400 * np.arange(b - a) / VOICE)
+        samples[a:b] += 0.05 * 10 ** (step * 6 / 20) * tone
+        if s.kind == "hesitation":  # the partner's
+            continue
+        edges = np.linspace(s.start, s.end, int(chance.integers(2, 6)))
+        parts = [(float(x), float(y), str(chance.choice(WORDS[:2]))) for x, y in pairwise(edges)]
+        for x, y, text in parts:
+            stressed = s.peak is not None and x <= s.peak < y
+            words.append(Word(text=str(chance.choice(WORDS)) if stressed else text, start=x, end=y))
+    return steps, tuple(words), samples * 10 ** (gain / 20)

@@ -69,6 +69,13 @@ def test_each_step_gives_up_one_thing_more_and_the_last_constrains_nothing() -> 
     ]
 
 
+def test_words_that_have_to_be_met_are_given_up_last_but_one() -> None:
+    tried = list(steps(Constraints(words=True)))
+    assert [c.words for c in tried] == [True] * (len(tried) - 2) + [False] * 2
+    assert tried[-2].use == ("clause",) and tried[-1].use == ()
+    assert "that all words are met" in given_up(tried[0], tried[-1])
+
+
 def test_what_was_not_asked_for_is_not_missed() -> None:
     graph = graph_of(90, [0, 90], {})
     spoken = heard(graph.states, [[]])

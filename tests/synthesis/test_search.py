@@ -22,6 +22,7 @@ from metagraph.synthesis.constraints import (
     heard,
     wanted,
 )
+from metagraph.synthesis.frame_costs import FrameCost, FrameCosts, together
 from metagraph.synthesis.graph import MotionGraph, Threshold
 from metagraph.synthesis.search import Path, best, greedy
 from metagraph.synthesis.states import States, SynthesisError
@@ -45,15 +46,30 @@ def graph_of(frames: int, takes: list[int], links: dict[tuple[int, int], float])
     return MotionGraph(states, limit, np.arange(frames), starts, targets, costs, np.ones(frames, bool))
 
 
-def cheapest(graph: MotionGraph, sound: HeardStates, want: WantedSegment, run: int = 1) -> float | None:
-    """What the cheapest path costs, by trying all."""
+def cheapest(
+    graph: MotionGraph,
+    sound: HeardStates,
+    want: WantedSegment,
+    run: int = 1,
+    charged: FrameCosts | None = None,
+) -> float | None:
+    """What the cheapest path costs, with what its frames cost, by trying all."""
     last = graph.states.last
+
+    def paid(t: int, state: int) -> float:
+        row = charged.row(t) if charged is not None else None
+        return 0.0 if row is None else float(row[state])
 
     @cache
     def onward(t: int, state: int, met: bool, since: int) -> float:
+        return paid(t, state) + after(t, state, met, since)
+
+    def after(t: int, state: int, met: bool, since: int) -> float:
         if not graph.kept[state] or not sound.kinds[state] & want.allowed[t]:
             return np.inf
         if want.bars(t) and sound.happens(want.bars(t))[state]:
+            return np.inf
+        if t in want.only and not want.only[t][state]:
             return np.inf
         met = (met or bool(sound.happens(want.event(t))[state])) if want.window[t] >= 0 else False
         ends = want.window[t] >= 0 and (t + 1 == len(want) or want.window[t + 1] != want.window[t])
@@ -71,13 +87,21 @@ def cheapest(graph: MotionGraph, sound: HeardStates, want: WantedSegment, run: i
     return None if found == np.inf else found
 
 
-def check(graph: MotionGraph, sound: HeardStates, want: WantedSegment, path: Path, run: int = 1) -> None:
+def check(
+    graph: MotionGraph,
+    sound: HeardStates,
+    want: WantedSegment,
+    path: Path,
+    run: int = 1,
+    charged: FrameCosts | None = None,
+) -> None:
     """A path is one, has what is wanted, and costs what it says."""
-    total = 0.0
+    total = sum(charged.paid(path.states).values()) if charged is not None else 0.0
     assert len(path.states) == len(want)
     for t, state in enumerate(path.states):
         assert sound.kinds[state] & want.allowed[t]
         assert not sound.happens(want.bars(t))[state]
+        assert t not in want.only or want.only[t][state]
         if t and state != path.states[t - 1] + 1:
             before = int(path.states[t - 1])
             places = range(graph.starts[before], graph.starts[before + 1])
@@ -88,6 +112,16 @@ def check(graph: MotionGraph, sound: HeardStates, want: WantedSegment, path: Pat
         inside = want.window == number
         assert sound.happens(want.event(int(np.flatnonzero(inside)[0])))[path.states[inside]].any()
     assert path.cost == pytest.approx(total, abs=1e-4)
+
+
+@st.composite
+def costs_of_frames(draw: st.DrawFn, name: str, frames: int, length: int) -> FrameCost:
+    """What frames cost, at some moments."""
+    count = draw(st.integers(1, 3))
+    price = st.floats(0, 2, width=32)
+    rows = draw(st.lists(st.lists(price, min_size=frames, max_size=frames), min_size=count, max_size=count))
+    at = draw(st.lists(st.integers(-1, count - 1), min_size=length, max_size=length))
+    return FrameCost(name, np.array(at, np.int32), np.array(rows, np.float32))
 
 
 @given(st.data())
@@ -121,21 +155,25 @@ def test_the_best_path_is_the_cheapest_of_all_and_is_found_whenever_there_is_one
         window[: int(np.argmin(window))] = -1  # the second is not to lie inside of the first
     bits = st.sampled_from([0, 0, 0, STRESS, EDGE, STRESS | EDGE])
     barred = data.draw(st.lists(bits, min_size=length, max_size=length))
-    want = WantedSegment(np.array(allowed, np.uint8), window, events, np.array(barred, np.uint8))
+    some = st.lists(st.booleans(), min_size=frames, max_size=frames).map(np.array)
+    only = data.draw(st.dictionaries(st.integers(0, length - 1), some, max_size=2))
+    want = WantedSegment(np.array(allowed, np.uint8), window, events, np.array(barred, np.uint8), only)
     run = data.draw(st.integers(1, 5))
-    wanted_cost = cheapest(graph, sound, want, run)
+    kinds = data.draw(st.sampled_from(["", "a", "ab"]))
+    charged = together([data.draw(costs_of_frames(kind, frames, length)) for kind in kinds])
+    wanted_cost = cheapest(graph, sound, want, run, charged)
     if wanted_cost is None:
         with pytest.raises(SynthesisError, match="no motion goes with this speech"):
-            best(graph, sound, want, run=run)
+            best(graph, sound, want, run=run, charged=charged)
         return
-    path = best(graph, sound, want, run=run)
-    check(graph, sound, want, path, run)
+    path = best(graph, sound, want, run=run, charged=charged)
+    check(graph, sound, want, path, run, charged)
     assert path.cost == pytest.approx(wanted_cost, abs=1e-4)
     try:
-        other = greedy(graph, sound, want, seed=data.draw(st.integers(0, 9)), run=run)
+        other = greedy(graph, sound, want, seed=data.draw(st.integers(0, 9)), run=run, charged=charged)
     except SynthesisError:
         return
-    check(graph, sound, want, other, run)
+    check(graph, sound, want, other, run, charged)
     assert other.cost >= path.cost - 1e-4
 
 

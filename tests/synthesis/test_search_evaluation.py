@@ -13,13 +13,12 @@ import pytest
 
 from metagraph.graph.conversation import SOUNDS, Segment
 from metagraph.motion.clip import Clip
+from metagraph.synthesis.evaluation_table import csv_of, table_of
 from metagraph.synthesis.search_evaluation import (
     SETTINGS,
     Setting,
-    csv_of,
     cut,
     evaluate,
-    table_of,
     windows,
     without,
 )

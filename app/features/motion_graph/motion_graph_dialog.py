@@ -362,7 +362,12 @@ class MotionGraphDialog(QDialog):
 
     def find_motion(self) -> None:
         """Find new motion as wished, and add it to the library."""
-        takes, wish, graph, limit = self.takes, self.wishes.wish(), self.graph, self.limit
+        takes, graph, limit = self.takes, self.graph, self.limit
+        try:
+            wish = self.wishes.wish()
+        except ValueError as error:  # a word that is none
+            self._failed(error)
+            return
         if not takes.ids or limit is None or self.states is None or self.states[0] != takes.clips:
             why = "these takes cannot be compared: choose others" if takes.ids else "choose takes first"
             self._failed(ValueError(f"{why}; their frames are compared before anything can be found"))
@@ -386,7 +391,7 @@ class MotionGraphDialog(QDialog):
             if made is None:
                 keys = key_states(states, changes=changes(states, takes.speech))
                 made = build(states, limit, keys, progress=job.tell, cancelled=lambda: job.cancelled)
-            found = synthesise(made, takes, wish, name, lambda: job.cancelled)
+            found = synthesise(made, takes, wish, name, lambda: job.cancelled, folder)
             return made, found, () if job.cancelled else save([found.clip], folder, FOLDER, taken)
 
         self._start("New motion", work, self._found)

@@ -16,13 +16,14 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.features.motion_graph.soft_wishes import SoftWishes
 from app.features.motion_graph.synthesis_jobs import Wish
 from app.features.motion_graph.takes_list import side_words
 from app.look.theme import strengthen
 from app.project.document import Document
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
-from metagraph.graph.conversation import SOUNDS, Segment, Sound, heard_by
+from metagraph.graph.conversation import SOUNDS, Segment, Side, Sound, heard_by
 
 WINDOW = 15.0  # seconds, as in the paper's evaluation
 KINDS: tuple[tuple[Sound, str], ...] = (
@@ -108,8 +109,13 @@ class Wishes(QFrame):
         row.addSpacing(8)
         row.addWidget(self.whole)
         row.addStretch(1)
+        box.addLayout(row)
+        row = QHBoxLayout()
+        self.soft = SoftWishes(self)
+        row.addWidget(self.soft, 1)
         self.go = QPushButton("Find", self, autoDefault=False)
         self.go.clicked.connect(self.wanted)
+        self.soft.wanted.connect(self.go.click)
         strengthen(self.go)
         row.addWidget(self.go)
         box.addLayout(row)
@@ -136,6 +142,7 @@ class Wishes(QFrame):
         talks = self.speech.currentData() is not None
         for box in (*self.kinds.values(), self.peaks, self.edges, self.tolerance, self.start):
             box.setEnabled(talks)
+        self.soft.setEnabled(talks)
         self.seed.setEnabled(not self.search.currentData())
         self.whole.setEnabled(talks)
         self.start.setEnabled(talks and self.moves is None)
@@ -153,18 +160,21 @@ class Wishes(QFrame):
         return chosen if self.whole.isChecked() else None
 
     def wish(self) -> Wish:
-        """Return what is asked for now."""
+        """Return what is asked for now. Raises ValueError where a word is none."""
         chosen, seconds, start = self.speech.currentData(), self.length.value(), self.start.value()
         if self.moves is not None:
             seconds, start = self.document.project.conversations[self.moves[0]].length, 0.0
         use = tuple(kind for kind in SOUNDS if self.kinds[kind].isChecked()) if chosen is not None else ()
         segments: tuple[Segment, ...] = ()
+        whole: tuple[Segment, ...] = ()
+        side: Side | None = None
         if chosen is not None:
             talk = self.document.project.conversations[chosen[0]]
             seconds = min(seconds, max(1.0, talk.length - start))
             from metagraph.synthesis.search_evaluation import cut
 
-            segments = tuple(cut(heard_by(talk, chosen[1]), start, seconds))
+            whole, side = heard_by(talk, chosen[1]), talk.sides[chosen[1]]
+            segments = tuple(cut(whole, start, seconds))
         return Wish(
             seconds,
             segments,
@@ -174,6 +184,10 @@ class Wishes(QFrame):
             self.tolerance.value(),
             int(self.seed.value()),
             self.edges.isChecked(),
+            self.soft.wish(),
+            side,
+            whole,
+            start,
         )
 
     def name(self) -> str:

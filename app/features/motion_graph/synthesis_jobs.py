@@ -9,18 +9,21 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from app.features.motion_graph.soft_wishes import spoken
 from app.look.plural import many
-from metagraph.graph.conversation import SOUNDS, Segment, Sound, heard_by
+from metagraph.graph.conversation import SOUNDS, Segment, Side, Sound, heard_by
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 
 if TYPE_CHECKING:
     from metagraph.synthesis.path_quality import PathQuality
     from metagraph.synthesis.ruled_search import Search
+    from metagraph.synthesis.soft_constraints import SoftWish
 
 FOLDER = "motion-graph"  # beside the project file, where new clips are kept
 LONG = 6.0  # seconds from which a clip is a take; shorter ones are chosen by hand
@@ -30,12 +33,13 @@ LEAST, MOST = 1.0, 8.0  # seconds of clips cut from takes
 @dataclass(frozen=True, eq=False)
 class Takes:
     """clips: those with motion, of one skeleton. ids: theirs. speech: what was heard during each, none where
-    nobody knows.
+    nobody knows. sides: of the conversation each was recorded along with.
     """
 
     ids: tuple[str, ...]
     clips: tuple[Clip, ...]
     speech: tuple[tuple[Segment, ...], ...]
+    sides: tuple[Side | None, ...] = ()
 
     @property
     def frames(self) -> int:
@@ -94,13 +98,17 @@ def during(heard: Sequence[Segment], seconds: float) -> tuple[Segment, ...]:
 def takes_of(project: Project, ids: Collection[str]) -> Takes:
     """Return the chosen clips as takes; those without motion are left out."""
     found = [i for i in usable(project) if i in ids]
-    speech = []
+    speech, sides = [], []
     for ident in found:
         recorded = speech_of(project, ident)
         heard = heard_by(project.conversations[recorded[0]], recorded[1]) if recorded is not None else ()
         speech.append(during(heard, project.clips[ident].duration))
+        sides.append(project.conversations[recorded[0]].sides[recorded[1]] if recorded is not None else None)
     return Takes(
-        tuple(found), tuple(m for i in found if (m := project.clips[i].motion) is not None), tuple(speech)
+        tuple(found),
+        tuple(m for i in found if (m := project.clips[i].motion) is not None),
+        tuple(speech),
+        tuple(sides),
     )
 
 
@@ -108,7 +116,8 @@ def takes_of(project: Project, ids: Collection[str]) -> Takes:
 class Wish:
     """What new motion is to go with. segments: what is heard. exact: the best path there is, else the paper's
     greedy search. use: the kinds of segment that constrain; peaks: whether stresses have to be met;
-    tolerance: seconds. seed: of the greedy search.
+    tolerance: seconds. seed: of the greedy search. soft: what it should have beside that, for which side is
+    who speaks, whole all it moves with, and start the second of it at which the segments begin.
     """
 
     seconds: float
@@ -119,11 +128,15 @@ class Wish:
     tolerance: float = 0.1
     seed: int = 1
     edges: bool = True
+    soft: SoftWish | None = None
+    side: Side | None = None
+    whole: tuple[Segment, ...] = ()
+    start: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
 class FoundMotion:
-    """A new motion. took: seconds of search."""
+    """A new motion. took: seconds of search. beside: what became of what it should have beside."""
 
     clip: Clip
     cost: float
@@ -131,6 +144,7 @@ class FoundMotion:
     took: float
     looks: PathQuality
     given_up: str = ""
+    beside: str = ""
 
     def words(self) -> str:
         rate = self.jumps / max(self.clip.duration, 1e-9)
@@ -144,19 +158,30 @@ class FoundMotion:
         again = f"{self.looks.repeated:.0%} of it shown again within 3 s, {self.looks.rest_words()}"
         found = f"found in {self.took:.2f} s"
         given_up = f" {self.given_up[0].upper()}{self.given_up[1:]}." if self.given_up else ""
-        return f"{self.clip.duration:.1f} s with {jumps}, cost {self.cost:.3g} m, {found}; {again}.{given_up}"
+        beside = f" {self.beside[0].upper()}{self.beside[1:]}." if self.beside else ""
+        return (
+            f"{self.clip.duration:.1f} s with {jumps}, cost {self.cost:.3g} m, {found}; {again}.{given_up}"
+            f"{beside}"
+        )
 
 
 def synthesise(
-    graph: Any, takes: Takes, wish: Wish, name: str, cancelled: Callable[[], bool] | None = None
+    graph: Any,
+    takes: Takes,
+    wish: Wish,
+    name: str,
+    cancelled: Callable[[], bool] | None = None,
+    folder: Path | None = None,
 ) -> FoundMotion:
-    """Return motion of the takes that goes with what is wished. Raises SynthesisError when there is none,
-    saying what would help, or when it was cancelled.
+    """Return motion of the takes that goes with what is wished. folder: of the project, where sounds are
+    looked for. Raises SynthesisError when there is none, saying what would help, or when it was cancelled;
+    FileError where a sound that is needed cannot be read.
     """
     from metagraph.synthesis.assemble import assemble
     from metagraph.synthesis.constraints import heard
     from metagraph.synthesis.path_quality import quality
     from metagraph.synthesis.relaxing import Constraints, answer
+    from metagraph.synthesis.soft_constraints import NOTHING, SoftMaterial, soft_report
 
     said = heard(graph.states, takes.speech)
     # Takes nobody annotated went with anything.
@@ -164,10 +189,21 @@ def synthesise(
     asked = Constraints(wish.tolerance, use, wish.peaks and takes.told, wish.edges)
     search: Search = "exact" if wish.exact else "greedy"
     began = time.perf_counter()
-    found = answer(graph, said, wish.segments, wish.seconds, asked, search, wish.seed, cancelled)
+    soft = NOTHING
+    if wish.soft is not None and wish.soft.asks and wish.side is not None:
+        theirs = [
+            spoken(side, speech, folder, wish.soft)
+            for side, speech in zip(takes.sides, takes.speech, strict=True)
+        ]
+        material = SoftMaterial(wish.soft, graph.states, takes.clips, theirs, graph.threshold.limit)
+        new = spoken(wish.side, wish.whole, folder, wish.soft)
+        soft = material.constraints(new, wish.start, wish.seconds, wish.tolerance)
+    found = answer(graph, said, wish.segments, wish.seconds, asked, search, wish.seed, cancelled, soft)
     took, path = time.perf_counter() - began, found.path
-    made = assemble(graph.states, takes.clips, path, name)
-    return FoundMotion(made, path.cost, len(path.jumps), took, quality(graph.states, path), found.words())
+    made = assemble(graph.states, takes.clips, path, name, retiming=found.retiming)
+    beside = soft_report(soft, graph.states, path, found.retiming).told()
+    looks = quality(graph.states, path)
+    return FoundMotion(made, path.cost, len(path.jumps), took, looks, found.words(), beside)
 
 
 def table(

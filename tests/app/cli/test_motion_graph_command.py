@@ -7,14 +7,16 @@ import re
 import signal
 from pathlib import Path
 
+import numpy as np
 import pytest
+import soundfile
 
 from app.cli.parser import main
 from metagraph.formats.bvh import write_bvh
 from metagraph.formats.clips import read_clips
 from metagraph.formats.conversation_writers import write_elan, write_json, write_textgrid
 from metagraph.graph.conversation import Conversation, Side
-from tests.synthesis.talking import speech, talking
+from tests.synthesis.talking import VOICE, aloud, speech, talking
 
 SECONDS = 18
 
@@ -236,3 +238,89 @@ def test_a_file_that_is_no_live_motion_is_refused(
     words = (str(folder / "takes"), *said(folder), "--again", str(tmp_path / "a.json"), "-o")
     told = run(capsys, "synthesize", *words, str(tmp_path / "a.bvh"), code=1)
     assert "no motion that was kept" in told and "live --keep" in told
+
+
+@pytest.fixture(scope="module")
+def aloud_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Takes with transcripts and sounds; those of the second are quiet, and of both channels."""
+    out = tmp_path_factory.mktemp("aloud")
+    (out / "takes").mkdir()
+    for n in range(3):
+        segments = speech(SECONDS, n)
+        steps, words, samples = aloud(segments, SECONDS, n, -12.0 * n)
+        sizes = [1 + 0.5 * step for step in steps]
+        write_bvh(talking(f"take{n}", segments, SECONDS, n, sizes=sizes), out / "takes" / f"take{n}.bvh")
+        own = tuple(s for s in segments if s.kind != "hesitation")
+        both = (Side(name="Ann", segments=own, words=words), Side(name="Ben"))
+        write_json(Conversation(name=f"take {n}", length=float(SECONDS), sides=both), out / f"take{n}.json")
+        sides = np.stack([samples, np.zeros_like(samples)], 1) if n == 1 else samples
+        soundfile.write(out / f"take{n}.wav", sides, VOICE)
+    return out
+
+
+def asked(folder: Path) -> list[str]:
+    takes = [str(folder / "takes"), "--speech", *(str(folder / f"take{n}.json") for n in range(3))]
+    return [*takes, "--sounds", *(str(folder / f"take{n}.wav") for n in range(3))]
+
+
+def test_loudness_rate_words_and_speed_are_asked_for_and_told(
+    aloud_folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    words = tmp_path / "words.txt"
+    words.write_text("# shapes\nround = river, along\nbig, nothing, there\n")
+    beside = [
+        "--loudness",
+        "0.5",
+        "--rate",
+        "0.25",
+        "--words",
+        str(words),
+        "--word",
+        "went",
+        "--retime",
+        "15",
+    ]
+    out = str(tmp_path / "out.bvh")
+    given = [*asked(aloud_folder), "--take", "3", "-s", "10", "-o", out]
+    data = json.loads(run(capsys, "synthesize", *given, *beside, "--json"))["beside"]
+    assert [m["measure"] for m in data["matches"]] == ["loudness", "rate"]
+    assert data["words"] and data["paid"]["loudness"] > 0 and data["was"] >= data["off"] > 0
+    plain = json.loads(run(capsys, "synthesize", *given, "--json"))
+    assert "beside" not in plain and read_clips(tmp_path / "out.bvh")[0].frames == 300
+    text = run(capsys, "synthesize", *given, "--loudness", "0.5", "--word", "went", "--words-must")
+    assert re.search(r"loudness 0\.\d\d spreads off.*words from where a take says them.*paid", text)
+    new = ["--new", str(aloud_folder / "take1.json"), "-s", "5", "-o", out, "--rate", "0.5"]
+    assert "rate" in run(capsys, "synthesize", *asked(aloud_folder), *new)
+    cues = [f"{n}\n00:00:{n:02},000 --> 00:00:{n:02},900\nround" for n in range(1, 17)]
+    for n in range(3):
+        (tmp_path / f"take{n}.srt").write_text("\n\n".join(cues))
+    transcripts = ["--transcripts", *(str(tmp_path / f"take{n}.srt") for n in range(3))]
+    told = json.loads(run(capsys, "synthesize", *given, *transcripts, "--word", "round", "--json"))["beside"]
+    assert [w["text"] for w in told["words"]] == ["round"] * 9 and all(w["known"] for w in told["words"])
+    rows = json.loads(
+        run(capsys, "evaluate", *asked(aloud_folder), *beside, "--quick", "--search", "exact", "--json")
+    )["rows"]
+    assert rows[0]["loudness"] < 1.5 and rows[0]["off"] <= rows[0]["was"]
+
+
+def test_wishes_that_cannot_be_are_told(
+    aloud_folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    given = [*asked(aloud_folder), "--take", "3", "-o", str(tmp_path / "out.bvh")]
+    deaf = [x for x in given if not x.endswith(".wav") and x != "--sounds"]
+    few = [x for x in given if not x.endswith("take1.wav")]
+    other = str(tmp_path / "other.json")
+    Path(other).write_bytes((aloud_folder / "take0.json").read_bytes())
+    new = [*asked(aloud_folder), "--new", other, "-o", str(tmp_path / "out.bvh")]
+    for arguments, words in (
+        ([*deaf, "--loudness", "1"], "give those of the recordings with --sounds"),
+        ([*few, "--loudness", "1"], "no sound for take1"),
+        ([*new, "--loudness", "1"], "no sound for other.json"),
+        ([*given, "--transcripts", other], "no transcript for take0"),
+        ([*given, "--words-must"], "say which, with --word or --words"),
+        ([*given, "--word", "= huge"], "names no word"),
+        ([*given, "--retime", "90"], "speed may change by 0 to 50%"),
+        ([*given, "--rate", "-1"], "the weight of rate is 0 to 1000"),
+        ([*given, "--words", str(tmp_path / "none.txt")], "none.txt"),
+    ):
+        assert words in run(capsys, "synthesize", *arguments, code=1), words

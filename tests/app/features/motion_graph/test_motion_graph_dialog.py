@@ -172,6 +172,37 @@ def test_what_no_motion_goes_with_is_given_up_and_that_is_said(shown):
     assert len(drive.document.project.clips) == count + 1
 
 
+def test_what_it_should_have_beside_is_asked_for_and_what_cannot_be_is_told(shown):
+    drive, dialog = shown
+    soft = dialog.wishes.soft
+    assert not soft.wish().asks, "at first nothing"
+    soft.words.setText("big; round = circle, ball")
+    soft.must.setChecked(True)
+    wish = soft.wish()
+    assert [w.said for w in wish.words] == [("big",), ("round",)] and wish.hard
+    soft.words.setText("big; = ball")
+    press(dialog.wishes.go)
+    assert dialog.said.text().startswith("'= ball' names no word")
+    soft.words.setText("big")
+    soft.words.setFocus()
+    QTest.keyClick(soft.words, Qt.Key.Key_Return)
+    drive.wait(lambda: dialog.said.text().startswith("No words of the new speech have times"), 120)
+    drive.wait(dialog.wishes.go.isEnabled)
+    soft.words.setText("")
+    soft.rate.setValue(0.25)
+    press(dialog.wishes.go)
+    drive.wait(lambda: dialog.said.text().startswith("How fast the speech of the takes was said"), 120)
+    drive.wait(dialog.wishes.go.isEnabled)
+    soft.rate.setValue(0)
+    soft.speed.setValue(15)
+    dialog.wishes.length.setValue(3.0)
+    press(dialog.wishes.go)
+    drive.wait(lambda: "found in" in dialog.said.text(), 120)
+    dialog.wishes.speech.setCurrentIndex(0)
+    dialog.wishes.speech.activated.emit(0)
+    assert not soft.isEnabled(), "nobody speaks"
+
+
 def test_movements_with_speech_are_counted_and_become_a_sides_rates(shown):
     drive, dialog = shown
     press(dialog.picked.rates_button)

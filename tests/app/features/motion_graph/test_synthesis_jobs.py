@@ -6,8 +6,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+import soundfile
 
 from app.features.motion_graph.synthesis_jobs import (
+    Takes,
     Wish,
     during,
     left_out,
@@ -18,11 +20,16 @@ from app.features.motion_graph.synthesis_jobs import (
     usable,
 )
 from app.project.new_clips import pieces, save
+from metagraph.errors import FileError
 from metagraph.formats.clips import read_clips
 from metagraph.graph.conversation import Conversation, Segment, Side
 from metagraph.graph.model import Project
 from metagraph.synthesis.graph import build
+from metagraph.synthesis.iconic_words import word_wish
+from metagraph.synthesis.search_evaluation import cut
+from metagraph.synthesis.soft_constraints import SoftWish
 from metagraph.synthesis.states import SynthesisError, states_of
+from tests.synthesis.talking import VOICE, WORDS, aloud, speech, talking
 
 
 def stances(project: Project) -> list[str]:
@@ -175,3 +182,23 @@ def test_names_that_cannot_be_files_are_made_such(sample: Project, tmp_path: Pat
     assert clip is not None
     path = save([clip.trimmed(0, 5).renamed("a/b: c?")], tmp_path, "cuts")[0][0]
     assert path == "cuts/a_b_ c_.glb" and (tmp_path / path).is_file()
+
+
+def test_words_and_sounds_of_the_sides_are_compared(tmp_path: Path) -> None:
+    segments = speech(16, 1)
+    steps, words, samples = aloud(segments, 16, 1)
+    soundfile.write(tmp_path / "ann.wav", samples, VOICE)
+    clip = talking("take", segments, 16, 1, sizes=[1 + 0.5 * step for step in steps])
+    ann = Side(name="Ann", audio="ann.wav", segments=tuple(segments), words=words)
+    states = states_of([clip])
+    graph = build(states)
+    takes = Takes(("c1",), (clip,), (tuple(segments),), (ann,))
+    soft = SoftWish(0.5, 0.5, tuple(word_wish(text) for text in WORDS), retime=0.15)
+    wish = Wish(4.0, tuple(cut(segments, 8.0, 4.0)), soft=soft, side=ann, whole=tuple(segments), start=8.0)
+    found = synthesise(graph, takes, wish, "new", folder=tmp_path)
+    assert "loudness 0.00 spreads off" in found.beside and "rate 0.00 spreads off" in found.beside
+    assert "words from where a take says them" in found.words()
+    plain = synthesise(graph, takes, replace(wish, soft=SoftWish()), "new", folder=tmp_path / "nowhere")
+    assert plain.beside == ""
+    with pytest.raises(FileError, match="there is no such sound file"):
+        synthesise(graph, takes, wish, "new", folder=tmp_path / "nowhere")

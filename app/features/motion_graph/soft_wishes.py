@@ -1,0 +1,110 @@
+"""What new motion should have beside the constraints: how it is said, words, and another speed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QLabel, QLineEdit, QWidget
+
+from app.widgets.making import make_widget
+from app.widgets.quiet_fields import DoubleSpinBox
+from metagraph.graph.conversation import Segment, Side
+
+if TYPE_CHECKING:
+    from metagraph.synthesis.prosody_costs import SpokenTake
+    from metagraph.synthesis.soft_constraints import SoftWish
+
+LONGEST = 7200.0  # seconds of a sound
+KEPT = 16000  # samples a second that are kept of one
+
+
+class SoftWishes(QWidget):
+    """A row of fields, all of which ask for nothing at first. wanted: Enter was pressed."""
+
+    wanted = Signal()
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        self.loudness = self._weight(
+            "Loudness",
+            "Frames cost that were said louder or softer than what is said now, by the speaker's own spread; "
+            "0.25 is a good start. Needs the sounds of the conversations",
+        )
+        self.rate = self._weight(
+            "Speaking rate",
+            "Frames cost that were said faster or slower than what is said now; 0.25 is a good start. By "
+            "words where there are any, else by the sound",
+        )
+        self.words = QLineEdit(self, placeholderText="big; round = circle, ball")
+        self.words.setAccessibleName("Words that want motion")
+        self.words.setToolTip(
+            "Where one of these is said, motion comes from where a take says it, or one alike. Part them by "
+            "semicolons"
+        )
+        self.words.setMinimumWidth(170)
+        self.words.returnPressed.connect(self.wanted)
+        self.must = make_widget(QCheckBox, "have to be met", self)
+        self.must.setToolTip("Other constraints are given up before these words are missed")
+        self.speed = DoubleSpinBox(
+            self, minimum=0, maximum=50, singleStep=5, decimals=0, value=0, prefix="± ", suffix=" %"
+        )
+        self.speed.setAccessibleName("Speed may change by")
+        self.speed.setToolTip(
+            "Plays it faster and slower, outside of strokes, steps and transitions, so that starts, ends and "
+            "stresses come when they are heard; try 15 %"
+        )
+        for words, field in (
+            ("Beside: as loud", self.loudness),
+            ("as fast", self.rate),
+            ("words", self.words),
+        ):
+            row.addWidget(QLabel(words, self))
+            row.addWidget(field, int(field is self.words))
+            row.addSpacing(6)
+        row.addWidget(self.must)
+        row.addSpacing(6)
+        row.addWidget(QLabel("speed", self))
+        row.addWidget(self.speed)
+        row.addSpacing(12)
+
+    def _weight(self, name: str, tip: str) -> DoubleSpinBox:
+        out = DoubleSpinBox(self, minimum=0, maximum=20, singleStep=0.05, decimals=2, value=0)
+        out.setAccessibleName(name)
+        out.setToolTip(f"{tip}. What a second costs that is off by one spread, of what a transition may cost")
+        return out
+
+    def wish(self) -> SoftWish:
+        """Return what is asked for now. Raises ValueError where a word is none."""
+        from metagraph.synthesis.iconic_words import word_wish
+        from metagraph.synthesis.soft_constraints import SoftWish
+
+        words = tuple(word_wish(text) for text in self.words.text().split(";") if text.strip())
+        return SoftWish(
+            self.loudness.value(),
+            self.rate.value(),
+            words,
+            hard=self.must.isChecked() and bool(words),
+            retime=self.speed.value() / 100,
+        )
+
+
+def spoken(side: Side | None, segments: Sequence[Segment], folder: Path | None, wish: SoftWish) -> SpokenTake:
+    """Return what is known of the speech a side moves with, and of its sound where the wish needs that. side:
+    None where nobody knows. folder: of the project. Raises FileError.
+    """
+    from metagraph.speech.prosody import prosody
+    from metagraph.speech.sound import read_sound
+    from metagraph.synthesis.prosody_costs import SpokenTake
+
+    if side is None:
+        return SpokenTake(tuple(segments))
+    samples, rate = None, 0
+    silent = not side.words and not any(s.text for s in segments)
+    if side.audio is not None and (wish.loudness or (wish.rate and silent)):
+        samples, rate = read_sound((folder or Path()) / side.audio, side.channel, LONGEST, KEPT)
+    return SpokenTake(tuple(segments), side.words, prosody(segments, side.words, samples, rate))

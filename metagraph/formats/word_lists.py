@@ -1,0 +1,29 @@
+"""Files of words that want motion: a line for each word, or for words that may stand for each other."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from metagraph.errors import FileError
+from metagraph.files import guarded
+from metagraph.formats.transcript_words import text_of
+from metagraph.synthesis.iconic_words import WordWish, word_wish
+
+REMEDY = "Write a line for each: big, or big = huge, tall, or big, huge where each may stand for the other."
+
+
+@guarded
+def read_word_lists(path: str | Path) -> tuple[WordWish, ...]:
+    """Read words that want motion; lines that begin with # are none. Raises FileError naming the line."""
+    path = Path(path)
+    out = []
+    for number, line in enumerate(text_of(path).lstrip("\ufeff").splitlines(), 1):
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        try:
+            out.append(word_wish(line))
+        except ValueError:
+            raise FileError(path, f"'{line.strip()[:60]}' names no word", f"line {number}", REMEDY) from None
+    if not out:
+        raise FileError(path, "it names no words", "", REMEDY)
+    return tuple(out)

@@ -1,0 +1,129 @@
+"""Words that want motion get it from where a take says them, in any language."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from metagraph.graph.conversation import Word
+from metagraph.synthesis.constraints import HeardStates, wanted
+from metagraph.synthesis.frame_costs import together
+from metagraph.synthesis.iconic_words import (
+    AROUND,
+    WordWish,
+    only_words,
+    spans,
+    unsaid,
+    word_cost,
+    word_places,
+    word_wish,
+    words_shown,
+    words_told,
+)
+from metagraph.synthesis.prosody_costs import SpokenTake
+from metagraph.synthesis.relaxing import Constraints, answer
+from metagraph.synthesis.ruled_search import FREE, find_path
+from metagraph.synthesis.soft_constraints import SoftConstraints
+from metagraph.synthesis.states import SynthesisError
+from tests.synthesis.test_search import graph_of
+
+
+def words(*said: tuple[str, float, float]) -> SpokenTake:
+    return SpokenTake((), tuple(Word(text=t, start=a, end=b) for t, a, b in said))
+
+
+def test_wishes_are_written_as_people_write_lists() -> None:
+    assert word_wish("big") == WordWish(("big",))
+    assert word_wish(" big, huge ") == WordWish(("big", "huge"))
+    assert word_wish("big = huge, really tall") == WordWish(("big",), ("huge", "really tall"))
+    for text in ("", " , ", "= huge", "big =", "big = ,", "…"):
+        with pytest.raises(ValueError, match="names no word"):
+            word_wish(text)
+
+
+def test_words_are_found_however_they_are_written() -> None:
+    said = words(("Very", 0.0, 0.2), ("BIG,", 0.2, 0.5), ("big-ish", 0.6, 1.0), ("bigger", 1, 2)).words
+    assert spans(said, ["big"]) == [(0.2, 0.5, "BIG,")]
+    assert spans(said, ["big", "very big"]) == [(0.0, 0.5, "Very BIG,")]
+    assert spans(words(("とても", 0, 1), ("大き", 1, 1.5), ("い", 1.5, 2)).words, ["大きい"]) == [
+        (1.0, 2.0, "大き い")
+    ]
+    assert spans(words(("größer", 0, 1), ("बड़ा", 1, 2)).words, ["GRÖSSER", "बड़ा"]) != []
+    assert spans((), ["big"]) == [] and spans(said, []) == []
+
+
+def test_motion_comes_from_around_the_word_in_the_take() -> None:
+    graph = graph_of(300, [0, 150, 300], {(9, 200): 0.1, (9, 100): 0.1})
+    takes = [words(("small", 3.0, 3.4)), words(("huge", 2.0, 2.4))]  # huge: states 210 to 221
+    new = words(("a", 0.0, 0.3), ("big", 0.6, 1.0))
+    places = word_places([word_wish("big=huge")], graph.states, takes, new, 0.0, 2.0)
+    assert [(p.text, p.known, p.frames) for p in places] == [("big", True, (18 - AROUND, 30 + AROUND))]
+    charged = together([word_cost(places, 60, 2.0, 1.0)])
+    anything = HeardStates(np.ones(300, np.uint8), np.zeros(300, bool))
+    for search in ("exact", "greedy"):
+        path = find_path(
+            graph,
+            anything,
+            wanted([], 2.0),
+            search,  # type: ignore[arg-type]
+            FREE,
+            charged=charged,
+        )
+        assert charged is not None and charged.paid(path.states) == {"words": 0.0}
+        (shown,) = words_shown(places, graph.states, path.states)
+        assert shown.met and shown.take == 1 and shown.there == pytest.approx(2.2, abs=0.15)
+    elsewhere = np.arange(60)
+    assert charged is not None and charged.paid(elsewhere)["words"] == pytest.approx(2.0)
+    assert not places[0].met(elsewhere)
+
+
+def test_words_beyond_the_window_and_words_no_take_says_want_nothing() -> None:
+    graph = graph_of(90, [0, 90], {})
+    new = words(("big", 0.2, 0.4), ("round", 1.0, 1.3), ("big", 5.0, 5.2))
+    wishes = [word_wish("big"), word_wish("round")]
+    places = word_places(wishes, graph.states, [words(("round", 1.0, 1.3))], new, 0.0, 2.0)
+    assert [(p.text, p.known) for p in places] == [("big", False), ("round", True)]
+    assert set(only_words(places)) == set(range(30 - AROUND, 39 + AROUND))
+    told = words_told(words_shown(places, graph.states, np.arange(60)))
+    assert told == "1 of 2 words from where a take says them; no take says 'big'"
+    assert word_cost(places[:1], 60, 2.0, 1.0) is None and words_told(()) == ""
+    begins = word_places([word_wish("big")], graph.states, [new], new, 0.3, 1.0)
+    assert [p.frames for p in begins] == [(0, 3 + AROUND)]
+    assert unsaid([*wishes, word_wish("ball, cube")], new, 0.0, 2.0) == ("ball",)
+    assert unsaid(wishes, new, 4.0, 2.0) == ("round",)
+    assert words_told((), ("ball",)) == "not said now: 'ball'"
+    assert words_told((), [str(n) for n in range(7)]).endswith("'4' and 2 more")
+    close = words(("big", 1.0, 1.2), ("round", 1.3, 1.5), ("round", 1.5, 1.7))
+    beside = word_places(wishes, graph.states, [new], close, 0.0, 2.0)
+    assert [p.frames for p in beside] == [(30 - AROUND, 38), (38, 45), (45, 51 + AROUND)]
+    twice = word_places([word_wish("big"), word_wish("big")], graph.states, [new], close, 0.0, 2.0)
+    assert len(twice) == 1, "one moment wants one motion"
+    with pytest.raises(SynthesisError, match="no words of the new speech have times"):
+        word_places(wishes, graph.states, [new], words(), 0.0, 2.0)
+    with pytest.raises(SynthesisError, match="no words of the takes have times"):
+        word_places(wishes, graph.states, [words()], new, 0.0, 2.0)
+
+
+def test_words_that_must_be_met_are_and_are_given_up_last_but_one() -> None:
+    graph = graph_of(300, [0, 150, 300], {(9, 200): 50.0})
+    takes = [words(("small", 3.0, 3.4)), words(("huge", 2.0, 2.4))]
+    anything = HeardStates(np.ones(300, np.uint8), np.zeros(300, bool))
+
+    def found(new: SpokenTake, hard: bool) -> tuple[bool, tuple[str, ...]]:
+        places = word_places([word_wish("big=huge")], graph.states, takes, new, 0.0, 2.0)
+        charged = together([word_cost(places, 60, 2.0, 1.0)])
+        soft = SoftConstraints(charged, places, hard)
+        made = answer(graph, anything, [], 2.0, Constraints(rules=FREE), soft=soft)
+        (shown,) = words_shown(places, graph.states, made.path.states)
+        return shown.met, made.given_up
+
+    once = words(("big", 0.6, 1.0))
+    # The takes go on to the word by themselves: one second before the word is one before it there.
+    assert found(once, False) == found(once, True) == (True, ())
+    small = graph_of(300, [0, 150, 300], {})
+    late = words(("big", 1.2, 1.6))
+    places = word_places([word_wish("big=small")], small.states, takes, late, 0.0, 4.0)
+    soft = SoftConstraints(None, places, True)
+    made = answer(small, anything, [], 4.0, Constraints(use=(), rules=FREE), soft=soft)
+    assert made.given_up == ("that all words are met",), "no take goes on so long after the word"
+    assert made.words() == "given up: that all words are met; no start, end or stress is missed"
