@@ -20,7 +20,7 @@ class Translated:
 
 
 LISTING = (
-    Translated("metagraph.graph.model", "model", ("Markov",)),
+    Translated("metagraph.graph.model", "model", ("Markov", "Settings")),
     Translated("metagraph.playback.choice", "choice"),
     Translated(
         "metagraph.playback.plan",

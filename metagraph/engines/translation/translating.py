@@ -10,6 +10,7 @@ from mypy.modulefinder import BuildSource
 from mypy.options import Options
 
 from metagraph.engines.translation import tree as x
+from metagraph.engines.translation.cpp import Cpp
 from metagraph.engines.translation.csharp import CSharp
 from metagraph.engines.translation.gdscript import GDScript
 from metagraph.engines.translation.javascript import JavaScript
@@ -22,6 +23,7 @@ ROOT = Path(__file__).parents[3]
 PLACES: dict[type[Printer], Callable[[str], str]] = {  # where each language's file of a module is
     JavaScript: lambda word: f"javascript/{word}.js",
     CSharp: lambda word: f"unity/Core/{pascal(word)}.cs",
+    Cpp: lambda word: f"cpp/{word}.hpp",
     GDScript: lambda word: f"godot/addons/metagraph/core/{word}.gd",
 }
 

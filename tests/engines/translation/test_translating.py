@@ -14,6 +14,10 @@ from metagraph.engines.translation.lowering import module_of
 from metagraph.engines.translation.printing import TranslationError
 from metagraph.engines.translation.source import SubsetError
 from metagraph.engines.translation.translating import printed, read, translated, understood
+from metagraph.graph.model import Settings
+from metagraph.playback import markov, replan
+from metagraph.playback.choice import key32
+from metagraph.playback.plan import MetaAction, MetaRequest
 from tests.engines.translation import every_means
 
 HERE = Path(__file__).parent
@@ -65,6 +69,70 @@ def test_csharp_says_the_same(means: dict[str, str], tmp_path: Path) -> None:
     assert made.returncode == 0, made.stdout + made.stderr
     done = subprocess.run(["mono", "all.exe"], cwd=tmp_path, capture_output=True, text=True, timeout=60)
     assert _plain(done.stdout) == SAID, done.stderr
+
+
+def test_cpp_says_the_same(means: dict[str, str], tmp_path: Path) -> None:
+    if shutil.which("g++") is None:
+        pytest.skip("needs g++")
+    (tmp_path / "every_means.hpp").write_text(means[".hpp"])
+    calls = "\n".join(f"    std::cout << metagraph::every_means::{name}() << std::endl;" for name in MEANS)
+    assert _compiled(f'#include "every_means.hpp"\nint main() {{\n{calls}\n}}\n', tmp_path) == SAID
+
+
+def test_in_cpp_models_write_and_plans_are_made_anew_as_in_python(tmp_path: Path) -> None:
+    """The whole way through what is translated: draws, what a model writes, what replanning makes of it."""
+    if shutil.which("g++") is None:
+        pytest.skip("needs g++")
+    seed, until, busy = 7, 120.0, 3.25
+    metas, cursor = markov.write(markov.ARMS, seed, until)
+    request = MetaRequest("wave", "arms", "gesture", 10.0, 8.0, priority=3)
+    asked = [
+        MetaAction(request, 10.0, 18.0),
+        MetaAction(MetaRequest("nod", "arms", "fidget", 12.0), 12.0, 13.5),
+    ]
+    placed, reports = replan.replan([*metas, *asked], Settings(), busy)
+    said = [f"{key32(seed, 'a', 'ü')} {len(metas)} {cursor.number} {cursor.state} {cursor.time:.9f}"]
+    said += [f"{m.key} {m.request.kind} {m.request.limb or '-'} {m.start:.9f} {m.end:.9f}" for m in placed]
+    said += [f"{r.request} {r.outcome} {r.message}" for r in reports]
+    states = ", ".join(f'{{"{limb}", "{kind}"}}' for limb, kind in markov.ARMS.states)
+    rows = ", ".join("{" + ", ".join(repr(p) for p in row) + "}" for row in markov.ARMS.matrix)
+    code = f"""
+#include "replan.hpp"
+#include "markov.hpp"
+using namespace metagraph;
+int main() {{
+    const List<std::tuple<std::string, std::string>> states{{{states}}};
+    const List<List<double>> matrix{{{rows}}};
+    const auto chain = lang::made<Markov>("arms", states, matrix, {markov.ARMS.gap!r});
+    auto [metas, cursor] = markov::write(chain, {seed}, {until});
+    std::cout << choice::key32({seed}, {{"a", "ü"}}) << " " << metas.size() << " " << cursor->number
+              << " " << cursor->state << " " << lang::fixed(cursor->time, 9) << std::endl;
+    const auto wave = lang::made<MetaRequest>(
+        "wave", "arms", "gesture", 10.0, 8.0, std::nullopt, List<std::string>{{}}, std::nullopt,
+        std::nullopt, 3);
+    const auto nod = lang::made<MetaRequest>("nod", "arms", "fidget", 12.0);
+    metas.push_back(lang::made<MetaAction>(wave, 10.0, 18.0));
+    metas.push_back(lang::made<MetaAction>(nod, 12.0, 13.5));
+    auto [placed, reports] = replan::replan(metas, lang::made<Settings>(), {busy!r});
+    for (const auto& m : placed)
+        std::cout << m->key() << " " << m->request->kind << " " << m->request->limb.value_or("-") << " "
+                  << lang::fixed(m->start, 9) << " " << lang::fixed(m->end, 9) << std::endl;
+    for (const auto& r : reports)
+        std::cout << r->request << " " << r->outcome << " " << r->message << std::endl;
+}}
+"""
+    assert _compiled(code, tmp_path) == said
+
+
+def _compiled(code: str, folder: Path) -> list[str]:
+    """Return what a program says, compiled without a warning."""
+    (folder / "all.cpp").write_text("#include <iostream>\n" + code)
+    places = ["-I", str(folder), "-I", str(RUNTIMES / "cpp")]
+    command = ["g++", "-std=c++17", "-Wall", "-Wextra", "-Werror", *places, "-o", "all", "all.cpp"]
+    made = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
+    assert made.returncode == 0, made.stderr[:3000]
+    done = subprocess.run(["./all"], cwd=folder, capture_output=True, text=True, timeout=60)
+    return [line for line in done.stdout.splitlines() if line.strip()]
 
 
 def test_gdscript_says_the_same(means: dict[str, str], tmp_path: Path) -> None:

@@ -38,3 +38,27 @@ export class Markov {
     return this.tags.length > 0 ? this.tags[state] : "";
   }
 }
+
+/**
+ * Planner constants. alpha: how quickly a used action becomes unlikely (4 in the paper). seed: 32-bit.
+ *
+ * never_twice: an action is not played twice in a row where there is another. shortest: seconds below which the remainder of
+ * a cut meta action is not worth keeping. wait: how late, in seconds, a request may start. memory: seconds after which a use
+ * no longer counts, 0 for never (as in the paper). rest: least seconds in the stance between two actions of a layer.
+ * lookahead: seconds ahead of now in which a running plan is not changed any more.
+ *
+ * alpha: number; seed: number; neverTwice: boolean; shortest: number; wait: number; memory: number; rest: number; lookahead:
+ * number.
+ */
+export class Settings {
+  constructor(alpha = 4, seed = 1, neverTwice = true, shortest = 0.4, wait = 4, memory = 0, rest = 0, lookahead = 0.1) {
+    this.alpha = alpha;
+    this.seed = seed;
+    this.neverTwice = neverTwice;
+    this.shortest = shortest;
+    this.wait = wait;
+    this.memory = memory;
+    this.rest = rest;
+    this.lookahead = lookahead;
+  }
+}

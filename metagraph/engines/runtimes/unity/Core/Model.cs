@@ -56,4 +56,45 @@ namespace Metagraph
             return Tags.Count > 0 ? Tags[state] : "";
         }
     }
+
+    /// <summary>
+    /// Planner constants. alpha: how quickly a used action becomes unlikely (4 in the paper). seed: 32-bit.
+    ///
+    /// never_twice: an action is not played twice in a row where there is another. shortest: seconds below which the remainder of
+    /// a cut meta action is not worth keeping. wait: how late, in seconds, a request may start. memory: seconds after which a use
+    /// no longer counts, 0 for never (as in the paper). rest: least seconds in the stance between two actions of a layer.
+    /// lookahead: seconds ahead of now in which a running plan is not changed any more.
+    /// </summary>
+    public sealed class Settings
+    {
+        public readonly double Alpha;
+        public readonly int Seed;
+        public readonly bool NeverTwice;
+        public readonly double Shortest;
+        public readonly double Wait;
+        public readonly double Memory;
+        public readonly double Rest;
+        public readonly double Lookahead;
+
+        public Settings(
+            double alpha = 4.0,
+            int seed = 1,
+            bool neverTwice = true,
+            double shortest = 0.4,
+            double wait = 4.0,
+            double memory = 0.0,
+            double rest = 0.0,
+            double lookahead = 0.1
+        )
+        {
+            Alpha = alpha;
+            Seed = seed;
+            NeverTwice = neverTwice;
+            Shortest = shortest;
+            Wait = wait;
+            Memory = memory;
+            Rest = rest;
+            Lookahead = lookahead;
+        }
+    }
 }

@@ -48,3 +48,39 @@ class Markov:
 	# Return the tags a state asks for, "" for none.
 	func tag(state):
 		return self.tags[state] if self.tags.size() > 0 else ""
+
+
+# Planner constants. alpha: how quickly a used action becomes unlikely (4 in the paper). seed: 32-bit.
+#
+# never_twice: an action is not played twice in a row where there is another. shortest: seconds below which the remainder of a cut
+# meta action is not worth keeping. wait: how late, in seconds, a request may start. memory: seconds after which a use no longer
+# counts, 0 for never (as in the paper). rest: least seconds in the stance between two actions of a layer. lookahead: seconds
+# ahead of now in which a running plan is not changed any more.
+class Settings:
+	var alpha
+	var seed_
+	var never_twice
+	var shortest
+	var wait
+	var memory
+	var rest
+	var lookahead
+
+	func _init(
+		alpha_ = 4.0,
+		seed_ = 1,
+		never_twice_ = true,
+		shortest_ = 0.4,
+		wait_ = 4.0,
+		memory_ = 0.0,
+		rest_ = 0.0,
+		lookahead_ = 0.1
+	):
+		self.alpha = alpha_
+		self.seed_ = seed_
+		self.never_twice = never_twice_
+		self.shortest = shortest_
+		self.wait = wait_
+		self.memory = memory_
+		self.rest = rest_
+		self.lookahead = lookahead_

@@ -1,0 +1,180 @@
+// The Markov model that performs when nobody asks for anything: a first-order chain over (limb, kind).
+//
+// The arms matrix is the paper's (Borer et al., figure 11), learned from annotated casual conversation. Body and head
+// have no published matrix; theirs are ours, shaped on the paper's labels: the head nods and now and then changes its
+// tilt, the body mostly rests, shifts and fidgets. So are the shares of what is performed while one is said to idle,
+// listen or talk: hands gesture with one's own speech, the head nods at the other's.
+//
+// Translated from metagraph/playback/markov.py; change that, and translate anew.
+#pragma once
+
+#include "model.hpp"
+#include "words.hpp"
+#include "choice.hpp"
+#include "meta_plan.hpp"
+#include "language.hpp"
+
+namespace metagraph {
+
+
+namespace markov {
+
+inline const List<std::string> KINDS = List<std::string>{"gesture", "fidget", "transition"}; // as in `Markov.modes`
+inline const Ref<Cursor> BEGIN = lang::made<Cursor>();
+inline std::tuple<List<Ref<MetaAction>>, Ref<Cursor>> write(
+    const Ref<Markov>& chain,
+    std::uint32_t seed,
+    double until,
+    const std::optional<Set<std::string>>& kinds = std::nullopt,
+    const Ref<Cursor>& cursor = markov::BEGIN
+);
+inline Map<std::string, double> _row(const Ref<Markov>& chain, int state, const List<double>& open_to);
+inline bool performs(
+    const Ref<Markov>& chain,
+    std::uint32_t seed,
+    const Ref<MetaAction>& meta,
+    const std::optional<std::string>& mode
+);
+inline double length(const Ref<Markov>& chain, int state, std::uint32_t seed, const std::string& key);
+
+}  // namespace markov
+
+namespace markov {
+
+/// Return the meta actions that start before `until` seconds, from the cursor on, and the cursor before the first one
+/// left out.
+///
+/// Rests are drawn between 0.35 and 1.65 times the mean gap, windows as `length` says. kinds: what the graph has;
+/// states of other kinds are passed over, so that half-filled graphs perform too.
+///
+/// Each draw is keyed by the meta action's number, so a longer horizon only appends, and writing on from a cursor gives
+/// bit for bit what writing in one go does. A chain that cannot leave a row of zeros starts again from any state.
+inline std::tuple<List<Ref<MetaAction>>, Ref<Cursor>> write(
+    const Ref<Markov>& chain,
+    std::uint32_t seed,
+    double until,
+    const std::optional<Set<std::string>>& kinds,
+    const Ref<Cursor>& cursor
+) {
+    int number = cursor->number;
+    int state = cursor->state;
+    double time = cursor->time;
+    List<double> open_to;
+    for (const auto& [_, kind2] : chain->states) {
+        open_to.push_back((!kinds.has_value() || lang::contains(*kinds, kind2)) ? 1.0 : 0.0);
+    }
+    List<Ref<MetaAction>> out;
+    while (true) {
+        bool is_any = false;
+        for (const auto& p : open_to) {
+            if (p > 0) {
+                is_any = true;
+                break;
+            }
+        }
+        if (!is_any) {
+            break;
+        }
+        std::string key = lang::text("auto/", chain->layer, "/", number);
+        double start = time + chain->gap * (0.35 + 1.3 * choice::uniform(seed, List<std::string>{key, "gap"}));
+        if (!(start < until)) { // nor when it is no number
+            break;
+        }
+        state = std::stoi(choice::pick(seed, key, "state", markov::_row(chain, state, open_to)));
+        auto [limb, kind] = lang::at(chain->states, state);
+        double seconds = markov::length(chain, state, seed, key);
+        List<std::string> tags = lang::words(chain->tag(state));
+        if (kind == "gesture" && lang::len(chain->tags) == 0) {
+            double draw = choice::uniform(seed, List<std::string>{key, "tag"});
+            if (draw < chain->positive) {
+                tags = List<std::string>{"positive"};
+            } else if (draw < chain->positive + chain->negative) {
+                tags = List<std::string>{"negative"};
+            }
+        }
+        Ref<MetaRequest> request = lang::made<MetaRequest>(
+            key,
+            chain->layer,
+            kind,
+            start,
+            seconds,
+            std::nullopt,
+            tags,
+            limb,
+            std::nullopt,
+            meta_plan::WRITTEN
+        );
+        out.push_back(lang::made<MetaAction>(request, start, start + seconds, 0, true));
+        number = number + 1;
+        time = start + seconds;
+    }
+    return std::tuple<List<Ref<MetaAction>>, Ref<Cursor>>{out, lang::made<Cursor>(number, state, time)};
+}
+
+/// Return how likely each state is after a state (-1: before the first), by its place; any that may be where nothing
+/// leads on.
+inline Map<std::string, double> _row(const Ref<Markov>& chain, int state, const List<double>& open_to) {
+    List<double> row = open_to;
+    if (0 <= state && state < lang::len(row)) {
+        List<double> found;
+        for (int n = 0; n < lang::len(lang::at(chain->matrix, state)); n++) {
+            const auto& p = lang::at(lang::at(chain->matrix, state), n);
+            const auto& may = lang::at(open_to, n);
+            found.push_back(p * may);
+        }
+        row = found;
+    }
+    bool is_any = false;
+    for (const auto& p : row) {
+        if (p > 0) {
+            is_any = true;
+            break;
+        }
+    }
+    if (!is_any) {
+        row = open_to;
+    }
+    Map<std::string, double> found2;
+    for (int i = 0; i < lang::len(row); i++) {
+        const auto& p = lang::at(row, i);
+        found2[lang::text(i)] = p;
+    }
+    return found2;
+}
+
+/// Whether something the model wrote is performed while somebody idles, listens or talks (`Markov.modes`). What is left
+/// out leaves the rest as it was, so that it does not matter when a mode became known.
+inline bool performs(
+    const Ref<Markov>& chain,
+    std::uint32_t seed,
+    const Ref<MetaAction>& meta,
+    const std::optional<std::string>& mode
+) {
+    if (lang::len(chain->modes) == 0 || !mode.has_value() || !lang::contains(markov::KINDS, meta->request->kind)) {
+        return true;
+    }
+    double share = lang::at(lang::at(chain->modes, lang::index(words::MODES, *mode)), lang::index(markov::KINDS, meta->request->kind));
+    return share >= 1 || choice::uniform(seed, List<std::string>{meta->request->id, "mode"}) < share;
+}
+
+/// Return how many seconds meta action `key` lasts: 1 to 3, evenly, where the model has no lengths.
+///
+/// Else log-normal with the state's mean m and standard deviation s, from two uniform draws u, v in (0, 1) by Box and
+/// Muller, which any language can do alike: `a = ln(1 + (s / m)^2)`, `z = sqrt(-2 ln u) cos(2 pi v)`, `m exp(sqrt(a) z
+/// - a / 2)`.
+inline double length(const Ref<Markov>& chain, int state, std::uint32_t seed, const std::string& key) {
+    double u = choice::uniform(seed, List<std::string>{key, "length"});
+    if (lang::len(chain->lengths) == 0) {
+        return 1.0 + 2.0 * u;
+    }
+    auto [mean, deviation] = lang::at(chain->lengths, state);
+    double share = deviation / mean;
+    double spread = std::log1p(share * share);
+    double z = std::sqrt(-2.0 * std::log(u))
+        * std::cos(2.0 * lang::PI * choice::uniform(seed, List<std::string>{key, "length2"}));
+    return mean * std::exp(std::sqrt(spread) * z - spread / 2.0);
+}
+
+}  // namespace markov
+
+}  // namespace metagraph
