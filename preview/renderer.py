@@ -4,6 +4,7 @@ software.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -250,7 +251,9 @@ class Renderer:
                 1
             ]
             sky_from = int(np.clip((1 - edge) * height - 1, 0, height)) if np.isfinite(edge) else 0
-            self._ground(frame, (x, z, 4 * reach, 4 * reach), (right[0], right[2]), reach)
+            # Wide enough to reach both sides of the picture at its far edge.
+            wide = 4 * reach * max(1.0, 2 * math.tan(camera.fov / 2) * width / height)
+            self._ground(frame, (x, z, wide, 4 * reach), (right[0], right[2]), reach)
             if casters:
                 self._shadows(frame, casters)
         if sky_from < height:

@@ -65,7 +65,7 @@ COMMANDS: dict[str, tuple[str, bool, str]] = {
         True,
         "tell what stances a person's keypoints show, and let the character do as they do",
     ),
-    "speech": ("speech_command", False, "read a conversation of two into clauses, responses and hesitations"),
+    "speech": ("speech_command", False, "read a conversation into clauses, responses and hesitations"),
     "study": (
         "study_command",
         False,

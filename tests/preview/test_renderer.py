@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import moderngl
 import numpy as np
 import pytest
@@ -162,6 +164,15 @@ def test_every_point_is_painted_from_any_side(offscreen, pitch):
         picture = offscreen.render(Scene(), Camera(pitch=pitch, target=(3, 0.9, 1)), theme, SIZE)
         assert (picture[..., 3] == 255).all()
         assert picture[..., :3].min() > 15
+
+
+@pytest.mark.parametrize("size", [(1680, 400), (1600, 160), (120, 900)])
+@pytest.mark.parametrize("pitch", [2.0, 6.0, 30.0])
+def test_every_point_is_painted_however_wide_or_high_a_picture_is(offscreen, size, pitch):
+    for distance in (1.5, 6.0, 60.0):
+        camera = Camera(distance=distance).facing(0.3, math.radians(pitch))
+        picture = offscreen.render(Scene(), camera, size=size)
+        assert (picture[..., 3] == 255).all(), (distance, size, pitch)
 
 
 def test_size_can_change_between_frames(offscreen):
