@@ -184,14 +184,14 @@ class Report:
 @dataclass(frozen=True, slots=True)
 class Past:
     """What planning on needs of cues that were forgotten. free: when the last ended; stance: in which. uses:
-    how often each action was used. recent: the actions used last, by (stance, kind), the latest at the end.
+    how often each action was used. recent: the actions used last, by `sampling.node`, the latest at the end.
     ended: when each ended last.
     """
 
     free: float = 0.0
     stance: str = ""
     uses: Mapping[str, int] = field(default_factory=dict)
-    recent: Mapping[tuple[str, str], tuple[str, ...]] = field(default_factory=dict)
+    recent: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     ended: Mapping[str, float] = field(default_factory=dict)
 
 

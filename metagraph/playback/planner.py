@@ -13,7 +13,7 @@ from metagraph.playback import markov
 from metagraph.playback.life.schedule import schedule
 from metagraph.playback.plan import TEMPORAL, Cursor, LayerPlan, MetaAction, MetaRequest, Plan, Report
 from metagraph.playback.replan import delay, replan
-from metagraph.playback.sampling import FITS, Performer
+from metagraph.playback.sampling import FITS, performer_after
 
 WINDOW = 1.0  # seconds a request may use when it does not say how long
 
@@ -122,7 +122,7 @@ def _extend_layer(
         and r.request not in again
         and (r.outcome in TEMPORAL or (r.request, r.at) not in planned_again)
     ]
-    performer = Performer.after(project, graph, plan.seed, begin or "", old.past, kept)
+    performer = performer_after(project, graph, plan.seed, begin or "", old.past, kept)
     if not begin or not performer.begin(begin):
         why = f"the {layer} layer has no stance with a loop to begin in"
         reports += [

@@ -4,13 +4,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
-from metagraph.graph.expand import chain
 from metagraph.graph.model import Action, MetaGraph, Project
 from metagraph.playback.choice import pick
+from metagraph.playback.hashing import Bits
 from metagraph.playback.phases import LEAST_BLEND, phases
 from metagraph.playback.plan import Cue, MetaAction, MetaRequest, Outcome, Past, Report, Rest
 
@@ -47,35 +46,22 @@ class Shape:
 class Performer:
     """One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
 
-    uses: how often each action was used. recent: the last draws of each (stance, kind). ended: when each
-    action ended. begun: keys of meta actions whose chain of transitions plays already.
+    uses: how often each action was used. recent: the last draws of each `node`. ended: when each action
+    ended. begun: keys of meta actions whose chain of transitions plays already.
     """
 
     project: Project
     graph: MetaGraph
-    seed: int
+    seed: Bits
     stance: str
     free: float = 0.0
     uses: dict[str, int] = field(default_factory=dict)
-    recent: dict[tuple[str, str], tuple[str, ...]] = field(default_factory=dict)
+    recent: dict[str, tuple[str, ...]] = field(default_factory=dict)
     ended: dict[str, float] = field(default_factory=dict)
     cues: list[Cue] = field(default_factory=list)
     rests: list[Rest] = field(default_factory=list)
     reports: list[Report] = field(default_factory=list)
     begun: frozenset[str] = frozenset()
-
-    @classmethod
-    def after(
-        cls, project: Project, graph: MetaGraph, seed: int, begin: str, past: Past, cues: Sequence[Cue]
-    ) -> Performer:
-        """Return the performer that stands where cues have been played after a past."""
-        stance = past.stance if past.stance in graph.stances else begin
-        out = cls(
-            project, graph, seed, stance, past.free, dict(past.uses), dict(past.recent), dict(past.ended)
-        )
-        for cue in cues:
-            out.note(cue, cue.then if cue.then in graph.stances else begin)
-        return out
 
     def note(self, cue: Cue, then: str) -> None:
         """Take a cue as played."""
@@ -90,7 +76,7 @@ class Performer:
 
     def begin(self, stance: str) -> bool:
         """Lay the first loop down; return whether the layer can perform at all."""
-        loop = self._loop(stance, f"rest/{self.graph.layer}")
+        loop = self.loop(stance, f"rest/{self.graph.layer}")
         if loop is None:
             return False
         self.rests.append(Rest(stance, loop, 0.0, 0.0, 0.0))
@@ -98,11 +84,14 @@ class Performer:
 
     def perform(self, metas: Sequence[MetaAction], end: float) -> None:
         """Realise what starts before `end` of a conflict-free meta plan, in order."""
-        for meta, limit, wish in _bounds(metas):
+        for bound in _bounds(metas):
+            meta = bound.meta
             if meta.start >= end:
                 return
             if meta.end <= self.ready + FITS and meta.start < self.ready and meta.key not in self.begun:
-                running = f"'{self.cues[-1].action.name}'" if self.cues else "the running action"
+                running = "the running action"
+                if len(self.cues) > 0:
+                    running = f"'{self.cues[-1].action.name}'"
                 waits = self.ready - meta.request.start
                 # What is wanted for a certain time is over; what is wanted once may come late.
                 if meta.written or meta.request.duration is not None or waits > self.project.settings.wait:
@@ -110,8 +99,8 @@ class Performer:
                         meta, "covered", f"wholly covered by {running}, which plays until {self.free:.2f} s"
                     )
                     continue
-                self._tell(meta, "queued", f"waits {waits:.2f} s for {running}", played=True)
-            self._realise(meta, max(self.ready, meta.start), limit, wish)
+                self._tell(meta, "queued", f"waits {waits:.2f} s for {running}", True)
+            self._realise(meta, max(self.ready, meta.start), bound.limit, bound.wish)
 
     def _realise(self, meta: MetaAction, now: float, limit: float, wish: float) -> None:
         steps = self._steps(meta)
@@ -120,23 +109,23 @@ class Performer:
         cues: list[Cue] = []
         stance = self.stance
         for step in steps:
-            asked = None if step.hop else meta.request
+            hops = step.hop != ""
+            asked = None if hops else meta.request
             fitting = list(step.candidates)
             if limit < float("inf"):  # else all fit
-                shapes = ((a, self._shape(a, asked, now)) for a in step.candidates)
-                fitting = [a for a, shape in shapes if shape.start + shape.shortest <= limit + FITS]
-            if not fitting:
+                fitting = [a for a in step.candidates if self._fits(self._shape(a, asked, now), limit)]
+            if len(fitting) == 0:
                 before = "" if meta.written else " before something more important"
                 self._tell(meta, "no-room", f"nothing fits into the {max(0.0, limit - now):.2f} s{before}")
                 return
-            if not step.hop and meta.request.action is None:
+            if not hops and meta.request.action is None:
                 warm = [
                     a
                     for a in fitting
-                    if a.cooldown <= 0 or self._cooled(a, stance) <= self._shape(a, asked, now).start + FITS
+                    if a.cooldown <= 0 or self._cooled(a) <= self._shape(a, asked, now).start + FITS
                 ]
-                if not warm:
-                    soonest = min(self._cooled(a, stance) for a in fitting)
+                if len(warm) == 0:
+                    soonest = min([self._cooled(a) for a in fitting])
                     self._tell(
                         meta,
                         "cooling",
@@ -144,33 +133,30 @@ class Performer:
                     )
                     return
                 fitting = warm
-            action = self._draw(fitting, f"{meta.key}/{step.hop}" if step.hop else meta.key, now)
-            cue = self._cue(
-                action,
-                self._shape(action, asked, now),
-                limit,
-                float("inf") if step.hop else wish,
-                stance,
-                meta.key,
-            )
+            action = self._draw(fitting, f"{meta.key}/{step.hop}" if hops else meta.key, now)
+            shape = self._shape(action, asked, now)
+            cue = self._cue(action, shape, limit, float("inf") if hops else wish, stance, meta.key)
             cues.append(cue)
             now, stance = cue.end, cue.then
         for cue in cues:
             self._keep(cue)
 
-    def _cooled(self, action: Action, stance: str) -> float:
+    def _fits(self, shape: Shape, limit: float) -> bool:
+        """Whether something that plays so is over by a limit."""
+        return shape.start + shape.shortest <= limit + FITS
+
+    def _cooled(self, action: Action) -> float:
         """Return when an action may be drawn again."""
-        return (
-            self.ended[action.id] + action.cooldown
-            if action.cooldown > 0 and action.id in self.ended
-            else float("-inf")
-        )
+        if action.cooldown > 0 and action.id in self.ended:
+            return self.ended[action.id] + action.cooldown
+        return float("-inf")
 
     def _steps(self, meta: MetaAction) -> list[SamplingStep] | None:
         """Return each action in turn: the transitions to get there, then the action itself; None if
         impossible or needless.
         """
-        request, graph = meta.request, self.graph
+        request = meta.request
+        graph = self.graph
         if request.action is not None:
             action = graph.actions.get(request.action)
             if action is None or action.stance not in graph.stances:
@@ -185,7 +171,9 @@ class Performer:
             if not self._arrives(action):
                 self._tell(meta, "no-stance", f"'{action.name}' ends in a stance that has no loop")
                 return None
-            way = () if action.stance == self.stance else self._way(meta, action.stance)
+            if action.stance == self.stance:
+                return [SamplingStep([action])]
+            way = self._way(meta, action.stance)
             return None if way is None else [*way, SamplingStep([action])]
         if request.stance is not None and request.kind in ("transition", "stance"):
             if request.stance not in graph.stances:
@@ -195,21 +183,25 @@ class Performer:
                 return None
             return self._way(meta, request.stance)
         every = [a for a in graph.of(self.stance, request.kind) if self._usable(a)]
-        if request.among:
+        if len(request.among) > 0:
             every = [a for a in every if a.id in request.among]
-        found = [a for a in every if all(tag in a.tags for tag in request.tags)] if request.tags else every
-        exact = [a for a in found if a.limb == request.limb] if request.limb is not None else found
+        found = every
+        if len(request.tags) > 0:
+            found = [a for a in every if all(tag in a.tags for tag in request.tags)]
+        exact = found
+        if request.limb is not None:
+            exact = [a for a in found if a.limb == request.limb]
         if meta.written:  # the model's limb and tags are wishes, not orders, nor worth playing the same again
-            again = self.recent.get((self.stance, request.kind), ())[-1:]
-            wider = (exact, found, every)
-            exact = next((some for some in wider if any(a.id not in again for a in some)), wider[-1])
-        if not exact:
+            again = self.recent.get(node(self.stance, request.kind), ())[-1:]
+            if not any(a.id not in again for a in exact):
+                exact = found if any(a.id not in again for a in found) else every
+        if len(exact) == 0:
             name = graph.stances[self.stance].name
-            asked = " ".join(x for x in (request.limb or "", *request.tags, request.kind) if x)
-            if found:  # whose limb is a wish, too
-                self._tell(
-                    meta, "other-limb", f"stance '{name}' has no {asked}; another will do", played=True
-                )
+            asked = " ".join([*request.tags, request.kind])
+            if request.limb is not None:
+                asked = f"{request.limb} {asked}"
+            if len(found) > 0:  # whose limb is a wish, too
+                self._tell(meta, "other-limb", f"stance '{name}' has no {asked}; another will do", True)
                 return [SamplingStep(found)]
             hint = "" if meta.written else self._elsewhere(request)
             self._tell(meta, "no-candidate", f"stance '{name}' has no {asked}{hint}")
@@ -220,8 +212,8 @@ class Performer:
         for action in self.graph.actions.values():
             fits = (
                 action.kind == request.kind
-                and set(request.tags) <= set(action.tags)
-                and request.limb in (None, action.limb)
+                and all(tag in action.tags for tag in request.tags)
+                and (request.limb is None or request.limb == action.limb)
             )
             if fits and action.stance in self.graph.stances:
                 return f"; there is one in '{self.graph.stances[action.stance].name}'"
@@ -230,19 +222,17 @@ class Performer:
     def _way(self, meta: MetaAction, goal: str) -> list[SamplingStep] | None:
         """Return the transitions hop by hop from the current stance to `goal`."""
         if goal == self.stance:
-            self._tell(
-                meta,
-                "already-there",
-                f"the layer is in '{self.graph.stances[goal].name}' already",
-                played=True,
-            )
+            name = self.graph.stances[goal].name
+            self._tell(meta, "already-there", f"the layer is in '{name}' already", True)
             return None
-        stances = chain(_usable_graph(self.graph), self.stance, goal)
-        if stances is None:
-            a, b = self.graph.stances[self.stance].name, self.graph.stances[goal].name
+        stances = self._chain(goal)
+        if len(stances) == 0:
+            a = self.graph.stances[self.stance].name
+            b = self.graph.stances[goal].name
             self._tell(meta, "no-way", f"no chain of transitions leads from '{a}' to '{b}'")
             return None
-        steps, at = [], self.stance
+        steps: list[SamplingStep] = []
+        at = self.stance
         for following in stances:
             hops = [
                 a for a in self.graph.of(at, "transition") if a.end_stance == following and self._usable(a)
@@ -251,12 +241,38 @@ class Performer:
             at = following
         return steps
 
+    def _chain(self, goal: str) -> list[str]:
+        """Return the stances after the current one on the shortest way of transitions that can play, the goal
+        last; none where there is no way. Among equally short ones that whose transitions were placed first.
+        """
+        before = {self.stance: ""}
+        queue = [self.stance]
+        at = 0  # what is before it was looked at
+        while at < len(queue) and goal not in before:
+            stance = queue[at]
+            at += 1
+            for action in self.graph.of(stance, "transition"):
+                end = action.end_stance
+                if end is None or end in before or end not in self.graph.stances:
+                    continue
+                if self._usable(action):
+                    before[end] = stance
+                    queue.append(end)
+        way: list[str] = []
+        if goal not in before:
+            return way
+        step = goal
+        while step != self.stance:
+            way.append(step)
+            step = before[step]
+        return list(reversed(way))
+
     def _arrives(self, action: Action) -> bool:
         """Whether an action leaves the layer in a stance that can rest."""
         end = action.end_stance
-        return action.kind != "transition" or (
-            end in self.graph.stances and bool(self.graph.of(end or "", "stance"))
-        )
+        if action.kind != "transition":
+            return True
+        return end is not None and end in self.graph.stances and len(self.graph.of(end, "stance")) > 0
 
     def _usable(self, action: Action) -> bool:
         return action.likelihood > 0 and self._arrives(action)
@@ -265,23 +281,23 @@ class Performer:
         """Return how an action would play for a request from `now` on, or as a step on the way to it."""
         start, end = self.project.span(action)
         begin, entry, hold_from, hold_to, hold = now, start, 0.0, 0.0, 0.0
-        special = request is not None and (
-            request.hold is not None or request.stroke is not None or not request.prepare
-        )
-        if special and request is not None and action.kind == "gesture":
+        if (
+            request is not None
+            and action.kind == "gesture"
+            and (request.hold is not None or request.stroke is not None or not request.prepare)
+        ):
             found = phases(self.project, action)
             latest = found.skip(action.timing.blend_in)
             entry = start if request.prepare else latest
-            if (
-                request.stroke is not None
-            ):  # wait for the stroke, or catch up with it by cutting the preparation
+            # Wait for the stroke, or catch up with it by cutting the preparation.
+            if request.stroke is not None:
                 begin = max(now, request.stroke - (found.stroke - entry))
                 entry = min(max(entry, found.stroke - max(0.0, request.stroke - begin)), max(entry, latest))
             if request.hold is not None:
                 hold_from, hold_to = found.stroke_end, found.relax
                 hold = max(request.hold, (hold_to - hold_from) / HURRY)
                 if hold <= 0:
-                    hold_from = hold_to = 0.0
+                    hold_from, hold_to = 0.0, 0.0
         length = end - entry + hold - (hold_to - hold_from)
         shortest, exit_at = length, action.timing.earliest_exit
         if exit_at is not None:
@@ -293,14 +309,12 @@ class Performer:
         """Draw with p_k ~ likelihood_k / max(c_k, 1), leaving out those used too recently as long as any
         others are left.
         """
-        candidates = self._spaced(candidates)
-        weights = {a.id: a.likelihood / max(self._count(a.id, now), 1.0) for a in candidates}
-        chosen = (
-            pick(self.seed, key, "action", weights)
-            if any(w > 0 for w in weights.values())
-            else candidates[0].id
-        )
-        return next(a for a in candidates if a.id == chosen)
+        left = self._spaced(candidates)
+        weights = {a.id: a.likelihood / max(self._count(a.id, now), 1.0) for a in left}
+        if not any(w > 0 for w in weights.values()):
+            return left[0]
+        chosen = pick(self.seed, key, "action", weights)
+        return next(a for a in left if a.id == chosen)
 
     def _spaced(self, candidates: list[Action]) -> list[Action]:
         """Leave out what needs more other actions before it plays again; where that leaves nothing, all need
@@ -308,40 +322,44 @@ class Performer:
         """
         default = 1 if self.project.settings.never_twice else 0
         first = candidates[0]
-        before = self.recent.get((first.stance, first.kind), ())
-        if len(candidates) < 2 or not before:
+        before = self.recent.get(node(first.stance, first.kind), ())
+        if len(candidates) < 2 or len(before) == 0:
             return candidates
-        since = {
-            ident: len(before) - 1 - place for place, ident in enumerate(before)
-        }  # how many came after it
+        # How many came after each.
+        since = {ident: len(before) - 1 - place for place, ident in enumerate(before)}
         needs = {a.id: default if a.spacing is None else a.spacing for a in candidates}
-        for less in range(max(needs.values(), default=0) + 1):
+        for less in range(max([needs[a.id] for a in candidates]) + 1):
             left = [a for a in candidates if since.get(a.id, REMEMBERED) >= needs[a.id] - less]
-            if left:
+            if len(left) > 0:
                 return left
         return candidates
 
     def _count(self, ident: str, now: float) -> float:
         """Return c_k of section 6.2, alpha times the uses, over the settings' memory."""
-        memory, alpha = self.project.settings.memory, self.project.settings.alpha
+        memory = self.project.settings.memory
+        alpha = self.project.settings.alpha
         if memory <= 0:
             return alpha * self.uses.get(ident, 0)
         used = 0
         for cue in reversed(self.cues):
             if cue.start < now - memory:
                 break
-            used += cue.action.id == ident
+            if cue.action.id == ident:
+                used += 1
         return alpha * used
 
     def _cue(self, action: Action, shape: Shape, limit: float, wish: float, stance: str, meta: str) -> Cue:
         length = shape.length
         if action.timing.earliest_exit is not None:
             length = min(length, max(shape.shortest, min(limit, wish) - shape.start))
-        into, out = max(0.0, action.timing.blend_in), max(0.0, action.timing.blend_out)
+        into = max(0.0, action.timing.blend_in)
+        out = max(0.0, action.timing.blend_out)
         if shape.entry > self.project.span(action)[0]:
             into = max(into, LEAST_BLEND)
         squeeze = min(1.0, length / (into + out)) if into + out > 0 else 1.0
-        then = action.end_stance if action.kind == "transition" and action.end_stance else stance
+        then = stance
+        if action.kind == "transition" and action.end_stance is not None:
+            then = action.end_stance
         end = shape.start + length
         return Cue(
             action, shape.start, end, shape.entry, into * squeeze, out * squeeze, stance, then, meta,
@@ -350,24 +368,26 @@ class Performer:
 
     def _keep(self, cue: Cue) -> None:
         self.note(cue, cue.then)
-        loop = self._loop(cue.then, cue.meta)
+        loop = self.loop(cue.then, cue.meta)
         if loop is not None:
             # The loop begins anew under the action, so that the action's last pose meets the loop's first.
             # Where the action leaves joints alone the change shows, and takes its time: a transition all of
             # its own.
-            partial = cue.action.limb != "both" or bool(cue.action.joints)
-            begin, until = cue.start + cue.blend_in, cue.end - cue.blend_out
+            partial = cue.action.limb != "both" or len(cue.action.joints) > 0
+            begin = cue.start + cue.blend_in
+            until = cue.end - cue.blend_out
             fade = max(0.0, until - begin)
             if partial:
                 fade = cue.end - cue.start if cue.then != cue.stance else min(LOOP_FADE, cue.end - cue.start)
                 begin = max(cue.start, until - fade)
             self.rests.append(Rest(cue.then, loop, until, begin, fade))
 
-    def _loop(self, stance: str, key: str) -> Action | None:
+    def loop(self, stance: str, key: str) -> Action | None:
+        """Return one of a stance's loops, drawn by likelihood; None where it has none."""
         loops = self.graph.of(stance, "stance")
         weights = {a.id: a.likelihood for a in loops if a.likelihood > 0}
-        if not weights:
-            return loops[0] if loops else None
+        if len(weights) == 0:
+            return loops[0] if len(loops) > 0 else None
         chosen = pick(self.seed, key, "loop", weights)
         return next(a for a in loops if a.id == chosen)
 
@@ -386,53 +406,86 @@ class Performer:
                 change += max(1.0, stop - start - current.action.timing.blend_in)
                 if change > until:
                     break
-                loop = self._loop(rest.stance, f"{self.graph.layer}/{change:.3f}")
+                loop = self.loop(rest.stance, f"{self.graph.layer}/{change:.3f}")
                 if loop is not None and loop.id != current.action.id:
                     current = Rest(rest.stance, loop, change, change - LOOP_FADE, LOOP_FADE)
                     out.append(current)
         self.rests = out
 
-    def _tell(self, meta: MetaAction, outcome: Outcome, message: str, **more: Any) -> None:
+    def _tell(self, meta: MetaAction, outcome: Outcome, message: str, played: bool = False) -> None:
+        layer = self.graph.layer
         self.reports.append(
-            Report(
-                meta.request.id, outcome, message, self.graph.layer, meta.start, written=meta.written, **more
-            )
+            Report(meta.request.id, outcome, message, layer, meta.start, played, meta.written)
         )
 
 
-def _bounds(metas: Sequence[MetaAction]) -> list[tuple[MetaAction, float, float]]:
-    """Return each meta action with when the next more important one begins, and the next as important that
-    was asked for.
+def performer_after(
+    project: Project, graph: MetaGraph, seed: Bits, begin: str, past: Past, cues: Sequence[Cue]
+) -> Performer:
+    """Return the performer that stands where cues have been played after a past."""
+    stance = past.stance if past.stance in graph.stances else begin
+    out = Performer(
+        project, graph, seed, stance, past.free, dict(past.uses), dict(past.recent), dict(past.ended)
+    )
+    for cue in cues:
+        out.note(cue, cue.then if cue.then in graph.stances else begin)
+    return out
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """A meta action with when the next more important one begins (limit), and the next as important that was
+    asked for (wish); infinity where there is none.
     """
-    out = []
-    first: dict[tuple[float, bool], float] = {}  # (rank, written) -> start of the next such
+
+    meta: MetaAction
+    limit: float
+    wish: float
+
+
+@dataclass(slots=True)
+class _First:
+    """The first of some meta actions of a rank, written or asked for, and when it starts."""
+
+    rank: float
+    written: bool
+    start: float
+
+
+def _bounds(metas: Sequence[MetaAction]) -> list[Bound]:
+    """Return each meta action with what bounds it."""
+    out: list[Bound] = []
+    first: list[_First] = []
     for meta in reversed(metas):
-        limit = min((t for (rank, _), t in first.items() if rank > meta.rank), default=float("inf"))
-        wish = min(
-            (t for (rank, written), t in first.items() if rank >= meta.rank and not written),
-            default=float("inf"),
-        )
-        out.append((meta, limit, wish))
-        first[(meta.rank, meta.written)] = meta.start
-    return out[::-1]
+        limit = float("inf")
+        wish = float("inf")
+        own: _First | None = None
+        for one in first:
+            if one.rank > meta.rank:
+                limit = min(limit, one.start)
+            if one.rank >= meta.rank and not one.written:
+                wish = min(wish, one.start)
+            if one.rank == meta.rank and one.written == meta.written:
+                own = one
+        out.append(Bound(meta, limit, wish))
+        if own is None:
+            first.append(_First(meta.rank, meta.written, meta.start))
+        else:
+            own.start = meta.start
+    return list(reversed(out))
+
+
+def node(stance: str, kind: str) -> str:
+    """Return what draws of a stance and kind are remembered under."""
+    return f"{kind} {stance}"
 
 
 def remember(
-    cue: Cue, uses: dict[str, int], recent: dict[tuple[str, str], tuple[str, ...]], ended: dict[str, float]
+    cue: Cue, uses: dict[str, int], recent: dict[str, tuple[str, ...]], ended: dict[str, float]
 ) -> None:
     """Note that a cue was played: how often its action was, lately, and until when."""
-    ident, node = cue.action.id, (cue.stance, cue.action.kind)
+    ident = cue.action.id
+    place = node(cue.stance, cue.action.kind)
     uses[ident] = uses.get(ident, 0) + 1
-    recent[node] = (*recent.get(node, ())[1 - REMEMBERED :], ident)
+    recent[place] = (*recent.get(place, ())[1 - REMEMBERED :], ident)
     ended[ident] = cue.end
-
-
-def _usable_graph(graph: MetaGraph) -> MetaGraph:
-    """Return the graph without transitions that cannot play or lead into stances that have no loop."""
-    lost: Mapping[str, None] = {
-        a.id: None
-        for end, actions in graph.into.items()
-        for a in actions
-        if a.likelihood <= 0 or not graph.of(end, "stance")
-    }
-    return graph.with_actions(lost) if lost else graph
