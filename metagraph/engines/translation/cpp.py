@@ -31,6 +31,9 @@ SMALL = ("int", "bits", "float", "bool")
 CHANGING = ("list_append", "list_extend", "list_insert", "list_pop", "set_add")
 
 
+NATIVE = {"Project": "project", "MetaGraph": "project"}  # records that are not translated: their headers
+
+
 class Cpp(Printer):
     """One module, `name.hpp`. Records are told by `Ref`, which may be nothing."""
 
@@ -40,6 +43,7 @@ class Cpp(Printer):
     serial = 0  # of values taken apart in a function
 
     def text(self) -> str:
+        self.native: set[str] = set()
         records = [p for p in self.module.parts if isinstance(p, x.Record)]
         constants = [p for p in self.module.parts if isinstance(p, x.Constant)]
         functions = [p for p in self.module.parts if isinstance(p, x.Function)]
@@ -57,6 +61,11 @@ class Cpp(Printer):
             self.line(f"}}  // namespace {self.space(self.module.name)}")
         for record in records:
             self.record(record)
+        for record in records:
+            for method in record.methods:
+                self.out.append("")
+                self.line((*self.signature(method, record, False, f"{record.name}::"), " {"))
+                self.body(method)
         if functions:
             self.out.append("")
             self.line(f"namespace {self.space(self.module.name)} {{")
@@ -75,6 +84,8 @@ class Cpp(Printer):
         self.out.append("")
         for module in sorted(m for m in self.used if m != self.module.name):
             self.line(f'#include "{self.known(module)}.hpp"')
+        for name in sorted(self.native):
+            self.line(f'#include "{name}.hpp"')
         self.line('#include "language.hpp"')
         return (
             "\n".join([*self.out, "", "namespace metagraph {", "", *body, "", "}  // namespace metagraph"])
@@ -112,8 +123,7 @@ class Cpp(Printer):
         for method in node.methods:
             self.out.append("")
             self.documented(method.about)
-            self.line((*self.signature(method, node), " {"))
-            self.body(method)
+            self.line((*self.signature(method, node), ";"))
         self.depth -= 1
         self.line("};")
 
@@ -121,8 +131,9 @@ class Cpp(Printer):
         return f"{node.name}_" if node.type.bare.kind in SMALL else f"std::move({node.name}_)"
 
     def signature(
-        self, node: x.Function, record: x.Record | None = None, defaults: bool = True
+        self, node: x.Function, record: x.Record | None = None, defaults: bool = True, of: str = ""
     ) -> tuple[Document, ...]:
+        """of: the structure a method is defined outside of, "Name::"."""
         set_anew = {
             e.target.name
             for e in x.walk(node.body)
@@ -132,6 +143,10 @@ class Cpp(Printer):
             e.arguments[0].name
             for e in x.walk(node.body)
             if isinstance(e, x.Builtin) and e.name in CHANGING and isinstance(e.arguments[0], x.Local)
+        } | {
+            e.target.of.name
+            for e in x.walk(node.body)
+            if isinstance(e, x.Assign) and isinstance(e.target, x.Item) and isinstance(e.target.of, x.Local)
         }
         given = [
             self.parameter(
@@ -140,8 +155,8 @@ class Cpp(Printer):
             for p in node.parameters
         ]
         tail = " const" if record is not None and not record.changes else ""
-        lead = "" if record is not None else "inline "
-        return (f"{lead}{self.type(node.returns)} {self.word(node.name)}", listed("(", given, ")"), tail)
+        lead = "" if record is not None and not of else "inline "
+        return (f"{lead}{self.type(node.returns)} {of}{self.word(node.name)}", listed("(", given, ")"), tail)
 
     def function(self, node: x.Function) -> None:
         self.comments(node.comments)
@@ -183,7 +198,9 @@ class Cpp(Printer):
             case "set":
                 return f"Set<{self.type(kind.of[0])}>"
             case "record":
-                if kind.module != self.module.name:
+                if kind.name in NATIVE:
+                    self.native.add(NATIVE[kind.name])
+                elif kind.module != self.module.name:
                     self.used.setdefault(kind.module, set()).add(kind.name)
                 return f"Ref<{kind.name}>"
         if kind.kind in PLAIN:
@@ -331,7 +348,7 @@ class Cpp(Printer):
             case x.Member():
                 call = "()" if node.computed else ""
                 if isinstance(node.of, x.This):
-                    return self.word(node.name) + call, ALONE
+                    return f"this->{self.word(node.name)}{call}", ALONE
                 return (self.strong(node.of, ALONE), f"->{self.word(node.name)}{call}"), ALONE
             case x.Call():
                 return (

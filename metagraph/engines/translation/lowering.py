@@ -75,12 +75,13 @@ class _Lowering(Expressions):
                 given = None if isinstance(one.rvalue, m.TempNode) else self.default(one.rvalue, kind)
                 fields.append(x.Parameter(name.name, kind, given))
             elif isinstance(one, m.FuncDef):
-                if not one.name.startswith(
-                    "__"
-                ):  # what is checked when a record is made is checked in Python
+                native = f"{node.name}.{one.name}" in self.source.without
+                if (
+                    not one.name.startswith("__") and not native
+                ):  # records are checked where Python makes them
                     methods.append(self._function(one, ()))
             elif isinstance(one, m.Decorator):
-                if one.func.name.startswith("__"):
+                if one.func.name.startswith("__") or f"{node.name}.{one.func.name}" in self.source.without:
                     continue
                 names = [d.name for d in one.original_decorators if isinstance(d, m.NameExpr)]
                 if names != ["property"]:

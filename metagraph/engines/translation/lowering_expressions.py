@@ -161,7 +161,7 @@ class Expressions(Calls):
         out: list[x.Expression] = []
         for operator, (left, right) in zip(node.operators, pairwise(values), strict=True):
             if operator in ("in", "not in"):
-                one: x.Expression = x.Builtin(x.BOOL, "contains", (right, left))
+                one: x.Expression = x.Builtin(x.BOOL, "contains", (self.one_by_one(right), left))
                 out.append(one if operator == "in" else x.Negated(x.BOOL, "not", one))
             else:
                 bare = (

@@ -18,7 +18,8 @@ class SubsetError(Exception):
 
 @dataclass
 class Source:
-    """A Python module as mypy has it. only: the parts that are meant, all where empty. alone:
+    """A Python module as mypy has it. only: the parts that are meant, all where empty.
+    without: methods that are not. alone:
     comments by their line, those that have it for themselves; beside: those at the end of one.
     """
 
@@ -26,6 +27,7 @@ class Source:
     types: dict[m.Expression, t.Type]
     path: Path
     only: tuple[str, ...] = ()
+    without: tuple[str, ...] = ()
     alone: dict[int, str] = field(default_factory=dict)
     beside: dict[int, str] = field(default_factory=dict)
 

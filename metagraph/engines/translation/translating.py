@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from mypy import build
@@ -52,7 +53,16 @@ def understood(listing: Sequence[Translated], root: Path) -> dict[Translated, So
     wrong = [e for e in found.errors if e.rpartition("/")[2].startswith(own)]
     if wrong:  # elsewhere there are errors, too, since arrays are left out
         raise SubsetError("\n".join(wrong))
-    return {one: Source(found.files[one.module], found.types, path, one.only) for one, path in paths.items()}
+    return {
+        one: Source(
+            found.files[one.module],
+            found.types,
+            path,
+            (*one.only, *one.more) if one.only else (),
+            one.without,
+        )
+        for one, path in paths.items()
+    }
 
 
 def printed(modules: Mapping[Translated, x.Module], native: Mapping[str, str]) -> dict[str, str]:
@@ -75,8 +85,12 @@ def printed(modules: Mapping[Translated, x.Module], native: Mapping[str, str]) -
     def constant_of(node: x.Global) -> x.Expression:
         return constants.get((node.module, node.name), x.Value(x.NONE, None))
 
-    return {
-        place(one.word): language(module, known, record_of, constant_of).text()
-        for one, module in modules.items()
-        for language, place in PLACES.items()
-    }
+    out = {}
+    for one, module in modules.items():
+        for language, place in PLACES.items():
+            if one.languages and language.LANGUAGE not in one.languages:
+                continue
+            meant = tuple(p for p in module.parts if language.LANGUAGE == "cpp" or p.name not in one.more)
+            printer = language(replace(module, parts=meant), known, record_of, constant_of)
+            out[place(one.word)] = printer.text()
+    return out

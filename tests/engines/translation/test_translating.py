@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -14,10 +17,11 @@ from metagraph.engines.translation.lowering import module_of
 from metagraph.engines.translation.printing import TranslationError
 from metagraph.engines.translation.source import SubsetError
 from metagraph.engines.translation.translating import printed, read, translated, understood
-from metagraph.graph.model import Settings
-from metagraph.playback import markov, replan
+from metagraph.graph.edits import set_settings
+from metagraph.graph.model import LIMBS, MetaGraph, Project, Settings
+from metagraph.playback import markov, phases, replan, sampling
 from metagraph.playback.choice import key32
-from metagraph.playback.plan import MetaAction, MetaRequest
+from metagraph.playback.plan import MetaAction, MetaRequest, Past
 from tests.engines.translation import every_means
 
 HERE = Path(__file__).parent
@@ -122,6 +126,155 @@ int main() {{
 }}
 """
     assert _compiled(code, tmp_path) == said
+
+
+def test_in_cpp_a_layer_plays_what_it_plays_in_python(sample: Project, tmp_path: Path) -> None:
+    """An hour of the sample's arms: what the model writes, with requests of every kind between, each action,
+    rest and report.
+    """
+    if shutil.which("g++") is None:
+        pytest.skip("needs g++")
+    project = set_settings(sample, rest=0.2, memory=90.0)
+    graph, seed, end = project.graphs["arms"], 11, 3600.0
+    metas, _ = markov.write(markov.ARMS, seed, end)
+    asked = _requests(graph)
+    placed, _ = replan.replan(
+        [*metas, *(MetaAction(r, r.start, r.start + 1.5) for r in asked)], project.settings
+    )
+    performer = sampling.performer_after(project, graph, seed, graph.start or "", Past(), ())
+    assert performer.begin(graph.start or "")
+    performer.perform(placed, end)
+    performer.vary_rests(end)
+    said = [
+        f"{c.action.id} {c.stance} {c.then} {c.meta} "
+        + " ".join(f"{x:.9f}" for x in (c.start, c.end, c.entry, c.blend_in, c.blend_out, c.hold))
+        for c in performer.cues
+    ]
+    said += [
+        f"{r.stance} {r.action.id} {r.start:.9f} {r.fade_start:.9f} {r.fade:.9f}" for r in performer.rests
+    ]
+    said += [f"{r.request} {r.outcome} {r.message}" for r in performer.reports]
+    outcomes = {r.outcome for r in performer.reports}
+    assert len(performer.cues) > 800 and len(outcomes) >= 6, outcomes
+    code = f"""
+#include <fstream>
+#include "markov.hpp"
+#include "replan.hpp"
+#include "sampling.hpp"
+using namespace metagraph;
+using lang::made;
+{_graph_in_cpp(project, graph)}
+int main() {{
+    const auto project = made<Project>(settings(), phases_of());
+    const auto graph = made<MetaGraph>("arms", stances(), actions(), {_text(graph.start or "")});
+    auto [metas, cursor] = markov::write(chain(), {seed}, {end});
+    for (const auto& r : requests()) metas.push_back(made<MetaAction>(r, r->start, r->start + 1.5));
+    auto [placed, told] = replan::replan(metas, project->settings);
+    const auto performer = sampling::performer_after(
+        project, graph, {seed}, {_text(graph.start or "")}, made<Past>(), List<Ref<Cue>>{{}});
+    performer->begin({_text(graph.start or "")});
+    performer->perform(placed, {end});
+    performer->vary_rests({end});
+    for (const auto& c : performer->cues) {{
+        std::cout << c->action->id << " " << c->stance << " " << c->then << " " << c->meta;
+        for (double x : {{c->start, c->end, c->entry, c->blend_in, c->blend_out, c->hold}})
+            std::cout << " " << lang::fixed(x, 9);
+        std::cout << "\\n";
+    }}
+    for (const auto& r : performer->rests)
+        std::cout << r->stance << " " << r->action->id << " " << lang::fixed(r->start, 9) << " "
+                  << lang::fixed(r->fade_start, 9) << " " << lang::fixed(r->fade, 9) << "\\n";
+    for (const auto& r : performer->reports)
+        std::cout << r->request << " " << r->outcome << " " << r->message << "\\n";
+}}
+"""
+    assert _compiled(code, tmp_path) == said
+
+
+def _requests(graph: MetaGraph) -> list[MetaRequest]:
+    """Requests of every kind, some of which cannot be met."""
+    stances, actions = list(graph.stances), list(graph.actions.values())
+    gestures = [a for a in actions if a.kind == "gesture"]
+    out = []
+    for n in range(60):
+        at, limb = 20.0 + 55.0 * n, LIMBS[n % 3]
+        more: dict[str, Any] = [
+            {"kind": "gesture", "limb": limb},
+            {"kind": "gesture", "tags": ("positive",), "hold": 2.0, "stroke": at + 1.7},
+            {"kind": "transition", "stance": stances[n % len(stances)]},
+            {"kind": "gesture", "action": gestures[n % len(gestures)].id, "prepare": False},
+            {"kind": "fidget", "duration": 0.4, "tags": ("nowhere",)},
+            {"kind": "gesture", "action": "none"},
+            {"kind": "gesture", "priority": 5, "among": (gestures[0].id, gestures[3].id)},
+            {"kind": "transition", "stance": "none"},
+        ][n % 8]
+        out.append(MetaRequest(f"r{n}", "arms", start=at, **more))
+        out.append(MetaRequest(f"q{n}", "arms", "gesture", at + 0.4, 0.3, priority=n % 4))
+    return out
+
+
+def _text(value: str | None) -> str:
+    return "std::nullopt" if value is None else json.dumps(value, ensure_ascii=False)
+
+
+def _number(value: float | None) -> str:
+    return "std::nullopt" if value is None else repr(value)
+
+
+def _texts(values: Sequence[str]) -> str:
+    return "List<std::string>{" + ", ".join(map(_text, values)) + "}"
+
+
+def _graph_in_cpp(project: Project, graph: MetaGraph) -> str:
+    """What a layer is made of, as functions that give it."""
+    actions, phases_ = [], []
+    for a in graph.actions.values():
+        t = a.timing
+        times = [_number(x) for x in (t.start, t.end, t.blend_in, t.blend_out)]
+        timing = f"made<Timing>({', '.join(times)}, false, {_number(t.earliest_exit)})"
+        given = [_text(x) for x in (a.id, a.clip, a.kind, a.layer, a.stance, a.name, a.end_stance)]
+        rest = [_number(a.likelihood), _number(a.cooldown), _number(a.spacing)]
+        given += [timing, _text(a.limb), _texts(a.joints), _texts(a.tags), *rest]
+        actions.append(f"out.push_back(made<Action>({', '.join(given)}));")
+        found = phases.phases(project, a)
+        own = ", ".join(
+            map(repr, (found.start, found.ready, found.stroke, found.stroke_end, found.relax, found.end))
+        )
+        phases_.append(f"out[{_text(a.id)}] = made<Phases>({own});")
+    stances = ", ".join(
+        f"made<Stance>({_text(s.id)}, {_text(s.layer)}, {_text(s.name)})" for s in graph.stances.values()
+    )
+    asked = []
+    for r in _requests(graph):
+        given = [
+            _text(r.id),
+            _text(r.layer),
+            _text(r.kind),
+            repr(r.start),
+            _number(r.duration),
+            _text(r.action),
+        ]
+        given += [_texts(r.tags), _text(r.limb), _text(r.stance), str(r.priority), str(r.resume).lower()]
+        given += [_number(r.stroke), _number(r.hold), str(r.prepare).lower(), _texts(r.among)]
+        asked.append(f"out.push_back(made<MetaRequest>({', '.join(given)}));")
+    s = project.settings
+    twice = str(s.never_twice).lower()
+    settings = f"{s.alpha!r}, {s.seed}, {twice}, {s.shortest!r}, {s.wait!r}, {s.memory!r}, {s.rest!r}"
+    states = ", ".join(f'{{"{limb}", "{kind}"}}' for limb, kind in markov.ARMS.states)
+    rows = ", ".join("{" + ", ".join(repr(p) for p in row) + "}" for row in markov.ARMS.matrix)
+    return "\n".join(
+        (
+            f"Ref<Settings> settings() {{ return made<Settings>({settings}); }}",
+            f"List<Ref<Stance>> stances() {{ return {{{stances}}}; }}",
+            "List<Ref<Action>> actions() { List<Ref<Action>> out;", *actions, "return out; }",
+            "Map<std::string, Ref<Phases>> phases_of() { Map<std::string, Ref<Phases>> out;",
+            *phases_, "return out; }",
+            "List<Ref<MetaRequest>> requests() { List<Ref<MetaRequest>> out;", *asked, "return out; }",
+            "Ref<Markov> chain() {",
+            f"return made<Markov>(\"arms\", List<std::tuple<std::string, std::string>>{{{states}}},",
+            f"List<List<double>>{{{rows}}}, {markov.ARMS.gap!r}); }}",
+        )
+    )  # fmt: skip
 
 
 def _compiled(code: str, folder: Path) -> list[str]:

@@ -3,6 +3,7 @@
 // Translated from metagraph/playback/plan.py; change that, and translate anew.
 #pragma once
 
+#include "model.hpp"
 #include "language.hpp"
 
 namespace metagraph {
@@ -10,7 +11,10 @@ namespace metagraph {
 struct MetaRequest;
 struct Cursor;
 struct MetaAction;
+struct Cue;
+struct Rest;
 struct Report;
+struct Past;
 
 namespace meta_plan {
 
@@ -102,14 +106,71 @@ struct MetaAction {
         : request(std::move(request_)), start(start_), end(end_), part(part_), written(written_) {}
 
     /// How important it is: its request's priority; what a model wrote gives way to all that is asked for.
-    double rank() const {
-        return written ? -INFINITY : static_cast<double>(request->priority);
-    }
+    double rank() const;
 
     /// What keys this meta action's random draws.
-    std::string key() const {
-        return part == 0 ? request->id : lang::text(request->id, "+", part);
-    }
+    std::string key() const;
+};
+
+/// One action in the plan. It plays its clip from `entry` on during `start`..`end`, at its own speed but for its hold.
+///
+/// hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not stretched.
+/// blend_in, blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in.
+/// meta: key of the meta action it realises.
+struct Cue {
+    Ref<Action> action;
+    double start;
+    double end;
+    double entry;
+    double blend_in;
+    double blend_out;
+    std::string stance;
+    std::string then;
+    std::string meta;
+    double hold_from;
+    double hold_to;
+    double hold;
+
+    Cue(
+        Ref<Action> action_,
+        double start_,
+        double end_,
+        double entry_,
+        double blend_in_,
+        double blend_out_,
+        std::string stance_,
+        std::string then_,
+        std::string meta_,
+        double hold_from_ = 0.0,
+        double hold_to_ = 0.0,
+        double hold_ = 0.0
+    )
+        : action(std::move(action_)),
+            start(start_),
+            end(end_),
+            entry(entry_),
+            blend_in(blend_in_),
+            blend_out(blend_out_),
+            stance(std::move(stance_)),
+            then(std::move(then_)),
+            meta(std::move(meta_)),
+            hold_from(hold_from_),
+            hold_to(hold_to_),
+            hold(hold_) {}
+};
+
+/// The stance loop that lies under the cues from `start` on: loop seconds are `time - start`, wrapped.
+///
+/// fade_start, fade: when and for how many seconds it takes over from the loop before.
+struct Rest {
+    std::string stance;
+    Ref<Action> action;
+    double start;
+    double fade_start;
+    double fade;
+
+    Rest(std::string stance_, Ref<Action> action_, double start_, double fade_start_, double fade_)
+        : stance(std::move(stance_)), action(std::move(action_)), start(start_), fade_start(fade_start_), fade(fade_) {}
 };
 
 /// What became of a meta action that was not simply played as asked. played: whether something of it still plays.
@@ -139,5 +200,37 @@ struct Report {
             played(played_),
             written(written_) {}
 };
+
+/// What planning on needs of cues that were forgotten. free: when the last ended; stance: in which. uses: how often
+/// each action was used. recent: the actions used last, by `sampling.node`, the latest at the end. ended: when each
+/// ended last.
+struct Past {
+    double free;
+    std::string stance;
+    Map<std::string, int> uses;
+    Map<std::string, List<std::string>> recent;
+    Map<std::string, double> ended;
+
+    explicit Past(
+        double free_ = 0.0,
+        std::string stance_ = "",
+        Map<std::string, int> uses_ = Map<std::string, int>{},
+        Map<std::string, List<std::string>> recent_ = Map<std::string, List<std::string>>{},
+        Map<std::string, double> ended_ = Map<std::string, double>{}
+    )
+        : free(free_),
+            stance(std::move(stance_)),
+            uses(std::move(uses_)),
+            recent(std::move(recent_)),
+            ended(std::move(ended_)) {}
+};
+
+inline double MetaAction::rank() const {
+    return this->written ? -INFINITY : static_cast<double>(this->request->priority);
+}
+
+inline std::string MetaAction::key() const {
+    return this->part == 0 ? this->request->id : lang::text(this->request->id, "+", this->part);
+}
 
 }  // namespace metagraph

@@ -9,8 +9,118 @@
 
 namespace metagraph {
 
+struct Timing;
+struct Action;
+struct Stance;
 struct Markov;
 struct Settings;
+
+/// When an action plays within its clip; seconds of the clip.
+///
+/// start, end: the part that plays; `end` None is the clip's end. blend_in, blend_out: seconds of blending from and to
+/// the stance, within start..end (for a looping stance, blend_in is the overlap at the loop's seam). loop: repeats.
+/// earliest_exit: from here on the action may be left, or None to play it through. stroke: its most telling moment.
+/// ready, stroke_end, relax: where a gesture's preparation, stroke and hold end (its retraction ends with it); None as
+/// found from the motion (`playback.phases`).
+struct Timing {
+    double start;
+    std::optional<double> end;
+    double blend_in;
+    double blend_out;
+    bool loop;
+    std::optional<double> earliest_exit;
+    std::optional<double> stroke;
+    std::optional<double> ready;
+    std::optional<double> stroke_end;
+    std::optional<double> relax;
+
+    explicit Timing(
+        double start_ = 0.0,
+        std::optional<double> end_ = std::nullopt,
+        double blend_in_ = 0.2,
+        double blend_out_ = 0.3,
+        bool loop_ = false,
+        std::optional<double> earliest_exit_ = std::nullopt,
+        std::optional<double> stroke_ = std::nullopt,
+        std::optional<double> ready_ = std::nullopt,
+        std::optional<double> stroke_end_ = std::nullopt,
+        std::optional<double> relax_ = std::nullopt
+    )
+        : start(start_),
+            end(end_),
+            blend_in(blend_in_),
+            blend_out(blend_out_),
+            loop(loop_),
+            earliest_exit(earliest_exit_),
+            stroke(stroke_),
+            ready(ready_),
+            stroke_end(stroke_end_),
+            relax(relax_) {}
+};
+
+/// One use of a clip in the graph.
+///
+/// stance: id of the stance it starts from (for kind "stance", the stance whose loop it is). end_stance: only for
+/// transitions. limb: which arm it needs; the other keeps to the stance. joints: names of the only joints it moves;
+/// empty means all. tags: free words, "positive" and "negative" among them. likelihood: relative, > 0. cooldown:
+/// seconds after it has ended in which it is not drawn again. spacing: how many other actions of its kind and stance
+/// are drawn before it may be drawn again; None as the settings' never_twice says.
+struct Action {
+    std::string id;
+    std::string clip;
+    std::string kind;
+    std::string layer;
+    std::string stance;
+    std::string name;
+    std::optional<std::string> end_stance;
+    Ref<Timing> timing;
+    std::string limb;
+    List<std::string> joints;
+    List<std::string> tags;
+    double likelihood;
+    double cooldown;
+    std::optional<int> spacing;
+
+    Action(
+        std::string id_,
+        std::string clip_,
+        std::string kind_,
+        std::string layer_,
+        std::string stance_,
+        std::string name_,
+        std::optional<std::string> end_stance_ = std::nullopt,
+        Ref<Timing> timing_ = lang::made<Timing>(),
+        std::string limb_ = "both",
+        List<std::string> joints_ = List<std::string>{},
+        List<std::string> tags_ = List<std::string>{},
+        double likelihood_ = 1.0,
+        double cooldown_ = 0.0,
+        std::optional<int> spacing_ = std::nullopt
+    )
+        : id(std::move(id_)),
+            clip(std::move(clip_)),
+            kind(std::move(kind_)),
+            layer(std::move(layer_)),
+            stance(std::move(stance_)),
+            name(std::move(name_)),
+            end_stance(std::move(end_stance_)),
+            timing(std::move(timing_)),
+            limb(std::move(limb_)),
+            joints(std::move(joints_)),
+            tags(std::move(tags_)),
+            likelihood(likelihood_),
+            cooldown(cooldown_),
+            spacing(spacing_) {}
+};
+
+struct Stance {
+    std::string id;
+    std::string layer;
+    std::string name;
+
+    Stance(std::string id_, std::string layer_, std::string name_)
+        : id(std::move(id_)), layer(std::move(layer_)), name(std::move(name_)) {}
+};
 
 /// A first-order model over (limb, kind) that writes meta actions when nobody asks for any (Borer et al., 7.3).
 ///
@@ -53,9 +163,7 @@ struct Markov {
             modes(std::move(modes_)) {}
 
     /// Return the tags a state asks for, "" for none.
-    std::string tag(int state) const {
-        return !tags.empty() ? lang::at(tags, state) : std::string("");
-    }
+    std::string tag(int state) const;
 };
 
 /// Planner constants. alpha: how quickly a used action becomes unlikely (4 in the paper). seed: 32-bit.
@@ -93,5 +201,9 @@ struct Settings {
             rest(rest_),
             lookahead(lookahead_) {}
 };
+
+inline std::string Markov::tag(int state) const {
+    return !this->tags.empty() ? lang::at(this->tags, state) : std::string("");
+}
 
 }  // namespace metagraph

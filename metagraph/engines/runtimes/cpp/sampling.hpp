@@ -1,0 +1,915 @@
+// From a meta plan to specific actions: candidates, the three temporal cases, the draw (Borer et al., section 6.2).
+//
+// Translated from metagraph/playback/sampling.py; change that, and translate anew.
+#pragma once
+
+#include "model.hpp"
+#include "choice.hpp"
+#include "phases.hpp"
+#include "meta_plan.hpp"
+#include "project.hpp"
+#include "language.hpp"
+
+namespace metagraph {
+
+struct SamplingStep;
+struct Shape;
+struct Performer;
+struct Bound;
+struct _First;
+
+namespace sampling {
+
+inline constexpr double FITS = 1e-06; // seconds by which sums of times may be off
+inline constexpr int REMEMBERED = 32; // draws of a stance and kind that spacing can look back on
+inline constexpr double HURRY = 2.0; // a hold is played at most this many times as fast as it was made
+// seconds of crossfade when a long rest changes from one loop of its stance to another
+inline constexpr double LOOP_FADE = 0.6;
+inline Ref<Performer> performer_after(
+    const Ref<Project>& project,
+    const Ref<MetaGraph>& graph,
+    std::uint32_t seed,
+    const std::string& begin,
+    const Ref<Past>& past,
+    const List<Ref<Cue>>& cues
+);
+inline List<Ref<Bound>> _bounds(const List<Ref<MetaAction>>& metas);
+inline std::string node(const std::string& stance, const std::string& kind);
+inline void remember(
+    const Ref<Cue>& cue,
+    Map<std::string, int>& uses,
+    Map<std::string, List<std::string>>& recent,
+    Map<std::string, double>& ended
+);
+
+}  // namespace sampling
+
+/// One action of a chain: who may play it, and for a transition on the way the stance it leads to.
+struct SamplingStep {
+    List<Ref<Action>> candidates;
+    std::string hop;
+
+    explicit SamplingStep(List<Ref<Action>> candidates_, std::string hop_ = "")
+        : candidates(std::move(candidates_)), hop(std::move(hop_)) {}
+};
+
+/// How an action would play: from `start` on, `length` seconds, at least `shortest`; the rest as in a cue.
+struct Shape {
+    double start;
+    double entry;
+    double length;
+    double shortest;
+    double hold_from;
+    double hold_to;
+    double hold;
+
+    Shape(
+        double start_,
+        double entry_,
+        double length_,
+        double shortest_,
+        double hold_from_ = 0.0,
+        double hold_to_ = 0.0,
+        double hold_ = 0.0
+    )
+        : start(start_),
+            entry(entry_),
+            length(length_),
+            shortest(shortest_),
+            hold_from(hold_from_),
+            hold_to(hold_to_),
+            hold(hold_) {}
+};
+
+/// One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
+///
+/// uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun:
+/// keys of meta actions whose chain of transitions plays already.
+struct Performer {
+    Ref<Project> project;
+    Ref<MetaGraph> graph;
+    int seed;
+    std::string stance;
+    double free;
+    Map<std::string, int> uses;
+    Map<std::string, List<std::string>> recent;
+    Map<std::string, double> ended;
+    List<Ref<Cue>> cues;
+    List<Ref<Rest>> rests;
+    List<Ref<Report>> reports;
+    Set<std::string> begun;
+
+    Performer(
+        Ref<Project> project_,
+        Ref<MetaGraph> graph_,
+        int seed_,
+        std::string stance_,
+        double free_ = 0.0,
+        Map<std::string, int> uses_ = Map<std::string, int>{},
+        Map<std::string, List<std::string>> recent_ = Map<std::string, List<std::string>>{},
+        Map<std::string, double> ended_ = Map<std::string, double>{},
+        List<Ref<Cue>> cues_ = List<Ref<Cue>>{},
+        List<Ref<Rest>> rests_ = List<Ref<Rest>>{},
+        List<Ref<Report>> reports_ = List<Ref<Report>>{},
+        Set<std::string> begun_ = Set<std::string>{}
+    )
+        : project(std::move(project_)),
+            graph(std::move(graph_)),
+            seed(seed_),
+            stance(std::move(stance_)),
+            free(free_),
+            uses(std::move(uses_)),
+            recent(std::move(recent_)),
+            ended(std::move(ended_)),
+            cues(std::move(cues_)),
+            rests(std::move(rests_)),
+            reports(std::move(reports_)),
+            begun(std::move(begun_)) {}
+
+    /// Take a cue as played.
+    void note(const Ref<Cue>& cue, const std::string& then);
+
+    /// When the next action may begin at the earliest.
+    double ready();
+
+    /// Lay the first loop down; return whether the layer can perform at all.
+    bool begin(const std::string& stance);
+
+    /// Realise what starts before `end` of a conflict-free meta plan, in order.
+    void perform(const List<Ref<MetaAction>>& metas, double end);
+
+    void _realise(const Ref<MetaAction>& meta, double now, double limit, double wish);
+
+    /// Whether something that plays so is over by a limit.
+    bool _fits(const Ref<Shape>& shape, double limit);
+
+    /// Return when an action may be drawn again.
+    double _cooled(const Ref<Action>& action);
+
+    /// Return each action in turn: the transitions to get there, then the action itself; None if impossible or
+    /// needless.
+    std::optional<List<Ref<SamplingStep>>> _steps(const Ref<MetaAction>& meta);
+
+    std::string _elsewhere(const Ref<MetaRequest>& request);
+
+    /// Return the transitions hop by hop from the current stance to `goal`.
+    std::optional<List<Ref<SamplingStep>>> _way(const Ref<MetaAction>& meta, const std::string& goal);
+
+    /// Return the stances after the current one on the shortest way of transitions that can play, the goal last; none
+    /// where there is no way. Among equally short ones that whose transitions were placed first.
+    List<std::string> _chain(const std::string& goal);
+
+    /// Whether an action leaves the layer in a stance that can rest.
+    bool _arrives(const Ref<Action>& action);
+
+    bool _usable(const Ref<Action>& action);
+
+    /// Return how an action would play for a request from `now` on, or as a step on the way to it.
+    Ref<Shape> _shape(const Ref<Action>& action, const Ref<MetaRequest>& request, double now);
+
+    /// Draw with p_k ~ likelihood_k / max(c_k, 1), leaving out those used too recently as long as any others are left.
+    Ref<Action> _draw(const List<Ref<Action>>& candidates, const std::string& key, double now);
+
+    /// Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and
+    /// so on.
+    List<Ref<Action>> _spaced(const List<Ref<Action>>& candidates);
+
+    /// Return c_k of section 6.2, alpha times the uses, over the settings' memory.
+    double _count(const std::string& ident, double now);
+
+    Ref<Cue> _cue(
+        const Ref<Action>& action,
+        const Ref<Shape>& shape,
+        double limit,
+        double wish,
+        const std::string& stance,
+        const std::string& meta
+    );
+
+    void _keep(const Ref<Cue>& cue);
+
+    /// Return one of a stance's loops, drawn by likelihood; None where it has none.
+    Ref<Action> loop(const std::string& stance, const std::string& key);
+
+    /// Where a stance has several loops, change between them in long rests, at a loop's end.
+    void vary_rests(double end);
+
+    void _tell(
+        const Ref<MetaAction>& meta,
+        const std::string& outcome,
+        const std::string& message,
+        bool played = false
+    );
+};
+
+/// A meta action with when the next more important one begins (limit), and the next as important that was asked for
+/// (wish); infinity where there is none.
+struct Bound {
+    Ref<MetaAction> meta;
+    double limit;
+    double wish;
+
+    Bound(Ref<MetaAction> meta_, double limit_, double wish_)
+        : meta(std::move(meta_)), limit(limit_), wish(wish_) {}
+};
+
+/// The first of some meta actions of a rank, written or asked for, and when it starts.
+struct _First {
+    double rank;
+    bool written;
+    double start;
+
+    _First(double rank_, bool written_, double start_)
+        : rank(rank_), written(written_), start(start_) {}
+};
+
+inline void Performer::note(const Ref<Cue>& cue, const std::string& then) {
+    this->cues.push_back(cue);
+    this->free = cue->end;
+    this->stance = then;
+    sampling::remember(cue, this->uses, this->recent, this->ended);
+}
+
+inline double Performer::ready() {
+    return this->free + (!this->ended.empty() ? this->project->settings->rest : 0.0);
+}
+
+inline bool Performer::begin(const std::string& stance) {
+    Ref<Action> loop = this->loop(stance, lang::text("rest/", this->graph->layer));
+    if (loop == nullptr) {
+        return false;
+    }
+    this->rests.push_back(lang::made<Rest>(stance, loop, 0.0, 0.0, 0.0));
+    return true;
+}
+
+inline void Performer::perform(const List<Ref<MetaAction>>& metas, double end) {
+    for (const auto& bound : sampling::_bounds(metas)) {
+        Ref<MetaAction> meta = bound->meta;
+        if (meta->start >= end) {
+            return;
+        }
+        if (meta->end <= this->ready() + sampling::FITS
+            && meta->start < this->ready()
+            && !lang::contains(this->begun, meta->key())) {
+            std::string running = "the running action";
+            if (lang::len(this->cues) > 0) {
+                running = lang::text("'", lang::at(this->cues, -1)->action->name, "'");
+            }
+            double waits = this->ready() - meta->request->start;
+            // What is wanted for a certain time is over; what is wanted once may come late.
+            if (meta->written || meta->request->duration.has_value() || waits > this->project->settings->wait) {
+                this->_tell(
+                    meta,
+                    "covered",
+                    lang::text("wholly covered by ", running, ", which plays until ", lang::fixed(this->free, 2), " s")
+                );
+                continue;
+            }
+            this->_tell(meta, "queued", lang::text("waits ", lang::fixed(waits, 2), " s for ", running), true);
+        }
+        this->_realise(meta, std::max(this->ready(), meta->start), bound->limit, bound->wish);
+    }
+}
+
+inline void Performer::_realise(const Ref<MetaAction>& meta, double now, double limit, double wish) {
+    std::optional<List<Ref<SamplingStep>>> steps = this->_steps(meta);
+    if (!steps.has_value()) {
+        return;
+    }
+    List<Ref<Cue>> cues;
+    std::string stance = this->stance;
+    Ref<Cue> cue{};
+    for (const auto& step : *steps) {
+        bool hops = step->hop != "";
+        Ref<MetaRequest> asked = hops ? nullptr : meta->request;
+        List<Ref<Action>> fitting = step->candidates;
+        if (limit < INFINITY) { // else all fit
+            List<Ref<Action>> found;
+            for (const auto& a : step->candidates) {
+                if (this->_fits(this->_shape(a, asked, now), limit)) {
+                    found.push_back(a);
+                }
+            }
+            fitting = found;
+        }
+        if (lang::len(fitting) == 0) {
+            std::string before = meta->written ? std::string("") : std::string(" before something more important");
+            this->_tell(
+                meta,
+                "no-room",
+                lang::text("nothing fits into the ", lang::fixed(std::max(0.0, limit - now), 2), " s", before)
+            );
+            return;
+        }
+        if (!hops && !meta->request->action.has_value()) {
+            List<Ref<Action>> warm;
+            for (const auto& a : fitting) {
+                if (a->cooldown <= 0 || this->_cooled(a) <= this->_shape(a, asked, now)->start + sampling::FITS) {
+                    warm.push_back(a);
+                }
+            }
+            if (lang::len(warm) == 0) {
+                List<double> found2;
+                for (const auto& a : fitting) {
+                    found2.push_back(this->_cooled(a));
+                }
+                double soonest = lang::min_of(found2);
+                this->_tell(
+                    meta,
+                    "cooling",
+                    lang::text(
+                        "all that fit are cooling down; the first may play again at ",
+                        lang::fixed(soonest, 2),
+                        " s"
+                    )
+                );
+                return;
+            }
+            fitting = warm;
+        }
+        Ref<Action> action = this->_draw(fitting, hops ? lang::text(meta->key(), "/", step->hop) : meta->key(), now);
+        Ref<Shape> shape = this->_shape(action, asked, now);
+        cue = this->_cue(action, shape, limit, hops ? INFINITY : wish, stance, meta->key());
+        cues.push_back(cue);
+        now = cue->end;
+        stance = cue->then;
+    }
+    for (const auto& cue : cues) {
+        this->_keep(cue);
+    }
+}
+
+inline bool Performer::_fits(const Ref<Shape>& shape, double limit) {
+    return shape->start + shape->shortest <= limit + sampling::FITS;
+}
+
+inline double Performer::_cooled(const Ref<Action>& action) {
+    if (action->cooldown > 0 && lang::contains(this->ended, action->id)) {
+        return this->ended.at(action->id) + action->cooldown;
+    }
+    return -INFINITY;
+}
+
+inline std::optional<List<Ref<SamplingStep>>> Performer::_steps(const Ref<MetaAction>& meta) {
+    Ref<MetaRequest> request = meta->request;
+    Ref<MetaGraph> graph = this->graph;
+    if (request->action.has_value()) {
+        Ref<Action> action = lang::get(graph->actions, *request->action);
+        if (action == nullptr || !lang::contains(graph->stances, action->stance)) {
+            this->_tell(
+                meta,
+                "unknown-action",
+                lang::text("there is no action '", *request->action, "' in the ", graph->layer, " layer")
+            );
+            return std::nullopt;
+        }
+        if (action->kind == "stance") {
+            return this->_way(meta, action->stance);
+        }
+        if (!this->_arrives(action)) {
+            this->_tell(meta, "no-stance", lang::text("'", action->name, "' ends in a stance that has no loop"));
+            return std::nullopt;
+        }
+        if (action->stance == this->stance) {
+            return List<Ref<SamplingStep>>{lang::made<SamplingStep>(List<Ref<Action>>{action})};
+        }
+        std::optional<List<Ref<SamplingStep>>> way = this->_way(meta, action->stance);
+        return !way.has_value()
+            ? std::nullopt
+            : std::optional<List<Ref<SamplingStep>>>(lang::together(
+                *way,
+                List<Ref<SamplingStep>>{lang::made<SamplingStep>(List<Ref<Action>>{action})}
+            ));
+    }
+    if (request->stance.has_value() && lang::contains(List<std::string>{"transition", "stance"}, request->kind)) {
+        if (!lang::contains(graph->stances, *request->stance)) {
+            this->_tell(
+                meta,
+                "no-stance",
+                lang::text("there is no stance '", *request->stance, "' in the ", graph->layer, " layer")
+            );
+            return std::nullopt;
+        }
+        return this->_way(meta, *request->stance);
+    }
+    List<Ref<Action>> every;
+    for (const auto& a : graph->of(this->stance, request->kind)) {
+        if (this->_usable(a)) {
+            every.push_back(a);
+        }
+    }
+    if (lang::len(request->among) > 0) {
+        List<Ref<Action>> found2;
+        for (const auto& a : every) {
+            if (lang::contains(request->among, a->id)) {
+                found2.push_back(a);
+            }
+        }
+        every = found2;
+    }
+    List<Ref<Action>> found = every;
+    if (lang::len(request->tags) > 0) {
+        List<Ref<Action>> found3;
+        for (const auto& a : every) {
+            bool are_all = true;
+            for (const auto& tag : request->tags) {
+                if (!lang::contains(a->tags, tag)) {
+                    are_all = false;
+                    break;
+                }
+            }
+            if (are_all) {
+                found3.push_back(a);
+            }
+        }
+        found = found3;
+    }
+    List<Ref<Action>> exact = found;
+    if (request->limb.has_value()) {
+        List<Ref<Action>> found4;
+        for (const auto& a : found) {
+            if (a->limb == *request->limb) {
+                found4.push_back(a);
+            }
+        }
+        exact = found4;
+    }
+    if (meta->written) { // the model's limb and tags are wishes, not orders, nor worth playing the same again
+        List<std::string> again = lang::part(
+            lang::get_or(this->recent, sampling::node(this->stance, request->kind), List<std::string>{}),
+            -1
+        );
+        bool is_any = false;
+        for (const auto& a : exact) {
+            if (!lang::contains(again, a->id)) {
+                is_any = true;
+                break;
+            }
+        }
+        if (!is_any) {
+            bool is_any2 = false;
+            for (const auto& a : found) {
+                if (!lang::contains(again, a->id)) {
+                    is_any2 = true;
+                    break;
+                }
+            }
+            exact = is_any2 ? found : every;
+        }
+    }
+    if (lang::len(exact) == 0) {
+        std::string name = graph->stances.at(this->stance)->name;
+        std::string asked = lang::joined(lang::together(request->tags, List<std::string>{request->kind}), " ");
+        if (request->limb.has_value()) {
+            asked = lang::text(*request->limb, " ", asked);
+        }
+        if (lang::len(found) > 0) { // whose limb is a wish, too
+            this->_tell(
+                meta,
+                "other-limb",
+                lang::text("stance '", name, "' has no ", asked, "; another will do"),
+                true
+            );
+            return List<Ref<SamplingStep>>{lang::made<SamplingStep>(found)};
+        }
+        std::string hint = meta->written ? std::string("") : this->_elsewhere(request);
+        this->_tell(meta, "no-candidate", lang::text("stance '", name, "' has no ", asked, hint));
+        return std::nullopt;
+    }
+    return List<Ref<SamplingStep>>{lang::made<SamplingStep>(exact)};
+}
+
+inline std::string Performer::_elsewhere(const Ref<MetaRequest>& request) {
+    for (const auto& action : lang::values(this->graph->actions)) {
+        bool holds = action->kind == request->kind;
+        if (holds) {
+            bool are_all = true;
+            for (const auto& tag : request->tags) {
+                if (!lang::contains(action->tags, tag)) {
+                    are_all = false;
+                    break;
+                }
+            }
+            holds = are_all;
+        }
+        if (holds) {
+            holds = !request->limb.has_value() || *request->limb == action->limb;
+        }
+        bool fits = holds;
+        if (fits && lang::contains(this->graph->stances, action->stance)) {
+            return lang::text("; there is one in '", this->graph->stances.at(action->stance)->name, "'");
+        }
+    }
+    return "";
+}
+
+inline std::optional<List<Ref<SamplingStep>>> Performer::_way(const Ref<MetaAction>& meta, const std::string& goal) {
+    if (goal == this->stance) {
+        std::string name = this->graph->stances.at(goal)->name;
+        this->_tell(meta, "already-there", lang::text("the layer is in '", name, "' already"), true);
+        return std::nullopt;
+    }
+    List<std::string> stances = this->_chain(goal);
+    if (lang::len(stances) == 0) {
+        std::string a = this->graph->stances.at(this->stance)->name;
+        std::string b = this->graph->stances.at(goal)->name;
+        this->_tell(meta, "no-way", lang::text("no chain of transitions leads from '", a, "' to '", b, "'"));
+        return std::nullopt;
+    }
+    List<Ref<SamplingStep>> steps;
+    std::string at = this->stance;
+    for (const auto& following : stances) {
+        List<Ref<Action>> hops;
+        for (const auto& a2 : this->graph->of(at, "transition")) {
+            if (a2->end_stance == following && this->_usable(a2)) {
+                hops.push_back(a2);
+            }
+        }
+        steps.push_back(lang::made<SamplingStep>(hops, following));
+        at = following;
+    }
+    return steps;
+}
+
+inline List<std::string> Performer::_chain(const std::string& goal) {
+    Map<std::string, std::string> before = Map<std::string, std::string>{{this->stance, ""}};
+    List<std::string> queue = List<std::string>{this->stance};
+    int at = 0; // what is before it was looked at
+    while (at < lang::len(queue) && !lang::contains(before, goal)) {
+        std::string stance = lang::at(queue, at);
+        at += 1;
+        for (const auto& action : this->graph->of(stance, "transition")) {
+            std::optional<std::string> end = action->end_stance;
+            if (!end.has_value() || lang::contains(before, *end) || !lang::contains(this->graph->stances, *end)) {
+                continue;
+            }
+            if (this->_usable(action)) {
+                before[*end] = stance;
+                queue.push_back(*end);
+            }
+        }
+    }
+    List<std::string> way;
+    if (!lang::contains(before, goal)) {
+        return way;
+    }
+    std::string step = goal;
+    while (step != this->stance) {
+        way.push_back(step);
+        step = before.at(step);
+    }
+    return lang::backwards(way);
+}
+
+inline bool Performer::_arrives(const Ref<Action>& action) {
+    std::optional<std::string> end = action->end_stance;
+    if (action->kind != "transition") {
+        return true;
+    }
+    return end.has_value()
+        && lang::contains(this->graph->stances, *end)
+        && lang::len(this->graph->of(*end, "stance")) > 0;
+}
+
+inline bool Performer::_usable(const Ref<Action>& action) {
+    return action->likelihood > 0 && this->_arrives(action);
+}
+
+inline Ref<Shape> Performer::_shape(const Ref<Action>& action, const Ref<MetaRequest>& request, double now) {
+    auto [start, end] = this->project->span(action);
+    double begin = now;
+    double entry = start;
+    double hold_from = 0.0;
+    double hold_to = 0.0;
+    double hold = 0.0;
+    if (request != nullptr
+        && action->kind == "gesture"
+        && (request->hold.has_value() || request->stroke.has_value() || !request->prepare)) {
+        Ref<Phases> found = phases::phases(this->project, action);
+        double latest = found->skip(action->timing->blend_in);
+        entry = request->prepare ? start : latest;
+        // Wait for the stroke, or catch up with it by cutting the preparation.
+        if (request->stroke.has_value()) {
+            begin = std::max(now, *request->stroke - (found->stroke - entry));
+            entry = std::min(
+                std::max(entry, found->stroke - std::max(0.0, *request->stroke - begin)),
+                std::max(entry, latest)
+            );
+        }
+        if (request->hold.has_value()) {
+            hold_from = found->stroke_end;
+            hold_to = found->relax;
+            hold = std::max(*request->hold, (hold_to - hold_from) / sampling::HURRY);
+            if (hold <= 0) {
+                hold_from = 0.0;
+                hold_to = 0.0;
+            }
+        }
+    }
+    double length = end - entry + hold - (hold_to - hold_from);
+    double shortest = length;
+    std::optional<double> exit_at = action->timing->earliest_exit;
+    if (exit_at.has_value()) {
+        double left = *exit_at - entry + (*exit_at >= hold_to ? hold - (hold_to - hold_from) : 0.0);
+        shortest = std::min(length, std::max(0.0, left) + action->timing->blend_out);
+    }
+    return lang::made<Shape>(begin, entry, length, shortest, hold_from, hold_to, hold);
+}
+
+inline Ref<Action> Performer::_draw(const List<Ref<Action>>& candidates, const std::string& key, double now) {
+    List<Ref<Action>> left = this->_spaced(candidates);
+    Map<std::string, double> weights;
+    for (const auto& a : left) {
+        weights[a->id] = a->likelihood / std::max(this->_count(a->id, now), 1.0);
+    }
+    bool is_any = false;
+    for (const auto& w : lang::values(weights)) {
+        if (w > 0) {
+            is_any = true;
+            break;
+        }
+    }
+    if (!is_any) {
+        return lang::at(left, 0);
+    }
+    std::string chosen = choice::pick(this->seed, key, "action", weights);
+    Ref<Action> first;
+    for (const auto& a : left) {
+        if (a->id == chosen) {
+            first = a;
+            break;
+        }
+    }
+    return first;
+}
+
+inline List<Ref<Action>> Performer::_spaced(const List<Ref<Action>>& candidates) {
+    int default_ = this->project->settings->never_twice ? 1 : 0;
+    Ref<Action> first = lang::at(candidates, 0);
+    List<std::string> before = lang::get_or(this->recent, sampling::node(first->stance, first->kind), List<std::string>{});
+    if (lang::len(candidates) < 2 || lang::len(before) == 0) {
+        return candidates;
+    }
+    // How many came after each.
+    Map<std::string, int> since;
+    for (int place = 0; place < lang::len(before); place++) {
+        const auto& ident = lang::at(before, place);
+        since[ident] = lang::len(before) - 1 - place;
+    }
+    Map<std::string, int> needs;
+    for (const auto& a : candidates) {
+        needs[a->id] = !a->spacing.has_value() ? default_ : *a->spacing;
+    }
+    List<int> found;
+    for (const auto& a : candidates) {
+        found.push_back(needs.at(a->id));
+    }
+    for (int less = 0; less < lang::max_of(found) + 1; less++) {
+        List<Ref<Action>> left;
+        for (const auto& a : candidates) {
+            if (lang::get_or(since, a->id, sampling::REMEMBERED) >= needs.at(a->id) - less) {
+                left.push_back(a);
+            }
+        }
+        if (lang::len(left) > 0) {
+            return left;
+        }
+    }
+    return candidates;
+}
+
+inline double Performer::_count(const std::string& ident, double now) {
+    double memory = this->project->settings->memory;
+    double alpha = this->project->settings->alpha;
+    if (memory <= 0) {
+        return alpha * lang::get_or(this->uses, ident, 0);
+    }
+    int used = 0;
+    for (const auto& cue : lang::backwards(this->cues)) {
+        if (cue->start < now - memory) {
+            break;
+        }
+        if (cue->action->id == ident) {
+            used += 1;
+        }
+    }
+    return alpha * used;
+}
+
+inline Ref<Cue> Performer::_cue(
+    const Ref<Action>& action,
+    const Ref<Shape>& shape,
+    double limit,
+    double wish,
+    const std::string& stance,
+    const std::string& meta
+) {
+    double length = shape->length;
+    if (action->timing->earliest_exit.has_value()) {
+        length = std::min(length, std::max(shape->shortest, std::min(limit, wish) - shape->start));
+    }
+    double into = std::max(0.0, action->timing->blend_in);
+    double out = std::max(0.0, action->timing->blend_out);
+    if (shape->entry > std::get<0>(this->project->span(action))) {
+        into = std::max(into, phases::LEAST_BLEND);
+    }
+    double squeeze = into + out > 0 ? std::min(1.0, length / (into + out)) : 1.0;
+    std::string then = stance;
+    if (action->kind == "transition" && action->end_stance.has_value()) {
+        then = *action->end_stance;
+    }
+    double end = shape->start + length;
+    return lang::made<Cue>(
+        action,
+        shape->start,
+        end,
+        shape->entry,
+        into * squeeze,
+        out * squeeze,
+        stance,
+        then,
+        meta,
+        shape->hold_from,
+        shape->hold_to,
+        shape->hold
+    );
+}
+
+inline void Performer::_keep(const Ref<Cue>& cue) {
+    this->note(cue, cue->then);
+    Ref<Action> loop = this->loop(cue->then, cue->meta);
+    if (loop != nullptr) {
+        // The loop begins anew under the action, so that the action's last pose meets the loop's first.
+        // Where the action leaves joints alone the change shows, and takes its time: a transition all of
+        // its own.
+        bool partial = cue->action->limb != "both" || lang::len(cue->action->joints) > 0;
+        double begin = cue->start + cue->blend_in;
+        double until = cue->end - cue->blend_out;
+        double fade = std::max(0.0, until - begin);
+        if (partial) {
+            fade = cue->then != cue->stance
+                ? cue->end - cue->start
+                : std::min(sampling::LOOP_FADE, cue->end - cue->start);
+            begin = std::max(cue->start, until - fade);
+        }
+        this->rests.push_back(lang::made<Rest>(cue->then, loop, until, begin, fade));
+    }
+}
+
+inline Ref<Action> Performer::loop(const std::string& stance, const std::string& key) {
+    List<Ref<Action>> loops = this->graph->of(stance, "stance");
+    Map<std::string, double> weights;
+    for (const auto& a : loops) {
+        if (a->likelihood > 0) {
+            weights[a->id] = a->likelihood;
+        }
+    }
+    if (lang::len(weights) == 0) {
+        return lang::len(loops) > 0 ? lang::at(loops, 0) : nullptr;
+    }
+    std::string chosen = choice::pick(this->seed, key, "loop", weights);
+    Ref<Action> first;
+    for (const auto& a : loops) {
+        if (a->id == chosen) {
+            first = a;
+            break;
+        }
+    }
+    return first;
+}
+
+inline void Performer::vary_rests(double end) {
+    List<Ref<Rest>> out;
+    for (int place = 0; place < lang::len(this->rests); place++) {
+        const auto& rest = lang::at(this->rests, place);
+        out.push_back(rest);
+        List<Ref<Action>> loops = this->graph->of(rest->stance, "stance");
+        if (lang::len(loops) < 2) {
+            continue;
+        }
+        double until = place + 1 < lang::len(this->rests) ? lang::at(this->rests, place + 1)->fade_start : end;
+        Ref<Rest> current = rest;
+        double change = rest->start;
+        while (true) {
+            auto [start, stop] = this->project->span(current->action);
+            change += std::max(1.0, stop - start - current->action->timing->blend_in);
+            if (change > until) {
+                break;
+            }
+            Ref<Action> loop = this->loop(rest->stance, lang::text(this->graph->layer, "/", lang::fixed(change, 3)));
+            if (loop != nullptr && loop->id != current->action->id) {
+                current = lang::made<Rest>(
+                    rest->stance,
+                    loop,
+                    change,
+                    change - sampling::LOOP_FADE,
+                    sampling::LOOP_FADE
+                );
+                out.push_back(current);
+            }
+        }
+    }
+    this->rests = out;
+}
+
+inline void Performer::_tell(
+    const Ref<MetaAction>& meta,
+    const std::string& outcome,
+    const std::string& message,
+    bool played
+) {
+    std::string layer = this->graph->layer;
+    this->reports.push_back(lang::made<Report>(
+        meta->request->id,
+        outcome,
+        message,
+        layer,
+        meta->start,
+        played,
+        meta->written
+    ));
+}
+
+namespace sampling {
+
+/// Return the performer that stands where cues have been played after a past.
+inline Ref<Performer> performer_after(
+    const Ref<Project>& project,
+    const Ref<MetaGraph>& graph,
+    std::uint32_t seed,
+    const std::string& begin,
+    const Ref<Past>& past,
+    const List<Ref<Cue>>& cues
+) {
+    std::string stance = lang::contains(graph->stances, past->stance) ? past->stance : begin;
+    Ref<Performer> out = lang::made<Performer>(
+        project,
+        graph,
+        seed,
+        stance,
+        past->free,
+        past->uses,
+        past->recent,
+        past->ended
+    );
+    for (const auto& cue : cues) {
+        out->note(cue, lang::contains(graph->stances, cue->then) ? cue->then : begin);
+    }
+    return out;
+}
+
+/// Return each meta action with what bounds it.
+inline List<Ref<Bound>> _bounds(const List<Ref<MetaAction>>& metas) {
+    List<Ref<Bound>> out;
+    List<Ref<_First>> first;
+    for (const auto& meta : lang::backwards(metas)) {
+        double limit = INFINITY;
+        double wish = INFINITY;
+        Ref<_First> own;
+        for (const auto& one : first) {
+            if (one->rank > meta->rank()) {
+                limit = std::min(limit, one->start);
+            }
+            if (one->rank >= meta->rank() && !one->written) {
+                wish = std::min(wish, one->start);
+            }
+            if (one->rank == meta->rank() && one->written == meta->written) {
+                own = one;
+            }
+        }
+        out.push_back(lang::made<Bound>(meta, limit, wish));
+        if (own == nullptr) {
+            first.push_back(lang::made<_First>(meta->rank(), meta->written, meta->start));
+        } else {
+            own->start = meta->start;
+        }
+    }
+    return lang::backwards(out);
+}
+
+/// Return what draws of a stance and kind are remembered under.
+inline std::string node(const std::string& stance, const std::string& kind) {
+    return lang::text(kind, " ", stance);
+}
+
+/// Note that a cue was played: how often its action was, lately, and until when.
+inline void remember(
+    const Ref<Cue>& cue,
+    Map<std::string, int>& uses,
+    Map<std::string, List<std::string>>& recent,
+    Map<std::string, double>& ended
+) {
+    std::string ident = cue->action->id;
+    std::string place = sampling::node(cue->stance, cue->action->kind);
+    uses[ident] = lang::get_or(uses, ident, 0) + 1;
+    recent[place] = lang::together(
+        lang::part(lang::get_or(recent, place, List<std::string>{}), 1 - sampling::REMEMBERED),
+        List<std::string>{ident}
+    );
+    ended[ident] = cue->end;
+}
+
+}  // namespace sampling
+
+}  // namespace metagraph
