@@ -72,6 +72,8 @@ class _Lowering(Expressions):
             if isinstance(one, m.AssignmentStmt) and isinstance(one.lvalues[0], m.NameExpr):
                 name = one.lvalues[0]
                 kind = self.declared(name.node, one)
+                if isinstance(one.unanalyzed_type, t.UnboundType) and one.unanalyzed_type.name == BITS:
+                    kind = x.BITS
                 given = None if isinstance(one.rvalue, m.TempNode) else self.default(one.rvalue, kind)
                 fields.append(x.Parameter(name.name, kind, given))
             elif isinstance(one, m.FuncDef):

@@ -88,7 +88,7 @@ struct Shape {
 struct Performer {
     Ref<Project> project;
     Ref<MetaGraph> graph;
-    int seed;
+    std::uint32_t seed;
     std::string stance;
     double free;
     Map<std::string, int> uses;
@@ -102,7 +102,7 @@ struct Performer {
     Performer(
         Ref<Project> project_,
         Ref<MetaGraph> graph_,
-        int seed_,
+        std::uint32_t seed_,
         std::string stance_,
         double free_ = 0.0,
         Map<std::string, int> uses_ = Map<std::string, int>{},
