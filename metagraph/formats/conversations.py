@@ -28,6 +28,7 @@ from metagraph.graph.conversation import (
     Segment,
     Side,
 )
+from metagraph.playback.choice import key32
 from metagraph.speech.activity import HUSH, LEAST, activity
 from metagraph.speech.clauses import by_sound, peak_of, segments
 from metagraph.speech.language_packs import Language
@@ -120,6 +121,8 @@ def read_conversation(
     made_of = Conversation(
         name=title[:200],
         length=max(length, SHORTEST),
+        # Its own: with one seed for all, all would fidget at the same places.
+        seed=key32(1, "conversation", title, f"{length:.3f}") % 1_000_000,
         sides=made,
         responses=lists[shared][0],
         hesitations=lists[shared][1],

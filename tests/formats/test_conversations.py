@@ -81,6 +81,13 @@ def test_two_channels_and_one_transcript_make_two_sides(files: tuple[Path, Path]
     assert add_conversation(Project(), made)[0].conversations
 
 
+def test_conversations_have_seeds_of_their_own_and_the_same_one_the_same(files: tuple[Path, Path]) -> None:
+    """With one seed for all, all would fidget at the same places."""
+    first, again = (read_conversation([files[0]], [files[1]]).conversation.seed for _ in range(2))
+    other = read_conversation([files[0]], [files[1]], name="Another").conversation.seed
+    assert first == again != other
+
+
 def test_speakers_are_brought_to_the_channel_they_are_heard_in(files: tuple[Path, Path]) -> None:
     spoken = talk.speak()
     sound(files[0], spoken.samples[1], spoken.samples[0], rate=spoken.rate)

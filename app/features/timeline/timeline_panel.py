@@ -23,7 +23,7 @@ from app.stage.session import Session
 from app.widgets.lane_geometry import outcome, wanted
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
-from app.widgets.quiet_fields import ComboBox, SpinBox
+from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from app.widgets.request_menu import request_menu
 from app.widgets.sentence import Sentence
 from metagraph.graph import edits, performance_edits
@@ -87,9 +87,11 @@ class TimelinePanel(QWidget):
         self.ask.clicked.connect(self._ask)
         row.addWidget(self.ask)
         row.addWidget(QLabel("Seed", self))
-        self.seed = SpinBox(self, toolTip="Another seed gives another performance of the same graph")
-        self.seed.setFixedWidth(84)
-        self.seed.setRange(0, 999999)
+        # Whole numbers of 32 bits without a sign, which the other field does not hold.
+        self.seed = DoubleSpinBox(self, toolTip="Another seed gives another performance of the same graph")
+        self.seed.setDecimals(0)
+        self.seed.setFixedWidth(112)
+        self.seed.setRange(0, 0xFFFFFFFF)
         self.seed.setAccessibleName("Seed")
         self.seed.valueChanged.connect(self._seeded)
         row.addWidget(self.seed)
@@ -257,7 +259,8 @@ class TimelinePanel(QWidget):
     def _ask(self) -> None:
         request_menu(self, self.performance, None).exec(self.ask.mapToGlobal(self.ask.rect().bottomLeft()))
 
-    def _seeded(self, seed: int) -> None:
+    def _seeded(self, value: float) -> None:
+        seed = int(value)
         kept, talk = self.performance.requests.kept, self.performance.conversation
         if talk is not None:
             if seed != self.document.project.conversations[talk].seed:

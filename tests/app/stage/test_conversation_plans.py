@@ -118,6 +118,9 @@ def test_another_seed_is_the_conversations_own_and_undone(staged):
     assert staged.document.project.settings.seed == before
     staged.document.undo_stack.undo()
     assert staged.document.project.conversations["v9000"].seed == 1
+    staged.timeline.seed.setValue(0xFFFFFFFF)  # the largest a project may have
+    assert staged.document.project.conversations["v9000"].seed == 0xFFFFFFFF
+    assert staged.timeline.seed.text() == "4294967295"
 
 
 def test_kept_as_performances_both_can_be_played_and_undone_at_once(staged):
