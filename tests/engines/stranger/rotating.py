@@ -64,3 +64,9 @@ def power(q: Numbers, by: Any) -> Numbers:
     half = np.arctan2(length, q[..., 3:]) * np.asarray(by)[..., None]
     axis = q[..., :3] / np.where(length > 0.0, length, 1.0)
     return np.concatenate([axis * np.sin(half), np.cos(half)], -1)
+
+
+def about(turn: Numbers) -> Numbers:
+    """The rotation of a rotation vector [3]."""
+    size = float(np.linalg.norm(turn))
+    return np.array([*(turn / max(size, 1e-30) * np.sin(size / 2.0)), np.cos(size / 2.0)])
