@@ -45,13 +45,18 @@ def loop_of(character: Character, layer: str, stance: str, seed: int, key: str) 
     return pick(seed, key, "loop", weights) if found else None
 
 
+def begins_in(character: Character, layer: str, case: dict[str, Any]) -> str | None:
+    """The stance a layer begins in; docs/format.md, "When a new loop takes over"."""
+    graph = character.data["layers"][layer]
+    wished = [case["stances"].get(layer), graph["start"], *(stance["id"] for stance in graph["stances"])]
+    return next((s for s in wished if graph["index"].get(s, {}).get("stance")), None)
+
+
 def rests_of(character: Character, layer: str, case: dict[str, Any]) -> list[list[Any]]:
     """The rests under a case's cues; docs/format.md, "When a new loop takes over"."""
     cues, seed, end = case["plan"]["layers"][layer]["cues"], case["seed"], case["steps"][-1]["end"]
     longest = character.data["planner"]["loop_fade"]
-    graph = character.data["layers"][layer]
-    wished = [case["stances"].get(layer), graph["start"], *(stance["id"] for stance in graph["stances"])]
-    begin = next((s for s in wished if graph["index"].get(s, {}).get("stance")), None)
+    begin = begins_in(character, layer, case)
     first = loop_of(character, layer, begin, seed, f"rest/{layer}") if begin is not None else None
     if first is None:
         return []

@@ -1,9 +1,10 @@
 """docs/format.md alone is enough: an evaluator written from its words, without a line of ours, poses
 characters as the conformance vectors say.
 
-`reading`, `posing`, `enlivening` and `drawing`, beside this file, are that evaluator; each function names the
-heading or the bold words of the page whose rule it follows. Where a case fails after a change of the page or
-the player, mend whichever is wrong; never teach the evaluator what the page does not say.
+`reading`, `posing`, `enlivening`, `drawing` and `planning`, beside this file, are that evaluator; each
+function names the heading or the bold words of the page whose rule it follows. Where a case fails after a
+change of the page or the player, mend whichever is wrong; never teach the evaluator what the page does not
+say.
 """
 
 import ast
@@ -21,6 +22,7 @@ from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, PARTS, Limb, Project
 from tests.engines.stranger.comparing import NAMES, SHIPPED, Vectors, compared, read_vectors
 from tests.engines.stranger.drawing import key32, rests_of
+from tests.engines.stranger.planning import can_plan, cues_of
 from tests.engines.test_real_exports import project_of
 
 # What must be among the poses that were compared, so that no rule goes unseen.
@@ -61,13 +63,42 @@ def test_the_pages_words_say_when_a_new_loop_takes_over(shipped: dict[str, Vecto
                 assert mine[2:] == pytest.approx(wanted[2:], abs=vectors["tolerance"]["seconds"])
 
 
+@pytest.mark.parametrize(("name", "least"), [*zip(NAMES, (49, 24, 49), strict=True)])
+def test_the_pages_words_plan_what_is_asked_once(shipped: dict[str, Vectors], name: str, least: int) -> None:
+    character, vectors = shipped[name]
+    planned = [case for case in vectors["cases"] if can_plan(character, case)]
+    assert len(planned) >= least
+    for case in planned:
+        for layer, plan in case["plan"]["layers"].items():
+            ours = cues_of(character, layer, case)
+            assert [cue["action"] for cue in ours] == [cue["action"] for cue in plan["cues"]], case["name"]
+            for mine, wanted in zip(ours, plan["cues"], strict=True):
+                assert mine == {
+                    key: value
+                    if isinstance(value, str)
+                    else pytest.approx(value, abs=vectors["tolerance"]["seconds"])
+                    for key, value in wanted.items()
+                }, case["name"]
+
+
 def test_the_pages_words_hash_as_the_vectors_do(shipped: dict[str, Vectors]) -> None:
     for seed, words, wanted in shipped["stick"][1]["hashes"]:
         assert key32(seed, *words) == wanted
 
 
 def test_the_stranger_knows_nothing_of_ours() -> None:
-    known = {"collections", "dataclasses", "json", "math", "numpy", "pathlib", "struct", "sys", "typing"}
+    known = {
+        "bisect",
+        "collections",
+        "dataclasses",
+        "json",
+        "math",
+        "numpy",
+        "pathlib",
+        "struct",
+        "sys",
+        "typing",
+    }
     for path in Path(__file__).parent.glob("[!t]*.py"):
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
             names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
@@ -89,7 +120,7 @@ def many_ways(project: Project) -> Project:
         for n, (ident, action) in enumerate(project.graphs[layer].actions.items()):
             start, end = project.span(action)
             if action.kind == "stance":
-                seam = (0.0, 0.3, 0.9)[n % 3] * (end - start)
+                seam = (0.3, 0.9)[n % 2] * (end - start)
                 actions[ident] = replace(action, timing=replace(action.timing, blend_in=seam))
             else:
                 limbs: tuple[Limb, ...] = ("left", "both", "right")
