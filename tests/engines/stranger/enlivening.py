@@ -1,0 +1,268 @@
+"""What life adds to a pose, written from docs/format.md, "What life adds to a pose", alone; each function
+names the bold words it follows.
+"""
+
+from math import atan2, cos, exp, hypot, radians, sin, sqrt, tanh
+from typing import Any
+
+import numpy as np
+
+from tests.engines.stranger.posing import Pose, ease
+from tests.engines.stranger.reading import Character
+from tests.engines.stranger.rotating import Numbers, about, inverse, times, turned
+
+USUAL = {
+    "stillness": 0.0, "breathing": 1.0, "gaze": 1.0, "head_share": 0.6, "aversion_angle": 14.0,
+    "saccades": 1.0, "lids": 1.0, "blink_close": 0.07, "blink_open": 0.10, "lips": 1.0, "lip_smoothing": 0.03,
+}  # fmt: skip
+LIDS = ("upper_lid_left", "upper_lid_right", "lower_lid_left", "lower_lid_right")
+SHAPES = ("PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "I", "O", "U")
+CHANNELS = (*LIDS, "blink", "jaw_open", *(f"viseme_{shape}" for shape in SHAPES))
+
+
+def clamp(x: float, low: float, high: float) -> float:
+    return min(max(x, low), high)
+
+
+def sign(x: float) -> float:
+    return -1.0 if x < 0.0 else 1.0
+
+
+def over(a: float, m: float) -> float:
+    """ "The head"."""
+    return sign(a) * max(abs(a) - m, 0.0)
+
+
+def eyes_way(g: float, angle: float) -> float:
+    """ "Where the gaze is"."""
+    return ease(g / (0.021 + 0.0022 * angle))
+
+
+def head_way(g: float, angle: float) -> float:
+    """ "Where the gaze is"."""
+    x = clamp((g - 0.04) / (0.55 + 0.006 * angle), 0.0, 1.0)
+    return (1.0 - (1.0 + 8.0 * x) * exp(-8.0 * x)) / (1.0 - 9.0 * exp(-8.0))
+
+
+def begun(events: list[list[Any]], t: float) -> int:
+    return max((n for n, event in enumerate(events) if event[0] <= t), default=-1)
+
+
+def along(row: list[float], q: Numbers) -> float:
+    """ "Lids"."""
+    return float(np.dot(row, q)) * (-1.0 if q[3] < 0.0 else 1.0)
+
+
+class Life:
+    """A character's life, with the events that were drawn for a case."""
+
+    def __init__(self, character: Character, case: dict[str, Any]) -> None:
+        self.character, self.events = character, case["life"]
+        self.rig: dict[str, Any] = character.data["rig"]
+        self.dials: dict[str, Any] = USUAL | character.data.get("life", {})
+        self.calm = 1.0 - self.dials["stillness"]
+        self.left, self.up, self.ahead = (np.array(self.rig[name]) for name in ("left", "up", "ahead"))
+
+    def breath(self, t: float) -> float:
+        """ "Breath"."""
+        n = begun(self.events["breaths"], t)
+        if n < 0:
+            return 0.0
+        start, length, depth = self.events["breaths"][n]
+        x = (t - start) / length
+        return float(self.dials["breathing"] * self.calm * depth * ease(min(x / 0.4, (1.0 - x) / 0.6)))
+
+    def met(self, place: int) -> tuple[Numbers, Numbers, float]:
+        """Where a target is, its direction, its amount; "Where the gaze is"."""
+        _, to, _, amount, _, _ = self.events["targets"][place]
+        if isinstance(to, str):
+            to = self.character.data.get("points", {}).get(to, self.rig["partner"] if to == "user" else None)
+        if to is None:
+            return np.array(self.rig["partner"]), self.ahead, 0.0
+        return np.array(to), np.array(to) - self.rig["eyes_at_rest"], amount
+
+    def shares(self, t: float) -> list[tuple[int, float, float]]:
+        """The eyes' and the head's shares of targets, the newest first; "Where the gaze is"."""
+        out: list[tuple[int, float, float]] = []
+        came = headed = 0.0
+        for place in range(begun(self.events["targets"], t), -1, -1):
+            eyes = head = 1.0
+            if place:
+                a, b = self.met(place)[1], self.met(place - 1)[1]
+                cosine = float(np.dot(a, b)) / sqrt(float(np.dot(a, a) * np.dot(b, b)))
+                angle = float(np.degrees(np.arccos(clamp(cosine, -1.0, 1.0))))
+                gone = t - self.events["targets"][place][0]
+                eyes, head = eyes_way(gone, angle), head_way(gone, angle)
+            out.append((place, eyes - came, head - headed))
+            came, headed = eyes, head
+            if came >= 1.0 and headed >= 1.0:
+                break
+        return out
+
+    def wandering(self, t: float, shares: list[tuple[int, float, float]]) -> tuple[Numbers, Numbers]:
+        """What eyes and head do besides; "Away and to and fro"."""
+        eyes, head = np.zeros(2), np.zeros(2)
+        targets, angle = self.events["targets"], self.dials["aversion_angle"]
+        n = begun(self.events["aversions"], t)
+        if n >= 0:
+            start, end, x, y = self.events["aversions"][n]
+            k = radians(angle) * self.calm * self.dials["gaze"]
+            k *= 1.0 - sum(came for place, came, _ in shares if targets[place][4])
+            since = targets[shares[0][0]][2]
+            if since > start:
+                k *= 1.0 - ease((t - since) / 0.12)
+            far = hypot(x, y) * angle
+            if t - end < 0.04 + 0.55 + 0.006 * far:
+                eyes += np.array([x, y]) * k * (eyes_way(t - start, far) - eyes_way(t - end, far))
+                head += np.array([x, y]) * k * (head_way(t - start, far) - head_way(t - end, far))
+        n = begun(self.events["saccades"], t)
+        if n >= 0:
+            q = np.array(self.events["saccades"][n][1:])
+            p = np.array(self.events["saccades"][n - 1][1:]) if n else np.zeros(2)
+            way = eyes_way(t - self.events["saccades"][n][0], float(np.linalg.norm(q - p)))
+            eyes += radians(self.dials["saccades"]) * self.calm * (p + (q - p) * way)
+        return eyes, head
+
+    def look(self, t: float, chain: Numbers, places: Numbers) -> tuple[list[Numbers], list[Numbers]]:
+        """Turns of the lookers, and of both eyes to the left and up. chain: its joints' rotations with
+        breath, places: their translations; "Seen from the head", "The head", "The eyes".
+        """
+        spun, at = [chain[0]], [places[0]]
+        for q, place in zip(chain[1:], places[1:], strict=True):
+            at.append(at[-1] + turned(spun[-1], place))
+            spun.append(times(spun[-1], q))
+        both = self.rig["eyes"]
+        eye = at[-1] + turned(spun[-1], (np.array(both[0]["at"]) + both[1]["at"]) / 2.0)
+        shares = self.shares(t)
+        a_eyes, a_head = self.wandering(t, shares)
+        total, way = np.zeros(4), a_head.copy()
+        for place, came, headed in shares:
+            point, _, amount = self.met(place)
+            v = point - eye
+            x, y, z = float(v @ self.left), float(v @ self.up), float(v @ self.ahead)
+            side = clamp(atan2(x, z), -radians(110.0), radians(110.0))
+            rise = clamp(atan2(y, hypot(x, z)), -radians(65.0), radians(65.0))
+            near = 1.0 / max(float(np.linalg.norm(v)), 0.25)
+            w = amount * self.dials["gaze"] * (1.0 if self.events["targets"][place][5] else self.calm)
+            total += came * np.array([side, rise, near, w])
+            way += headed * w * np.array([side, rise])
+        turn = self.head_turn(float(way[0]), float(way[1]), float(total[3]), spun)
+        lookers = self.rig["lookers"]
+        turns = [looker["share"] * turned(inverse(spun[looker["place"]]), turn) for looker in lookers]
+        moved, c = at[lookers[0]["place"]], 0.0
+        for n, looker in enumerate(lookers):
+            c += looker["share"]
+            following = at[lookers[n + 1]["place"]] if n + 1 < len(lookers) else at[-1]
+            moved = moved + turned(about(c * turn), following - at[looker["place"]])
+        a, b = total[:2] + a_eyes
+        point = self.left * sin(a) * cos(b) + self.up * sin(b) + self.ahead * cos(a) * cos(b)
+        point = eye + point / max(total[2], 0.001)
+        inside = turned(inverse(times(about(turn), spun[-1])), point - moved)
+        out = []
+        for each in both:
+            v = inside - each["at"]
+            xy = np.array([v @ each["left"], v @ each["up"]])
+            size = float(np.linalg.norm(xy))
+            ij = xy / max(size, 1e-12) * atan2(size, float(v @ each["ahead"])) * total[3]
+            ij = ij + (1.0 - total[3]) * a_eyes
+            r = hypot(ij[0] / radians(32.0), ij[1] / radians(26.0 if ij[1] > 0.0 else 30.0))
+            out.append(ij if r <= 0.7 else ij * (0.7 + 0.3 * tanh((r - 0.7) / 0.3)) / r)
+        return turns, out
+
+    def head_turn(self, left: float, up: float, whole: float, spun: list[Numbers]) -> Numbers:
+        """ "The head"."""
+        s = self.dials["head_share"]
+        b = min(1.0, 2.0 * s)
+        x, y = (s * a * abs(a) / (abs(a) + radians(15.0)) for a in (left, up))
+        y *= 0.8
+        x, y = x + b * over(left - x, radians(20.0)), y + b * over(up - y, radians(20.0))
+        gaps = []
+        for q, ahead in ((spun[self.rig["trunk"]], "trunk_ahead"), (spun[-1], "head_ahead")):
+            f = turned(q, np.array(self.rig[ahead]))
+            gap = left - atan2(float(f @ self.left), float(f @ self.ahead))
+            gaps.append((gap + np.pi) % (2.0 * np.pi) - np.pi)
+        apart = max(min(gaps), 0.0) + min(max(gaps), 0.0)
+        x += b * whole * over(apart, max(radians(28.0), abs(left)))
+        x, y = clamp(x, -radians(65.0), radians(65.0)), clamp(y, -radians(35.0), radians(30.0))
+        cx, sx, cy, sy = cos(x / 2.0), sin(x / 2.0), cos(y / 2.0), -sin(y / 2.0)
+        v = self.left * cx * sy + self.up * sx * cy - self.ahead * sx * sy
+        size = float(np.linalg.norm(v))
+        return v / max(size, 1e-12) * 2.0 * atan2(size, cx * cy)
+
+    def blink(self, t: float) -> float:
+        """ "Lids"."""
+        close, opening = self.dials["blink_close"], self.dials["blink_open"]
+        gone = [t - start for start, _ in self.events["blinks"] if 0.0 <= t - start < close + opening]
+        return max((ease(min(x / close, (close + opening - x) / opening)) for x in gone), default=0.0)
+
+    def lips(self, t: float, said: list[tuple[float, float, str]]) -> Numbers:
+        """How much of each of SHAPES the mouth shows; said: start, end, line; "Lips"."""
+
+        def shown(t: float) -> Numbers:
+            total = np.zeros(len(SHAPES))
+            for start, end, line in said:
+                if t < start:
+                    continue
+                voice = self.character.data["voices"][line]
+                rows = np.array(voice["weights"])[:, 1:]
+                keys = np.linspace(0.0, max(voice["duration"], 1e-3), len(rows))
+                row = np.array([np.interp(min(t, end) - start, keys, each) for each in rows.T])
+                total += row * (1.0 - ease((t - end) / 0.12))
+            return total
+
+        s = self.dials["lip_smoothing"]
+        mouth = shown(t) if s <= 0.0 else 0.25 * shown(t - s) + 0.5 * shown(t) + 0.25 * shown(t + s)
+        return np.asarray(mouth / max(float(mouth.sum()), 1.0) * self.dials["lips"])
+
+    def added(
+        self, composed: Pose, t: float, said: list[tuple[float, float, str]]
+    ) -> tuple[Pose, dict[str, float]]:
+        """The pose with life, and what it adds to morph targets; "Breath", "The eyes", "Lids", "The face"."""
+        rotations, translations = composed[0].copy(), composed[1].copy()
+        chain, full = self.rig["chain"], self.breath(t)
+        for joint, (*axis, angle) in zip(chain, self.rig["breath"], strict=True):
+            rotations[joint] = times(rotations[joint], about(full * angle * np.array(axis)))
+        for shoulder in self.rig["shoulders"]:
+            joint = shoulder["joint"]
+            rotations[joint] = times(rotations[joint], about(full * np.array(shoulder["turn"])))
+        ij = [np.zeros(2), np.zeros(2)]
+        if self.rig["lookers"] and self.events["targets"]:
+            turns, ij = self.look(t, rotations[chain], translations[chain])
+            for looker, turn in zip(self.rig["lookers"], turns, strict=True):
+                joint = chain[looker["place"]]
+                rotations[joint] = times(rotations[joint], about(turn))
+        down = [-float(each[1]) for each in ij]
+        for side, eye in enumerate(self.rig["eyes"]):
+            if eye["joint"] >= 0:
+                joint = eye["joint"]
+                down[side] += along(eye["down"], composed[0][joint])
+                turn = ij[side][0] * np.array(eye["turn_left"]) + ij[side][1] * np.array(eye["turn_up"])
+                rotations[joint] = times(rotations[joint], about(turn))
+        face, blink = self.rig["face"], self.blink(t)
+        any_lid = max(face["lid_joints"]) >= 0
+        follows = face["follows"] if any_lid else [0.6 / radians(40.0)] * 2 + [0.0, 0.0]
+        shut, own = [], []
+        for n, joint in enumerate(face["lid_joints"]):
+            already = along(face["shut_by"][n], composed[0][joint]) if joint >= 0 else 0.0
+            closed = clamp(already + self.dials["lids"] * follows[n] * down[n % 2], -0.8, 1.0)
+            closed += blink * (1.0 - closed)
+            shut.append(closed)
+            own.append(closed - already)
+        lips = self.lips(t, said)
+        values = np.array([*own, blink, 0.0, *lips])
+        for place, joint in enumerate(face["joints"]):
+            turn = values @ np.array(face["turns"])[:, place]
+            rotations[joint] = times(rotations[joint], about(turn))
+            translations[joint] += values @ np.array(face["shifts"])[:, place]
+        named = dict(zip(CHANNELS, values, strict=True)) | {"blink": max(blink, (shut[0] + shut[1]) / 2.0)}
+        for n, side in enumerate(("left", "right")):
+            i, j = ij[n] / radians(30.0)
+            named |= {f"blink_{side}": shut[n], f"wide_{side}": -0.6 * shut[n]}
+            named |= {f"look_left_{side}": i, f"look_right_{side}": -i}
+            named |= {f"look_up_{side}": j, f"look_down_{side}": -j}
+        morphs: dict[str, float] = {}
+        for channel, targets in face["morphs"].items():
+            value = float(named.get(channel, 0.0))
+            for target, weight in targets.items() if value > 0.0001 else ():
+                morphs[target] = morphs.get(target, 0.0) + value * weight
+        return (rotations, translations), {name: min(value, 1.0) for name, value in morphs.items()}

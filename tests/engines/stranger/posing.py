@@ -1,0 +1,181 @@
+"""The poses of a plan, written from docs/format.md alone; each function names the words it follows."""
+
+from typing import Any
+
+import numpy as np
+
+from tests.engines.stranger.reading import Character, Clip
+from tests.engines.stranger.rotating import Numbers, inverse, nlerp, power, times, turned
+
+Pose = tuple[Numbers, Numbers]  # rotations [J, 4], translations [J, 3]; also what a layer adds to the base
+STILL = np.array([0.0, 0.0, 0.0, 1.0])
+
+
+def ease(x: float) -> float:
+    """docs/format.md, "Blending"."""
+    x = min(max(x, 0.0), 1.0)
+    return 3.0 * x * x - 2.0 * x * x * x
+
+
+def mix(a: Pose, b: Pose, share: float) -> Pose:
+    """docs/format.md, "Composing poses"."""
+    return nlerp(a[0], b[0], share), a[1] + share * (b[1] - a[1])
+
+
+def sampled(clip: Clip, second: float) -> Pose:
+    """docs/format.md, "Sampling"."""
+    last = len(clip.rotations) - 1
+    frame = min(max(second * clip.fps, 0.0), last)
+    low = int(frame)
+    high, share = min(low + 1, last), frame - low
+    here = clip.rotations[low], clip.translations[low]
+    return mix(here, (clip.rotations[high], clip.translations[high]), share) if share > 0.0 else here
+
+
+def cue_second(cue: dict[str, Any], t: float) -> float:
+    """docs/format.md, "Time in a cue"."""
+    x = t - cue["start"]
+    if cue["hold"] <= 0.0:
+        return float(cue["entry"] + x)
+    h = min(max(x - (cue["hold_from"] - cue["entry"]), 0.0), cue["hold"])
+    return float(cue["entry"] + x - h + h * (cue["hold_to"] - cue["hold_from"]) / cue["hold"])
+
+
+def cue_weight(cue: dict[str, Any], t: float) -> float:
+    """docs/format.md, "Blending"."""
+    rise = ease((t - cue["start"]) / cue["blend_in"]) if cue["blend_in"] > 0.0 else 1.0
+    fall = ease((cue["end"] - t) / cue["blend_out"]) if cue["blend_out"] > 0.0 else 1.0
+    return rise * fall
+
+
+def playing(plan: dict[str, Any], t: float) -> dict[str, Any] | None:
+    """The cue that shows; docs/format.md, "Blending"."""
+    return next((cue for cue in plan["cues"] if cue["start"] <= t < cue["end"]), None)
+
+
+def moves(character: Character, action: dict[str, Any]) -> Any:
+    """Which joints [J] an action moves; docs/format.md, "Joints an action does not move"."""
+    other = {"left": "right", "right": "left", "both": None}[action["limb"]]
+    return np.array(
+        [
+            not (part == "arms" and side == other) and (not action["joints"] or name in action["joints"])
+            for name, part, side in zip(character.names, character.parts, character.sides, strict=True)
+        ]
+    )
+
+
+def offset(character: Character, action: dict[str, Any], second: float) -> Pose:
+    """What a clip adds to the base pose; docs/format.md, "Composing poses"."""
+    rotations, translations = sampled(character.clips[action["clip"]], second)
+    return times(inverse(character.rotations), rotations), translations - character.translations
+
+
+def loop_seconds(action: dict[str, Any], x: float) -> tuple[float, float, float]:
+    """The clip second that a loop shows x seconds after its beginning, the one on the other side of its seam
+    and the share of that; docs/format.md, "Loops".
+    """
+    start, length = action["start"], action["end"] - action["start"]
+    seam = min(action["blend_in"], length / 2.0)
+    period = length - seam
+    if period <= 0.0:
+        return start, start, 0.0
+    if seam <= 0.0:
+        return start + x % period, start, 0.0
+    y = max(x, 0.0)
+    p = y % period
+    return start + p, start + period + p, 1.0 - ease(p / seam) if y >= period and p < seam else 0.0
+
+
+def loop(character: Character, action: dict[str, Any], x: float) -> Pose:
+    """docs/format.md, "Loops"."""
+    second, other, share = loop_seconds(action, x)
+    shown = offset(character, action, second)
+    return mix(shown, offset(character, action, other), share) if share > 0.0 else shown
+
+
+def resting(rests: list[list[Any]], t: float) -> int:
+    """Which rest is the current one; docs/format.md, "Stances"."""
+    return max((n for n, rest in enumerate(rests) if rest[3] <= t), default=0)
+
+
+def stance(character: Character, rests: list[list[Any]], t: float) -> Pose:
+    """docs/format.md, "Stances"."""
+    current = resting(rests, t)
+    _, action, start, fade_start, fade = rests[current]
+    shown = loop(character, character.actions[action], t - start)
+    if current > 0 and t < fade_start + fade:
+        _, action, start, _, _ = rests[current - 1]
+        before = loop(character, character.actions[action], t - start)
+        shown = mix(before, shown, ease((t - fade_start) / fade))
+    return shown
+
+
+def layer(character: Character, plan: dict[str, Any], t: float) -> Pose:
+    """docs/format.md, "Blending"."""
+    rest, cue = stance(character, plan["rests"], t), playing(plan, t)
+    if cue is None:
+        return rest
+    action = character.actions[cue["action"]]
+    d, e = offset(character, action, cue_second(cue, t))
+    if t < cue["start"] + cue["blend_in"]:
+        edge = cue["entry"]
+    elif t >= cue["end"] - cue["blend_out"]:
+        edge = cue_second(cue, cue["end"])
+    else:
+        edge = None
+    if edge is not None:
+        left = 1.0 - cue_weight(cue, t)
+        d_edge, e_edge = offset(character, action, edge)
+        d = times(d, nlerp(np.broadcast_to(STILL, d.shape), times(inverse(d_edge), rest[0]), left))
+        e = e + left * (rest[1] - e_edge)
+    moved = moves(character, action)[:, None]
+    return np.where(moved, d, rest[0]), np.where(moved, e, rest[1])
+
+
+def pose(character: Character, layers: dict[str, Any], t: float) -> Pose:
+    """docs/format.md, "Composing poses". layers: a plan's, as in the vectors."""
+    rotations, translations = character.rotations, character.translations
+    for name in character.data["order"]:
+        if not layers[name]["rests"]:
+            continue
+        weights = character.data["layers"][name]["weights"]
+        w = np.array([weights[part] for part in character.parts])
+        d, e = layer(character, layers[name], t)
+        rotations = times(rotations, power(d, w))
+        translations = translations + w[:, None] * e
+    return rotations, translations
+
+
+def positions(character: Character, rotations: Numbers, translations: Numbers) -> Numbers:
+    """Where joints are in the character's space [..., J, 3]; docs/format.md, "Composing poses"."""
+    worlds, places = np.empty_like(rotations), np.empty_like(translations)
+    for joint, parent in enumerate(character.parents):
+        q, t = rotations[..., joint, :], translations[..., joint, :]
+        if parent >= 0:
+            t = places[..., parent, :] + turned(worlds[..., parent, :], t)
+            q = times(worlds[..., parent, :], q)
+        worlds[..., joint, :], places[..., joint, :] = q, t
+    return places
+
+
+def morphs(character: Character, layers: dict[str, Any], t: float) -> dict[str, float]:
+    """docs/format.md, "Morph targets"."""
+    out: dict[str, float] = {}
+    for plan in layers.values():
+        if not plan["rests"]:
+            continue
+        cue = playing(plan, t)
+        weight = cue_weight(cue, t) if cue is not None else 0.0
+        rest = plan["rests"][resting(plan["rests"], t)]
+        action = character.actions[rest[1]]
+        second, _, _ = loop_seconds(action, t - rest[2])
+        shares = [(action, second, 1.0 - weight)]
+        if cue is not None:
+            shares.append((character.actions[cue["action"]], cue_second(cue, t), weight))
+        for action, second, share in shares:
+            clip = character.clips[action["clip"]]
+            frame = min(max(second * clip.fps, 0.0), len(clip.rotations) - 1)
+            for name, values in clip.morphs.items():
+                value = float(np.interp(frame, np.arange(len(values)), values))
+                out[name] = out.get(name, 0.0) + share * value
+    return {name: min(max(value, 0.0), 1.0) for name, value in out.items()}
