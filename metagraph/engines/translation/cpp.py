@@ -6,7 +6,8 @@ import json
 from collections.abc import Sequence
 
 from metagraph.engines.translation import tree as x
-from metagraph.engines.translation.layout import Break, Document, Group, Nest, flat, listed
+from metagraph.engines.translation.braces import Braces
+from metagraph.engines.translation.layout import Break, Document, Group, Nest, listed
 from metagraph.engines.translation.lifting import lifted
 from metagraph.engines.translation.printing import (
     ALONE,
@@ -15,7 +16,6 @@ from metagraph.engines.translation.printing import (
     NOT,
     PLUS,
     UNARY,
-    Printer,
     TranslationError,
 )
 
@@ -34,12 +34,13 @@ CHANGING = ("list_append", "list_extend", "list_insert", "list_pop", "set_add")
 NATIVE = {"Project": "project", "MetaGraph": "project"}  # records that are not translated: their headers
 
 
-class Cpp(Printer):
+class Cpp(Braces):
     """One module, `name.hpp`. Records are told by `Ref`, which may be nothing."""
 
     STEP = "    "
     WIDTH = 120
     LANGUAGE = "cpp"
+    THROW = ("throw std::invalid_argument(", ")")
     serial = 0  # of values taken apart in a function
 
     def text(self) -> str:
@@ -209,71 +210,21 @@ class Cpp(Printer):
 
     # --- statements
 
-    def braced(self, body: tuple[x.Statement, ...]) -> None:
-        self.block(body)
-        self.line("}")
-
-    def statement(self, node: x.Statement) -> None:
-        self.comments(node.comments)
-        beside = node.beside
-        match node:
-            case x.Declare():
-                self.declaration(node)
-            case x.Assign():
-                self.line(
-                    (self.target(node.target), f" {node.operator}= ", self.plain(node.value), ";"), beside
-                )
-            case x.Unpack():
-                self.unpacked(node)
-            case x.Do():
-                self.line((self.plain(node.value), ";"), beside)
-            case x.Return():
-                self.line(
-                    ("return", "" if node.value is None else (" ", self.plain(node.value)), ";"), beside
-                )
-            case x.Raise():
-                self.line(("throw std::invalid_argument(", self.plain(node.message), ");"), beside)
-            case x.Leave():
-                self.line(f"{node.word};", beside)
-            case x.If():
-                self.conditional(node, "if ")
-            case x.While():
-                self.line(("while (", self.plain(node.test), ") {"), beside)
-                self.braced(node.body)
-            case x.ForEach():
-                self.each(node)
-
     def declaration(self, node: x.Declare) -> None:
         kind, name = self.type(node.variable.type), self.word(node.variable.name)
         value = node.value
+        nothing = isinstance(value, x.Value) and value.value is None
         if value is None:
             self.line(f"{kind} {name}{{}};", node.beside)
-        elif (isinstance(value, x.Gathered | x.Mapped) and not value.items) or self.nothing(value):
+        elif nothing or (isinstance(value, x.Gathered | x.Mapped) and not value.items):
             self.line(f"{kind} {name};", node.beside)
         else:
             self.line((f"{kind} {name} = ", self.plain(value), ";"), node.beside)
 
-    def nothing(self, value: x.Expression) -> bool:
-        return isinstance(value, x.Value) and value.value is None
-
     def unpacked(self, node: x.Unpack) -> None:
-        names = listed("[", [self.plain(t) for t in node.targets], "]")
-        if node.new:
-            self.line(("auto ", names, " = ", self.plain(node.value), ";"), node.beside)
-        else:
-            given = listed("(", [self.plain(t) for t in node.targets], ")")
-            self.line(("std::tie", given, " = ", self.plain(node.value), ";"), node.beside)
-
-    def conditional(self, node: x.If, lead: str) -> None:
-        self.line((lead, "(", self.plain(node.test), ") {"), node.beside)
-        self.block(node.then)
-        if len(node.other) == 1 and isinstance(node.other[0], x.If) and not node.other[0].comments:
-            self.conditional(node.other[0], "} else if ")
-            return
-        if node.other:
-            self.line("} else {")
-            self.block(node.other)
-        self.line("}")
+        names = [self.plain(t) for t in node.targets]
+        lead = ("auto ", listed("[", names, "]")) if node.new else ("std::tie", listed("(", names, ")"))
+        self.line((*lead, " = ", self.plain(node.value), ";"), node.beside)
 
     def each(self, node: x.ForEach) -> None:
         words = [self.word(n.name) for n in node.names]
@@ -283,34 +234,25 @@ class Cpp(Printer):
         if name == "range":
             ends = [self.plain(a) for a in given]
             first, last = ("0", ends[0]) if len(ends) == 1 else ends[:2]
-            self.line(
-                (f"for (int {words[0]} = ", first, f"; {words[0]} < ", last, f"; {words[0]}++) {{"),
-                node.beside,
-            )
-            self.braced(node.body)
+            head: Document = (f"for (int {words[0]} = ", first, f"; {words[0]} < ", last, f"; {words[0]}++)")
+            self.braced(head, node.body, node.beside)
             return
         if name in ("enumerate", "zip"):
             place = words[0] if name == "enumerate" else "n" if "n" not in words else "place"
-            lists = given if name == "zip" else (given[0],)
+            lists = given if name == "zip" else given[:1]
             taken = words if name == "zip" else words[1:]
-            bound = len(flat(self.plain(lists[0])))
-            self.line(
-                (f"for (int {place} = 0; {place} < lang::len(", self.plain(lists[0]), f"); {place}++) {{"),
-                node.beside,
-            )
-            self.depth += 1
-            for word, of in zip(taken, lists, strict=True):
-                self.line((f"const auto& {word} = lang::at(", self.plain(of), f", {place});"))
-            self.depth -= 1
-            assert bound
-            self.braced(node.body)
+            head = (f"for (int {place} = 0; {place} < lang::len(", self.plain(lists[0]), f"); {place}++)")
+            first_lines: list[Document] = [
+                (f"const auto& {word} = lang::at(", self.plain(of), f", {place});")
+                for word, of in zip(taken, lists, strict=True)
+            ]
+            self.braced(head, node.body, node.beside, first_lines)
             return
         target = words[0] if len(words) == 1 else f"[{', '.join(words)}]"
         source: Document = self.plain(given[0]) if name == "map_items" else self.plain(over)
         if over.type.kind == "map" and name != "map_items":
             source = ("lang::keys(", source, ")")
-        self.line((f"for (const auto& {target} : ", source, ") {"), node.beside)
-        self.braced(node.body)
+        self.braced((f"for (const auto& {target} : ", source, ")"), node.body, node.beside)
 
     def target(self, node: x.Expression) -> Document:
         if isinstance(node, x.Item) and node.of.type.bare.kind == "map":

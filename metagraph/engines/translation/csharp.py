@@ -8,6 +8,7 @@ from collections.abc import Set as AbstractSet
 from types import MappingProxyType
 
 from metagraph.engines.translation import tree as x
+from metagraph.engines.translation.braces import Braces
 from metagraph.engines.translation.layout import Break, Document, Group, Nest, listed
 from metagraph.engines.translation.printing import (
     ALONE,
@@ -17,7 +18,6 @@ from metagraph.engines.translation.printing import (
     PLUS,
     TIMES,
     UNARY,
-    Printer,
     TranslationError,
     camel,
     pascal,
@@ -30,12 +30,14 @@ PLAIN = {"int": "int", "bits": "uint", "float": "double", "bool": "bool", "str":
 EXTERNAL = {"Settings": "PlannerSettings"}  # records that are not translated, as they are called here
 
 
-class CSharp(Printer):
+class CSharp(Braces):
     """One module, `Name.cs`; its static class is `NameRules`."""
 
     STEP = "    "
     WIDTH = 130
     LANGUAGE = "csharp"
+    OWN_LINE = True
+    THROW = ("throw new InvalidOperationException(", ")")
 
     def text(self) -> str:
         self.depth = 1
@@ -137,8 +139,7 @@ class CSharp(Printer):
             self.line(head)
             self.line("{")
             self.depth += 1
-            self.line("get")
-            self.braced(node.body)
+            self.braced("get", node.body)
             self.depth -= 1
             self.line("}")
             return
@@ -199,49 +200,16 @@ class CSharp(Printer):
 
     # --- statements
 
-    def braced(self, body: tuple[x.Statement, ...]) -> None:
-        self.line("{")
-        self.block(body)
-        self.line("}")
-
-    def statement(self, node: x.Statement) -> None:
-        self.comments(node.comments)
-        beside = node.beside
-        match node:
-            case x.Declare():
-                kind = self.type(node.variable.type)
-                value: Document = (
-                    f" = default({kind})" if node.value is None else (" = ", self.plain(node.value))
-                )
-                nothing = isinstance(node.value, x.Value) and node.value.value is None
-                plain = (
-                    node.value is not None and not nothing and node.value.type in (node.variable.type, x.BITS)
-                )
-                kind = "var" if plain else self.type(node.variable.type)
-                self.line((f"{kind} {self.local(node.variable)}", value, ";"), beside)
-            case x.Assign():
-                self.line(
-                    (self.target(node.target), f" {node.operator}= ", self.plain(node.value), ";"), beside
-                )
-            case x.Unpack():
-                self.unpacked(node)
-            case x.Do():
-                self.line((self.plain(node.value), ";"), beside)
-            case x.Return():
-                self.line(
-                    ("return", "" if node.value is None else (" ", self.plain(node.value)), ";"), beside
-                )
-            case x.Raise():
-                self.line(("throw new InvalidOperationException(", self.plain(node.message), ");"), beside)
-            case x.Leave():
-                self.line(f"{node.word};", beside)
-            case x.If():
-                self.conditional(node, "if ")
-            case x.While():
-                self.line(("while (", self.plain(node.test), ")"), beside)
-                self.braced(node.body)
-            case x.ForEach():
-                self.each(node)
+    def declaration(self, node: x.Declare) -> None:
+        """`var`, where the value tells its type."""
+        kind, value = self.type(node.variable.type), node.value
+        name = self.local(node.variable)
+        if value is None:
+            self.line(f"{kind} {name} = default({kind});", node.beside)
+            return
+        nothing = isinstance(value, x.Value) and value.value is None
+        told = not nothing and value.type in (node.variable.type, x.BITS)
+        self.line((f"{'var' if told else kind} {name} = ", self.plain(value), ";"), node.beside)
 
     def unpacked(self, node: x.Unpack) -> None:
         """One by one: compilers differ in what they take apart at once."""
@@ -252,63 +220,40 @@ class CSharp(Printer):
             kind = f"{self.type(target.type)} " if node.new else ""
             self.line((kind, self.target(target), f" = {name}.Item{n};"))
 
-    def conditional(self, node: x.If, lead: str) -> None:
-        self.line((lead, "(", self.plain(node.test), ")"), node.beside)
-        self.braced(node.then)
-        if len(node.other) == 1 and isinstance(node.other[0], x.If) and not node.other[0].comments:
-            self.conditional(node.other[0], "else if ")
-        elif node.other:
-            self.line("else")
-            self.braced(node.other)
-
     def each(self, node: x.ForEach) -> None:
         words = [self.local(n) for n in node.names]
         over = node.over
         if isinstance(over, x.Builtin) and over.name == "range":
             given = [self.plain(a) for a in over.arguments]
             first, last = ("0", given[0]) if len(given) == 1 else given[:2]
-            self.line(
-                (f"for (int {words[0]} = ", first, f"; {words[0]} < ", last, f"; {words[0]}++)"), node.beside
-            )
-            self.braced(node.body)
+            head: Document = (f"for (int {words[0]} = ", first, f"; {words[0]} < ", last, f"; {words[0]}++)")
+            self.braced(head, node.body, node.beside)
             return
         if len(words) == 1:
-            self.line(
-                (f"foreach ({self.type(node.names[0].type)} {words[0]} in ", self.items(over), ")"),
-                node.beside,
-            )
-            self.braced(node.body)
+            kind = self.type(node.names[0].type)
+            self.braced((f"foreach ({kind} {words[0]} in ", self.items(over), ")"), node.body, node.beside)
             return
         parts = ["Item1", "Item2"]
         if isinstance(over, x.Builtin) and over.name == "map_items":
             parts, over = ["Key", "Value"], over.arguments[0]
         one = next(w for w in ("one", "pair", "entry", "each") if w not in self.taken)
-        self.line((f"foreach (var {one} in ", self.items(over, keys=over is node.over), ")"), node.beside)
-        self.line("{")
-        self.depth += 1
-        for word, part in zip(words, parts, strict=True):
-            self.line(f"var {word} = {one}.{part};")
-        self.depth -= 1
-        self.block(node.body)
-        self.line("}")
+        first_lines = [f"var {word} = {one}.{part};" for word, part in zip(words, parts, strict=True)]
+        head = (f"foreach (var {one} in ", self.items(over, keys=over is node.over), ")")
+        self.braced(head, node.body, node.beside, first_lines)
 
     def items(self, over: x.Expression, keys: bool = True) -> Document:
-        if isinstance(over, x.Builtin) and over.name == "enumerate":
-            place = self.strong(over.arguments[0], ALONE)
-            return (place, ".Select((item, n) => (n, item))")
-        if isinstance(over, x.Builtin) and over.name == "map_items":
-            return (self.strong(over.arguments[0], ALONE), ".Select(entry => (entry.Key, entry.Value))")
-        if isinstance(over, x.Builtin) and over.name == "zip":
-            return (
-                self.strong(over.arguments[0], ALONE),
-                ".Zip(",
-                self.plain(over.arguments[1]),
-                ", (a, b) => (a, b))",
-            )
-        return (self.strong(over, ALONE), ".Keys") if over.type.kind == "map" and keys else self.plain(over)
-
-    def target(self, node: x.Expression) -> Document:
-        return self.plain(node)
+        """Return what gives the items of something one by one. keys: of a map, those."""
+        given = over.arguments if isinstance(over, x.Builtin) else ()
+        match over:
+            case x.Builtin(name="enumerate"):
+                return (self.strong(given[0], ALONE), ".Select((item, n) => (n, item))")
+            case x.Builtin(name="map_items"):
+                return (self.strong(given[0], ALONE), ".Select(entry => (entry.Key, entry.Value))")
+            case x.Builtin(name="zip"):
+                return (self.strong(given[0], ALONE), ".Zip(", self.plain(given[1]), ", (a, b) => (a, b))")
+            case _ if over.type.kind == "map" and keys:
+                return (self.strong(over, ALONE), ".Keys")
+        return self.plain(over)
 
     # --- expressions
 

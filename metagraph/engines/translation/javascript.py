@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 from metagraph.engines.translation import tree as x
+from metagraph.engines.translation.braces import Braces
 from metagraph.engines.translation.layout import Break, Document, Group, Nest, listed
 from metagraph.engines.translation.printing import (
     ALONE,
@@ -15,18 +16,18 @@ from metagraph.engines.translation.printing import (
     POWER,
     TIMES,
     UNARY,
-    Printer,
     TranslationError,
     camel,
 )  # fmt: skip
 
 
-class JavaScript(Printer):
+class JavaScript(Braces):
     """One module, `name.js`."""
 
     STEP = "  "
     WIDTH = 125
     LANGUAGE = "javascript"
+    THROW = ("throw new Error(", ")")
 
     def text(self) -> str:
         for part in self.module.parts:
@@ -152,80 +153,42 @@ class JavaScript(Printer):
 
     # --- statements
 
-    def braced(self, body: tuple[x.Statement, ...]) -> None:
-        self.block(body)
-        self.line("}")
+    def declaration(self, node: x.Declare) -> None:
+        word = "let" if node.changes or node.value is None else "const"
+        value: Document = "" if node.value is None else (" = ", self.plain(node.value))
+        self.line((f"{word} {self.local(node.variable)}", value, ";"), node.beside)
 
-    def statement(self, node: x.Statement) -> None:
-        self.comments(node.comments)
-        beside = node.beside
-        match node:
-            case x.Declare():
-                word = "let" if node.changes or node.value is None else "const"
-                value: Document = "" if node.value is None else (" = ", self.plain(node.value))
-                self.line((f"{word} {self.local(node.variable)}", value, ";"), beside)
-            case x.Assign(target=x.Item() as item, operator="") if item.of.type.bare.kind == "map":
-                given = [self.plain(item.place), self.plain(node.value)]
-                self.line((self.strong(item.of, ALONE), listed(".set(", given, ")"), ";"), beside)
-            case x.Assign():
-                self.line(
-                    (self.target(node.target), f" {node.operator}= ", self.plain(node.value), ";"), beside
-                )
-            case x.Unpack():
-                names = listed("[", [self.target(t) for t in node.targets], "]")
-                self.line(("const " if node.new else "", names, " = ", self.plain(node.value), ";"), beside)
-            case x.Do():
-                self.line((self.plain(node.value), ";"), beside)
-            case x.Return():
-                value = "" if node.value is None else (" ", self.plain(node.value))
-                self.line(("return", value, ";"), beside)
-            case x.Raise():
-                self.line(("throw new Error(", self.plain(node.message), ");"), beside)
-            case x.Leave():
-                self.line(f"{node.word};", beside)
-            case x.If():
-                self.conditional(node, "if ")
-            case x.While():
-                self.line(("while (", self.plain(node.test), ") {"), beside)
-                self.braced(node.body)
-            case x.ForEach():
-                self.line((*self.loop(node.names, node.over), " {"), beside)
-                self.braced(node.body)
+    def assignment(self, node: x.Assign) -> None:
+        item = node.target
+        if isinstance(item, x.Item) and item.of.type.bare.kind == "map":
+            given = [self.plain(item.place), self.plain(node.value)]
+            self.line((self.strong(item.of, ALONE), listed(".set(", given, ")"), ";"), node.beside)
+        else:
+            super().assignment(node)
 
-    def conditional(self, node: x.If, lead: str) -> None:
-        self.line((lead, "(", self.plain(node.test), ") {"), node.beside)
-        self.block(node.then)
-        if len(node.other) == 1 and isinstance(node.other[0], x.If) and not node.other[0].comments:
-            self.conditional(node.other[0], "} else if ")
-            return
-        if node.other:
-            self.line("} else {")
-            self.block(node.other)
-        self.line("}")
+    def unpacked(self, node: x.Unpack) -> None:
+        names = listed("[", [self.target(t) for t in node.targets], "]")
+        self.line(("const " if node.new else "", names, " = ", self.plain(node.value), ";"), node.beside)
 
-    def loop(self, names: tuple[x.Local, ...], over: x.Expression) -> tuple[Document, ...]:
-        words = [self.local(n) for n in names]
+    def each(self, node: x.ForEach) -> None:
+        words = [self.local(n) for n in node.names]
         name = words[0] if len(words) == 1 else f"[{', '.join(words)}]"
-        if isinstance(over, x.Builtin) and over.name == "range":
-            given = [self.plain(a) for a in over.arguments]
-            first, last = ("0", given[0]) if len(given) == 1 else given[:2]
-            return (f"for (let {name} = ", first, f"; {name} < ", last, f"; {name}++)")
-        if isinstance(over, x.Builtin) and over.name == "enumerate":
-            return (f"for (const {name} of ", self.strong(over.arguments[0], ALONE), ".entries())")
-        if isinstance(over, x.Builtin) and over.name == "map_items":
-            return (f"for (const {name} of ", self.plain(over.arguments[0]), ")")
-        return (f"for (const {name} of ", self.items(over), ")")
-
-    def items(self, over: x.Expression) -> Document:
-        """Return what gives the items of something one by one."""
-        if over.type.kind == "map":
-            return (self.strong(over, ALONE), ".keys()")
-        return self.plain(over)
-
-    def target(self, node: x.Expression) -> Document:
-        if isinstance(node, x.Item) and node.of.type.kind == "map":
-            raise TranslationError(f"{self.module.name}: an item of a map is set")
-        return self.plain(node)
+        over, of = node.over, f"for (const {name} of "
+        given = over.arguments if isinstance(over, x.Builtin) else ()
+        match over:
+            case x.Builtin(name="range"):
+                ends = [self.plain(a) for a in given]
+                first, last = ("0", ends[0]) if len(ends) == 1 else ends[:2]
+                head: Document = (f"for (let {name} = ", first, f"; {name} < ", last, f"; {name}++)")
+            case x.Builtin(name="enumerate"):
+                head = (of, self.strong(given[0], ALONE), ".entries())")
+            case x.Builtin(name="map_items"):
+                head = (of, self.plain(given[0]), ")")
+            case _ if over.type.kind == "map":
+                head = (of, self.strong(over, ALONE), ".keys())")
+            case _:
+                head = (of, self.plain(over), ")")
+        self.braced(head, node.body, node.beside)
 
     # --- expressions
 
