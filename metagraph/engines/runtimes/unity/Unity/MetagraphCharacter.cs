@@ -156,6 +156,12 @@ namespace Metagraph
             return character == null ? null : character.AnswerTo(id);
         }
 
+        /// <summary>What may be asked for, as JSON: layers with stances, actions and tags, lines, points; null while nothing is loaded.</summary>
+        public string Describe()
+        {
+            return character == null ? null : character.Describe();
+        }
+
         /// <summary>Make a gesture that has all the tags.</summary>
         public string Gesture(params string[] tags)
         {
