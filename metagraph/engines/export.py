@@ -239,7 +239,8 @@ def mesh_on(
         there = sum(name in skeleton for name in body.skeleton.names)
         notes.append(
             f"the mesh of '{given.name}' has another skeleton than the clips: it is bound by the names of "
-            f"its joints, {there} of {len(body.skeleton)}; the others move with the joint above them"
+            f"its joints, {there} of {len(body.skeleton)}"
+            + ("; the others move with the joint above them" if there < len(body.skeleton) else "")
         )
         body = bound(body, skeleton)
     shown = body.without(hidden)

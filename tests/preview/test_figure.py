@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import sample_clips
-from metagraph.formats.gltf import read_character
+from metagraph.formats.gltf import read_character, read_gltf_clips
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import Character, Material, Surface, bound
 from metagraph.motion.skeleton import Pose, Skeleton
@@ -222,3 +222,15 @@ def test_a_bound_mesh_names_no_joint_twice_for_a_vertex() -> None:
     for joints, weights in zip(body.joints, body.weights, strict=True):
         used = joints[weights > 0].tolist()
         assert len(used) == len(set(used)) and np.isclose(weights.sum(), 1, atol=1e-5)
+
+
+def test_a_host_whose_mesh_came_with_another_skeleton_is_exported_as_it_is_drawn(shared_data: Path) -> None:
+    """The same names, other rests: what others publish as one character."""
+    home = shared_data / "sumerian-hosts" / "glTF"
+    body = read_character(home / "characters" / "adult_female" / "cristine" / "cristine.gltf")
+    idle = read_gltf_clips(home / "animations" / "adult_female" / "stand_idle.glb")[0]
+    assert body.skeleton.names == idle.skeleton.names and body.skeleton != idle.skeleton
+    drawn, exported = (SkinnedFigure(x, idle.skeleton) for x in (body, bound(body, idle.skeleton)))
+    pose = idle.skeleton.globals(idle.pose_at(1.0))
+    apart = np.linalg.norm(skinned(drawn, *pose) - skinned(exported, *pose), axis=1)
+    assert len(apart) > 10_000 and apart.max() < 1e-3
