@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import Character, Material
+from metagraph.motion.character_mesh import Character, Material, followers
 from metagraph.motion.skeleton import Skeleton
 from preview import joints as rules
 from preview.mesh import VERTEX, Batch, Mesh, ball, capsule, coarse, egg
@@ -154,16 +154,11 @@ class SkinnedFigure(Figure):
         own = character.skeleton
         skeleton = own if skeleton is None else skeleton
         rest_r, rest_p = own.globals(own.rest)
-        found = np.array([skeleton.index(n) if n in skeleton else -1 for n in own.names])
-        self.matched = int((found >= 0).sum())
-        follow = np.arange(len(own))  # the character's joint whose matrix each joint uses
-        first = int(np.argmax(found >= 0)) if self.matched else 0
-        for i in range(len(own)):
-            if found[i] < 0:
-                follow[i] = follow[own.parents[i]] if own.parents[i] >= 0 else first
+        self.matched = sum(name in skeleton for name in own.names)
+        follow, sources = followers(own, skeleton)  # the character's joint whose matrix each joint uses
         self._inverse_rotations = rotation.conjugate(rest_r)[follow].astype(np.float32)
         self._rest_positions = rest_p[follow].astype(np.float32)
-        super().__init__(skeleton, _character_mesh(character), found[follow])
+        super().__init__(skeleton, _character_mesh(character), sources)
         self.character, self.morphs, self.meshes = character, character.morphs, character.meshes
 
     def palette(self, rotations: Array, positions: Array) -> Array:

@@ -22,6 +22,7 @@ import msgspec
 from metagraph.engines.reading import read_export
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
+from metagraph.graph.offered import offered, tools
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.extend_performance import Answer, answer, answers
 from metagraph.playback.plan import Plan
@@ -89,6 +90,16 @@ class Character:
         return tuple(
             f"clip '{clip.name}' is missing" for clip in self.project.clips.values() if clip.motion is None
         )
+
+    def describe(self) -> dict[str, Any]:
+        """Return what may be asked for, as plain data: see `metagraph.graph.offered.offered`."""
+        return offered(self.project, a.WORDS)
+
+    def tools(self) -> list[dict[str, Any]]:
+        """Return what may be asked for as tools that a language model can call: see
+        `metagraph.graph.offered.tools`.
+        """
+        return tools(self.project)
 
     def ask(self, request: Mapping[str, Any] | a.AnyRequest) -> str:
         """Ask for something; return the id it goes by, made where there is none. It is worked in at the next

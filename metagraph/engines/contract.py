@@ -131,9 +131,9 @@ class ExportedMarkov(Struct, forbid_unknown_fields=True):
 
 
 class ExportedLayer(Struct, forbid_unknown_fields=True):
-    """One layer's meta-graph. weights: how strongly it moves each body part. index: the multi-index, stance
-    -> kind -> action ids in the order they were placed. own_markov: the model was edited; otherwise it is the
-    default.
+    """One layer's meta-graph. weights: how strongly it moves each body part, 0 where it is not listed. index:
+    the multi-index, stance -> kind -> action ids in the order they were placed. Weights and model are played
+    as they stand; own_weights, own_markov: what of them a user set, for programs that edit.
     """
 
     start: str | None

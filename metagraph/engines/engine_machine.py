@@ -70,6 +70,21 @@ class Machine:
     stances: Mapping[str, int]
     joints: tuple[str, ...]
 
+    @cached_property
+    def stance_words(self) -> Mapping[str, str]:
+        """Stance -> what it is called in events: its name, made of letters, digits and "_"."""
+        out: dict[str, str] = {}
+        for ident, number in self.stances.items():
+            word = re.sub(r"[^A-Za-z0-9]+", "_", self.graph.stances[ident].name).strip("_") or "stance"
+            out[ident] = f"{word}_{number}" if word in out.values() else word
+        return out
+
+    def hop(self, here: str, goal: str) -> State | None:
+        """Return the first transition of the shortest way between two stances, None where there is none."""
+        way = chain(self.graph, here, goal)
+        actions = (s for s in self.states if s.action.kind == "transition" and s.action.stance == here)
+        return next((s for s in actions if s.action.end_stance == way[0]), None) if way else None
+
     @property
     def start(self) -> State:
         """The loop it begins in."""

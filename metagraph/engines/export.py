@@ -30,7 +30,7 @@ from metagraph.graph.model import (
     Project,
     Settings,
 )
-from metagraph.motion.character_mesh import Character
+from metagraph.motion.character_mesh import Character, bound, no_character
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton, unique_names
 from metagraph.playback import choice, hashing, markov
@@ -201,7 +201,6 @@ def _write_glb(
     hidden: Collection[str] = (),
 ) -> list[str]:
     """Write the GLB, without the meshes that are hidden; return what is not in it, in words."""
-    from metagraph.formats.gltf import read_character
     from metagraph.formats.gltf_writer import write_glb
 
     try:
@@ -213,16 +212,39 @@ def _write_glb(
             "on making the folder",
             "Choose a folder you may write to.",
         ) from None
-    notes = []
-    body = read_character(character) if isinstance(character, Path) else character
-    if body is not None and character is not None and body.skeleton != skeleton:
-        body = None  # it would not move with these clips
-        notes.append(f"the mesh of '{character.name}' is left out: it has another skeleton than the clips")
-    shown = body.without(hidden) if body is not None else None
-    if shown is not None and not len(shown.triangles):
-        shown = None
+    shown, notes = mesh_on(skeleton, character, hidden)
     write_glb(path, [replace(clip, skeleton=skeleton) for clip in clips], shown)
     return notes
+
+
+def mesh_on(
+    skeleton: Skeleton, given: Path | Character | None, hidden: Collection[str] = ()
+) -> tuple[Character | None, list[str]]:
+    """Return the mesh that is written for clips of a skeleton, without the meshes that are hidden, and what
+    there is to say about it. One of another skeleton is bound by the names of its joints, as the preview
+    draws it, and left out where the preview does not draw it. Raises FileError.
+    """
+    from metagraph.formats.gltf import read_character
+
+    body = read_character(given) if isinstance(given, Path) else given
+    if body is None or given is None:
+        return None, []
+    notes = []
+    if body.skeleton != skeleton:
+        why = no_character(body, skeleton)
+        if why is not None:
+            return None, [
+                f"the mesh of '{given.name}' is left out: it has another skeleton than the clips, and {why}"
+            ]
+        there = sum(name in skeleton for name in body.skeleton.names)
+        notes.append(
+            f"the mesh of '{given.name}' has another skeleton than the clips: it is bound by the names of "
+            f"its joints, {there} of {len(body.skeleton)}"
+            + ("; the others move with the joint above them" if there < len(body.skeleton) else "")
+        )
+        body = bound(body, skeleton)
+    shown = body.without(hidden)
+    return shown if len(shown.triangles) else None, notes
 
 
 def _used(project: Project) -> list[ClipEntry]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,12 +19,15 @@ from metagraph.formats.fields import DataError
 from metagraph.graph.face import CHANNELS
 from metagraph.graph.model import (
     LAYERS,
+    PARTS,
+    REACH,
     Action,
     BasePose,
     ClipEntry,
     Layer,
     Markov,
     MetaGraph,
+    Part,
     Project,
     Settings,
     Stance,
@@ -119,7 +123,7 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         base=base,
         roles=dict(document.roles),
         parts=dict(document.parts),
-        markov={  # also what was the default once
+        markov={  # what is told is played; `own_markov` says that it was edited
             layer: model
             for layer in LAYERS
             if (model := _markov(layer, document.layers[layer].markov)) != DEFAULTS[layer]
@@ -251,6 +255,13 @@ def _graph(layer: Layer, data: c.ExportedLayer, resolved: bool) -> MetaGraph:
         )
     if unknown := [part for part in data.own_weights if part not in data.weights]:
         raise DataError(f"{where}.own_weights", f"weights say nothing of '{unknown[0]}'")
-    return MetaGraph(
-        layer, stances, actions, data.start, {part: data.weights[part] for part in data.own_weights}
-    )
+    return MetaGraph(layer, stances, actions, data.start, _weights(layer, data))
+
+
+def _weights(layer: Layer, data: c.ExportedLayer) -> Mapping[Part, float]:
+    """Return the weights of a layer that a project has to hold to play as the export says: those set by the
+    user, and whatever is not the usual one. A part that is not listed is not moved.
+    """
+    told = {part: data.weights.get(part, 0.0) for part in PARTS}
+    own = (*data.own_weights, *(part for part in PARTS if told[part] != REACH[layer][part]))
+    return {part: told[part] for part in dict.fromkeys(own)}

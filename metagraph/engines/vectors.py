@@ -22,6 +22,7 @@ from metagraph.engines.script import Case, ScriptStep, cases
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.offered import offered
 from metagraph.graph.requests import request_from
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
@@ -71,6 +72,7 @@ def write_vectors(export: Path, chosen: Iterable[Case] | None = None) -> Path:
         "export": export.name,
         "tolerance": {"metres": METRES, "degrees": DEGREES, "seconds": SECONDS, "weight": WEIGHT},
         "hashes": [[seed, list(words), key32(seed, *words)] for seed, words in HASHES],
+        "described": offered(project),
     }
     lines = ",\n".join(json.dumps(case, ensure_ascii=False, separators=(",", ":")) for case in found)
     text = json.dumps(head, ensure_ascii=False)[:-1] + f', "cases": [\n{lines}\n]}}\n'
@@ -239,6 +241,8 @@ def check_vectors(folder: Path, project: Project | None = None) -> Outcome:
     for seed, words, expected in data["hashes"]:
         if key32(seed, *words) != expected:
             out.failures.append(("hashes", f"{seed} {words}"))
+    wrong = _unlike(offered(project), data["described"], "described") if "described" in data else []
+    out.failures += [("described", what) for what in wrong]
     for case in data["cases"]:
         wrong = differences(project, case)
         out.failures += [(case["name"], what) for what in wrong]

@@ -26,8 +26,8 @@ _AGAIN = "Export it again from the program that made it, as binary FBX 2014 or l
 def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT, as_is: Collection[str] = ()) -> list[Clip]:
     """Return every take of an FBX file, sampled at 30 fps, in metres, Y up, on one Skeleton.
 
-    Needs the extra `metagraph[fbx]`. Meshes and blend shapes are not read. Raises FileError, also when the
-    library is missing, takes longer than `timeout` seconds or crashes on the file. as_is: repairs
+    Needs the extra `metagraph-studio[fbx]`. Meshes and blend shapes are not read. Raises FileError, also when
+    the library is missing, takes longer than `timeout` seconds or crashes on the file. as_is: repairs
     (`takes.REPAIRS`) not to make.
     """
     path = check_file(path, MOTION_FILE)
@@ -36,7 +36,7 @@ def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT, as_is: Collection
             path,
             "reading FBX needs the ufbx library, which is not installed",
             "on opening it",
-            "Run: pip install metagraph[fbx]",
+            "Run: pip install 'metagraph-studio[fbx]'",
         )
     data = _converted(path, timeout)
     gltf = parse_gltf(path, data)
@@ -85,7 +85,7 @@ def _told(path: Path, error: ReaderError, timeout: float) -> FileError:
             path,
             "the ufbx library is installed but does not load",
             "on opening it",
-            "Run: pip install --force-reinstall metagraph[fbx]",
+            "Run: pip install --force-reinstall 'metagraph-studio[fbx]'",
         )
     if code == fbx_child.REFUSED:
         return FileError(path, f"it is not a sound FBX file ({words})", "its content", _AGAIN)

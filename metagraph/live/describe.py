@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from typing import Any, Protocol
 
 import msgspec
 
 from metagraph import __version__
-from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
-from metagraph.graph.words import MODES
+from metagraph.graph.offered import offered
 from metagraph.live import limits, messages
 from metagraph.live.generating import Generating
 from metagraph.live.ledger import Ledger
@@ -34,7 +32,7 @@ class DescribedSession(Protocol):
     def plan(self) -> Plan: ...
 
 
-LINES, POINTS, ACTIONS = 2000, 500, 20000  # described at most
+MOST = {"lines": 2000, "points": 500, "actions": 20000}  # described at most
 
 
 def named(data: bytes, ident: str) -> bytes:
@@ -100,50 +98,10 @@ def describe(project: Project, models: Sequence[str] = (), graphs: Sequence[str]
     """Return what may be asked of a character: its joints, stances, actions, tags, lines and points. models,
     graphs: those that can generate motion.
     """
-    skeleton, parts = project.skeleton, anatomy.parts(project) if project.skeleton is not None else ()
-    layers = {}
-    for layer in LAYERS:
-        graph = project.graphs[layer]
-        tags = Counter(tag for action in graph.actions.values() for tag in action.tags)
-        layers[layer] = {
-            "start": graph.start,
-            "stances": [{"id": s.id, "name": s.name} for s in graph.stances.values()],
-            "actions": [
-                _action(project, x) for x in list(graph.actions.values())[:ACTIONS] if x.kind != "stance"
-            ],
-            "tags": dict(tags),
-        }
     out = {
         "state": "done",
-        "project": project.name,
-        "words": messages.WORDS,
-        "modes": MODES,
-        "joints": [] if skeleton is None else [
-            {"name": name, "parent": None if parent < 0 else skeleton.names[parent], "part": part}
-            for name, parent, part in zip(skeleton.names, skeleton.parents.tolist(), parts, strict=True)
-        ],
-        "layers": layers,
-        "lines": [{"id": ident, "text": line.text} for ident, line in list(project.lines.items())[:LINES]],
-        "points": dict(list(project.points.items())[:POINTS]),
+        **offered(project, messages.WORDS),
         "models": list(models),
         "graphs": list(graphs),
-    }  # fmt: skip
-    return messages.encode(out)
-
-
-def _action(project: Project, action: Any) -> dict[str, Any]:
-    start, end = project.span(action)
-    out = {
-        "id": action.id,
-        "name": action.name,
-        "kind": action.kind,
-        "stance": action.stance,
-        "seconds": round(end - start, 3),
     }
-    if action.kind == "transition":
-        out["to"] = action.end_stance
-    return (
-        out
-        | ({"limb": action.limb} if action.limb != "both" else {})
-        | ({"tags": action.tags} if action.tags else {})
-    )
+    return messages.encode(out)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.motion import rotation
 from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
@@ -135,6 +136,64 @@ def no_character(body: Character, skeleton: Skeleton | None = None) -> str | Non
     if len(followed) == 1 and len(skeleton) > 2 and not body.morphs:
         return "moves with one joint alone"
     return None
+
+
+def followers(own: Skeleton, skeleton: Skeleton) -> tuple[Array, Array]:
+    """Return which of its own joints each joint of a mesh moves with `[J]`, and that one's place in a
+    skeleton `[J]`: the joint of its name, or of its nearest ancestor that there is one for, else of the first
+    that there is one for; -1 where none is.
+    """
+    found = np.array([skeleton.index(n) if n in skeleton else -1 for n in own.names])
+    follow = np.arange(len(own))
+    first = int(np.argmax(found >= 0))
+    for i in range(len(own)):
+        if found[i] < 0:
+            follow[i] = follow[own.parents[i]] if own.parents[i] >= 0 else first
+    return follow, found[follow]
+
+
+def bound(body: Character, skeleton: Skeleton) -> Character:
+    """Return a character on a skeleton that is not its own, its joints matched by name as `followers` says,
+    and its surface as that skeleton's rest pose moves it. Raises ValueError where no joint matches.
+    """
+    follow, places = followers(body.skeleton, skeleton)
+    if places.min() < 0:
+        raise ValueError(f"character '{body.name}' has no joint of the skeleton")
+    own_r, own_p = body.skeleton.globals(body.skeleton.rest)
+    rest_r, rest_p = skeleton.globals(skeleton.rest)
+    turns = rotation.multiply(rest_r[places], rotation.conjugate(own_r[follow]))
+    shifts = rest_p[places] - rotation.rotate(turns, own_p[follow])
+    weights = body.weights[..., None].astype(float)
+    matrix = (weights[..., None] * rotation.to_matrix(turns)[body.joints]).sum(1)
+    moved = np.einsum("vij,vj->vi", matrix, body.positions) + (weights * shifts[body.joints]).sum(1)
+    normals = np.einsum("vij,vj->vi", matrix, body.normals)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    morphs = body.morph_positions
+    joints, shares = _merged(places[body.joints], body.weights)
+    return replace(
+        body,
+        skeleton=skeleton,
+        positions=moved.astype(body.positions.dtype),
+        normals=normals.astype(body.normals.dtype),
+        joints=joints.astype(body.joints.dtype),
+        weights=shares,
+        morph_positions=None if morphs is None else np.einsum("vij,kvj->kvi", matrix, morphs),
+        surfaces=tuple(replace(s, held=int(places[s.held]) if s.held >= 0 else -1) for s in body.surfaces),
+    )
+
+
+def _merged(joints: Array, weights: Array) -> tuple[Array, Array]:
+    """Return joints and weights `[V, 4]` in which no joint holds a vertex twice; joint 0 where the weight is
+    0.
+    """
+    joints, weights = joints.copy(), weights.copy()
+    for n in range(1, joints.shape[1]):
+        for before in range(n):
+            same = joints[:, n] == joints[:, before]
+            weights[same, before] += weights[same, n]
+            weights[same, n] = 0
+    joints[weights == 0] = 0
+    return joints, weights
 
 
 def _followed(own: Skeleton, skeleton: Skeleton, joint: int) -> int:

@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 
-REMEDY = "install pylsl (pip install 'metagraph[lab]'), or leave 'lsl: true' out of the study file"
+REMEDY = "install pylsl (pip install 'metagraph-studio[lab]'), or leave 'lsl: true' out of the study file"
 SENT = ("n", "type", "mono", "condition", "task", "name", "number")  # fields of an event
 
 

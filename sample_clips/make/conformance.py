@@ -4,11 +4,13 @@ sample_clips.make.conformance`.
 
 from __future__ import annotations
 
+import json
 import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -393,6 +395,7 @@ def varied() -> Project:
     )
     for layer, part, weight in (
         ("arms", "spine", 0.5),
+        ("arms", "head", 0.0),
         ("head", "head", 0.6),
         ("head", "spine", 0.3),
         ("body", "arms", 0.2),
@@ -479,6 +482,17 @@ def _face(project: Project, morphs: tuple[str, ...]) -> Character:
     )
 
 
+def without_authors(path: Path) -> None:
+    """Rewrite an export as a program might that knows nothing of what users set: `own_weights` and
+    `own_markov` tell of nothing, and parts that a layer does not move are not listed.
+    """
+    document = json.loads(path.read_bytes())
+    for layer in document["layers"].values():
+        layer["weights"] = {part: weight for part, weight in layer["weights"].items() if weight != 0}
+        layer["own_weights"], layer["own_markov"] = [], False
+    path.write_bytes(msgspec.json.format(msgspec.json.encode(document), indent=1))
+
+
 def main() -> None:
     for project in (stick(), varied(), sparse()):
         folder = FOLDER / project.name
@@ -486,6 +500,8 @@ def main() -> None:
         made = write(
             project, folder, character=_face(project, project.face.morphs) if project.face.morphs else None
         )
+        if project.name == "varied":
+            without_authors(made.json)
         path = write_vectors(made.json)
         print(
             f"{path.parent.name}: {path.stat().st_size / 1e3:.0f} kB of vectors, "

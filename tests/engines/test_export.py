@@ -27,7 +27,7 @@ from metagraph.engines.export import ExportError, export, schema_text, to_docume
 from metagraph.engines.export_rig import read_voices, voices_of
 from metagraph.engines.reading import read_export
 from metagraph.errors import FileError
-from metagraph.formats.gltf import read_gltf_clips
+from metagraph.formats.gltf import read_character, read_gltf_clips
 from metagraph.formats.imports import gather, import_files
 from metagraph.formats.store import open_project, save_project
 from metagraph.graph import edits
@@ -40,6 +40,7 @@ from metagraph.playback import choice, hashing, markov
 from metagraph.playback.life.voice import silent
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import ease, pose_at
+from sample_clips.make import conformance
 from tests.projects import clip, projects
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -313,10 +314,25 @@ def test_blends_that_are_only_warned_of_are_exported_as_they_play(tmp_path: Path
     assert document["layers"]["arms"]["actions"][1]["blend_in"] == 0
 
 
-def test_a_mesh_on_another_skeleton_is_left_out_and_told(tmp_path: Path) -> None:
-    made = export(small(), tmp_path, character=ROOT / "sample_clips" / "mannequin.glb")
-    assert any("mannequin.glb" in w and "another skeleton" in w for w in made.warnings)
+def test_a_mesh_on_another_skeleton_is_bound_where_joints_match(sample: Project, tmp_path: Path) -> None:
+    """Fewer joints than the mannequin has, all at rest in other rotations."""
+    project = conformance.stick()
+    made = export(project, tmp_path / "bound", character=ROOT / "sample_clips" / "mannequin.glb")
+    (told,) = (w for w in made.warnings if "mannequin.glb" in w)
+    assert "another skeleton" in told and "bound by the names" in told
+    document = gltf(made.glb)
+    assert len(document["skins"][0]["joints"]) == len(project.skeleton or ()) and document["meshes"]
+    khronos(made.glb)
+    names = [f"other{n}" for n in range(len(sample.skeleton or ()))]
+    assert sample.skeleton is not None
+    strange = replace(read_character(ROOT / "sample_clips" / "mannequin.glb"), name="strange")
+    strange = replace(strange, skeleton=replace(strange.skeleton, names=tuple(names)))
+    made = export(project, tmp_path / "left", character=strange)
+    assert any("'strange' is left out" in w and "none of the skeleton's joints" in w for w in made.warnings)
     assert "meshes" not in gltf(made.glb)
+
+
+def test_a_mesh_that_is_not_there_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(FileError, match=r"none\.glb"):
         export(small(), tmp_path, character=tmp_path / "none.glb")
 

@@ -8,6 +8,7 @@ import copy
 import json
 import os
 import random
+import re
 import shutil
 import struct
 import subprocess
@@ -18,6 +19,8 @@ from typing import Any
 import pytest
 
 from metagraph import engines
+from metagraph.engines.targets import registry
+from metagraph.graph.model import Project
 from tests.engines.mutants import broken, folders_to_try
 
 ADDON = Path(engines.__file__).with_name("runtimes") / "godot" / "addons"
@@ -597,6 +600,28 @@ def test_every_script_for_godot_4_is_gdscript_2() -> None:
     assert len(scripts) > 30
     for path in scripts:
         parser.parse(path.read_text(encoding="utf-8"), gather_metadata=False)
+
+
+def test_the_readme_names_files_that_its_export_writes_and_calls_the_node_has(
+    sample: Project, tmp_path: Path
+) -> None:
+    """Godot 4 is not here to run it: it is parsed, and what it names is looked up."""
+    text = (ADDON.parent / "README.md").read_text(encoding="utf-8")
+    example = text.split("```gdscript\n")[1].split("```")[0]
+    pytest.importorskip("gdtoolkit.parser", reason="gdtoolkit is not here").parser.parse(
+        example, gather_metadata=False
+    )
+    made = registry.write(sample, "godot", tmp_path)
+    written = {path.relative_to(tmp_path).as_posix() for path in made.files}
+    named = {name.replace(".motion", ".glb") for name in re.findall(r"res://([\w.]+)", example)}
+    assert named == {"sample.json", "sample.glb"} and named <= written, "the .motion is a copy of the .glb"
+    assert (
+        re.findall(r'preload\("res://([^"]+)"\)', text) == ["addons/metagraph/godot3/metagraph_character.gd"]
+        and "addons/metagraph/godot3/metagraph_character.gd" in written
+    )
+    node = (ADDON / "metagraph" / "metagraph_character.gd").read_text(encoding="utf-8")
+    for name in set(re.findall(r"avatar\.(\w+)", example)):
+        assert re.search(rf"^(@export\S* )*(\(.*\) )?.*\b(var|func|signal) {name}\b", node, re.M), name
 
 
 def test_what_differs_between_the_engines_is_in_the_shims_alone() -> None:

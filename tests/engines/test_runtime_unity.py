@@ -654,6 +654,11 @@ namespace UnityEngine
         public static void LogError(object message, Object context) { Console.WriteLine("error: " + message); }
     }
     public sealed class TooltipAttribute : Attribute { public TooltipAttribute(string text) { } }
+    public enum RuntimeInitializeLoadType { SubsystemRegistration }
+    public sealed class RuntimeInitializeOnLoadMethodAttribute : Attribute
+    {
+        public RuntimeInitializeOnLoadMethodAttribute(RuntimeInitializeLoadType when) { }
+    }
     public sealed class DisallowMultipleComponent : Attribute { }
     public sealed class AddComponentMenu : Attribute { public AddComponentMenu(string name) { } }
 }
@@ -775,6 +780,65 @@ def test_a_component_without_its_files_says_so_and_stays_quiet(scene: Path) -> N
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.startswith("error: ")
     assert done.stdout.splitlines()[-1] == "False nothing nothing"
+
+
+SHARING = r"""
+using System;
+using System.IO;
+using System.Reflection;
+using Metagraph;
+using UnityEngine;
+
+public static class Sharing
+{
+    private static TextAsset text, bytes;
+
+    private static MetagraphCharacter Made(TextAsset glb)
+    {
+        var actor = new MetagraphCharacter { seed = 3, transform = new Transform(), export = text, glb = glb };
+        Call(actor, "Awake");
+        return actor;
+    }
+
+    private static void Call(MetagraphCharacter actor, string name)
+    {
+        BindingFlags any = BindingFlags.Instance | BindingFlags.Static | BindingFlags.NonPublic;
+        typeof(MetagraphCharacter).GetMethod(name, any).Invoke(actor, null);
+    }
+
+    public static void Main(string[] args)
+    {
+        text = new TextAsset { name = "stick", text = File.ReadAllText(args[0] + ".json") };
+        bytes = new TextAsset { bytes = File.ReadAllBytes(args[0] + ".glb") };
+        MetagraphCharacter broken = Made(new TextAsset { bytes = new byte[3] });
+        MetagraphCharacter first = Made(bytes), second = Made(bytes), other = Made(new TextAsset { bytes = bytes.bytes });
+        Console.WriteLine(broken.Character == null);
+        Console.WriteLine(ReferenceEquals(first.Character.Graph, second.Character.Graph));
+        Console.WriteLine(ReferenceEquals(first.Character.Graph, other.Character.Graph));
+        Console.WriteLine(ReferenceEquals(first.Character, second.Character));
+        Call(null, "Forget");
+        Console.WriteLine(ReferenceEquals(first.Character.Graph, Made(bytes).Character.Graph));
+        GC.KeepAlive(first);
+    }
+}
+"""
+
+
+def test_characters_of_the_same_assets_read_them_once(scene: Path) -> None:
+    source = scene.with_name("sharing.cs")
+    source.write_text(SHARING)
+    references = tuple(
+        scene.with_name(name) for name in ("metagraph.dll", "UnityEngine.dll", "component.dll")
+    )
+    program = compiled(scene.with_name("sharing.exe"), source, references=references)
+    done = subprocess.run(
+        ["mono", str(program), str(STICK / "stick")], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    broken, shared, other, one, after = (line == "True" for line in lines if line in ("True", "False"))
+    assert broken and shared and not (other or one or after)
+    assert sum(line.startswith("error") for line in lines) == 1
 
 
 def test_what_the_readme_shows_compiles(scene: Path) -> None:

@@ -20,7 +20,7 @@ from metagraph.formats.bvh import read_bvh
 from metagraph.formats.gltf import read_gltf_clips
 from metagraph.graph import edits
 from metagraph.graph.anatomy import base_pose
-from metagraph.graph.expand import connections, ends_in
+from metagraph.graph.expand import chain, connections, ends_in
 from metagraph.graph.model import LAYERS, Project
 from metagraph.playback.bml import read_bml
 from metagraph.playback.planner import make_plan
@@ -205,11 +205,24 @@ def test_xstate_goes_to_a_stance_and_plays_a_gesture_on_its_clock(written: Any, 
         {"seconds": 0.1, "events": ["arms.stance.nowhere", "nonsense"]},
     )
     rest, going, there, still = run("xstate.mjs", "xstate", chart, script)
-    assert rest["states"]["arms"] == "arms_hands_at_sides" and not rest["played"]
+    assert rest["states"]["arms"] == "arms_hands_at_sides"
+    assert [p["animation"] for p in rest["played"]] == list(rest["states"].values()), "its first loops"
+    assert all(p["loop"] and p["blend"] == 0 for p in rest["played"])
     assert going["states"]["arms"] == "arms_to_on_hips" and going["states"]["head"] == nod
     assert {p["animation"] for p in going["played"]} == {"arms_to_on_hips", nod}
     assert there["states"]["arms"] == "arms_on_hips" and there["states"]["head"] == rest["states"]["head"]
-    assert still["states"] == there["states"] and not still["played"]
+    assert still["states"] == there["states"]
+    assert still["played"] == [{"missed": "arms.stance.nowhere"}], "what no layer is asked for is nobody's"
+    script = steps(
+        tmp_path,
+        {"seconds": 0.1, "events": [f"head.action.{nod}"]},
+        {"seconds": 0.1, "events": [f"head.action.{nod}", "arms.stance.on_hips"]},
+    )
+    _, again = run("xstate.mjs", "xstate", chart, script)
+    assert [p.get("missed", p.get("animation")) for p in again["played"]] == [
+        f"head.action.{nod}",
+        "arms_to_on_hips",
+    ], "what comes too early is told, and only for its layer"
 
 
 def test_babylon_plays_the_behaviour_graph_without_code(written: Any, tmp_path: Path) -> None:
@@ -237,6 +250,34 @@ def test_babylon_plays_the_behaviour_graph_without_code(written: Any, tmp_path: 
     assert (
         hips["playing"][1] == "arms_on_hips" == deaf["playing"][1]
     )  # a gesture of another stance is passed over
+
+
+def test_babylon_goes_to_a_stance_by_as_many_transitions_as_it_takes(
+    sample: Project, written: Any, tmp_path: Path
+) -> None:
+    report = written("interactivity")
+    events = json.loads(named(report, "events.json").read_bytes())
+    (machine,) = (m for m in machines(sample) if m.layer == "arms")
+    pairs = [(a, b) for a in machine.stances for b in machine.stances if a != b]
+    here, goal = max(pairs, key=lambda pair: len(chain(machine.graph, *pair) or ()))
+    assert len(chain(machine.graph, here, goal) or ()) == 2
+    wave = next(e for e in events if "wave_hello" in e)
+    to_here, to_goal = (f"arms.stance.{machine.stance_words[x]}" for x in (here, goal))
+    assert {to_here, to_goal} <= set(events)
+    script = steps(
+        tmp_path,
+        {"seconds": 0.5},
+        {"seconds": 0.5, "events": [wave]},
+        {"seconds": 0.3, "events": [to_here]},  # while it plays: it goes there afterwards
+        {"seconds": 6.0},
+        {"seconds": 7.0, "events": [to_goal]},
+        {"seconds": 0.5, "events": [to_goal, "arms.stance.nowhere"]},
+    )
+    played = run("interactivity.mjs", "@babylonjs/loaders", named(report, ".glb"), script)
+    _, waving, still, there, beyond, stays = (row["playing"][1] for row in played)
+    assert waving == still == wave.removeprefix("arms.action.")
+    assert there == machine.rest(here).name
+    assert beyond == stays == machine.rest(goal).name
 
 
 def test_the_scxml_is_run_by_qt(written: Any, qtbot: Any) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from metagraph import engines
-from metagraph.engines import vectors
+from metagraph.engines import reading, vectors
 from metagraph.engines.export import export
 from metagraph.engines.reading import read_export
 from metagraph.errors import FileError
@@ -106,6 +106,21 @@ def _broken_key32(seed: int, *words: str) -> int:
 
 MUTATIONS: dict[str, tuple[Any, str, Any]] = {
     "the blend curve": (player, "ease", lambda x: np.clip(x, 0.0, 1.0)),
+    "weights are played as they stand": (
+        reading,
+        "_weights",
+        lambda layer, data: {part: data.weights[part] for part in data.own_weights},
+    ),
+    "models are played as they stand": (
+        reading,
+        "_markov",
+        lambda layer, data: markov.DEFAULTS[layer],
+    ),
+    "parts that are not listed are not moved": (
+        reading,
+        "_weights",
+        lambda layer, data: data.weights,
+    ),
     "the hash of draws": (choice, "key32", _broken_key32),
     "the counter of uses": (sampling.Performer, "_count", lambda self, ident, now: 0.0),
     "never twice and spacing": (sampling.Performer, "_spaced", lambda self, candidates: candidates),

@@ -18,7 +18,7 @@ from metagraph.formats.gltf import write_glb
 from metagraph.motion.roles import find_roles, is_humanoid
 
 needs_ufbx = pytest.mark.skipif(
-    importlib.util.find_spec("ufbx") is None, reason="the extra metagraph[fbx] is not installed"
+    importlib.util.find_spec("ufbx") is None, reason="the extra metagraph-studio[fbx] is not installed"
 )
 KAYDARA = b"Kaydara FBX Binary  \x00\x1a\x00" + (7400).to_bytes(4, "little")
 
@@ -59,7 +59,7 @@ def test_without_the_library_the_error_says_what_to_install(
 ) -> None:
     (tmp_path / "a.fbx").write_bytes(KAYDARA)
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    refused(tmp_path / "a.fbx", "ufbx", "pip install metagraph[fbx]")
+    refused(tmp_path / "a.fbx", "ufbx", "pip install 'metagraph-studio[fbx]'")
 
 
 @needs_ufbx

@@ -457,7 +457,7 @@ PEOPLE = {
 @pytest.mark.parametrize("file", PEOPLE)
 def test_real_people_have_the_roles_one_would_point_at(shared_data: Path, file: str) -> None:
     if file.endswith(".fbx"):
-        pytest.importorskip("ufbx", reason="the extra metagraph[fbx] is not installed")
+        pytest.importorskip("ufbx", reason="the extra metagraph-studio[fbx] is not installed")
     skeleton = read_clips(shared_data / file)[0].skeleton
     roles = find_roles(skeleton)
     assert is_humanoid(roles), missing_roles(roles)

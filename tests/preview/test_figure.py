@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+import sample_clips
+from metagraph.formats.gltf import read_character, read_gltf_clips
 from metagraph.motion import rotation
-from metagraph.motion.character_mesh import Character, Material, Surface
+from metagraph.motion.character_mesh import Character, Material, Surface, bound
 from metagraph.motion.skeleton import Pose, Skeleton
 from preview.figure import SkinnedFigure, StickFigure
 from preview.mesh import ball, capsule, coarse
+from sample_clips.make.conformance import stick_skeleton
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 from tests.preview.conftest import chain
 
 UNIT = np.eye(3, 4)
+MANNEQUIN = Path(sample_clips.__file__).with_name("mannequin.glb")
 
 
 def character(skeleton: Skeleton, **changes) -> Character:
@@ -188,3 +194,43 @@ def test_a_coarse_mesh_keeps_the_extent_and_its_batches():
     assert np.ptp(less.vertices["position"], axis=0) == pytest.approx(
         np.ptp(mesh.vertices["position"], axis=0), rel=0.08
     )
+
+
+def skinned(figure: SkinnedFigure, rotations: np.ndarray, positions: np.ndarray) -> np.ndarray:
+    """The vertices `[V, 3]` of a figure in a pose."""
+    body = figure.character
+    matrices = figure.palette(rotations, positions)[body.joints].astype(float)
+    corners = np.concatenate([body.positions, np.ones((len(body.positions), 1))], 1)
+    return np.einsum("vj,vjab,vb->va", body.weights, matrices, corners)
+
+
+def test_what_is_exported_of_a_mesh_on_another_skeleton_is_what_is_drawn() -> None:
+    body, skeleton = read_character(MANNEQUIN), stick_skeleton()
+    assert body.skeleton != skeleton
+    drawn, exported = SkinnedFigure(body, skeleton), SkinnedFigure(bound(body, skeleton), skeleton)
+    rest = skeleton.globals(skeleton.rest)
+    assert np.abs(skinned(drawn, *rest) - skinned(exported, *rest)).max() < 1e-5
+    turns = rotation.multiply(skeleton.rest_rotations, rotation.exp(np.full((len(skeleton), 3), 0.15)))
+    posed = skeleton.globals(Pose(turns, skeleton.rest_translations))
+    apart = np.linalg.norm(skinned(drawn, *posed) - skinned(exported, *posed), axis=1)
+    assert apart.mean() < 1e-3 and apart.max() < 0.02, "they mix several joints in another order"
+    assert np.linalg.norm(skinned(drawn, *posed) - skinned(drawn, *rest), axis=1).max() > 0.1
+
+
+def test_a_bound_mesh_names_no_joint_twice_for_a_vertex() -> None:
+    body = bound(read_character(MANNEQUIN), stick_skeleton())
+    for joints, weights in zip(body.joints, body.weights, strict=True):
+        used = joints[weights > 0].tolist()
+        assert len(used) == len(set(used)) and np.isclose(weights.sum(), 1, atol=1e-5)
+
+
+def test_a_host_whose_mesh_came_with_another_skeleton_is_exported_as_it_is_drawn(shared_data: Path) -> None:
+    """The same names, other rests: what others publish as one character."""
+    home = shared_data / "sumerian-hosts" / "glTF"
+    body = read_character(home / "characters" / "adult_female" / "cristine" / "cristine.gltf")
+    idle = read_gltf_clips(home / "animations" / "adult_female" / "stand_idle.glb")[0]
+    assert body.skeleton.names == idle.skeleton.names and body.skeleton != idle.skeleton
+    drawn, exported = (SkinnedFigure(x, idle.skeleton) for x in (body, bound(body, idle.skeleton)))
+    pose = idle.skeleton.globals(idle.pose_at(1.0))
+    apart = np.linalg.norm(skinned(drawn, *pose) - skinned(exported, *pose), axis=1)
+    assert len(apart) > 10_000 and apart.max() < 1e-3

@@ -23,15 +23,7 @@ HOST = Loss(
     "adds the layers"
 )
 FORGETFUL = Loss("what is asked while an action plays that may not be left yet is not remembered")
-
-
-def stance_words(machine: Machine) -> dict[int, str]:
-    """Return the word of each stance's number in events: its name, made of letters, digits and "_"."""
-    out: dict[int, str] = {}
-    for ident, number in machine.stances.items():
-        word = re.sub(r"[^A-Za-z0-9]+", "_", machine.graph.stances[ident].name).strip("_") or "stance"
-        out[number] = f"{word}_{number}" if word in out.values() else word
-    return out
+TOLD = Loss("what is asked while an action plays that may not be left yet is told as missed, not remembered")
 
 
 def _events(machine: Machine, arrow: Arrow) -> Iterator[str]:
@@ -39,7 +31,7 @@ def _events(machine: Machine, arrow: Arrow) -> Iterator[str]:
     if arrow.on == "action":
         yield f"{machine.layer}.action.{arrow.target.name}"
     elif arrow.on == "stance":
-        words = stance_words(machine)
+        words = {number: machine.stance_words[ident] for ident, number in machine.stances.items()}
         yield from (f"{machine.layer}.stance.{words[value]}" for value in arrow.values)
 
 
@@ -51,20 +43,24 @@ def _ends(machine: Machine, state: State) -> tuple[Arrow | None, float]:
 
 
 def xstate(name: str, built: tuple[Machine, ...]) -> dict[str, Any]:
-    """Return the machine as XState 5's `createMachine` takes it; the action `play` says what to play."""
+    """Return the machine as XState 5's `createMachine` takes it. The action `play` says what to play, from
+    the loops it begins with on; `missed`, which layer was asked for what cannot be taken up now.
+    """
     return {"id": name, "type": "parallel", "states": {machine.layer: _region(machine) for machine in built}}
 
 
-def _play(arrow: Arrow) -> dict[str, Any]:
+def _play(state: State, blend: float) -> dict[str, Any]:
     return {
         "type": "play",
-        "params": {"animation": arrow.target.name, "blend": round(arrow.blend, 4), "loop": arrow.target.loop},
+        "params": {"animation": state.name, "blend": round(blend, 4), "loop": state.loop},
     }
 
 
 def _region(machine: Machine) -> dict[str, Any]:
+    start = machine.start
     return {
-        "initial": machine.start.name,
+        "initial": {"target": start.name, "actions": [_play(start, 0.0)]},
+        "on": {f"{machine.layer}.*": {"actions": [{"type": "missed", "params": {"layer": machine.layer}}]}},
         "states": {state.name: _node(machine, state) for state in machine.states},
     }
 
@@ -74,7 +70,9 @@ def _node(machine: Machine, state: State) -> dict[str, Any]:
     events: dict[str, Any] = {}
     for arrow in machine.leaving[state.name]:
         for event in _events(machine, arrow):
-            events.setdefault(event, {"target": f"#{arrow.target.name}", "actions": [_play(arrow)]})
+            events.setdefault(
+                event, {"target": f"#{arrow.target.name}", "actions": [_play(arrow.target, arrow.blend)]}
+            )
     node: dict[str, Any] = {
         "id": state.name,
         "meta": {"animation": state.name, "loop": state.loop, "kind": state.action.kind},
@@ -82,7 +80,7 @@ def _node(machine: Machine, state: State) -> dict[str, Any]:
     if done is None:
         return {**node, "on": events}
     end = done.leave or 0.0
-    over = {"target": f"#{done.target.name}", "actions": [_play(done)]}
+    over = {"target": f"#{done.target.name}", "actions": [_play(done.target, done.blend)]}
     if leave >= end:
         return {**node, "after": {_ms(end): over}}
     free = {"after": {_ms(end - leave): over}, "on": events}
@@ -190,7 +188,7 @@ TARGETS = (
         "XState (JSON)",
         "one state chart for XState 5, and one GLB with an animation for each state",
         write_xstate,
-        (*MACHINE, HOST, FORGETFUL),
+        (*MACHINE, HOST, TOLD),
     ),
     ExportTarget(
         "scxml",

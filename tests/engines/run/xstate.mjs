@@ -4,7 +4,7 @@ import { createActor, createMachine, SimulatedClock } from "xstate";
 
 const [chart, script] = process.argv.slice(2);
 let played = [];
-const machine = createMachine(JSON.parse(fs.readFileSync(chart))).provide({ actions: { play: (_, params) => played.push(params) } });
+const machine = createMachine(JSON.parse(fs.readFileSync(chart))).provide({ actions: { play: (_, params) => played.push(params), missed: ({ event }) => played.push({ missed: event.type }) } });
 const clock = new SimulatedClock();
 const actor = createActor(machine, { clock }).start();
 for (const step of JSON.parse(fs.readFileSync(script))) {

@@ -44,6 +44,9 @@ const FIELDS = {
   bml: { bml: [undefined, text(0, 200000)] },
 };
 
+/** What `do` may be; blocks of BML are read by the desktop alone. */
+export const WORDS = Object.keys(FIELDS).filter((word) => word !== "bml");
+
 /**
  * Return the ask that plain data says, with every field, or why it cannot be read.
  * @param {unknown} data @returns {{ask: ?object, why: string}}

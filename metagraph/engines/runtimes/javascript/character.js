@@ -1,6 +1,7 @@
 /** One character of a game: takes requests as they come, plans ahead, and is posed every frame. */
 
 import { readAsk } from "./asks.js";
+import { describe } from "./describe.js";
 import { answers, hear, since } from "./hear.js";
 import { emptyPlan } from "./plan.js";
 import { Player } from "./pose.js";
@@ -36,6 +37,11 @@ export class Character {
     this.seen = -Infinity; // when the update before was
     this.forgot = 0;
     this.happened = [];
+  }
+
+  /** Return what may be asked for, as plain data: see `describe`. */
+  describe() {
+    return describe(this.graph);
   }
 
   /**

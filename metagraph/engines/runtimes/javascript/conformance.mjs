@@ -3,7 +3,7 @@
  * export it names. Ends with 1 and a line for each failure where something differs. A page runs them with `runVectors`.
  */
 
-import { LAYERS, emptyPlan, hear, key32, keyOf, load, morphsAt, poseAt, since } from "./index.js";
+import { LAYERS, describe, emptyPlan, hear, key32, keyOf, load, morphsAt, poseAt, since } from "./index.js";
 import { positions } from "./rotation.js";
 
 /**
@@ -29,6 +29,7 @@ export function runVectors(vectors, exportJson, glbBytes) {
       if (key32(seed, ...words) !== hash) fail(`${seed} ${JSON.stringify(words)} is ${key32(seed, ...words)}, should be ${hash}`);
     }
   });
+  if (vectors.described) run("described", (fail) => compare("described", describe(graph), vectors.described, vectors.tolerance.seconds, fail));
   for (const each of vectors.cases) run(each.name, (fail) => runCase(graph, each, vectors.tolerance, fail));
   return { passed, failures };
 }
@@ -130,7 +131,7 @@ if (typeof process !== "undefined" && process.argv[1] && import.meta.url.endsWit
     const json = readFileSync(join(folder, vectors.export), "utf8");
     const { passed, failures } = runVectors(vectors, json, readFileSync(join(folder, JSON.parse(json).glb)));
     for (const { case: name, what } of failures) console.log(`${folder}: ${name}: ${what}`);
-    console.log(`${folder}: ${passed} of ${vectors.cases.length + 1} cases pass`);
+    console.log(`${folder}: ${passed} of ${vectors.cases.length + 1 + ("described" in vectors)} cases pass`);
     failed += failures.length;
   }
   process.exit(failed ? 1 : 0);

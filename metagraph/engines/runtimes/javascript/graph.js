@@ -81,6 +81,7 @@ export class Graph {
       leastBlend: constant("least_blend", 0.25),
     };
     this.joints = data.joints.map((joint) => joint.name);
+    this.parts = data.joints.map((joint) => joint.part);
     this.parents = data.joints.map((joint) => (joint.parent === null ? -1 : this.joints.indexOf(joint.parent)));
     this.baseRotations = Float32Array.from(data.base.rotations.flat()); // [J, 4], local
     this.baseTranslations = Float32Array.from(data.base.translations.flat()); // [J, 3], local, metres

@@ -57,6 +57,36 @@ export interface LayerGraph {
   readonly actions: ReadonlyMap<string, Action>;
 }
 
+/** What may be asked of a character. */
+export interface Description {
+  readonly project: string;
+  /** What `do` of a request may be. */
+  readonly words: readonly string[];
+  readonly modes: readonly Mode[];
+  readonly joints: readonly { readonly name: string; readonly parent: string | null; readonly part: string }[];
+  readonly layers: Readonly<
+    Record<
+      Layer,
+      {
+        readonly start: string | null;
+        readonly stances: readonly { readonly id: string; readonly name: string }[];
+        /** All but the loops of stances. `to`: where a transition ends. */
+        readonly actions: readonly {
+          readonly id: string; readonly name: string; readonly kind: Kind; readonly stance: string; readonly seconds: number;
+          readonly to?: string | null; readonly limb?: Limb; readonly tags?: readonly string[];
+        }[];
+        /** Tag -> how many actions have it. */
+        readonly tags: Readonly<Record<string, number>>;
+      }
+    >
+  >;
+  readonly lines: readonly { readonly id: string; readonly text: string }[];
+  readonly points: Readonly<Record<string, Point>>;
+}
+
+/** Return what may be asked of any character of a graph. */
+export function describe(graph: Graph): Description;
+
 /** A loaded export, shared by all characters that use it. */
 export interface Graph {
   readonly name: string;
@@ -211,6 +241,8 @@ export class Character {
   readonly now: number;
   readonly plan: Plan;
   readonly player: Player;
+  /** What may be asked for. */
+  describe(): Description;
   /** Ask for something; returns its id. It is taken up at the next update. */
   ask(request: Ask): string;
   /** Move on to `now`, seconds of the character's own time, which begins at 0. */

@@ -2,6 +2,7 @@
 
 export { key32 } from "./choice.js";
 export { Character } from "./character.js";
+export { describe } from "./describe.js";
 export { FORMAT, Graph, MetagraphError, load } from "./graph.js";
 export { answers, hear, since } from "./hear.js";
 export { emptyPlan, keyOf } from "./plan.js";

@@ -59,6 +59,10 @@ public static class Conformance
                 Fail(folder, "the hash of " + string.Join(" ", words));
             }
         }
+        if (vectors.Has("described"))
+        {
+            Compare(folder + ", described", Json.Parse(graph.Describe()), vectors["described"]);
+        }
         foreach (JsonObject one in List(vectors["cases"]))
         {
             Case(folder + ", " + (string)one["name"], graph, one);

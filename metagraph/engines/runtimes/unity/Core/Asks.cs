@@ -1,6 +1,7 @@
 using System;
 using System.Collections.Generic;
 using System.Globalization;
+using System.Linq;
 
 namespace Metagraph
 {
@@ -44,6 +45,12 @@ namespace Metagraph
             { "withdraw", "what" },
             { "bml", "bml" },
         };
+
+        /// <summary>What "do" may be; blocks of BML are read by the desktop alone.</summary>
+        public static IEnumerable<string> AllWords
+        {
+            get { return Fields.Keys.Where(word => word != "bml"); }
+        }
 
         public Ask With(string id, double at)
         {

@@ -65,6 +65,12 @@ namespace Metagraph
         /// <summary>Seconds of the performance at the last update.</summary>
         public double Now { get; private set; }
 
+        /// <summary>What may be asked for, as JSON: see `Graph.Describe`.</summary>
+        public string Describe()
+        {
+            return Graph.Describe();
+        }
+
         /// <summary>
         /// Ask for something; taken up at the next update. The request is JSON with "do", as an agent sends it; "after": seconds from
         /// now, wins over "at". Returns its id, made up where it has none. What cannot be read is refused: see `AnswerTo`.

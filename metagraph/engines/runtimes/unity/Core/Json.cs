@@ -66,6 +66,30 @@ namespace Metagraph
             return found.Append('"').ToString();
         }
 
+        /// <summary>The JSON of what `Parse` returns: null, bool, long, double, string, List of object, JsonObject.</summary>
+        public static string Write(object value)
+        {
+            var fields = value as JsonObject;
+            var items = value as List<object>;
+            if (fields != null)
+            {
+                return "{" + string.Join(",", fields.Names.ConvertAll(name => Quote(name) + ":" + Write(fields[name])).ToArray()) + "}";
+            }
+            if (items != null)
+            {
+                return "[" + string.Join(",", items.ConvertAll(Write).ToArray()) + "]";
+            }
+            if (value is bool)
+            {
+                return (bool)value ? "true" : "false";
+            }
+            if (value is double)
+            {
+                return ((double)value).ToString("R", CultureInfo.InvariantCulture);
+            }
+            return value == null ? "null" : value is long ? ((long)value).ToString(CultureInfo.InvariantCulture) : Quote((string)value);
+        }
+
         private FormatException Wrong(string what)
         {
             return new FormatException("not JSON: " + what + " (character " + at.ToString(CultureInfo.InvariantCulture) + ")");

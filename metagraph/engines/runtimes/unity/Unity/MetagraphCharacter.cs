@@ -60,9 +60,7 @@ namespace Metagraph
                 {
                     throw new MetagraphException(name, "has no export", "Set Export and Glb, or Glb Path, in the inspector.");
                 }
-                byte[] bytes = glb != null ? glb.bytes : File.ReadAllBytes(Path.Combine(Application.streamingAssetsPath, glbPath));
-                Graph graph = Graph.Load(export.text, bytes, export.name);
-                graph.Problems.ForEach(problem => Debug.LogWarning(problem, this));
+                Graph graph = SharedGraphs.Of(export, glb != null ? (object)glb : glbPath, Load);
                 character = new Character(graph, new CharacterOptions { Seed = seed < 0 ? (uint?)null : (uint)seed, Idle = idle });
                 Bind(graph);
             }
@@ -71,6 +69,22 @@ namespace Metagraph
                 Debug.LogError(error.Message, this);
                 enabled = false;
             }
+        }
+
+        /// <summary>Read the export, for this and all other characters of the same assets.</summary>
+        private Graph Load()
+        {
+            byte[] bytes = glb != null ? glb.bytes : File.ReadAllBytes(Path.Combine(Application.streamingAssetsPath, glbPath));
+            Graph graph = Graph.Load(export.text, bytes, export.name);
+            graph.Problems.ForEach(problem => Debug.LogWarning(problem, this));
+            return graph;
+        }
+
+        /// <summary>Assets may have been imported anew since the last play, where scripts are not loaded again.</summary>
+        [RuntimeInitializeOnLoadMethod(RuntimeInitializeLoadType.SubsystemRegistration)]
+        private static void Forget()
+        {
+            SharedGraphs.Clear();
         }
 
         /// <summary>Find joints and blend shapes by their names.</summary>
@@ -154,6 +168,12 @@ namespace Metagraph
         public Answer AnswerTo(string id)
         {
             return character == null ? null : character.AnswerTo(id);
+        }
+
+        /// <summary>What may be asked for, as JSON: layers with stances, actions and tags, lines, points; null while nothing is loaded.</summary>
+        public string Describe()
+        {
+            return character == null ? null : character.Describe();
         }
 
         /// <summary>Make a gesture that has all the tags.</summary>

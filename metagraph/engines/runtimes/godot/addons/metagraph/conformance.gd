@@ -10,6 +10,7 @@ const VERSION = 1
 const Choice = preload("core/choice.gd")
 const Graph = preload("core/graph.gd")
 const Asks = preload("core/asks.gd")
+const Describe = preload("core/describe.gd")
 const Hear = preload("core/hear.gd")
 const Planner = preload("core/planner.gd")
 const Pose = preload("core/pose.gd")
@@ -80,6 +81,10 @@ func _check(folder, only):
 	for each in data.hashes:
 		if Choice.key32(int(each[0]), each[1]) != int(each[2]):
 			_fail("hashes", str(each))
+	if data.has("described"):
+		var unlike = _unlike(Describe.describe(graph), data.described, "described", data.tolerance.seconds)
+		if unlike != "":
+			_fail("described", unlike)
 	for case in data.cases:
 		if only != "" and case.name.find(only) < 0:
 			continue

@@ -100,6 +100,11 @@ func answer(id: String) -> Dictionary:
 	return character.answer(id) if character != null else {"state": "refused", "why": "the export was not read"}
 
 
+## Returns what may be asked for: layers with stances, actions and tags, lines, points, what "do" may be; empty while nothing is read.
+func describe() -> Dictionary:
+	return character.describe() if character != null else {}
+
+
 ## Asks for a gesture with all of these tags.
 func gesture(tags := [], more := {}) -> String:
 	return _ask("gesture", {"tags": tags}, more)

@@ -3,6 +3,7 @@
 
 const Util = preload("util.gd")
 const Asks = preload("asks.gd")
+const Describe = preload("describe.gd")
 const Hear = preload("hear.gd")
 const Planner = preload("planner.gd")
 const Pose = preload("pose.gd")
@@ -40,6 +41,11 @@ func _init(read_graph, options = {}):
 	plan = Planner.empty_plan(int(options.get("seed", graph.settings.get("seed32", 1))))
 	if graph.error == "":
 		plan = Hear.hear(graph, plan, 0.0, [], ahead, stances, idle)
+
+
+# Returns what may be asked for, as plain data (describe.gd); nothing where the export was not read.
+func describe():
+	return {} if graph.error != "" else Describe.describe(graph)
 
 
 # Takes a request, to be worked in at the next update; returns its id, made where there is none. It may have `after`: seconds from now,

@@ -30,7 +30,9 @@ var layers = {}  # layer -> {layer, start, stances {id: name}, actions {id: acti
 var settings = {}
 var life = {}
 var rig = null  # see rig.gd; null where nothing lives
+var name = ""  # of the project
 var points = {}  # name -> Vector3
+var spots = {}  # name -> [x, y, z], as the export has them
 var lines = {}
 var voices = {}  # line -> voice, see voice.gd
 var said = {}  # voices made from letters, by text and length
@@ -67,7 +69,9 @@ func _read(json, bytes):
 	settings.seed32 = int(data.planner["seed"])
 	_read_skeleton(data)
 	life = Life.life_of(data.life)
+	name = str(data.get("name", ""))
 	lines = data.lines
+	spots = data.points
 	for name in data.points:
 		points[name] = Util.vector(data.points[name])
 	for line in data.voices:

@@ -82,6 +82,11 @@ func answer(id):
 	return character.answer(id) if character != null else {"state": "refused", "why": "the export was not read"}
 
 
+# Returns what may be asked for: layers with stances, actions and tags, lines, points, what "do" may be; empty while nothing is read.
+func describe():
+	return character.describe() if character != null else {}
+
+
 func gesture(tags = [], more = {}):
 	return _ask("gesture", "tags", tags, more)
 
