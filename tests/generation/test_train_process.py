@@ -16,7 +16,7 @@ def test_without_torch_it_is_told_what_to_install_and_how_large_it_is(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(train_process.importlib.util, "find_spec", lambda name: None)
-    with pytest.raises(TrainingFailedError, match=r"(?s)750 MB.*metagraph\[train\].*whl/cpu"):
+    with pytest.raises(TrainingFailedError, match=r"(?s)750 MB.*metagraph-studio\[train\].*whl/cpu"):
         TrainingProcess(tmp_path / "m.mgmodel")
     assert not list(tmp_path.iterdir())
 

@@ -45,7 +45,7 @@ def test_kinds_and_numbers_are_sent_and_nothing_else(sent: list[Any]) -> None:
 
 def test_where_there_is_no_layer_the_remedy_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pylsl", None)
-    with pytest.raises(MarkersError, match=r"metagraph\[lab\]"):
+    with pytest.raises(MarkersError, match=r"metagraph-studio\[lab\]"):
         outlet("P01")
 
 

@@ -139,7 +139,7 @@ def pose(character: Character, layers: dict[str, Any], t: float) -> Pose:
         if not layers[name]["rests"]:
             continue
         weights = character.data["layers"][name]["weights"]
-        w = np.array([weights[part] for part in character.parts])
+        w = np.array([weights.get(part, 0.0) for part in character.parts])  # not listed: not moved
         d, e = layer(character, layers[name], t)
         rotations = times(rotations, power(d, w))
         translations = translations + w[:, None] * e
