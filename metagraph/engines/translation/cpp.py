@@ -261,18 +261,6 @@ class Cpp(Braces):
 
     # --- expressions
 
-    def operation(self, node: x.Builtin) -> tuple[Document, int]:
-        if node.name in ("max", "min"):
-            out = self.plain(node.arguments[-1])
-            for one in reversed(node.arguments[:-1]):
-                out = (f"std::{node.name}", listed("(", [self.plain(one), out], ")"))
-            return out, ALONE
-        if node.arguments:
-            kind = f"{node.name}:{node.arguments[0].type.bare.kind}"
-            if kind in self.operations:
-                node = x.Builtin(node.type, kind, node.arguments)
-        return super().operation(node)
-
     def expression(self, node: x.Expression) -> tuple[Document, int]:
         match node:
             case x.Value():
@@ -324,14 +312,6 @@ class Cpp(Braces):
                 return (self.type(node.type), listed("{", pairs, "}")), ALONE
             case x.Formatted():
                 return ("lang::text", listed("(", [self.piece(p) for p in node.parts], ")")), ALONE
-            case x.Binary(operator="/") if node.left.type.kind in ("int", "bits"):
-                return ("lang::divided(", self.plain(node.left), ", ", self.plain(node.right), ")"), ALONE
-            case x.Binary(operator="//"):
-                return ("lang::floored(", self.plain(node.left), ", ", self.plain(node.right), ")"), ALONE
-            case x.Binary(operator="%"):
-                return ("lang::modulo(", self.plain(node.left), ", ", self.plain(node.right), ")"), ALONE
-            case x.Binary(operator="**"):
-                return ("std::pow(", self.plain(node.left), ", ", self.plain(node.right), ")"), ALONE
         return super().expression(node)
 
     def reached(self, module: str, name: str) -> str:

@@ -268,12 +268,6 @@ class CSharp(Braces):
             node.arguments[0], x.Comprehension
         ):
             return self.searched(node, node.arguments[0])
-        if node.name in ("max", "min"):
-            word = f"Math.{node.name.capitalize()}"
-            out = self.plain(node.arguments[-1])
-            for one in reversed(node.arguments[:-1]):
-                out = (word, listed("(", [self.plain(one), out], ")"))
-            return out, ALONE
         if node.name == "insort":
             of, item, low, key = node.arguments
             return (
@@ -284,10 +278,6 @@ class CSharp(Braces):
             return self.ordered(node), ALONE
         if node.name in ("map", "set") and node.arguments:
             return (f"new {self.type(node.type)}(", self.plain(node.arguments[0]), ")"), ALONE
-        if node.arguments:
-            kind = f"{node.name}:{node.arguments[0].type.bare.kind}"
-            if kind in self.operations:
-                node = x.Builtin(node.type, kind, node.arguments)
         return super().operation(node)
 
     def keyed(self, key: x.Expression) -> Document:
@@ -415,31 +405,6 @@ class CSharp(Braces):
                 ), CHOICE
             case x.Formatted():
                 return self.formatted(node)
-            case x.Binary(operator="/") if node.left.type.kind in ("int", "bits"):
-                return (
-                    "(double)",
-                    self.strong(node.left, UNARY),
-                    " / ",
-                    self.strong(node.right, UNARY),
-                ), TIMES
-            case x.Binary(operator="//"):
-                return (
-                    "(int)Math.Floor((double)",
-                    self.strong(node.left, UNARY),
-                    " / ",
-                    self.strong(node.right, UNARY),
-                    ")",
-                ), ALONE
-            case x.Binary(operator="%"):
-                return (
-                    "PlainNumbers.Modulo(",
-                    self.plain(node.left),
-                    ", ",
-                    self.plain(node.right),
-                    ")",
-                ), ALONE
-            case x.Binary(operator="**"):
-                return ("Math.Pow(", self.plain(node.left), ", ", self.plain(node.right), ")"), ALONE
         return super().expression(node)
 
     def given(self, node: x.Call) -> list[Document]:

@@ -15,7 +15,6 @@ from metagraph.engines.translation.printing import (
     COMPARE,
     NOT,
     PLUS,
-    TIMES,
     UNARY,
     Printer,
     TranslationError,
@@ -240,20 +239,6 @@ class GDScript(Printer):
 
     # --- expressions
 
-    def operation(self, node: x.Builtin) -> tuple[Document, int]:
-        if node.name in ("max", "min"):
-            self.helpers.add("Util")
-            word = "Util.most" if node.name == "max" else "Util.least"
-            out = self.plain(node.arguments[-1])
-            for one in reversed(node.arguments[:-1]):
-                out = (word, listed("(", [self.plain(one), out], ")"))
-            return out, ALONE
-        if node.arguments:
-            kind = f"{node.name}:{node.arguments[0].type.bare.kind}"
-            if kind in self.operations:
-                node = x.Builtin(node.type, kind, node.arguments)
-        return super().operation(node)
-
     def expression(self, node: x.Expression) -> tuple[Document, int]:
         match node:
             case x.Value():
@@ -318,20 +303,6 @@ class GDScript(Printer):
                 return listed("{", pairs, "}"), ALONE
             case x.Formatted():
                 return self.formatted(node), PLUS
-            case x.Binary(operator="/") if node.left.type.kind in ("int", "bits"):
-                return ("float(", self.plain(node.left), ") / ", self.strong(node.right, UNARY)), TIMES
-            case x.Binary(operator="//"):
-                return (
-                    "int(floor(float(",
-                    self.plain(node.left),
-                    ") / ",
-                    self.strong(node.right, UNARY),
-                    "))",
-                ), ALONE
-            case x.Binary(operator="%"):
-                return ("posmod(", self.plain(node.left), ", ", self.plain(node.right), ")"), ALONE
-            case x.Binary(operator="**"):
-                return ("pow(", self.plain(node.left), ", ", self.plain(node.right), ")"), ALONE
         return super().expression(node)
 
     def reached(self, node: x.Global) -> str:

@@ -13,8 +13,6 @@ from metagraph.engines.translation.printing import (
     COMPARE,
     NOT,
     PLUS,
-    POWER,
-    TIMES,
     UNARY,
     TranslationError,
     camel,
@@ -207,14 +205,7 @@ class JavaScript(Braces):
             node.arguments[0], x.Comprehension
         ):
             return self.searched(node, node.arguments[0])
-        if node.arguments:
-            kind = f"{node.name}:{node.arguments[0].type.bare.kind}"
-            if kind in self.operations:
-                node = x.Builtin(node.type, kind, node.arguments)
         return super().operation(node)
-
-    def helper(self, text: str) -> str:
-        return text.replace("$", "")
 
     def searched(self, node: x.Builtin, found: x.Comprehension) -> tuple[Document, int]:
         """any, all, next: of what a comprehension gives."""
@@ -327,19 +318,6 @@ class JavaScript(Braces):
                 return (f"({names}) => ", self.plain(node.body)), CHOICE
             case x.Formatted():
                 return self.formatted(node), ALONE
-            case x.Binary(operator="//"):
-                return (
-                    "Math.floor(",
-                    self.strong(node.left, TIMES),
-                    " / ",
-                    self.strong(node.right, UNARY),
-                    ")",
-                ), ALONE
-            case x.Binary(operator="%"):
-                self.helpers.add("modulo")
-                return ("modulo(", self.plain(node.left), ", ", self.plain(node.right), ")"), ALONE
-            case x.Binary(operator="**"):
-                return (self.strong(node.left, ALONE), " ** ", self.strong(node.right, ALONE)), POWER
         return super().expression(node)
 
     def given(self, node: x.Call) -> list[Document]:

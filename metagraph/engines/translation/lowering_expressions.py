@@ -152,6 +152,8 @@ class Expressions(Calls):
             return x.Either(kind, test, known, right)
         left, right = self.expression(node.left), self.expression(node.right)
         kind = self.of(node)
+        if node.op in ("//", "%") and kind != x.INT:
+            raise self.refuse(node, f"{node.op} of numbers with fractions", "use floor")
         if node.op == "+" and kind.kind == "list":
             return x.Gathered(kind, (left, right), frozenset((0, 1)))
         return x.Binary(kind, node.op, left, right)

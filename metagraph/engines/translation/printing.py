@@ -142,6 +142,9 @@ class Printer:
             case x.Negated():
                 return (node.operator, self.strong(node.of, UNARY)), UNARY
             case x.Binary():
+                own = f"{node.operator}:{node.left.type.bare.kind}"
+                if own in self.operations or node.operator in self.operations:
+                    return self.operation(x.Builtin(node.type, node.operator, (node.left, node.right)))
                 return self.binary(node)
             case x.Builtin():
                 return self.operation(node)
@@ -156,9 +159,11 @@ class Printer:
 
     def operation(self, node: x.Builtin) -> tuple[Document, int]:
         """Return a builtin by its pattern: `{0}` stands for the first argument, `{0!}` for it in brackets
-        where it does not stand alone, `{*}` for all with commas.
+        where it does not stand alone, `{*}` for all with commas, `{&}` for two and two of them, one in the
+        other. What a kind of first argument has of its own ("len:map") comes first.
         """
-        pattern = self.operations.get(node.name)
+        kind = f"{node.name}:{node.arguments[0].type.bare.kind}" if node.arguments else node.name
+        pattern = self.operations.get(kind, self.operations.get(node.name))
         if pattern is None:
             raise TranslationError(
                 f"{self.module.name}: '{node.name}' of {[a.type.kind for a in node.arguments]}"
@@ -172,6 +177,8 @@ class Printer:
         for piece in re.split(r"(\{[^}]*\})", pattern):
             if piece == "{*}":
                 parts.append(listed("(", [self.plain(a) for a in node.arguments], ")"))
+            elif piece == "{&}":
+                parts = [self.paired(tuple(parts), node.arguments)]
             elif piece[:1] == "{":
                 place = int(piece[1])
                 parts.append(
@@ -182,6 +189,13 @@ class Printer:
             elif piece:
                 parts.append(self.helper(piece))
         return tuple(parts), level
+
+    def paired(self, word: Document, arguments: Sequence[x.Expression]) -> Document:
+        """Return calls of what takes two: `most(a, most(b, c))`."""
+        out = self.plain(arguments[-1])
+        for one in reversed(arguments[:-1]):
+            out = (word, listed("(", [self.plain(one), out], ")"))
+        return out
 
     def helper(self, text: str) -> str:
         """Return a piece of a pattern with `$name` as this language calls its helpers."""

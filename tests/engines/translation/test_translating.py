@@ -331,6 +331,7 @@ REFUSED = {
     "def f(x: dict[str, int]) -> dict[str, int]:\n    return {**x}": "** in a map",
     "def f(x: float) -> str:\n    return f'{x}'": "a float in a text",
     "def f(x: float) -> str:\n    return f'{x:.9f}'": "a way to write a number",
+    "def f(x: float) -> float:\n    return x % 2.0": "% of numbers with fractions",
     "def f(x: list[int]) -> int:\n    return max(x, key=lambda n: n)": "max",
     "def f() -> int:\n    a = b = 1\n    return a + b": "two targets",
     "def f(x: str) -> str:\n    return x.upper()": "'.upper()' of a str",
