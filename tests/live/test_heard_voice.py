@@ -47,6 +47,15 @@ def test_a_voice_begins_is_stressed_where_it_is_highest_and_ends() -> None:
     assert late[0] <= 0.09 and max(late[1:3]) <= 0.2 and late[3] <= 0.25  # as docs/live.md says
 
 
+def test_noise_that_begins_while_somebody_speaks_does_not_speak_on() -> None:
+    said = voice(2.0, [0.6], after=0.0)
+    noise = 0.08 * np.random.default_rng(2).standard_normal(6 * RATE).astype("f4")
+    news = told(np.concatenate([said, noise]))
+    assert [n.what for _, n in news] == ["begins", "stress", "ends"]
+    at, end = news[-1]
+    assert abs(end.at - 12.5) < 0.1 and at - end.at < 0.7
+
+
 def test_tops_close_together_are_one_stress_and_a_level_voice_has_none_but_its_first() -> None:
     close = [n for _, n in told(voice(1.5, [0.5, 0.75])) if n.what == "stress"]
     assert len(close) == 1
