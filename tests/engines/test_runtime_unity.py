@@ -947,9 +947,9 @@ MUTATIONS = [
     ),
     ("Life/Solve.cs", "shut + blink * (1 - shut)", "shut + blink", "lids that meet and go no farther"),
     (
-        "Life/Voice.cs",
-        "private const double Early = 0.075",
-        "private const double Early = 0.065",
+        "Mouth.cs",
+        "public const double Early = 0.075",
+        "public const double Early = 0.065",
         "mouths that are early",
     ),
 ]

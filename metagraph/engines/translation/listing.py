@@ -40,10 +40,14 @@ LISTING = (
     Translated("metagraph.playback.replan", "replan"),
     Translated("metagraph.playback.phases", "phases", ("LEAST_BLEND", "Phases"), languages=("cpp",)),
     Translated("metagraph.playback.sampling", "sampling", languages=("cpp",)),
+    Translated("metagraph.playback.life.mouth", "mouth"),
+    Translated("metagraph.playback.life.graphemes", "graphemes"),
 )
 
 # Modules that each runtime has of its own, with what translated ones take from them.
 NATIVE = {
     "metagraph.playback.hashing": "hashing",  # integers of 32 bits, which languages have differently
     "metagraph.graph.words": "words",  # the words layers, kinds and modes are told apart by
+    "metagraph.graph.face_names": "words",  # and mouth shapes
+    "metagraph.playback.life.alphabet": "alphabet",  # what Unicode says of letters
 }

@@ -20,6 +20,7 @@ PLAIN = {
     "builtins.list": "list", "builtins.tuple": "list", "builtins.dict": "map", "builtins.set": "set",
     "builtins.frozenset": "set", "math.log": "log", "math.log1p": "log1p", "math.exp": "exp",
     "math.sqrt": "sqrt", "math.cos": "cos", "math.floor": "floor", "math.isfinite": "is_finite",
+    "math.ceil": "ceil",
     "bisect.bisect_right": "bisect_right", "bisect.bisect_left": "bisect_left", "builtins.round": "round",
 }  # fmt: skip
 METHODS = {

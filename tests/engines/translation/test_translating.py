@@ -21,6 +21,9 @@ from metagraph.graph.edits import set_settings
 from metagraph.graph.model import LIMBS, MetaGraph, Project, Settings
 from metagraph.playback import markov, phases, replan, sampling
 from metagraph.playback.choice import key32
+from metagraph.playback.life.alphabet import ALPHABET
+from metagraph.playback.life.graphemes import read_aloud, spelled
+from metagraph.playback.life.mouth import accents_of, mouth_track
 from metagraph.playback.plan import MetaAction, MetaRequest, Past
 from tests.engines.translation import every_means
 
@@ -275,6 +278,52 @@ def _graph_in_cpp(project: Project, graph: MetaGraph) -> str:
             f"List<List<double>>{{{rows}}}, {markov.ARMS.gap!r}); }}",
         )
     )  # fmt: skip
+
+
+TEXTS = (
+    "Hello there, how are you?", "Thought - tion sch.", "Größe über Straße!", "Ποιος είσαι; Ξέρω.",
+    "Хорошо, ещё щука", "日本語が好き", "한국어 말",
+    "naïve e\u0301te\u0301", "x2 30 (ok)", "  \u3000blank\u00a0 ",
+    "\U0001f642 fun", "…", "Հայերեն",
+)  # fmt: skip
+
+
+def test_in_cpp_letters_become_the_mouth_shapes_they_become_in_python(tmp_path: Path) -> None:
+    if shutil.which("g++") is None:
+        pytest.skip("needs g++")
+    said = []
+    for text in TEXTS:
+        read = spelled(ALPHABET, text, 2.0)
+        rows = mouth_track(read.pieces, 2.0)
+        said.append(
+            " ".join(["pieces", *(f"{p.viseme} {p.start:.6f} {p.strength:.6f}" for p in read.pieces)])
+        )
+        said.append(f"{sum(sum(row[10:]) for row in rows):.6f} {read_aloud(ALPHABET, text):.6f}")
+        accents = accents_of(read.peaks, read.strengths)
+        said.append(" ".join(["accents", *(f"{x:.6f}" for x in accents)]))
+    texts = ", ".join(json.dumps(t, ensure_ascii=False) for t in TEXTS)
+    code = f"""
+#include "graphemes.hpp"
+using namespace metagraph;
+int main() {{
+    const auto alphabet = lang::made<Alphabet>();
+    const auto told = [](double x) {{ return " " + lang::fixed(x, 6); }};
+    for (const std::string text : {{{texts}}}) {{
+        const auto read = graphemes::spelled(alphabet, text, 2.0);
+        std::cout << "pieces";
+        for (const auto& p : read->pieces)
+            std::cout << " " << p->viseme << told(p->start) << told(p->strength);
+        double open = 0;
+        for (const auto& row : mouth::mouth_track(read->pieces, 2.0))
+            for (int n = 10; n < 15; n++) open += row[n];
+        std::cout << std::endl << lang::fixed(open, 6) << told(graphemes::read_aloud(alphabet, text));
+        std::cout << std::endl << "accents";
+        for (const double at : mouth::accents_of(read->peaks, read->strengths)) std::cout << told(at);
+        std::cout << std::endl;
+    }}
+}}
+"""
+    assert _compiled(code, tmp_path) == said
 
 
 def _compiled(code: str, folder: Path) -> list[str]:

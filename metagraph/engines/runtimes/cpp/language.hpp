@@ -143,6 +143,12 @@ template <class T>
 List<T> backwards(const List<T>& items) {
     return List<T>(items.rbegin(), items.rend());
 }
+inline List<int> range(int first, int last) {
+    List<int> out;
+    for (int n = first; n < last; n++) out.push_back(n);
+    return out;
+}
+inline List<int> range(int last) { return range(0, last); }
 template <class T, class... More>
 List<T> together(List<T> first, const More&... more) {
     (first.insert(first.end(), more.begin(), more.end()), ...);

@@ -99,3 +99,12 @@ export const sum = (items) => items.reduce((a, b) => a + b, 0);
 
 /** Return what is left of a division, as far above a multiple of `b`. */
 export const modulo = (a, b) => a - b * Math.floor(a / b);
+
+/** Return the whole numbers from `first` to before `last`, or from 0. @returns {number[]} */
+export function range(first, last) {
+  const [low, high] = last === undefined ? [0, first] : [first, last];
+  return Array.from({ length: Math.max(0, high - low) }, (_, n) => low + n);
+}
+
+/** Return numbers, texts or lists of them in order. */
+export const sorted = (items) => [...items].sort(compareKeys);

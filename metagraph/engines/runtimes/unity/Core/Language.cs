@@ -44,7 +44,7 @@ namespace Metagraph
     /// <summary>The words everything is told apart by, as lists.</summary>
     internal static class WordsRules
     {
-        public static readonly List<string> Modes = Basics.Modes.ToList();
+        public static readonly List<string> Modes = Basics.Modes.ToList(), Visemes = Voice.Visemes.ToList();
     }
 
     /// <summary>Texts, whatever the culture.</summary>
@@ -112,6 +112,12 @@ namespace Metagraph
         public static double MinOf(List<double> values, double other)
         {
             return values.Count > 0 ? values.Min() : other;
+        }
+
+        /// <summary>The whole numbers from 0 to before `last`.</summary>
+        public static List<int> Range(int last)
+        {
+            return Enumerable.Range(0, Math.Max(0, last)).ToList();
         }
 
         public static bool IsFinite(double x)

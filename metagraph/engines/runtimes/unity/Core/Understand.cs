@@ -11,7 +11,6 @@ namespace Metagraph
     internal sealed class Understood
     {
         private const double Forever = 1e9; // seconds; a look that lasts until the next
-        private const double ShortestLine = 0.4, Spoken = 14.0; // seconds; characters a second of speech without sound
 
         public readonly List<MetaRequest> Requests = new List<MetaRequest>();
         public readonly List<Item> Items = new List<Item>();
@@ -114,7 +113,7 @@ namespace Metagraph
             {
                 throw new AskException("say what: a line's id, or text");
             }
-            double length = Math.Max(ShortestLine, Basics.Length(Letters.Strip(text)) / Spoken);
+            double length = GraphemesRules.ReadAloud(Alphabet.Common, text);
             if (ask.Duration != null)
             {
                 length = Math.Max(ask.Duration.Value, 0.0);

@@ -8,7 +8,7 @@ const Clip = preload("clip.gd")
 const Glb = preload("glb.gd")
 const Life = preload("life.gd")
 const Rig = preload("rig.gd")
-const Text = preload("text.gd")
+const Alphabet = preload("alphabet.gd")
 const FORMAT = 1  # the newest version of exports that is understood
 const CORE = "res://addons/metagraph/core/"
 const PLANNER_USUAL = {memory = 0.0, rest = 0.0, lookahead = 0.1, hurry = 2.0, least_blend = 0.25}
@@ -16,7 +16,7 @@ const PLANNER_USUAL = {memory = 0.0, rest = 0.0, lookahead = 0.1, hurry = 2.0, l
 var error = ""
 var problems = []
 var shim
-var text
+var alphabet
 var names = []  # [J] joints, parents before children
 var parents = []  # [J], -1 for a root
 var parts = []
@@ -44,7 +44,7 @@ var _index = {}  # layer/kind/stance -> actions, in the order they were placed
 # json: the export's text. bytes: its GLB's.
 func _init(json, bytes):
 	shim = load(CORE + "shim%d.gd" % Engine.get_version_info()["major"])
-	text = Text.new(shim)
+	alphabet = Alphabet.new(shim)
 	error = _read(json, bytes)
 
 

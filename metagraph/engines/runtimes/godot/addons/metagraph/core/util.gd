@@ -277,3 +277,8 @@ static func entries(record):
 	for key in record:
 		out.append([key, record[key]])
 	return out
+
+
+# Returns numbers or texts in order.
+static func in_order(items):
+	return ordered(items, items)
