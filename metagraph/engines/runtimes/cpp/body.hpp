@@ -73,7 +73,7 @@ inline const List<std::string> SHOWN = [] {
         }
     }
     out.push_back("jaw_open");
-    for (int n = 1; n < life::SHAPES; n++) out.push_back("viseme_" + lang::at(life::VISEMES, n));
+    for (int n = 1; n < life::SHAPES; n++) out.push_back("viseme_" + lang::at(words::VISEMES, n));
     return out;
 }();
 

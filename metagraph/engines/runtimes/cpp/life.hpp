@@ -28,10 +28,7 @@ struct Life {
 
 namespace life {
 
-inline const List<std::string> VISEMES = {
-    "sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "I", "O", "U",
-};
-inline constexpr int SHAPES = 15; // how many those are
+inline constexpr int SHAPES = 15; // how many mouth shapes there are
 inline constexpr int LIDS = 4; // upper left, upper right, lower left, lower right
 inline constexpr int BLINK = LIDS; // place of the blink among the channels a face is worked by
 inline constexpr int CHANNELS = LIDS + 1 + SHAPES; // lids, blink, an open jaw, every shape but silence
