@@ -175,6 +175,11 @@ T min_of(const List<T>& items, X other) {
     return items.empty() ? T(other) : min_of(items);
 }
 template <class T>
+Set<T> set_of(const Set<T>& items) {
+    return items;
+}
+
+template <class T>
 Set<T> set_of(const List<T>& items) {
     return Set<T>(items.begin(), items.end());
 }
