@@ -3,6 +3,7 @@
 #pragma once
 
 #include "graph.hpp"
+#include "meta_plan.hpp"
 
 namespace metagraph {
 

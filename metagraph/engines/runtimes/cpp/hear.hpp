@@ -77,7 +77,7 @@ inline Answer answer(const std::string& id, const Plan& plan) {
     return out;
 }
 
-inline Ref<const LayerPlan> since_layer(const LayerPlan& plan, double seconds) {
+inline Ref<LayerPlan> since_layer(const LayerPlan& plan, double seconds) {
     auto out = lang::made<LayerPlan>(plan);
     int gone = 0;
     while (gone < lang::len(plan.cues) && lang::at(plan.cues, gone)->end < seconds) gone++;
@@ -85,7 +85,7 @@ inline Ref<const LayerPlan> since_layer(const LayerPlan& plan, double seconds) {
     if (gone > 0) {
         out->past = lang::made<Past>(*plan.past);
         for (const auto& cue : lang::part(plan.cues, 0, gone)) {
-            sampling::remember(cue, out->past->uses, out->past->recent, out->past->ended);
+            remembering::remember(cue, out->past->uses, out->past->recent, out->past->ended);
             out->past->free = cue->end;
             out->past->stance = cue->then;
         }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "clip.hpp"
+#include "layer_planning.hpp"
 
 namespace metagraph {
 
@@ -47,10 +48,10 @@ inline Ref<Settings> read_settings(Graph& out, const Node& json) {
             own.wrong(lang::text("is ", own.number(), ", and this runtime knows ", value, " only"), "Update the runtime.");
         }
     };
-    constant("window", 1.0);
+    constant("window", layer_planning::WINDOW);
     constant("loop_fade", sampling::LOOP_FADE);
     constant("hurry", sampling::HURRY);
-    constant("least_blend", phases::LEAST_BLEND);
+    constant("least_blend", phase_times::LEAST_BLEND);
     return lang::made<Settings>(
         json["alpha"].within(0, 1e15), static_cast<int>(out.seed), json["never_twice"].flag(), json["shortest"].within(0, 1e9),
         json["wait"].within(0, 1e9), json.maybe("memory").within_or(0, 600, 0), json.maybe("rest").within_or(0, 600, 0),
@@ -152,7 +153,7 @@ inline Ref<LayerGraph> read_layer(
     for (const Node& one : json["stances"].items()) {
         const std::string id = one["id"].text();
         if (!ids.insert(id).second) one["id"].wrong("is used twice");
-        stances.push_back(lang::made<Stance>(id, one["name"].text()));
+        stances.push_back(lang::made<Stance>(id, layer, one["name"].text()));
     }
     for (std::size_t j = 0; j < graph.joints.size(); j++) {
         const Node weight = json["weights"].maybe(graph.parts[j]);
