@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from metagraph.graph.model import Project
-
-SHORTEST_LINE = 0.4  # seconds
-SPOKEN = 14.0  # characters a second of speech whose sound is not there: about 150 words a minute
+from metagraph.playback.life.alphabet import ALPHABET
+from metagraph.playback.life.graphemes import read_aloud
 
 
 def spoken_seconds(project: Project, line: str | None, text: str, duration: float | None = None) -> float:
@@ -19,4 +18,4 @@ def spoken_seconds(project: Project, line: str | None, text: str, duration: floa
         return float(project.voices[line].duration)
     if entry is not None and entry.duration is not None:
         return entry.duration
-    return max(SHORTEST_LINE, len(text.strip()) / SPOKEN)
+    return read_aloud(ALPHABET, text)

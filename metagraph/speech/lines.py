@@ -16,8 +16,8 @@ from metagraph.files import unforeseen
 from metagraph.graph.conversation import Word
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
-from metagraph.playback.life.mouth import MouthPiece, mouth_track
-from metagraph.playback.life.voice import Voice, silent
+from metagraph.playback.life.mouth import MouthPiece
+from metagraph.playback.life.voice import Voice, silent, voiced
 from metagraph.speech.phones import pieces_of
 from metagraph.speech.sound import hear, read_sound, shapes_heard, syllables
 from metagraph.speech.textgrid import Interval, TextGrid, Tier, read_textgrid
@@ -62,8 +62,7 @@ def _voice(samples: Array, rate: int, told: list[MouthPiece] | None) -> Voice:
         ]
     if not pieces:
         return silent(heard.duration)
-    times, weights = mouth_track(pieces, heard.duration)
-    return Voice(heard.duration, peaks, times, weights, strengths)
+    return voiced(pieces, heard.duration, peaks, strengths)
 
 
 def voice_from_phones(phones: str | Path) -> Voice:
@@ -85,7 +84,7 @@ def voice_from_phones(phones: str | Path) -> Voice:
     long = np.array(
         [p.strength * min(1.0, 0.3 + 4 * (p.end - p.start)) for p in vowels]
     )  # what is stressed is long
-    return Voice(duration, peaks, *mouth_track(pieces, duration), long)
+    return voiced(pieces, duration, peaks, long)
 
 
 def read_line(line: Line, folder: Path) -> Voice | None:

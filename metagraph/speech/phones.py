@@ -13,6 +13,7 @@ from dataclasses import replace
 from itertools import pairwise
 from math import inf
 
+from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import shapes
 from metagraph.playback.life.mouth import MouthPiece
 from metagraph.speech.textgrid import Interval, TextGrid, Tier
@@ -214,7 +215,7 @@ def _spread(interval: Interval, found: list[str], strength: float) -> list[Mouth
 def _spell(interval: Interval) -> list[MouthPiece]:
     if interval.text.casefold() in _SILENT:
         return []
-    found = [s for word in interval.text.split() for s in shapes(word)]
+    found = [s for word in interval.text.split() for s in shapes(ALPHABET, word)]
     sizes = [1.25 if s in _VOWELS else 0.8 for s in found]
     scale = (interval.end - interval.start) / sum(sizes) if sizes else 0.0
     out, at = [], interval.start

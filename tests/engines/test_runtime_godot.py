@@ -116,7 +116,7 @@ def test_vectors_that_are_broken_fail(game: Path, tmp_path: Path) -> None:
 # One rule each, as (file, what it says, what it would say). Each must be noticed by the shipped vectors.
 MUTATIONS = {
     "the curve of blends": ("util.gd", "x * x * (3.0 - 2.0 * x)", "x"),
-    "uses are counted": ("pick.gd", "used.get(ident, 0) + 1", "1"),
+    "uses are counted": ("remembering.gd", "uses.get(ident, 0) + 1", "1"),
     "ties go by id": (
         "replan.gd",
         "-meta.request.priority, meta.request.id, meta.part]",
@@ -129,7 +129,7 @@ MUTATIONS = {
     ),
     "the hash": ("hashing.gd", "value ^= value >> 13", "value ^= value >> 12"),
     "a remainder has a key of its own": ("replan.gd", "last.part + 1 if kept else last.part", "last.part"),
-    "holds hurry": ("shape.gd", "(hold_to - hold_from) / settings.hurry", "(hold_to - hold_from)"),
+    "holds hurry": ("sampling.gd", "(hold_to - hold_from) / HURRY", "(hold_to - hold_from)"),
     "the head sets off after the eyes": (
         "gaze.gd",
         "settle((gone - HEAD_LAG) / aim.head)",
@@ -436,6 +436,7 @@ out.append(character.pose().rotations.size())
 
 @needs_godot
 def test_letters_are_read_as_python_reads_them(game: Path) -> None:
+    from metagraph.playback.life.alphabet import ALPHABET
     from metagraph.playback.life.graphemes import spelled
     from metagraph.playback.life.voice import voice_from_text
 
@@ -458,21 +459,24 @@ def test_letters_are_read_as_python_reads_them(game: Path) -> None:
     body = """
 var graph = read(words()[0])
 var Voice = load("res://addons/metagraph/core/voice.gd")
-var Letters = load("res://addons/metagraph/core/letters.gd")
+var Graphemes = load("res://addons/metagraph/core/graphemes.gd")
 for text in words()[1]:
 	var voice = Voice.of(graph, {"line": null, "text": text, "start": 0.0, "end": 2.0, "length": null})
-	var pieces = Letters.spelled(graph.text, text, 2.0)
-	out.append([pieces.pieces, pieces.peaks, pieces.strengths, voice.accents, voice.weights])
+	var said = Graphemes.spelled(graph.alphabet, text, 2.0)
+	var shapes = []
+	for piece in said.pieces:
+		shapes.append(piece.viseme)
+	out.append([shapes, said.peaks, said.strengths, voice.accents, voice.weights])
 """
-    for text, (pieces, peaks, strengths, accents, weights) in zip(
+    for text, (shapes, peaks, strengths, accents, weights) in zip(
         texts, run(game, body, str(PERFORM), texts), strict=True
     ):
-        expected, their_peaks, their_strengths, _ = spelled(text, 2.0)
-        assert [p[2] for p in pieces] == [p.viseme for p in expected], text
+        expected = spelled(ALPHABET, text, 2.0)
+        assert shapes == [p.viseme for p in expected.pieces], text
         voice = voice_from_text(text, 2.0)
         for ours, theirs in (
-            (peaks, their_peaks),
-            (strengths, their_strengths),
+            (peaks, expected.peaks),
+            (strengths, expected.strengths),
             (accents, voice.accents.tolist()),
         ):
             assert ours == pytest.approx(theirs, abs=1e-5), text

@@ -148,7 +148,7 @@ def test_breaking_a_rule_fails_some_vector(rule: str, monkeypatch: pytest.Monkey
     module, name, broken = MUTATIONS[rule]
     monkeypatch.setattr(module, name, broken)
     if rule == "how late a request may start":
-        monkeypatch.setattr("metagraph.playback.planner.delay", broken)
+        monkeypatch.setattr("metagraph.playback.layer_planning.delay", broken)
     for folder in FOLDERS:
         project = read_export(folder / f"{folder.name}.json", resolved=True)
         for case in json.loads((folder / vectors.NAME).read_bytes())["cases"]:

@@ -20,6 +20,7 @@ PLAIN = {
     "builtins.list": "list", "builtins.tuple": "list", "builtins.dict": "map", "builtins.set": "set",
     "builtins.frozenset": "set", "math.log": "log", "math.log1p": "log1p", "math.exp": "exp",
     "math.sqrt": "sqrt", "math.cos": "cos", "math.floor": "floor", "math.isfinite": "is_finite",
+    "math.ceil": "ceil",
     "bisect.bisect_right": "bisect_right", "bisect.bisect_left": "bisect_left", "builtins.round": "round",
 }  # fmt: skip
 METHODS = {
@@ -54,6 +55,8 @@ class Calls(Typed):
                 return given[0]
             if PLAIN[full] in ("list", "map", "set") and not given:
                 return x.Mapped(kind, ()) if kind.kind == "map" else x.Gathered(kind, ())
+            if PLAIN[full] == "set" and isinstance(given[0], x.Gathered) and not given[0].spread:
+                return x.Gathered(kind, given[0].items)
             return x.Builtin(kind, PLAIN[full], given)
         special = {
             "builtins.float": self._float, "builtins.int": self._int, "builtins.max": self._most,

@@ -6,205 +6,163 @@ shut.
 
 from __future__ import annotations
 
-import unicodedata
-from collections.abc import Iterator
-from zlib import crc32
+from dataclasses import dataclass, field
 
+from metagraph.playback.life.alphabet import Alphabet
 from metagraph.playback.life.mouth import MouthPiece
 
 PACE = 14.0  # characters a second: about 150 words a minute
 SHORTEST = 0.4  # seconds
 
-# Longest first. Values: shapes in turn.
-_SPELLINGS: dict[str, tuple[str, ...]] = {
-    "tion": ("CH", "nn"),
-    "sch": ("CH",),
-    "tch": ("CH",),
-    "igh": ("aa", "I"),
-    "eau": ("O",),
-    "ough": ("O",),
-    "th": ("TH",),
-    "sh": ("CH",),
-    "ch": ("CH",),
-    "ph": ("FF",),
-    "ck": ("kk",),
-    "ng": ("nn",),
-    "qu": ("kk", "U"),
-    "wh": ("U",),
-    "oo": ("U",),
-    "ou": ("aa", "U"),
-    "ow": ("O", "U"),
-    "ee": ("I",),
-    "ea": ("I",),
-    "ai": ("E", "I"),
-    "ay": ("E", "I"),
-    "oi": ("O", "I"),
-    "oy": ("O", "I"),
-    "au": ("O",),
-    "aw": ("O",),
-    "ie": ("I",),
-    "ei": ("E", "I"),
-    "ue": ("U",),
-    "oa": ("O",),
-    "a": ("aa",),
-    "e": ("E",),
-    "i": ("I",),
-    "o": ("O",),
-    "u": ("U",),
-    "y": ("I",),
-    "ø": ("U",),
-    "œ": ("U",),
-    "æ": ("E",),
-    "ı": ("I",),
-    "b": ("PP",),
-    "p": ("PP",),
-    "m": ("PP",),
-    "f": ("FF",),
-    "v": ("FF",),
-    "d": ("DD",),
-    "t": ("DD",),
-    "l": ("nn",),
-    "n": ("nn",),
-    "k": ("kk",),
-    "g": ("kk",),
-    "c": ("kk",),
-    "q": ("kk",),
-    "x": ("kk", "SS"),
-    "h": ("kk",),
-    "j": ("CH",),
-    "s": ("SS",),
-    "z": ("SS",),
-    "r": ("RR",),
-    "w": ("U",),
-    "ß": ("SS",),
-    "ð": ("TH",),
-    "þ": ("TH",),
-    "ł": ("nn",),
-    "đ": ("DD",),
-}
-# Greek and Cyrillic letters that stand for the Latin ones.
-_ALIKE = dict(zip("αεηιουωβπμφδτλνκγχξσςζρθабвгдеёжзийклмнопрстуфхцчшщыэюяієї",
-                  "aeeioyobpmfdtlnkghxsszrþabvgdeejzijklmnoprstufhccssieuaiei", strict=False))  # fmt: skip
-_ALIKE.update({"е": "e", "ж": "j", "ч": "j", "ш": "j", "щ": "j", "ц": "s", "х": "h", "θ": "þ"})
-VOWELS = frozenset(("aa", "E", "I", "O", "U"))
-_LENGTH = {"vowel": 1.25, "consonant": 0.8}  # of one character's time
-_STOPS = {
-    ",": 1.5,
-    ";": 2.0,
-    ":": 2.0,
-    ".": 3.0,
-    "!": 3.0,
-    "?": 3.0,
-    "…": 3.0,
-    "-": 0.3,
-    "–": 1.5,
-    "—": 1.5,
-    "(": 1.0,
-    ")": 1.0,
-}
+# Values: shapes in turn. The longest spelling that fits is taken.
+_SPELLINGS: dict[str, list[str]] = {
+    "tion": ["CH", "nn"], "sch": ["CH"], "tch": ["CH"], "igh": ["aa", "I"], "eau": ["O"], "ough": ["O"],
+    "th": ["TH"], "sh": ["CH"], "ch": ["CH"], "ph": ["FF"], "ck": ["kk"], "ng": ["nn"], "qu": ["kk", "U"],
+    "wh": ["U"], "oo": ["U"], "ou": ["aa", "U"], "ow": ["O", "U"], "ee": ["I"], "ea": ["I"],
+    "ai": ["E", "I"], "ay": ["E", "I"], "oi": ["O", "I"], "oy": ["O", "I"], "au": ["O"], "aw": ["O"],
+    "ie": ["I"], "ei": ["E", "I"], "ue": ["U"], "oa": ["O"], "a": ["aa"], "e": ["E"], "i": ["I"],
+    "o": ["O"], "u": ["U"], "y": ["I"], "ø": ["U"], "œ": ["U"], "æ": ["E"], "ı": ["I"], "b": ["PP"],
+    "p": ["PP"], "m": ["PP"], "f": ["FF"], "v": ["FF"], "d": ["DD"], "t": ["DD"], "l": ["nn"], "n": ["nn"],
+    "k": ["kk"], "g": ["kk"], "c": ["kk"], "q": ["kk"], "x": ["kk", "SS"], "h": ["kk"], "j": ["CH"],
+    "s": ["SS"], "z": ["SS"], "r": ["RR"], "w": ["U"], "ß": ["SS"], "ð": ["TH"], "þ": ["TH"], "ł": ["nn"],
+    "đ": ["DD"],
+}  # fmt: skip
+# Greek and Cyrillic letters, and the Latin ones they stand for.
+_ALIKE: dict[str, str] = {
+    "α": "a", "ε": "e", "η": "e", "ι": "i", "ο": "o", "υ": "y", "ω": "o", "β": "b", "π": "p", "μ": "m",
+    "φ": "f", "δ": "d", "τ": "t", "λ": "l", "ν": "n", "κ": "k", "γ": "g", "χ": "h", "ξ": "x", "σ": "s",
+    "ς": "s", "ζ": "z", "ρ": "r", "θ": "þ", "а": "a", "б": "b", "в": "v", "г": "g", "д": "d", "е": "e",
+    "ё": "e", "ж": "j", "з": "z", "и": "i", "й": "j", "к": "k", "л": "l", "м": "m", "н": "n", "о": "o",
+    "п": "p", "р": "r", "с": "s", "т": "t", "у": "u", "ф": "f", "х": "h", "ц": "s", "ч": "j", "ш": "j",
+    "щ": "j", "ы": "i", "э": "e", "ю": "u", "я": "a", "і": "i", "є": "e", "ї": "i",
+}  # fmt: skip
+VOWELS: tuple[str, ...] = ("aa", "E", "I", "O", "U")
+_CONSONANTS: tuple[str, ...] = ("DD", "nn", "SS", "kk", "PP")  # of syllables nobody knows
+_VOWEL_LENGTH = 1.25  # of one character's time
+_CONSONANT_LENGTH = 0.8
+_STOPS: dict[str, float] = {
+    ",": 1.5, ";": 2.0, ":": 2.0, ".": 3.0, "!": 3.0, "?": 3.0, "…": 3.0, "-": 0.3, "–": 1.5, "—": 1.5,
+    "(": 1.0, ")": 1.0,
+}  # fmt: skip
+_BLANK = 0.35  # characters' time of anything else between words
 
 
-def shapes(word: str) -> list[str]:
+def shapes(alphabet: Alphabet, word: str) -> list[str]:
     """Return the mouth shapes of a word's letters, in turn."""
     out: list[str] = []
-    letters = "".join(_ALIKE.get(c, c) for c in _plain(word))
+    letters = [_ALIKE.get(c, c) for c in alphabet.plain(word)]
     at = 0
     while at < len(letters):
-        for size in (4, 3, 2, 1):
-            found = _SPELLINGS.get(letters[at : at + size])
-            if found is not None and len(letters[at : at + size]) == size:
-                break
-        else:
-            size, found = 1, _unknown(letters[at], out)
-        final_e = (
-            letters[at] == "e"
-            and size == 1
-            and at == len(letters) - 1
-            and len(out) > 1
-            and any(s in VOWELS for s in out)
-        )
-        if (
-            found
-            and not final_e
-            and not (at and letters[at] == letters[at - 1] and size == 1 and found[0] not in VOWELS)
-        ):
-            out += found
+        size = min(4, len(letters) - at)
+        while size > 1 and "".join(letters[at : at + size]) not in _SPELLINGS:
+            size -= 1
+        spelling = "".join(letters[at : at + size])
+        found = _SPELLINGS[spelling] if spelling in _SPELLINGS else _unknown(alphabet, spelling, out)
+        last = at == len(letters) - 1
+        final_e = spelling == "e" and last and len(out) > 1 and any(s in VOWELS for s in out)
+        twice = at > 0 and size == 1 and letters[at] == letters[at - 1]
+        if len(found) > 0 and not final_e and not (twice and found[0] not in VOWELS):
+            out.extend(found)
         at += size
     return out
 
 
-def _plain(word: str) -> str:
-    """Small letters without accents."""
-    return "".join(c for c in unicodedata.normalize("NFD", word.casefold()) if not unicodedata.combining(c))
+def _unknown(alphabet: Alphabet, letter: str, before: list[str]) -> list[str]:
+    kind = alphabet.kind(letter)
+    if kind == "syllable":
+        code = alphabet.code(letter)
+        return [_CONSONANTS[code % 5], VOWELS[code // 5 % 5]]
+    if kind == "letter":
+        return ["aa"] if len(before) > 0 and before[-1] not in VOWELS else ["DD"]
+    return []
 
 
-def _unknown(letter: str, before: list[str]) -> tuple[str, ...]:
-    if not letter.isalnum():
-        return ()
-    if letter.isdigit() or unicodedata.category(letter) == "Lo":  # a syllable each
-        return (
-            ("DD", "nn", "SS", "kk", "PP")[ord(letter) % 5],
-            ("aa", "E", "I", "O", "U")[ord(letter) // 5 % 5],
-        )
-    return ("aa",) if before and before[-1] not in VOWELS else ("DD",)
-
-
-def _words(text: str) -> Iterator[tuple[str, float]]:
-    """Yield each word and how many characters' time of pause follows it."""
+def _words(alphabet: Alphabet, text: str) -> list[tuple[str, float]]:
+    """Return each word and how many characters' time of pause follows it."""
+    out: list[tuple[str, float]] = []
     word, pause = "", 0.0
-    for c in text:
-        if c.isalnum() or c in "'’" or unicodedata.combining(c):
-            if pause:
-                yield word, pause
+    for c in alphabet.letters(text):
+        if alphabet.kind(c) != "" or c == "'" or c == "’":
+            if pause > 0:
+                out.append((word, pause))
                 word, pause = "", 0.0
             word += c
         else:
-            pause += _STOPS.get(c, 0.35)
-    if word or pause:
-        yield word, pause
+            pause += _STOPS.get(c, _BLANK)
+    if word != "" or pause > 0:
+        out.append((word, pause))
+    return out
 
 
-def spelled(
-    text: str, duration: float | None = None
-) -> tuple[list[MouthPiece], list[float], list[float], float]:
-    """Return a text's pieces, the times and strengths (0..1) of its syllables, and its length in seconds.
-
-    duration: how long it takes, None for `PACE` characters a second, at least `SHORTEST`.
+@dataclass(frozen=True, slots=True)
+class SpelledSound:
+    """A sound of a text. shape: "" for a pause. size: characters' time. strength: of a syllable, 0 for what
+    is none.
     """
-    stripped = text.strip()
-    length = max(SHORTEST, len(stripped) / PACE) if duration is None else max(duration, 0.0)
-    plan: list[
-        tuple[str | None, float, float]
-    ] = []  # shape or pause, characters' time, strength of a syllable
-    for word, pause in _words(stripped):
-        found = shapes(word)
-        # Content words are longer than the words between them; the first vowel bears the stress more often
-        # than not.
-        weight = min(1.0, 0.35 + 0.09 * len(word)) - 0.1 * (crc32(word.encode()) % 100) / 100
-        first = True
-        for n, mouth in enumerate(found):
-            syllable = mouth in VOWELS and (n == 0 or found[n - 1] not in VOWELS)
-            strength = (weight if first else 0.6 * weight) if syllable else 0.0
-            first = first and not syllable
-            plan.append((mouth, _LENGTH["vowel" if mouth in VOWELS else "consonant"], strength))
-        if pause:
-            plan.append((None, pause, 0.0))
-    total = sum(size for _, size, _ in plan)
-    if not any(shape for shape, _, _ in plan) or length < 1e-3:
-        return [], [], [], length
-    edge = min(0.06, 0.1 * length)
-    scale, at = (length - 2 * edge) / total, edge
-    pieces: list[MouthPiece] = []
-    peaks: list[float] = []
-    strengths: list[float] = []
-    for shape, size, strength in plan:
-        end = at + size * scale
-        if shape is not None:
-            pieces.append(
-                MouthPiece(at, end, shape, min(1.0, 0.7 + 0.4 * strength) if shape in VOWELS else 1.0)
-            )
-        if strength > 0:
-            peaks.append(0.5 * (at + end))
-            strengths.append(strength)
-        at = end
-    return pieces, peaks, strengths, length
+
+    shape: str
+    size: float
+    strength: float = 0.0
+
+
+def sounds(alphabet: Alphabet, word: str) -> list[SpelledSound]:
+    """Return a word's sounds, in turn.
+
+    Content words are longer than the words between them; the first vowel bears the stress more often than
+    not.
+    """
+    out: list[SpelledSound] = []
+    found = shapes(alphabet, word)
+    weight = min(1.0, 0.35 + 0.09 * len(alphabet.letters(word))) - 0.1 * alphabet.scatter(word) / 100
+    first = True
+    before = ""
+    for shape in found:
+        vowel = shape in VOWELS
+        syllable = vowel and before not in VOWELS
+        strength = (weight if first else 0.6 * weight) if syllable else 0.0
+        first = first and not syllable
+        out.append(SpelledSound(shape, _VOWEL_LENGTH if vowel else _CONSONANT_LENGTH, strength))
+        before = shape
+    return out
+
+
+@dataclass
+class Spelled:
+    """Something said, as its letters tell: pieces in time, times and strengths (0..1) of its syllables."""
+
+    pieces: list[MouthPiece] = field(default_factory=list)
+    peaks: list[float] = field(default_factory=list)
+    strengths: list[float] = field(default_factory=list)
+
+    def add(self, plan: list[SpelledSound], start: float, end: float) -> None:
+        """Add sounds that last from `start` to `end` seconds together."""
+        at = start
+        scale = (end - start) / sum([sound.size for sound in plan])
+        for sound in plan:
+            then = at + sound.size * scale
+            if sound.shape != "":
+                fully = min(1.0, 0.7 + 0.4 * sound.strength) if sound.shape in VOWELS else 1.0
+                self.pieces.append(MouthPiece(at, then, sound.shape, fully))
+            if sound.strength > 0:
+                self.peaks.append(0.5 * (at + then))
+                self.strengths.append(sound.strength)
+            at = then
+
+
+def read_aloud(alphabet: Alphabet, text: str) -> float:
+    """Return how long a text takes to say, seconds."""
+    return max(SHORTEST, len(alphabet.letters(alphabet.stripped(text))) / PACE)
+
+
+def spelled(alphabet: Alphabet, text: str, duration: float) -> Spelled:
+    """Return what a text says in `duration` seconds; nothing where no letter of it is known."""
+    out = Spelled()
+    plan: list[SpelledSound] = []
+    for word, pause in _words(alphabet, alphabet.stripped(text)):
+        plan.extend(sounds(alphabet, word))
+        if pause > 0:
+            plan.append(SpelledSound("", pause))
+    if duration >= 1e-3 and any(sound.shape != "" for sound in plan):
+        edge = min(0.06, 0.1 * duration)
+        out.add(plan, edge, duration - edge)
+    return out

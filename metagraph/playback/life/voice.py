@@ -4,7 +4,7 @@ through.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import Any
@@ -13,17 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.face_names import VISEMES
-from metagraph.playback.life.graphemes import spelled
-from metagraph.playback.life.mouth import MouthPiece, mouth_track
+from metagraph.playback.life.alphabet import ALPHABET
+from metagraph.playback.life.graphemes import read_aloud, spelled
+from metagraph.playback.life.mouth import MouthPiece, accents_of, mouth_track
 from metagraph.playback.life.track import Speech
 
 __all__ = ["VISEMES", "Voice", "silent", "voice_from_text", "voice_of"]
 
 Array = NDArray[Any]
-
-ACCENT = (
-    2.0  # seconds round a stressed syllable without another: with it, speakers blink as often as people do
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,19 +40,12 @@ class Voice:
 
     @cached_property
     def accents(self) -> Array:
-        """Times of the stressed syllables `[A]`: those that are known; else the first peak, then the loudest
-        ones that have no louder one within `ACCENT` seconds. People blink and gesture on these, not on every
-        syllable.
-        """
+        """Times of the stressed syllables `[A]`: those that are known, else as `accents_of` finds them."""
         if self.stresses is not None:
             return self.stresses
         count = len(self.peaks)
-        loud = self.strengths if len(self.strengths) == count else np.ones(count)
-        taken: list[float] = []
-        for i in sorted(range(count), key=lambda i: (i > 0, -loud[i], self.peaks[i])):
-            if all(abs(self.peaks[i] - t) >= ACCENT for t in taken):
-                taken.append(float(self.peaks[i]))
-        return np.array(sorted(taken))
+        loud = self.strengths.tolist() if len(self.strengths) == count else [1.0] * count
+        return np.array(accents_of(self.peaks.tolist(), loud))
 
 
 def silent(duration: float) -> Voice:
@@ -68,11 +58,11 @@ def silent(duration: float) -> Voice:
 @lru_cache(maxsize=256)
 def voice_from_text(text: str, duration: float | None = None) -> Voice:
     """Return a voice guessed from letters alone. duration: seconds, None for about 14 characters a second."""
-    pieces, peaks, strengths, length = spelled(text, duration)
-    if not pieces:
+    length = read_aloud(ALPHABET, text) if duration is None else max(duration, 0.0)
+    said = spelled(ALPHABET, text, length)
+    if not said.pieces:
         return silent(length)
-    times, weights = mouth_track(pieces, length)
-    return Voice(length, np.array(peaks), times, weights, np.array(strengths))
+    return voiced(said.pieces, length, np.array(said.peaks), np.array(said.strengths))
 
 
 def voice_of(voices: Mapping[str, Voice], speech: Speech) -> Voice:
@@ -87,7 +77,7 @@ def voice_of(voices: Mapping[str, Voice], speech: Speech) -> Voice:
     )
 
 
-def heard(pieces: list[MouthPiece], duration: float, peaks: Array, strengths: Array) -> Voice:
+def voiced(pieces: Sequence[MouthPiece], duration: float, peaks: Array, strengths: Array) -> Voice:
     """Return a voice of mouth shapes in time and loudness peaks."""
-    times, weights = mouth_track(pieces, duration)
-    return Voice(duration, peaks, times, weights, strengths)
+    weights = np.array(mouth_track(pieces, duration), np.float32)
+    return Voice(duration, peaks, np.linspace(0.0, max(duration, 1e-3), len(weights)), weights, strengths)

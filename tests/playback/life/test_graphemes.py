@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.graph.face_names import VISEMES
-from metagraph.playback.life.graphemes import PACE, SHORTEST, shapes, spelled
+from metagraph.playback.life.alphabet import ALPHABET
+from metagraph.playback.life.graphemes import PACE, SHORTEST, read_aloud, shapes, spelled
 
 
 @pytest.mark.parametrize(
@@ -27,27 +28,29 @@ from metagraph.playback.life.graphemes import PACE, SHORTEST, shapes, spelled
     ],
 )
 def test_words_are_read_by_their_letters(word: str, want: list[str]) -> None:
-    assert shapes(word) == want
+    assert shapes(ALPHABET, word) == want
 
 
 def test_writing_without_letters_gives_a_syllable_a_sign() -> None:
-    assert len(shapes("日本語")) == 6 and len(shapes("2024")) == 8
+    assert len(shapes(ALPHABET, "日本語")) == 6 and len(shapes(ALPHABET, "2024")) == 8
 
 
 @pytest.mark.parametrize("text", ["", "   ", "?!", "…"])
 def test_nothing_to_say_has_no_shapes_but_a_length(text: str) -> None:
-    pieces, peaks, strengths, length = spelled(text)
-    assert pieces == [] and peaks == [] and strengths == [] and length == SHORTEST
+    said = spelled(ALPHABET, text, 1.0)
+    assert said.pieces == [] and said.peaks == [] and said.strengths == []
+    assert read_aloud(ALPHABET, text) == SHORTEST
 
 
 def test_text_takes_its_time_and_what_time_it_is_given() -> None:
     text = "It takes about as long as it takes to read."
-    assert spelled(text)[3] == pytest.approx(len(text) / PACE)
-    assert spelled(text, 9.0)[3] == 9.0 and spelled(text, 0.0)[0] == []
+    assert read_aloud(ALPHABET, text) == pytest.approx(len(text) / PACE)
+    assert spelled(ALPHABET, text, 9.0).pieces[-1].end == pytest.approx(9.0 - 0.06 - 3.0 / 44 * 9.0, abs=0.3)
+    assert spelled(ALPHABET, text, 0.0).pieces == []
 
 
 def test_a_full_stop_is_a_pause() -> None:
-    one, two = spelled("one two", 2.0)[0], spelled("one. two", 2.0)[0]
+    one, two = spelled(ALPHABET, "one two", 2.0).pieces, spelled(ALPHABET, "one. two", 2.0).pieces
 
     def widest(pieces: list[object]) -> float:
         return max(b.start - a.end for a, b in pairwise(pieces))  # type: ignore[attr-defined]
@@ -55,9 +58,10 @@ def test_a_full_stop_is_a_pause() -> None:
     assert widest(two) > 2 * widest(one)
 
 
-@given(st.text(max_size=200), st.none() | st.floats(0, 60))
-def test_any_text_is_survived(text: str, duration: float | None) -> None:
-    pieces, peaks, strengths, length = spelled(text, duration)
+@given(st.text(max_size=200), st.floats(0, 60))
+def test_any_text_is_survived(text: str, length: float) -> None:
+    said = spelled(ALPHABET, text, length)
+    pieces, peaks, strengths = said.pieces, said.peaks, said.strengths
     assert len(peaks) == len(strengths) and all(0 < s <= 1 for s in strengths)
     assert peaks == sorted(peaks) and all(0 <= p <= length + 1e-6 for p in peaks)
     for a, b in pairwise(pieces):

@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from metagraph.graph.face_names import VISEMES
-from metagraph.playback.life.mouth import PLACE, MouthPiece, mouth_track
-from metagraph.playback.life.voice import Voice, silent, voice_from_text
+from metagraph.playback.life.mouth import MouthPiece
+from metagraph.playback.life.voice import Voice, silent, voice_from_text, voiced
+
+PLACE = {name: n for n, name in enumerate(VISEMES)}
+
+
+def mouth_track(pieces: Sequence[MouthPiece], duration: float) -> tuple[Any, Any]:
+    """Return the times and the weights of a voice that says these pieces."""
+    voice = voiced(pieces, duration, np.zeros(0), np.zeros(0))
+    return voice.times, voice.weights
 
 
 def said(*words: tuple[str, float], start: float = 0.2) -> tuple[list[MouthPiece], float]:

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <iomanip>
+#include <locale>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -62,6 +65,16 @@ private:
 namespace lang {
 
 inline constexpr double PI = 3.14159265358979323846;
+
+/// End what should never have begun: with an exception, or where those are off with the program.
+[[noreturn]] inline void fail(const std::string& why) {
+#if defined(__cpp_exceptions)
+    throw std::invalid_argument(why);
+#else
+    std::fprintf(stderr, "metagraph: %s\n", why.c_str());
+    std::abort();
+#endif
+}
 
 template <class T, class... Given>
 Ref<T> made(Given&&... given) {
@@ -130,6 +143,12 @@ template <class T>
 List<T> backwards(const List<T>& items) {
     return List<T>(items.rbegin(), items.rend());
 }
+inline List<int> range(int first, int last) {
+    List<int> out;
+    for (int n = first; n < last; n++) out.push_back(n);
+    return out;
+}
+inline List<int> range(int last) { return range(0, last); }
 template <class T, class... More>
 List<T> together(List<T> first, const More&... more) {
     (first.insert(first.end(), more.begin(), more.end()), ...);
@@ -155,6 +174,11 @@ template <class T, class X>
 T min_of(const List<T>& items, X other) {
     return items.empty() ? T(other) : min_of(items);
 }
+template <class T>
+Set<T> set_of(const Set<T>& items) {
+    return items;
+}
+
 template <class T>
 Set<T> set_of(const List<T>& items) {
     return Set<T>(items.begin(), items.end());
@@ -218,16 +242,18 @@ inline int floored(int a, int b) { return static_cast<int>(std::floor(static_cas
 inline int modulo(int a, int b) { return (a % b + b) % b; }
 inline double modulo(double a, double b) { return a - b * std::floor(a / b); }
 
-/// A number with some places behind its point.
+/// A number with some places behind its point; what the machine's language is does not matter.
 inline std::string fixed(double number, int places) {
-    char out[400];
-    std::snprintf(out, sizeof out, "%.*f", places, number);
-    return out;
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    out << std::fixed << std::setprecision(places) << number;
+    return out.str();
 }
 
 template <class... Parts>
 std::string text(const Parts&... parts) {
     std::ostringstream out;
+    out.imbue(std::locale::classic());
     (out << ... << parts);
     return out.str();
 }

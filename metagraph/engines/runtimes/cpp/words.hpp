@@ -1,4 +1,4 @@
-// The words modes are told apart by.
+// The words modes and mouth shapes are told apart by.
 #pragma once
 
 #include "language.hpp"
@@ -7,6 +7,9 @@ namespace metagraph {
 namespace words {
 
 inline const List<std::string> MODES = List<std::string>{"idle", "listening", "talking"};
+inline const List<std::string> VISEMES = List<std::string>{
+    "sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "I", "O", "U",
+};
 
 }  // namespace words
 }  // namespace metagraph

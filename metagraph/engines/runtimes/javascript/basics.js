@@ -99,3 +99,19 @@ export const sum = (items) => items.reduce((a, b) => a + b, 0);
 
 /** Return what is left of a division, as far above a multiple of `b`. */
 export const modulo = (a, b) => a - b * Math.floor(a / b);
+
+/** Return the whole numbers from `first` to before `last`, or from 0. @returns {number[]} */
+export function range(first, last) {
+  const [low, high] = last === undefined ? [0, first] : [first, last];
+  return Array.from({ length: Math.max(0, high - low) }, (_, n) => low + n);
+}
+
+/** Return numbers, texts or lists of them in order. */
+export const sorted = (items) => [...items].sort(compareKeys);
+
+/** Return seconds with three decimals, halves to even: `toFixed` rounds them up, and this text keys a draw. */
+export function thousandths(seconds) {
+  const halves = (seconds * 16) % 2 === 1 || (seconds * 16) % 2 === -1; // only odd sixteenths lie midway
+  const low = Math.floor(seconds * 1000);
+  return halves && low % 2 === 0 ? (low / 1000).toFixed(3) : seconds.toFixed(3);
+}

@@ -1,13 +1,12 @@
 /** From asks at any level of abstraction to what the planner and the life layers work with (Borer et al., section 6, figure 5). */
 
+import { ALPHABET } from "./alphabet.js";
 import { readAsk } from "./asks.js";
-import { strip } from "./life/letters.js";
+import { readAloud } from "./graphemes.js";
 import { makeRequest } from "./plan.js";
 import { LAYERS } from "./words.js";
 
 const FOREVER = 1e9; // seconds; a look that lasts until the next
-const SPOKEN = 14; // characters a second of speech whose sound is not there: about 150 words a minute
-const SHORTEST_LINE = 0.4; // seconds
 
 /** What an ask cannot mean; never leaves this file. */
 class AskError extends Error {}
@@ -124,7 +123,7 @@ function said(graph, ask, at, item, refuse) {
 /** Return how long something takes to say: as asked, as its sound, as the line says, or as its text is long. */
 function spokenSeconds(graph, line, text, duration) {
   const known = graph.voices.known.get(line)?.duration ?? graph.lines.get(line)?.duration;
-  return duration ?? known ?? Math.max(SHORTEST_LINE, [...strip(text)].length / SPOKEN);
+  return duration ?? known ?? readAloud(ALPHABET, text);
 }
 
 /** Nods are gestures tagged so; where none is, one of those called so. */

@@ -11,7 +11,7 @@ import { bisect } from "../basics.js";
 import { fromVector, multiply } from "../rotation.js";
 import { CHANNELS, LIDS, MOUTH } from "../words.js";
 import { Gaze, ease } from "./gaze.js";
-import { mouthAt } from "./mouth.js";
+import { mouthAt } from "./lips.js";
 import { Solver, lid, partAlong } from "./solve.js";
 
 const INHALE = 0.4; // of a breath

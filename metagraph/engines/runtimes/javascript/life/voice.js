@@ -1,15 +1,14 @@
 /** What is known of a spoken line's sound: how long it is, where it is stressed, and which mouth shapes it goes through. */
 
+import { ALPHABET } from "../alphabet.js";
+import { readAloud, spelled } from "../graphemes.js";
+import { accentsOf, mouthTrack } from "../mouth.js";
 import { inRange } from "../words.js";
-import { spelled } from "./letters.js";
-import { mouthTrack } from "./mouth.js";
 
 /**
  * @typedef {{duration: number, accents: number[], weights: Float32Array}} Voice duration: seconds. accents: times of the stressed
  *   syllables. weights `[K, 15]`: how much of each of VISEMES the mouth shows, evenly spaced over 0..max(duration, 0.001).
  */
-
-const ACCENT = 2; // seconds round a stressed syllable without another: with it, speakers blink as often as people do
 
 /** @returns {Voice} */
 function readVoice({ duration, accents, weights }, where) {
@@ -19,17 +18,10 @@ function readVoice({ duration, accents, weights }, where) {
 
 /** Return a voice guessed from letters alone. @param {string} text @param {?number} duration seconds @returns {Voice} */
 export function voiceFromText(text, duration) {
-  const { pieces, peaks, strengths, length } = spelled(text, duration);
-  const weights = mouthTrack(pieces, pieces.length ? length : 0);
-  return { duration: length, accents: accentsOf(peaks, strengths), weights };
-}
-
-/** The first peak, then the loudest ones that have no louder one near. People blink and gesture on these, not on every syllable. */
-function accentsOf(peaks, strengths) {
-  const order = peaks.map((_, n) => n).sort((a, b) => (a > 0) - (b > 0) || strengths[b] - strengths[a] || peaks[a] - peaks[b]);
-  const taken = [];
-  for (const n of order) if (taken.every((time) => Math.abs(peaks[n] - time) >= ACCENT)) taken.push(peaks[n]);
-  return taken.sort((a, b) => a - b);
+  const length = duration === null ? readAloud(ALPHABET, text) : Math.max(duration, 0);
+  const { pieces, peaks, strengths } = spelled(ALPHABET, text, length);
+  const rows = mouthTrack(pieces, pieces.length ? length : 0);
+  return { duration: length, accents: accentsOf(peaks, strengths), weights: Float32Array.from(rows.flat()) };
 }
 
 /** Returns the voice of something said: its line's as read from the sound, else one guessed from its text; guesses are remembered. */

@@ -44,7 +44,7 @@ namespace Metagraph
     /// <summary>The words everything is told apart by, as lists.</summary>
     internal static class WordsRules
     {
-        public static readonly List<string> Modes = Basics.Modes.ToList();
+        public static readonly List<string> Modes = Basics.Modes.ToList(), Visemes = Voice.Visemes.ToList();
     }
 
     /// <summary>Texts, whatever the culture.</summary>
@@ -69,6 +69,10 @@ namespace Metagraph
 
         public static string Fixed(double number, int places)
         {
+            if (places == 3) // what keys a draw
+            {
+                return Basics.ThreeDecimals(number);
+            }
             return number.ToString("F" + places, CultureInfo.InvariantCulture);
         }
 
@@ -93,7 +97,7 @@ namespace Metagraph
         }
 
         /// <summary>The largest of some numbers.</summary>
-        public static double MaxOf(List<double> values)
+        public static T MaxOf<T>(List<T> values)
         {
             return values.Max();
         }
@@ -104,7 +108,7 @@ namespace Metagraph
             return values.Count > 0 ? values.Max() : other;
         }
 
-        public static double MinOf(List<double> values)
+        public static T MinOf<T>(List<T> values)
         {
             return values.Min();
         }
@@ -112,6 +116,12 @@ namespace Metagraph
         public static double MinOf(List<double> values, double other)
         {
             return values.Count > 0 ? values.Min() : other;
+        }
+
+        /// <summary>The whole numbers from 0 to before `last`.</summary>
+        public static List<int> Range(int last)
+        {
+            return Enumerable.Range(0, Math.Max(0, last)).ToList();
         }
 
         public static bool IsFinite(double x)
@@ -130,6 +140,17 @@ namespace Metagraph
     /// <summary>Maps, whose values may be missing.</summary>
     internal static class PlainMaps
     {
+        /// <summary>A map of pairs; of two with one key the later counts, in the place of the first.</summary>
+        public static Dictionary<K, V> ToMap<K, V>(this IEnumerable<(K, V)> pairs)
+        {
+            var found = new Dictionary<K, V>();
+            foreach (var pair in pairs)
+            {
+                found[pair.Item1] = pair.Item2;
+            }
+            return found;
+        }
+
         /// <summary>The value of a key, null where there is none.</summary>
         public static T Get<T>(Dictionary<string, T> map, string key) where T : class
         {

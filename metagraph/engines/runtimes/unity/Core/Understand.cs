@@ -11,7 +11,6 @@ namespace Metagraph
     internal sealed class Understood
     {
         private const double Forever = 1e9; // seconds; a look that lasts until the next
-        private const double ShortestLine = 0.4, Spoken = 14.0; // seconds; characters a second of speech without sound
 
         public readonly List<MetaRequest> Requests = new List<MetaRequest>();
         public readonly List<Item> Items = new List<Item>();
@@ -114,7 +113,7 @@ namespace Metagraph
             {
                 throw new AskException("say what: a line's id, or text");
             }
-            double length = Math.Max(ShortestLine, Basics.Length(Letters.Strip(text)) / Spoken);
+            double length = GraphemesRules.ReadAloud(Alphabet.Common, text);
             if (ask.Duration != null)
             {
                 length = Math.Max(ask.Duration.Value, 0.0);
@@ -143,7 +142,7 @@ namespace Metagraph
         private static MetaRequest Head(Graph graph, Ask ask, double at)
         {
             string word = ask.Do;
-            List<GraphAction> gestures = graph.Layers["head"].Actions.FindAll(x => x.Kind == "gesture" && x.HasTags(ask.Tags));
+            List<GraphAction> gestures = graph.Layers["head"].Actions.Values.Where(x => x.Kind == "gesture" && x.HasTags(ask.Tags)).ToList();
             if (gestures.Exists(x => x.Tags.Contains(word)))
             {
                 List<string> tagged = new[] { word }.Concat(ask.Tags).ToList();
@@ -161,7 +160,7 @@ namespace Metagraph
         /// <summary>How long before its stroke any gesture with an ask's tags begins.</summary>
         private static double LongestLead(Graph graph, Ask ask)
         {
-            IEnumerable<GraphAction> gestures = graph.Layers[ask.Layer].Actions.Where(x => x.Kind == "gesture" && x.HasTags(ask.Tags));
+            IEnumerable<GraphAction> gestures = graph.Layers[ask.Layer].Actions.Values.Where(x => x.Kind == "gesture" && x.HasTags(ask.Tags));
             return gestures.Select(Lead).DefaultIfEmpty(0.0).Max();
         }
 
@@ -180,7 +179,7 @@ namespace Metagraph
                 return found;
             }
             found = null;
-            foreach (GraphAction x in Basics.Layers.Where(l => layer == null || l == layer).SelectMany(l => graph.Layers[l].Actions))
+            foreach (GraphAction x in Basics.Layers.Where(l => layer == null || l == layer).SelectMany(l => graph.Layers[l].Actions.Values))
             {
                 if (x.Name == word && (found == null || x.Likelihood > found.Likelihood))
                 {
@@ -200,7 +199,7 @@ namespace Metagraph
             foreach (string each in Basics.Layers.Where(l => layer == null || l == layer))
             {
                 LayerGraph of = graph.Layers[each];
-                stance = of.HasStance(word) ? word : of.Stances.Find(s => s.Value == word).Key;
+                stance = of.Stances.ContainsKey(word) ? word : of.Stances.Values.Where(s => s.Name == word).Select(s => s.Id).FirstOrDefault();
                 if (stance != null)
                 {
                     return each;

@@ -137,9 +137,10 @@ func _plan_data(plan, unread):
 			metas.append([m.key, m.start, m.end, m.written])
 		var cues = []
 		for c in of.cues:
-			var cue = c.duplicate()
-			cue.action = c.action.id
-			cues.append(cue)
+			cues.append({
+				action = c.action.id, start = c.start, end = c.end, entry = c.entry, blend_in = c.blend_in, blend_out = c.blend_out,
+				stance = c.stance, then = c.then, meta = c.meta, hold_from = c.hold_from, hold_to = c.hold_to, hold = c.hold
+			})
 		var rests = []
 		for r in of.rests:
 			rests.append([r.stance, r.action.id, r.start, r.fade_start, r.fade])

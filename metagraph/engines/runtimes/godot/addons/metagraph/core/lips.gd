@@ -2,6 +2,7 @@
 
 const Util = preload("util.gd")
 const Voice = preload("voice.gd")
+const Words = preload("words.gd")
 const CLOSING = 0.12  # seconds the mouth takes to close where speech was cut
 
 
@@ -12,7 +13,7 @@ static func mouth(graph, track, smoothing, time):
 		if time > speech.start - smoothing and time < speech.end + CLOSING + smoothing:
 			if out == null:
 				out = []
-				for _n in range(Voice.VISEMES.size() - 1):
+				for _n in range(Words.VISEMES.size() - 1):
 					out.append(0.0)
 			var voice = Voice.of(graph, speech)
 			if smoothing <= 0:

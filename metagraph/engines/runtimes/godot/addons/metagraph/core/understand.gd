@@ -2,10 +2,9 @@
 
 const Util = preload("util.gd")
 const Asks = preload("asks.gd")
+const Graphemes = preload("graphemes.gd")
 const Request = preload("request.gd")
 const FOREVER = 1e9  # seconds; a look that lasts until the next
-const PACE = 14.0  # characters a second of speech whose sound is not there: about 150 words a minute
-const SHORTEST_LINE = 0.4  # seconds
 
 
 # Returns what asks mean: {requests: for the layers, items: for the track, withdrawn {id: true}: taken back; everything where it has "",
@@ -130,7 +129,7 @@ static func spoken_seconds(graph, line, text, duration):
 		return graph.voices[line].duration
 	if line != null and graph.lines[line].get("duration") != null:
 		return graph.lines[line].duration
-	return Util.most(SHORTEST_LINE, graph.text.stripped(text).length() / PACE)
+	return Graphemes.read_aloud(graph.alphabet, text)
 
 
 # Nods are gestures tagged so; where none is, the likeliest of those called so, whatever stance it needs.
@@ -164,8 +163,4 @@ static func _longest_lead(graph, layer, tags):
 
 # Returns the seconds from an action's start to its stroke; its middle where the export says nothing.
 static func _lead(action):
-	if action.kind == "gesture":
-		return action.phases[1] - action.start
-	if action.stroke != null:
-		return Util.within(action.stroke, action.start, action.end) - action.start
-	return (action.end - action.start) / 2.0
+	return action.phases.stroke - action.start

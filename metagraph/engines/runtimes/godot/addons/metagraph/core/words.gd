@@ -1,3 +1,4 @@
-# The words modes are told apart by.
+# The words modes and mouth shapes are told apart by.
 
 const MODES = ["idle", "listening", "talking"]
+const VISEMES = ["sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "I", "O", "U"]
