@@ -81,7 +81,7 @@ public static class Conformance
         foreach (JsonObject step in List(one["steps"]))
         {
             double now = Number(step["now"]);
-            List<Ask> asks = Readable(step, now > 0 ? now + graph.Planner.Lookahead : 0, unread);
+            List<Ask> asks = Readable(step, now > 0 ? now + graph.Settings.Lookahead : 0, unread);
             plan = Hearing.Hear(graph, plan, now, asks, Number(step["end"]), stances, (bool)one["idle"]);
             plan = step["forget"] == null ? plan : Hearing.Since(plan, Number(step["forget"]));
         }
