@@ -82,7 +82,7 @@ MUTANTS = [
     ("schedule.hpp", "UPRIGHT * size", "size", None),
     ("track.hpp", "speech->priority < out.back()->priority", "false", None),
     ("hear.hpp", "turns = turns || speaks(*item);", "turns = false;", None),
-    ("understand.hpp", "std::max(inner.priority(), ask.priority())", "inner.priority()", None),
+    ("understand.hpp", "at + inner.maybe_number(\"at\").value_or(0)", "at", None),
     ("planner.hpp", "plan.track->stays_at(meta->request->layer, meta->start)", "false", None),
 ]  # fmt: skip
 

@@ -3,8 +3,7 @@
 #include "Components/SkeletalMeshComponent.h"
 #include "GameFramework/Actor.h"
 #include "MetagraphAsset.h"
-#include "MetagraphCore.h"
-#include "MetagraphSpace.h"
+#include "MetagraphPoses.h"
 
 UMetagraphComponent::UMetagraphComponent()
 {
@@ -50,11 +49,7 @@ bool UMetagraphComponent::Begin()
 		Options.seed = static_cast<std::uint32_t>(Seed);
 	}
 	Character = MakeShared<FMetagraphCharacter>(Graph->Graph, Options);
-	Bones.Reset();
-	for (const std::string& Joint : Graph->Graph->joints)
-	{
-		Bones.Add(FName(*MetagraphText::Unreal(Joint)));
-	}
+	Bones = MetagraphPoses::Bones(*Graph->Graph);
 	return true;
 }
 
@@ -74,16 +69,7 @@ void UMetagraphComponent::Advance(float Seconds)
 void UMetagraphComponent::Show()
 {
 	metagraph::Character& Own = Character->Character;
-	const TSharedRef<FMetagraphPose, ESPMode::ThreadSafe> Made = MakeShared<FMetagraphPose, ESPMode::ThreadSafe>();
-	Made->Bones = Bones;
-	for (const metagraph::Joined& Joint : Own.pose(bAlive))
-	{
-		const metagraph::Quat& Turn = Joint.rotation;
-		const metagraph::Vec& Place = Joint.translation;
-		Made->Transforms.Add(FTransform(
-			MetagraphSpace::ToUnreal(Turn.x, Turn.y, Turn.z, Turn.w), MetagraphSpace::ToUnreal(Place.x, Place.y, Place.z)));
-	}
-	Latest = Made;
+	Latest = MetagraphPoses::Made(Bones, Own.pose(bAlive));
 	if (!Mesh)
 	{
 		return;
