@@ -34,8 +34,9 @@ from metagraph.motion.character_mesh import Character, bound, no_character
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton, unique_names
 from metagraph.playback import choice, hashing, markov
-from metagraph.playback.phases import LEAST_BLEND, phases
-from metagraph.playback.planner import WINDOW
+from metagraph.playback.layer_planning import WINDOW
+from metagraph.playback.phase_times import LEAST_BLEND
+from metagraph.playback.phases import phases
 from metagraph.playback.sampling import HURRY, LOOP_FADE
 from metagraph.speech.sound import sound_ending
 

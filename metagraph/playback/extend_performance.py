@@ -12,7 +12,7 @@ from metagraph.playback.life.track import Item, ModeFrom, Speech, StayFrom
 from metagraph.playback.markov import model
 from metagraph.playback.plan import Cue, LayerPlan, Past, Plan, Report
 from metagraph.playback.planner import extend
-from metagraph.playback.sampling import remember
+from metagraph.playback.remembering import remember
 from metagraph.playback.understand import understand
 
 State = Literal["planned", "late", "refused", "done"]

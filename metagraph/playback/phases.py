@@ -10,7 +10,6 @@ retracts from where it is farthest.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 from weakref import ref
@@ -21,6 +20,7 @@ from numpy.typing import NDArray
 from metagraph.graph import anatomy
 from metagraph.graph.model import Action, Layer, Project
 from metagraph.motion.clip import Clip
+from metagraph.playback.phase_times import Phases
 
 Array = NDArray[Any]
 
@@ -28,27 +28,6 @@ RESTING = 0.1  # of the way from the least to the greatest speed: below is rest 
 SLOWING = 0.5  # a slowing to less than this share of the slower peak beside it parts two bouts
 SMOOTH = 0.06  # seconds, standard deviation of the filter on speeds
 SHORTEST = 0.08  # seconds of a bout or rest worth the name
-LEAST_BLEND = 0.25  # seconds in which a gesture that skips its preparation comes in
-
-
-@dataclass(frozen=True, slots=True)
-class Phases:
-    """Clip seconds, ascending: start, ready (preparation ends), stroke (its peak), stroke_end (the hold
-    begins), relax (the hold ends), end.
-    """
-
-    start: float
-    ready: float
-    stroke: float
-    stroke_end: float
-    relax: float
-    end: float
-
-    def skip(self, blend_in: float) -> float:
-        """Return where a gesture begins that skips its preparation: as late as it can blend in and be
-        ready.
-        """
-        return max(self.start, self.ready - max(blend_in, LEAST_BLEND))
 
 
 def phases(project: Project, action: Action) -> Phases:

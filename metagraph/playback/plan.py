@@ -184,8 +184,8 @@ class Report:
 @dataclass(frozen=True, slots=True)
 class Past:
     """What planning on needs of cues that were forgotten. free: when the last ended; stance: in which. uses:
-    how often each action was used. recent: the actions used last, by `sampling.node`, the latest at the end.
-    ended: when each ended last.
+    how often each action was used. recent: the actions used last, by `remembering.node`, the latest at the
+    end. ended: when each ended last.
     """
 
     free: float = 0.0

@@ -5,16 +5,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 
 from metagraph.graph.model import Action, MetaGraph, Project
+from metagraph.playback.bounds import bounds
 from metagraph.playback.choice import pick
 from metagraph.playback.hashing import Bits
-from metagraph.playback.phases import LEAST_BLEND, phases
+from metagraph.playback.phase_times import LEAST_BLEND
+from metagraph.playback.phases import phases
 from metagraph.playback.plan import Cue, MetaAction, MetaRequest, Outcome, Past, Report, Rest
+from metagraph.playback.remembering import REMEMBERED, node, remember
 
 FITS = 1e-6  # seconds by which sums of times may be off
-REMEMBERED = 32  # draws of a stance and kind that spacing can look back on
 HURRY = 2.0  # a hold is played at most this many times as fast as it was made
 LOOP_FADE = 0.6  # seconds of crossfade when a long rest changes from one loop of its stance to another
 
@@ -28,7 +31,7 @@ class SamplingStep:
 
 
 @dataclass(frozen=True, slots=True)
-class Shape:
+class CueShape:
     """How an action would play: from `start` on, `length` seconds, at least `shortest`; the rest as in a
     cue.
     """
@@ -61,7 +64,7 @@ class Performer:
     cues: list[Cue] = field(default_factory=list)
     rests: list[Rest] = field(default_factory=list)
     reports: list[Report] = field(default_factory=list)
-    begun: frozenset[str] = frozenset()
+    begun: AbstractSet[str] = frozenset()
 
     def note(self, cue: Cue, then: str) -> None:
         """Take a cue as played."""
@@ -84,7 +87,7 @@ class Performer:
 
     def perform(self, metas: Sequence[MetaAction], end: float) -> None:
         """Realise what starts before `end` of a conflict-free meta plan, in order."""
-        for bound in _bounds(metas):
+        for bound in bounds(metas):
             meta = bound.meta
             if meta.start >= end:
                 return
@@ -138,10 +141,10 @@ class Performer:
             cue = self._cue(action, shape, limit, float("inf") if hops else wish, stance, meta.key)
             cues.append(cue)
             now, stance = cue.end, cue.then
-        for cue in cues:
-            self._keep(cue)
+        for one in cues:
+            self._keep(one)
 
-    def _fits(self, shape: Shape, limit: float) -> bool:
+    def _fits(self, shape: CueShape, limit: float) -> bool:
         """Whether something that plays so is over by a limit."""
         return shape.start + shape.shortest <= limit + FITS
 
@@ -277,7 +280,7 @@ class Performer:
     def _usable(self, action: Action) -> bool:
         return action.likelihood > 0 and self._arrives(action)
 
-    def _shape(self, action: Action, request: MetaRequest | None, now: float) -> Shape:
+    def _shape(self, action: Action, request: MetaRequest | None, now: float) -> CueShape:
         """Return how an action would play for a request from `now` on, or as a step on the way to it."""
         start, end = self.project.span(action)
         begin, entry, hold_from, hold_to, hold = now, start, 0.0, 0.0, 0.0
@@ -303,7 +306,7 @@ class Performer:
         if exit_at is not None:
             left = exit_at - entry + (hold - (hold_to - hold_from) if exit_at >= hold_to else 0.0)
             shortest = min(length, max(0.0, left) + action.timing.blend_out)
-        return Shape(begin, entry, length, shortest, hold_from, hold_to, hold)
+        return CueShape(begin, entry, length, shortest, hold_from, hold_to, hold)
 
     def _draw(self, candidates: list[Action], key: str, now: float) -> Action:
         """Draw with p_k ~ likelihood_k / max(c_k, 1), leaving out those used too recently as long as any
@@ -348,7 +351,7 @@ class Performer:
                 used += 1
         return alpha * used
 
-    def _cue(self, action: Action, shape: Shape, limit: float, wish: float, stance: str, meta: str) -> Cue:
+    def _cue(self, action: Action, shape: CueShape, limit: float, wish: float, stance: str, meta: str) -> Cue:
         length = shape.length
         if action.timing.earliest_exit is not None:
             length = min(length, max(shape.shortest, min(limit, wish) - shape.start))
@@ -404,7 +407,7 @@ class Performer:
             while True:
                 start, stop = self.project.span(current.action)
                 change += max(1.0, stop - start - current.action.timing.blend_in)
-                if change > until:
+                if not change <= until:  # nor when it is no number
                     break
                 loop = self.loop(rest.stance, f"{self.graph.layer}/{change:.3f}")
                 if loop is not None and loop.id != current.action.id:
@@ -430,62 +433,3 @@ def performer_after(
     for cue in cues:
         out.note(cue, cue.then if cue.then in graph.stances else begin)
     return out
-
-
-@dataclass(frozen=True, slots=True)
-class Bound:
-    """A meta action with when the next more important one begins (limit), and the next as important that was
-    asked for (wish); infinity where there is none.
-    """
-
-    meta: MetaAction
-    limit: float
-    wish: float
-
-
-@dataclass(slots=True)
-class _First:
-    """The first of some meta actions of a rank, written or asked for, and when it starts."""
-
-    rank: float
-    written: bool
-    start: float
-
-
-def _bounds(metas: Sequence[MetaAction]) -> list[Bound]:
-    """Return each meta action with what bounds it."""
-    out: list[Bound] = []
-    first: list[_First] = []
-    for meta in reversed(metas):
-        limit = float("inf")
-        wish = float("inf")
-        own: _First | None = None
-        for one in first:
-            if one.rank > meta.rank:
-                limit = min(limit, one.start)
-            if one.rank >= meta.rank and not one.written:
-                wish = min(wish, one.start)
-            if one.rank == meta.rank and one.written == meta.written:
-                own = one
-        out.append(Bound(meta, limit, wish))
-        if own is None:
-            first.append(_First(meta.rank, meta.written, meta.start))
-        else:
-            own.start = meta.start
-    return list(reversed(out))
-
-
-def node(stance: str, kind: str) -> str:
-    """Return what draws of a stance and kind are remembered under."""
-    return f"{kind} {stance}"
-
-
-def remember(
-    cue: Cue, uses: dict[str, int], recent: dict[str, tuple[str, ...]], ended: dict[str, float]
-) -> None:
-    """Note that a cue was played: how often its action was, lately, and until when."""
-    ident = cue.action.id
-    place = node(cue.stance, cue.action.kind)
-    uses[ident] = uses.get(ident, 0) + 1
-    recent[place] = (*recent.get(place, ())[1 - REMEMBERED :], ident)
-    ended[ident] = cue.end

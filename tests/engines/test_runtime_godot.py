@@ -116,7 +116,7 @@ def test_vectors_that_are_broken_fail(game: Path, tmp_path: Path) -> None:
 # One rule each, as (file, what it says, what it would say). Each must be noticed by the shipped vectors.
 MUTATIONS = {
     "the curve of blends": ("util.gd", "x * x * (3.0 - 2.0 * x)", "x"),
-    "uses are counted": ("pick.gd", "used.get(ident, 0) + 1", "1"),
+    "uses are counted": ("remembering.gd", "uses.get(ident, 0) + 1", "1"),
     "ties go by id": (
         "replan.gd",
         "-meta.request.priority, meta.request.id, meta.part]",
@@ -129,7 +129,7 @@ MUTATIONS = {
     ),
     "the hash": ("hashing.gd", "value ^= value >> 13", "value ^= value >> 12"),
     "a remainder has a key of its own": ("replan.gd", "last.part + 1 if kept else last.part", "last.part"),
-    "holds hurry": ("shape.gd", "(hold_to - hold_from) / settings.hurry", "(hold_to - hold_from)"),
+    "holds hurry": ("sampling.gd", "(hold_to - hold_from) / HURRY", "(hold_to - hold_from)"),
     "the head sets off after the eyes": (
         "gaze.gd",
         "settle((gone - HEAD_LAG) / aim.head)",

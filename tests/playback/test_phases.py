@@ -14,7 +14,8 @@ from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
-from metagraph.playback.phases import Phases, phases
+from metagraph.playback.phase_times import Phases
+from metagraph.playback.phases import phases
 
 
 def swung(toy: Any, name: str, angles: list[float], fps: float = 30) -> Clip:

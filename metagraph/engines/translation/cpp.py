@@ -40,7 +40,7 @@ class Cpp(Braces):
     STEP = "    "
     WIDTH = 120
     LANGUAGE = "cpp"
-    THROW = ("throw std::invalid_argument(", ")")
+    THROW = ("lang::fail(", ")")  # exceptions may be off
     serial = 0  # of values taken apart in a function
 
     def text(self) -> str:

@@ -27,7 +27,9 @@ VALUES = ("int", "bits", "float", "bool", "tuple")
 PLAIN = {"int": "int", "bits": "uint", "float": "double", "bool": "bool", "str": "string", "none": "void"}
 
 
-EXTERNAL = {"Settings": "PlannerSettings"}  # records that are not translated, as they are called here
+EXTERNAL = {  # records that are not translated, as they are called here
+    "Settings": "PlannerSettings", "Project": "Graph", "MetaGraph": "LayerGraph", "Action": "GraphAction",
+}  # fmt: skip
 
 
 class CSharp(Braces):
@@ -214,7 +216,8 @@ class CSharp(Braces):
     def unpacked(self, node: x.Unpack) -> None:
         """One by one: compilers differ in what they take apart at once."""
         self.serial += 1
-        name = "found" if self.serial == 1 else f"found{self.serial}"
+        word = "found" if "found" not in self.taken else "both"
+        name = word if self.serial == 1 else f"{word}{self.serial}"
         self.line((f"var {name} = ", self.plain(node.value), ";"), node.beside)
         for n, target in enumerate(node.targets, 1):
             kind = f"{self.type(target.type)} " if node.new else ""
@@ -481,7 +484,7 @@ class CSharp(Braces):
         if node.key is not None:
             pair = x.Gathered(x.Type("tuple", (node.key.type, node.item.type)), (node.key, node.item))
             inner = self.chained(x.Comprehension(x.Type("list", (pair.type,)), pair, node.clauses))
-            return (inner, ".ToDictionary(pair => pair.Item1, pair => pair.Item2)")
+            return (inner, ".ToMap()")
         out = self.chained(node)
         return (f"new {self.type(node.type)}(", out, ")") if node.type.kind == "set" else (out, ".ToList()")
 

@@ -32,6 +32,7 @@ class GDScript(Printer):
     LANGUAGE = "gdscript"
 
     serial = 0  # of values taken apart in a function
+    in_record = False
 
     def text(self) -> str:
         for part in self.module.parts:
@@ -97,10 +98,12 @@ class GDScript(Printer):
             assert isinstance(back, x.Return) and back.value is not None
             self.line((f"self.{self.word(m.name)} = ", self.plain(back.value)))
         self.depth -= 1
+        self.in_record = True
         for m in node.methods:
             if m not in computed:
                 self.out.append("")
                 self.function(m, "func ")
+        self.in_record = False
         self.depth -= 1
 
     def function(self, node: x.Function, lead: str = "static func ") -> None:
@@ -252,7 +255,9 @@ class GDScript(Printer):
             case x.Known():
                 return self.expression(node.of)
             case x.Member():
-                return (self.strong(node.of, ALONE), f".{self.word(node.name)}"), ALONE
+                # A value's properties are worked out when it is made; those of what changes are functions.
+                call = "()" if node.computed and self.record_of(node.of.type.bare).changes else ""
+                return (self.strong(node.of, ALONE), f".{self.word(node.name)}{call}"), ALONE
             case x.Call():
                 return (
                     self.strong(node.function, ALONE),
@@ -310,6 +315,11 @@ class GDScript(Printer):
         if node.type.kind != "function" and self.made(self.constant_of(node)):
             name += "()"
         if node.module == self.module.name:
+            if self.in_record and node.type.kind == "function":
+                raise TranslationError(
+                    f"{node.module}: a method calls '{node.name}' of its own module, which GDScript "
+                    "cannot reach from a class; move it to another module"
+                )
             return name
         self.used.setdefault(node.module, set()).add(node.name)
         return f"{pascal(self.known(node.module))}.{name}"
@@ -346,11 +356,13 @@ class GDScript(Printer):
             if isinstance(part, str):
                 text += part.replace("%", "%%")
             else:
-                text += (
-                    {"str": "%s", "int": "%d"}.get(part[0].type.kind, f"%{part[1]}")
-                    if not part[1]
-                    else f"%{part[1]}"
+                exact = part[1] == ".3f"  # what keys a draw: engines differ in how they round halves
+                usual = {"str": "%s", "int": "%d"}.get(part[0].type.kind, "%")
+                text += "%s" if exact else usual if not part[1] else f"%{part[1]}"
+                if exact:
+                    self.helpers.add("Util")
+                given.append(
+                    ("Util.thousandths(", self.plain(part[0]), ")") if exact else self.plain(part[0])
                 )
-                given.append(self.plain(part[0]))
         pattern = json.dumps(text, ensure_ascii=False)
         return (pattern, " % ", listed("[", given, "]"))

@@ -420,6 +420,9 @@ class JavaScript(Braces):
                 out.append(part.replace("\\", "\\\\").replace("`", "\\`").replace("${", "\\${"))
             elif not part[1]:
                 out += ["${", self.plain(part[0]), "}"]
+            elif part[1] == ".3f":  # what keys a draw: `toFixed` rounds halves up
+                self.helpers.add("thousandths")
+                out += ["${thousandths(", self.plain(part[0]), ")}"]
             else:
                 out += ["${", self.strong(part[0], ALONE), f".toFixed({part[1].strip('.f')})", "}"]
         return (*out, "`")

@@ -25,21 +25,46 @@ class Translated:
 
 
 LISTING = (
-    Translated("metagraph.graph.model", "model", ("Markov", "Settings"), ("Timing", "Action", "Stance")),
+    Translated("metagraph.graph.model", "model", ("Timing", "Stance", "Markov", "Settings"), ("Action",)),
     Translated("metagraph.playback.choice", "choice"),
     Translated(
         "metagraph.playback.plan",
         "meta_plan",
-        ("ASKED", "WRITTEN", "MetaRequest", "Cursor", "MetaAction", "Report"),
-        ("Cue", "Rest", "Past"),
-        ("Cue.clip_seconds", "Cue.last"),
+        (
+            "ASKED",
+            "WRITTEN",
+            "TEMPORAL",
+            "MetaRequest",
+            "Cursor",
+            "MetaAction",
+            "Cue",
+            "Rest",
+            "Report",
+            "Past",
+            "LayerPlan",
+        ),
+        without=(
+            "Cue.clip_seconds",
+            "Cue.last",
+            "LayerPlan.starts",
+            "LayerPlan.ends",
+            "LayerPlan.full_from",
+            "LayerPlan.full_to",
+            "LayerPlan.fade_starts",
+            "LayerPlan.fade_ends",
+            "LayerPlan.cue_at",
+            "LayerPlan.stance_at",
+        ),
     ),
     Translated(
         "metagraph.playback.markov", "markov", ("write", "_row", "performs", "length", "KINDS", "BEGIN")
     ),
     Translated("metagraph.playback.replan", "replan"),
-    Translated("metagraph.playback.phases", "phases", ("LEAST_BLEND", "Phases"), languages=("cpp",)),
-    Translated("metagraph.playback.sampling", "sampling", languages=("cpp",)),
+    Translated("metagraph.playback.phase_times", "phase_times"),
+    Translated("metagraph.playback.bounds", "bounds"),
+    Translated("metagraph.playback.remembering", "remembering"),
+    Translated("metagraph.playback.sampling", "sampling"),
+    Translated("metagraph.playback.layer_planning", "layer_planning"),
     Translated("metagraph.playback.life.mouth", "mouth"),
     Translated("metagraph.playback.life.graphemes", "graphemes"),
     Translated("metagraph.playback.life.line_timing", "line_timing"),
@@ -47,6 +72,7 @@ LISTING = (
 
 # Modules that each runtime has of its own, with what translated ones take from them.
 NATIVE = {
+    "metagraph.playback.phases": "phases",  # found from motion; exports tell them
     "metagraph.playback.hashing": "hashing",  # integers of 32 bits, which languages have differently
     "metagraph.graph.words": "words",  # the words layers, kinds and modes are told apart by
     "metagraph.graph.face_names": "words",  # and mouth shapes

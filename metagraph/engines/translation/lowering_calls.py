@@ -55,6 +55,8 @@ class Calls(Typed):
                 return given[0]
             if PLAIN[full] in ("list", "map", "set") and not given:
                 return x.Mapped(kind, ()) if kind.kind == "map" else x.Gathered(kind, ())
+            if PLAIN[full] == "set" and isinstance(given[0], x.Gathered) and not given[0].spread:
+                return x.Gathered(kind, given[0].items)
             return x.Builtin(kind, PLAIN[full], given)
         special = {
             "builtins.float": self._float, "builtins.int": self._int, "builtins.max": self._most,

@@ -19,12 +19,12 @@ from metagraph.engines.translation.source import SubsetError
 from metagraph.engines.translation.translating import printed, read, translated, understood
 from metagraph.graph.edits import set_settings
 from metagraph.graph.model import LIMBS, MetaGraph, Project, Settings
-from metagraph.playback import markov, phases, replan, sampling
+from metagraph.playback import layer_planning, markov, phases, replan
 from metagraph.playback.choice import key32
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import read_aloud, spelled
 from metagraph.playback.life.mouth import accents_of, mouth_track
-from metagraph.playback.plan import MetaAction, MetaRequest, Past
+from metagraph.playback.plan import LayerPlan, MetaAction, MetaRequest, Report
 from tests.engines.translation import every_means
 
 HERE = Path(__file__).parent
@@ -138,56 +138,60 @@ def test_in_cpp_a_layer_plays_what_it_plays_in_python(sample: Project, tmp_path:
     if shutil.which("g++") is None:
         pytest.skip("needs g++")
     project = set_settings(sample, rest=0.2, memory=90.0)
-    graph, seed, end = project.graphs["arms"], 11, 3600.0
-    metas, _ = markov.write(markov.ARMS, seed, end)
-    asked = _requests(graph)
-    placed, _ = replan.replan(
-        [*metas, *(MetaAction(r, r.start, r.start + 1.5) for r in asked)], project.settings
-    )
-    performer = sampling.performer_after(project, graph, seed, graph.start or "", Past(), ())
-    assert performer.begin(graph.start or "")
-    performer.perform(placed, end)
-    performer.vary_rests(end)
+    graph, seed = project.graphs["arms"], 11
+    kinds = {kind for _, kind in graph.index}
+    plan, reports, every = LayerPlan("arms"), list[Report](), _requests(graph)
+    for now, fresh, gone, end in (
+        (0.0, every[:60], set[str](), 1800.0),
+        (1500.0, every[60:], {"r2", "r50"}, 3600.0),
+        (3550.0, [], set[str](), 3660.0),
+    ):
+        drafted = layer_planning.draft(
+            project, graph, markov.ARMS, kinds, plan, reports, seed, now, fresh, gone, end, None
+        )
+        plan = drafted.performed(drafted.placed, end)
+        reports = drafted.reports
     said = [
         f"{c.action.id} {c.stance} {c.then} {c.meta} "
         + " ".join(f"{x:.9f}" for x in (c.start, c.end, c.entry, c.blend_in, c.blend_out, c.hold))
-        for c in performer.cues
+        for c in plan.cues
     ]
-    said += [
-        f"{r.stance} {r.action.id} {r.start:.9f} {r.fade_start:.9f} {r.fade:.9f}" for r in performer.rests
-    ]
-    said += [f"{r.request} {r.outcome} {r.message}" for r in performer.reports]
-    outcomes = {r.outcome for r in performer.reports}
-    assert len(performer.cues) > 800 and len(outcomes) >= 6, outcomes
+    said += [f"{r.stance} {r.action.id} {r.start:.9f} {r.fade_start:.9f} {r.fade:.9f}" for r in plan.rests]
+    said += [f"{r.request} {r.outcome} {r.message}" for r in reports]
+    outcomes = {r.outcome for r in reports}
+    assert len(plan.cues) > 800 and len(outcomes) >= 8, outcomes
     code = f"""
-#include <fstream>
-#include "markov.hpp"
-#include "replan.hpp"
-#include "sampling.hpp"
+#include "layer_planning.hpp"
 using namespace metagraph;
 using lang::made;
 {_graph_in_cpp(project, graph)}
 int main() {{
     const auto project = made<Project>(settings(), phases_of());
     const auto graph = made<MetaGraph>("arms", stances(), actions(), {_text(graph.start or "")});
-    auto [metas, cursor] = markov::write(chain(), {seed}, {end});
-    for (const auto& r : requests()) metas.push_back(made<MetaAction>(r, r->start, r->start + 1.5));
-    auto [placed, told] = replan::replan(metas, project->settings);
-    const auto performer = sampling::performer_after(
-        project, graph, {seed}, {_text(graph.start or "")}, made<Past>(), List<Ref<Cue>>{{}});
-    performer->begin({_text(graph.start or "")});
-    performer->perform(placed, {end});
-    performer->vary_rests({end});
-    for (const auto& c : performer->cues) {{
+    const Set<std::string> kinds{{{", ".join(map(_text, sorted(kinds)))}}};
+    auto plan = made<LayerPlan>("arms");
+    List<Ref<Report>> reports;
+    const auto every = requests();
+    const auto extend = [&](double now, int first, int last, Set<std::string> gone, double end) {{
+        const auto drafted = layer_planning::draft(
+            project, graph, chain(), kinds, plan, reports, {seed}, now, lang::part(every, first, last), gone,
+            end, std::nullopt);
+        plan = drafted->performed(drafted->placed, end);
+        reports = drafted->reports;
+    }};
+    extend(0.0, 0, 60, {{}}, 1800.0);
+    extend(1500.0, 60, 120, {{"r2", "r50"}}, 3600.0);
+    extend(3550.0, 0, 0, {{}}, 3660.0);
+    for (const auto& c : plan->cues) {{
         std::cout << c->action->id << " " << c->stance << " " << c->then << " " << c->meta;
         for (double x : {{c->start, c->end, c->entry, c->blend_in, c->blend_out, c->hold}})
             std::cout << " " << lang::fixed(x, 9);
         std::cout << "\\n";
     }}
-    for (const auto& r : performer->rests)
+    for (const auto& r : plan->rests)
         std::cout << r->stance << " " << r->action->id << " " << lang::fixed(r->start, 9) << " "
                   << lang::fixed(r->fade_start, 9) << " " << lang::fixed(r->fade, 9) << "\\n";
-    for (const auto& r : performer->reports)
+    for (const auto& r : reports)
         std::cout << r->request << " " << r->outcome << " " << r->message << "\\n";
 }}
 """
@@ -411,8 +415,13 @@ def test_what_is_outside_the_subset_is_refused_with_its_place_and_a_remedy(tmp_p
 def test_what_no_language_knows_is_told(tmp_path: Path) -> None:
     (tmp_path / "far.py").write_text("import os\n\n\ndef f() -> str:\n    return os.getcwd()\n")
     (tmp_path / "same.py").write_text("def f(a: list[int], b: list[int]) -> bool:\n    return a == b\n")
+    (tmp_path / "own.py").write_text(
+        "from dataclasses import dataclass\n\n\n@dataclass\nclass A:\n    x: int\n\n"
+        "    def m(self) -> int:\n        return f(self.x)\n\n\ndef f(x: int) -> int:\n    return x\n"
+    )
     for name, words in (
         ("far", "'os' is used, which is not translated"),
+        ("own", "a method calls 'f' of its own module"),
         ("same", "whether two lists are equal"),
     ):
         with pytest.raises(TranslationError, match=words):

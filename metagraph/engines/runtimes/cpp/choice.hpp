@@ -67,7 +67,7 @@ inline std::string pick(
         }
     }
     if (best == "") {
-        throw std::invalid_argument("nothing to choose from");
+        lang::fail("nothing to choose from");
     }
     return best;
 }

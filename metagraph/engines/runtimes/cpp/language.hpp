@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <iomanip>
+#include <locale>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -62,6 +65,16 @@ private:
 namespace lang {
 
 inline constexpr double PI = 3.14159265358979323846;
+
+/// End what should never have begun: with an exception, or where those are off with the program.
+[[noreturn]] inline void fail(const std::string& why) {
+#if defined(__cpp_exceptions)
+    throw std::invalid_argument(why);
+#else
+    std::fprintf(stderr, "metagraph: %s\n", why.c_str());
+    std::abort();
+#endif
+}
 
 template <class T, class... Given>
 Ref<T> made(Given&&... given) {
@@ -162,6 +175,11 @@ T min_of(const List<T>& items, X other) {
     return items.empty() ? T(other) : min_of(items);
 }
 template <class T>
+Set<T> set_of(const Set<T>& items) {
+    return items;
+}
+
+template <class T>
 Set<T> set_of(const List<T>& items) {
     return Set<T>(items.begin(), items.end());
 }
@@ -224,16 +242,18 @@ inline int floored(int a, int b) { return static_cast<int>(std::floor(static_cas
 inline int modulo(int a, int b) { return (a % b + b) % b; }
 inline double modulo(double a, double b) { return a - b * std::floor(a / b); }
 
-/// A number with some places behind its point.
+/// A number with some places behind its point; what the machine's language is does not matter.
 inline std::string fixed(double number, int places) {
-    char out[400];
-    std::snprintf(out, sizeof out, "%.*f", places, number);
-    return out;
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    out << std::fixed << std::setprecision(places) << number;
+    return out.str();
 }
 
 template <class... Parts>
 std::string text(const Parts&... parts) {
     std::ostringstream out;
+    out.imbue(std::locale::classic());
     (out << ... << parts);
     return out.str();
 }

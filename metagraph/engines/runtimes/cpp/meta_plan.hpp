@@ -15,11 +15,14 @@ struct Cue;
 struct Rest;
 struct Report;
 struct Past;
+struct LayerPlan;
 
 namespace meta_plan {
 
 inline constexpr int ASKED = 1; // default priority of a request
 inline constexpr int WRITTEN = 0; // priority of what the Markov model writes
+// told by temporal replanning, once
+inline const Set<std::string> TEMPORAL = Set<std::string>{"late", "cut", "resumed", "past"};
 
 }  // namespace meta_plan
 
@@ -202,7 +205,7 @@ struct Report {
 };
 
 /// What planning on needs of cues that were forgotten. free: when the last ended; stance: in which. uses: how often
-/// each action was used. recent: the actions used last, by `sampling.node`, the latest at the end. ended: when each
+/// each action was used. recent: the actions used last, by `remembering.node`, the latest at the end. ended: when each
 /// ended last.
 struct Past {
     double free;
@@ -223,6 +226,38 @@ struct Past {
             uses(std::move(uses_)),
             recent(std::move(recent_)),
             ended(std::move(ended_)) {}
+};
+
+/// cues never overlap and ascend; rests ascend by fade_start, the first covering everything before.
+///
+/// past: what came before the first cue, where that was forgotten. cursor: where the Markov model writes on. written:
+/// what it wrote for later, as it wrote it: each extension fits it in anew, so that it does not matter when it was
+/// first seen.
+struct LayerPlan {
+    std::string layer;
+    List<Ref<MetaAction>> metas;
+    List<Ref<Cue>> cues;
+    List<Ref<Rest>> rests;
+    Ref<Past> past;
+    Ref<Cursor> cursor;
+    List<Ref<MetaAction>> written;
+
+    explicit LayerPlan(
+        std::string layer_,
+        List<Ref<MetaAction>> metas_ = List<Ref<MetaAction>>{},
+        List<Ref<Cue>> cues_ = List<Ref<Cue>>{},
+        List<Ref<Rest>> rests_ = List<Ref<Rest>>{},
+        Ref<Past> past_ = lang::made<Past>(),
+        Ref<Cursor> cursor_ = lang::made<Cursor>(),
+        List<Ref<MetaAction>> written_ = List<Ref<MetaAction>>{}
+    )
+        : layer(std::move(layer_)),
+            metas(std::move(metas_)),
+            cues(std::move(cues_)),
+            rests(std::move(rests_)),
+            past(std::move(past_)),
+            cursor(std::move(cursor_)),
+            written(std::move(written_)) {}
 };
 
 inline double MetaAction::rank() const {

@@ -1,45 +1,12 @@
-// A gesture's phases: preparation, stroke, hold, retraction (Kendon; BML's ready, stroke-end and relax), found from its
-// motion.
-//
-// The speed of what moves - the hands seen from the chest, the head seen from the hips, the trunk - falls into bouts
-// parted by rests and by clear slowings. The last bout is the retraction, the rest before it the hold, the first bout
-// before the stroke the preparation. Where a gesture is one bout, it prepares until halfway out and retracts from where
-// it is farthest.
-//
-// Translated from metagraph/playback/phases.py; change that, and translate anew.
+// A gesture's phases, as the export tells them.
 #pragma once
 
-#include "language.hpp"
+#include "project.hpp"
 
 namespace metagraph {
-
-struct Phases;
-
 namespace phases {
 
-inline constexpr double LEAST_BLEND = 0.25; // seconds in which a gesture that skips its preparation comes in
+inline Ref<Phases> phases(const Ref<Project>& project, const Ref<Action>& action) { return project->phases.at(action->id); }
 
 }  // namespace phases
-
-/// Clip seconds, ascending: start, ready (preparation ends), stroke (its peak), stroke_end (the hold begins), relax
-/// (the hold ends), end.
-struct Phases {
-    double start;
-    double ready;
-    double stroke;
-    double stroke_end;
-    double relax;
-    double end;
-
-    Phases(double start_, double ready_, double stroke_, double stroke_end_, double relax_, double end_)
-        : start(start_), ready(ready_), stroke(stroke_), stroke_end(stroke_end_), relax(relax_), end(end_) {}
-
-    /// Return where a gesture begins that skips its preparation: as late as it can blend in and be ready.
-    double skip(double blend_in) const;
-};
-
-inline double Phases::skip(double blend_in) const {
-    return std::max(this->start, this->ready - std::max(blend_in, phases::LEAST_BLEND));
-}
-
 }  // namespace metagraph

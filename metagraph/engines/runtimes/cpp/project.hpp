@@ -2,7 +2,7 @@
 #pragma once
 
 #include "model.hpp"
-#include "phases.hpp"
+#include "phase_times.hpp"
 
 namespace metagraph {
 
@@ -48,10 +48,4 @@ struct Project {
     }
 };
 
-namespace phases {
-
-/// An action's phases, as the export has them.
-inline Ref<Phases> phases(const Ref<Project>& project, const Ref<Action>& action) { return project->phases.at(action->id); }
-
-}  // namespace phases
 }  // namespace metagraph

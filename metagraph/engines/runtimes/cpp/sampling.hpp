@@ -4,24 +4,24 @@
 #pragma once
 
 #include "model.hpp"
+#include "bounds.hpp"
 #include "choice.hpp"
+#include "phase_times.hpp"
 #include "phases.hpp"
 #include "meta_plan.hpp"
+#include "remembering.hpp"
 #include "project.hpp"
 #include "language.hpp"
 
 namespace metagraph {
 
 struct SamplingStep;
-struct Shape;
+struct CueShape;
 struct Performer;
-struct Bound;
-struct _First;
 
 namespace sampling {
 
 inline constexpr double FITS = 1e-06; // seconds by which sums of times may be off
-inline constexpr int REMEMBERED = 32; // draws of a stance and kind that spacing can look back on
 inline constexpr double HURRY = 2.0; // a hold is played at most this many times as fast as it was made
 // seconds of crossfade when a long rest changes from one loop of its stance to another
 inline constexpr double LOOP_FADE = 0.6;
@@ -32,14 +32,6 @@ inline Ref<Performer> performer_after(
     const std::string& begin,
     const Ref<Past>& past,
     const List<Ref<Cue>>& cues
-);
-inline List<Ref<Bound>> _bounds(const List<Ref<MetaAction>>& metas);
-inline std::string node(const std::string& stance, const std::string& kind);
-inline void remember(
-    const Ref<Cue>& cue,
-    Map<std::string, int>& uses,
-    Map<std::string, List<std::string>>& recent,
-    Map<std::string, double>& ended
 );
 
 }  // namespace sampling
@@ -54,7 +46,7 @@ struct SamplingStep {
 };
 
 /// How an action would play: from `start` on, `length` seconds, at least `shortest`; the rest as in a cue.
-struct Shape {
+struct CueShape {
     double start;
     double entry;
     double length;
@@ -63,7 +55,7 @@ struct Shape {
     double hold_to;
     double hold;
 
-    Shape(
+    CueShape(
         double start_,
         double entry_,
         double length_,
@@ -141,7 +133,7 @@ struct Performer {
     void _realise(const Ref<MetaAction>& meta, double now, double limit, double wish);
 
     /// Whether something that plays so is over by a limit.
-    bool _fits(const Ref<Shape>& shape, double limit);
+    bool _fits(const Ref<CueShape>& shape, double limit);
 
     /// Return when an action may be drawn again.
     double _cooled(const Ref<Action>& action);
@@ -165,7 +157,7 @@ struct Performer {
     bool _usable(const Ref<Action>& action);
 
     /// Return how an action would play for a request from `now` on, or as a step on the way to it.
-    Ref<Shape> _shape(const Ref<Action>& action, const Ref<MetaRequest>& request, double now);
+    Ref<CueShape> _shape(const Ref<Action>& action, const Ref<MetaRequest>& request, double now);
 
     /// Draw with p_k ~ likelihood_k / max(c_k, 1), leaving out those used too recently as long as any others are left.
     Ref<Action> _draw(const List<Ref<Action>>& candidates, const std::string& key, double now);
@@ -179,7 +171,7 @@ struct Performer {
 
     Ref<Cue> _cue(
         const Ref<Action>& action,
-        const Ref<Shape>& shape,
+        const Ref<CueShape>& shape,
         double limit,
         double wish,
         const std::string& stance,
@@ -202,32 +194,11 @@ struct Performer {
     );
 };
 
-/// A meta action with when the next more important one begins (limit), and the next as important that was asked for
-/// (wish); infinity where there is none.
-struct Bound {
-    Ref<MetaAction> meta;
-    double limit;
-    double wish;
-
-    Bound(Ref<MetaAction> meta_, double limit_, double wish_)
-        : meta(std::move(meta_)), limit(limit_), wish(wish_) {}
-};
-
-/// The first of some meta actions of a rank, written or asked for, and when it starts.
-struct _First {
-    double rank;
-    bool written;
-    double start;
-
-    _First(double rank_, bool written_, double start_)
-        : rank(rank_), written(written_), start(start_) {}
-};
-
 inline void Performer::note(const Ref<Cue>& cue, const std::string& then) {
     this->cues.push_back(cue);
     this->free = cue->end;
     this->stance = then;
-    sampling::remember(cue, this->uses, this->recent, this->ended);
+    remembering::remember(cue, this->uses, this->recent, this->ended);
 }
 
 inline double Performer::ready() {
@@ -244,7 +215,7 @@ inline bool Performer::begin(const std::string& stance) {
 }
 
 inline void Performer::perform(const List<Ref<MetaAction>>& metas, double end) {
-    for (const auto& bound : sampling::_bounds(metas)) {
+    for (const auto& bound : bounds::bounds(metas)) {
         Ref<MetaAction> meta = bound->meta;
         if (meta->start >= end) {
             return;
@@ -279,7 +250,6 @@ inline void Performer::_realise(const Ref<MetaAction>& meta, double now, double 
     }
     List<Ref<Cue>> cues;
     std::string stance = this->stance;
-    Ref<Cue> cue{};
     for (const auto& step : *steps) {
         bool hops = step->hop != "";
         Ref<MetaRequest> asked = hops ? nullptr : meta->request;
@@ -329,18 +299,18 @@ inline void Performer::_realise(const Ref<MetaAction>& meta, double now, double 
             fitting = warm;
         }
         Ref<Action> action = this->_draw(fitting, hops ? lang::text(meta->key(), "/", step->hop) : meta->key(), now);
-        Ref<Shape> shape = this->_shape(action, asked, now);
-        cue = this->_cue(action, shape, limit, hops ? INFINITY : wish, stance, meta->key());
+        Ref<CueShape> shape = this->_shape(action, asked, now);
+        Ref<Cue> cue = this->_cue(action, shape, limit, hops ? INFINITY : wish, stance, meta->key());
         cues.push_back(cue);
         now = cue->end;
         stance = cue->then;
     }
-    for (const auto& cue : cues) {
-        this->_keep(cue);
+    for (const auto& one : cues) {
+        this->_keep(one);
     }
 }
 
-inline bool Performer::_fits(const Ref<Shape>& shape, double limit) {
+inline bool Performer::_fits(const Ref<CueShape>& shape, double limit) {
     return shape->start + shape->shortest <= limit + sampling::FITS;
 }
 
@@ -437,7 +407,7 @@ inline std::optional<List<Ref<SamplingStep>>> Performer::_steps(const Ref<MetaAc
     }
     if (meta->written) { // the model's limb and tags are wishes, not orders, nor worth playing the same again
         List<std::string> again = lang::part(
-            lang::get_or(this->recent, sampling::node(this->stance, request->kind), List<std::string>{}),
+            lang::get_or(this->recent, remembering::node(this->stance, request->kind), List<std::string>{}),
             -1
         );
         bool is_any = false;
@@ -576,7 +546,7 @@ inline bool Performer::_usable(const Ref<Action>& action) {
     return action->likelihood > 0 && this->_arrives(action);
 }
 
-inline Ref<Shape> Performer::_shape(const Ref<Action>& action, const Ref<MetaRequest>& request, double now) {
+inline Ref<CueShape> Performer::_shape(const Ref<Action>& action, const Ref<MetaRequest>& request, double now) {
     auto [start, end] = this->project->span(action);
     double begin = now;
     double entry = start;
@@ -614,7 +584,7 @@ inline Ref<Shape> Performer::_shape(const Ref<Action>& action, const Ref<MetaReq
         double left = *exit_at - entry + (*exit_at >= hold_to ? hold - (hold_to - hold_from) : 0.0);
         shortest = std::min(length, std::max(0.0, left) + action->timing->blend_out);
     }
-    return lang::made<Shape>(begin, entry, length, shortest, hold_from, hold_to, hold);
+    return lang::made<CueShape>(begin, entry, length, shortest, hold_from, hold_to, hold);
 }
 
 inline Ref<Action> Performer::_draw(const List<Ref<Action>>& candidates, const std::string& key, double now) {
@@ -647,7 +617,7 @@ inline Ref<Action> Performer::_draw(const List<Ref<Action>>& candidates, const s
 inline List<Ref<Action>> Performer::_spaced(const List<Ref<Action>>& candidates) {
     int default_ = this->project->settings->never_twice ? 1 : 0;
     Ref<Action> first = lang::at(candidates, 0);
-    List<std::string> before = lang::get_or(this->recent, sampling::node(first->stance, first->kind), List<std::string>{});
+    List<std::string> before = lang::get_or(this->recent, remembering::node(first->stance, first->kind), List<std::string>{});
     if (lang::len(candidates) < 2 || lang::len(before) == 0) {
         return candidates;
     }
@@ -668,7 +638,7 @@ inline List<Ref<Action>> Performer::_spaced(const List<Ref<Action>>& candidates)
     for (int less = 0; less < lang::max_of(found) + 1; less++) {
         List<Ref<Action>> left;
         for (const auto& a : candidates) {
-            if (lang::get_or(since, a->id, sampling::REMEMBERED) >= needs.at(a->id) - less) {
+            if (lang::get_or(since, a->id, remembering::REMEMBERED) >= needs.at(a->id) - less) {
                 left.push_back(a);
             }
         }
@@ -699,7 +669,7 @@ inline double Performer::_count(const std::string& ident, double now) {
 
 inline Ref<Cue> Performer::_cue(
     const Ref<Action>& action,
-    const Ref<Shape>& shape,
+    const Ref<CueShape>& shape,
     double limit,
     double wish,
     const std::string& stance,
@@ -712,7 +682,7 @@ inline Ref<Cue> Performer::_cue(
     double into = std::max(0.0, action->timing->blend_in);
     double out = std::max(0.0, action->timing->blend_out);
     if (shape->entry > std::get<0>(this->project->span(action))) {
-        into = std::max(into, phases::LEAST_BLEND);
+        into = std::max(into, phase_times::LEAST_BLEND);
     }
     double squeeze = into + out > 0 ? std::min(1.0, length / (into + out)) : 1.0;
     std::string then = stance;
@@ -794,7 +764,7 @@ inline void Performer::vary_rests(double end) {
         while (true) {
             auto [start, stop] = this->project->span(current->action);
             change += std::max(1.0, stop - start - current->action->timing->blend_in);
-            if (change > until) {
+            if (!(change <= until)) { // nor when it is no number
                 break;
             }
             Ref<Action> loop = this->loop(rest->stance, lang::text(this->graph->layer, "/", lang::fixed(change, 3)));
@@ -857,57 +827,6 @@ inline Ref<Performer> performer_after(
         out->note(cue, lang::contains(graph->stances, cue->then) ? cue->then : begin);
     }
     return out;
-}
-
-/// Return each meta action with what bounds it.
-inline List<Ref<Bound>> _bounds(const List<Ref<MetaAction>>& metas) {
-    List<Ref<Bound>> out;
-    List<Ref<_First>> first;
-    for (const auto& meta : lang::backwards(metas)) {
-        double limit = INFINITY;
-        double wish = INFINITY;
-        Ref<_First> own;
-        for (const auto& one : first) {
-            if (one->rank > meta->rank()) {
-                limit = std::min(limit, one->start);
-            }
-            if (one->rank >= meta->rank() && !one->written) {
-                wish = std::min(wish, one->start);
-            }
-            if (one->rank == meta->rank() && one->written == meta->written) {
-                own = one;
-            }
-        }
-        out.push_back(lang::made<Bound>(meta, limit, wish));
-        if (own == nullptr) {
-            first.push_back(lang::made<_First>(meta->rank(), meta->written, meta->start));
-        } else {
-            own->start = meta->start;
-        }
-    }
-    return lang::backwards(out);
-}
-
-/// Return what draws of a stance and kind are remembered under.
-inline std::string node(const std::string& stance, const std::string& kind) {
-    return lang::text(kind, " ", stance);
-}
-
-/// Note that a cue was played: how often its action was, lately, and until when.
-inline void remember(
-    const Ref<Cue>& cue,
-    Map<std::string, int>& uses,
-    Map<std::string, List<std::string>>& recent,
-    Map<std::string, double>& ended
-) {
-    std::string ident = cue->action->id;
-    std::string place = sampling::node(cue->stance, cue->action->kind);
-    uses[ident] = lang::get_or(uses, ident, 0) + 1;
-    recent[place] = lang::together(
-        lang::part(lang::get_or(recent, place, List<std::string>{}), 1 - sampling::REMEMBERED),
-        List<std::string>{ident}
-    );
-    ended[ident] = cue->end;
 }
 
 }  // namespace sampling

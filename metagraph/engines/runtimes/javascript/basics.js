@@ -108,3 +108,10 @@ export function range(first, last) {
 
 /** Return numbers, texts or lists of them in order. */
 export const sorted = (items) => [...items].sort(compareKeys);
+
+/** Return seconds with three decimals, halves to even: `toFixed` rounds them up, and this text keys a draw. */
+export function thousandths(seconds) {
+  const halves = (seconds * 16) % 2 === 1 || (seconds * 16) % 2 === -1; // only odd sixteenths lie midway
+  const low = Math.floor(seconds * 1000);
+  return halves && low % 2 === 0 ? (low / 1000).toFixed(3) : seconds.toFixed(3);
+}

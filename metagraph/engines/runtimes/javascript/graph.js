@@ -4,7 +4,8 @@ import { readBody } from "./life/body.js";
 import { Voices } from "./life/voice.js";
 import { Glb, GlbError, resample } from "./glb.js";
 import { hear } from "./hear.js";
-import { Markov } from "./model.js";
+import { Markov, Settings, Stance, Timing } from "./model.js";
+import { Phases } from "./phase_times.js";
 import { emptyPlan } from "./plan.js";
 import { morphsAt, poseAt } from "./pose.js";
 import { multiply } from "./rotation.js";
@@ -74,12 +75,10 @@ export class Graph {
     const constant = (name, usual, low = 0, high = 1e9) => inRange(p[name] ?? usual, low, high, `planner.${name}`);
     this.name = data.name;
     this.problems = [];
-    this.settings = {
-      seed: constant("seed", 1, 0, 0xffffffff), alpha: constant("alpha", 4), neverTwice: p.never_twice ?? true,
-      shortest: constant("shortest", 0.4), wait: constant("wait", 4), window: constant("window", 1), loopFade: constant("loop_fade", 0.6),
-      memory: constant("memory", 0), rest: constant("rest", 0), lookahead: constant("lookahead", 0.1), hurry: constant("hurry", 2, 1),
-      leastBlend: constant("least_blend", 0.25),
-    };
+    this.settings = new Settings(
+      constant("alpha", 4), constant("seed", 1, 0, 0xffffffff), p.never_twice ?? true, constant("shortest", 0.4), constant("wait", 4),
+      constant("memory", 0), constant("rest", 0), constant("lookahead", 0.1),
+    );
     this.joints = data.joints.map((joint) => joint.name);
     this.parts = data.joints.map((joint) => joint.part);
     this.parents = data.joints.map((joint) => (joint.parent === null ? -1 : this.joints.indexOf(joint.parent)));
@@ -104,6 +103,11 @@ export class Graph {
     for (const clip of this.clips.values()) for (const morph of clip.morphs) morph.place = this.morphs.indexOf(morph.name);
   }
 
+  /** Return the seconds of its clip between which an action plays. */
+  span(action) {
+    return [action.start, action.end];
+  }
+
   /** @returns {import("./life/voice.js").Voice} */
   voiceOf(speech) {
     return this.voices.of(speech);
@@ -115,7 +119,7 @@ export class LayerGraph {
   constructor(layer, data, joints, durations, graph) {
     this.layer = layer;
     this.start = data.start;
-    this.stances = new Map(data.stances.map((stance) => [stance.id, stance]));
+    this.stances = new Map(data.stances.map(({ id, name }) => [id, new Stance(id, layer, name)]));
     const weights = joints.map((joint) => data.weights[joint.part] ?? 0);
     /** Places of the joints this layer moves [n], and its weights on them, null where all are 1. */
     this.reach = Int32Array.from(joints.keys()).filter((joint) => weights[joint] > 0);
@@ -141,11 +145,6 @@ export class LayerGraph {
     return this.index.get(`${kind} ${stance}`) ?? NOTHING;
   }
 
-  /** Whether an action leaves the layer in a stance that can rest. */
-  arrives(action) {
-    return action.kind !== "transition" || (this.stances.has(action.endStance) && this.of(action.endStance, "stance").length > 0);
-  }
-
   /**
    * Return an action: times of its clip in seconds, `phases` of them, `motion` (null where its clip is missing), `offsets` of the
    * motion from the base pose, and `still`, the places in the reach of joints that show the stance throughout.
@@ -167,8 +166,9 @@ export class LayerGraph {
     return {
       id, name, clip, kind, layer: this.layer, stance, limb, likelihood: number("likelihood"), start, end, motion,
       tags: data.tags, joints: data.joints,
-      endStance: data.end_stance, blendIn: number("blend_in"), blendOut: number("blend_out"), earliestExit: data.earliest_exit,
-      phases: { ready, stroke, strokeEnd, relax }, cooldown: number("cooldown", 0), spacing: data.spacing ?? null,
+      endStance: data.end_stance ?? null,
+      timing: new Timing(start, end, number("blend_in"), number("blend_out"), kind === "stance", data.earliest_exit ?? null),
+      phases: new Phases(start, ready, stroke, strokeEnd, relax, end), cooldown: number("cooldown", 0), spacing: data.spacing ?? null,
       offsets: offsets.get(clip) ?? null,
       still: Int32Array.from(this.reach.keys()).filter((place) => stays(joints[this.reach[place]])),
     };

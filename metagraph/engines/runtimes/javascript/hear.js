@@ -1,7 +1,9 @@
 /** Performing what is asked while it comes in: working asks into a running plan, forgetting what is over, and answering. */
 
-import { remember } from "./plan.js";
+import { but } from "./basics.js";
+import { Past } from "./meta_plan.js";
 import { extend } from "./planner.js";
+import { remember } from "./remembering.js";
 import { goesOn, plus, sinceTrack, trackItems, without } from "./life/track.js";
 import { sinceSchedule } from "./life/schedule.js";
 import { understand } from "./understand.js";
@@ -120,19 +122,18 @@ function sinceLayer(plan, seconds) {
   plan.rests.forEach((rest, n) => {
     if (rest.fadeStart + rest.fade <= seconds) under = n;
   });
-  return {
-    ...plan,
+  return but(plan, {
     cues,
     metas: plan.metas.filter((m) => m.end >= seconds || played.has(m.key)),
     rests: plan.rests.slice(under),
     past: pastOf(plan.past, gone),
-  };
+  });
 }
 
 function pastOf(past, gone) {
   if (!gone.length) return past;
   const last = gone[gone.length - 1];
-  const out = { free: last.end, stance: last.then, uses: new Map(past.uses), recent: new Map(past.recent), ended: new Map(past.ended) };
-  for (const cue of gone) remember(cue, out);
-  return out;
+  const [uses, recent, ended] = [new Map(past.uses), new Map(past.recent), new Map(past.ended)];
+  for (const cue of gone) remember(cue, uses, recent, ended);
+  return new Past(last.end, last.then, uses, recent, ended);
 }

@@ -7,7 +7,7 @@
 
 import { Spelled, VOWELS, sounds } from "./graphemes.js";
 import { LATE, MouthPiece, STEP } from "./mouth.js";
-import { but, maxOf, zip } from "./basics.js";
+import { but, maxOf, thousandths, zip } from "./basics.js";
 
 export const WORD = 0.15; // seconds a word takes of which only the start is told, if nothing comes before
 export const LETTER = 0.07; // and for each of its letters
@@ -185,14 +185,14 @@ export function wrongIn(words, marks, name, duration) {
     const place = `words[${n}] '${word.text}'`;
     why = _outOfRange(word.start);
     if (why === "" && word.start < last) {
-      why = `begins at ${word.start.toFixed(3)} s, before the one before it; put words in order`;
+      why = `begins at ${thousandths(word.start)} s, before the one before it; put words in order`;
     }
     const end = word.end === null ? word.start : word.end;
     if (why === "" && !(end >= word.start)) {
-      why = `ends at ${end.toFixed(3)} s, before it begins; give [word, start, end] in seconds`;
+      why = `ends at ${thousandths(end)} s, before it begins; give [word, start, end] in seconds`;
     }
     if (why === "" && duration !== null && end > duration + SLACK) {
-      why = `ends at ${end.toFixed(3)} s, past the end at ${duration.toFixed(3)} s; give a longer duration`;
+      why = `ends at ${thousandths(end)} s, past the end at ${thousandths(duration)} s; give a longer duration`;
     }
     if (why !== "") {
       return `${place}: ${why}`;
@@ -207,13 +207,13 @@ export function wrongIn(words, marks, name, duration) {
   for (const [n, mark] of marks.entries()) {
     why = _outOfRange(mark.at);
     if (why === "" && mark.at < last) {
-      why = `comes at ${mark.at.toFixed(3)} s, before the one before it; put visemes in order`;
+      why = `comes at ${thousandths(mark.at)} s, before the one before it; put visemes in order`;
     }
     if (why === "" && duration !== null && mark.at > duration + SLACK) {
-      why = `comes at ${mark.at.toFixed(3)} s, past the end at ${duration.toFixed(3)} s; give a longer duration`;
+      why = `comes at ${thousandths(mark.at)} s, past the end at ${thousandths(duration)} s; give a longer duration`;
     }
     if (why === "" && !(0 <= mark.weight && mark.weight <= 1)) {
-      why = `has the weight ${mark.weight.toFixed(3)}; weights are from 0 to 1`;
+      why = `has the weight ${thousandths(mark.weight)}; weights are from 0 to 1`;
     }
     if (why === "" && found === "" && setOf([mark]) === "") {
       why = `is in no set of visemes; there are ${SETS.join(", ")}`;
@@ -240,7 +240,7 @@ function _outOfRange(seconds) {
   if (0 <= seconds && seconds <= FARTHEST) {
     return "";
   }
-  return `is at ${seconds.toFixed(3)} s; times are from 0 to ${FARTHEST.toFixed(1)} s from the line's start`;
+  return `is at ${thousandths(seconds)} s; times are from 0 to ${FARTHEST.toFixed(1)} s from the line's start`;
 }
 
 /**

@@ -97,6 +97,51 @@ export class MetaAction {
 }
 
 /**
+ * One action in the plan. It plays its clip from `entry` on during `start`..`end`, at its own speed but for its hold.
+ *
+ * hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not stretched. blend_in,
+ * blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in. meta: key of the
+ * meta action it realises.
+ *
+ * action: Action; start: number; end: number; entry: number; blendIn: number; blendOut: number; stance: string; then:
+ * string; meta: string; holdFrom: number; holdTo: number; hold: number.
+ */
+export class Cue {
+  constructor(action, start, end, entry, blendIn, blendOut, stance, then, meta, holdFrom = 0, holdTo = 0, hold = 0) {
+    this.action = action;
+    this.start = start;
+    this.end = end;
+    this.entry = entry;
+    this.blendIn = blendIn;
+    this.blendOut = blendOut;
+    this.stance = stance;
+    this.then = then;
+    this.meta = meta;
+    this.holdFrom = holdFrom;
+    this.holdTo = holdTo;
+    this.hold = hold;
+  }
+}
+
+/**
+ * The stance loop that lies under the cues from `start` on: loop seconds are `time - start`, wrapped.
+ *
+ * fade_start, fade: when and for how many seconds it takes over from the loop before.
+ *
+ * stance: string; action: Action; start: number; fadeStart: number; fade: number.
+ */
+export class Rest {
+  constructor(stance, action, start, fadeStart, fade) {
+    this.stance = stance;
+    this.action = action;
+    this.start = start;
+    this.fadeStart = fadeStart;
+    this.fade = fade;
+  }
+}
+export const TEMPORAL = new Set(["late", "cut", "resumed", "past"]); // told by temporal replanning, once
+
+/**
  * What became of a meta action that was not simply played as asked. played: whether something of it still plays.
  *
  * request: string; outcome: string; message: string; layer: string; at: number; played: boolean; written: boolean.
@@ -109,6 +154,42 @@ export class Report {
     this.layer = layer;
     this.at = at;
     this.played = played;
+    this.written = written;
+  }
+}
+
+/**
+ * What planning on needs of cues that were forgotten. free: when the last ended; stance: in which. uses: how often each
+ * action was used. recent: the actions used last, by `remembering.node`, the latest at the end. ended: when each ended last.
+ *
+ * free: number; stance: string; uses: Map<string, number>; recent: Map<string, string[]>; ended: Map<string, number>.
+ */
+export class Past {
+  constructor(free = 0, stance = "", uses = new Map(), recent = new Map(), ended = new Map()) {
+    this.free = free;
+    this.stance = stance;
+    this.uses = uses;
+    this.recent = recent;
+    this.ended = ended;
+  }
+}
+
+/**
+ * cues never overlap and ascend; rests ascend by fade_start, the first covering everything before.
+ *
+ * past: what came before the first cue, where that was forgotten. cursor: where the Markov model writes on. written: what it
+ * wrote for later, as it wrote it: each extension fits it in anew, so that it does not matter when it was first seen.
+ *
+ * layer: string; metas: MetaAction[]; cues: Cue[]; rests: Rest[]; past: Past; cursor: Cursor; written: MetaAction[].
+ */
+export class LayerPlan {
+  constructor(layer, metas = [], cues = [], rests = [], past = new Past(), cursor = new Cursor(), written = []) {
+    this.layer = layer;
+    this.metas = metas;
+    this.cues = cues;
+    this.rests = rests;
+    this.past = past;
+    this.cursor = cursor;
     this.written = written;
   }
 }

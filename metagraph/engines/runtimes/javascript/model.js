@@ -8,6 +8,56 @@
 
 
 /**
+ * When an action plays within its clip; seconds of the clip.
+ *
+ * start, end: the part that plays; `end` None is the clip's end. blend_in, blend_out: seconds of blending from and to the
+ * stance, within start..end (for a looping stance, blend_in is the overlap at the loop's seam). loop: repeats.
+ * earliest_exit: from here on the action may be left, or None to play it through. stroke: its most telling moment. ready,
+ * stroke_end, relax: where a gesture's preparation, stroke and hold end (its retraction ends with it); None as found from
+ * the motion (`playback.phases`).
+ *
+ * start: number; end: ?number; blendIn: number; blendOut: number; loop: boolean; earliestExit: ?number; stroke: ?number;
+ * ready: ?number; strokeEnd: ?number; relax: ?number.
+ */
+export class Timing {
+  constructor(
+    start = 0,
+    end = null,
+    blendIn = 0.2,
+    blendOut = 0.3,
+    loop = false,
+    earliestExit = null,
+    stroke = null,
+    ready = null,
+    strokeEnd = null,
+    relax = null,
+  ) {
+    this.start = start;
+    this.end = end;
+    this.blendIn = blendIn;
+    this.blendOut = blendOut;
+    this.loop = loop;
+    this.earliestExit = earliestExit;
+    this.stroke = stroke;
+    this.ready = ready;
+    this.strokeEnd = strokeEnd;
+    this.relax = relax;
+  }
+}
+
+/**
+ *
+ * id: string; layer: string; name: string.
+ */
+export class Stance {
+  constructor(id, layer, name) {
+    this.id = id;
+    this.layer = layer;
+    this.name = name;
+  }
+}
+
+/**
  * A first-order model over (limb, kind) that writes meta actions when nobody asks for any (Borer et al., 7.3).
  *
  * matrix: rows of probabilities, each summing to 1. gap: mean seconds of rest between two actions. positive, negative: share

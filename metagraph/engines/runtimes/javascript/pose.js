@@ -132,7 +132,7 @@ export class Player {
     if (blending) {
       // Lead the clip in from, or out to, its stance: add what the stance differs from the clip's pose at that edge. A crossfade
       // would hold the clip back and then hurry it.
-      sample(action, entering ? cue.entry : cue.last, other, count);
+      sample(action, entering ? cue.entry : clipSeconds(cue, cue.end), other, count);
       const weight = 1 - cueWeight(cue, time);
       for (let q = 0; q < 4 * count; q += 4) {
         turnBack(other.rotations, q);
@@ -209,7 +209,7 @@ function cueWeight(cue, time) {
 
 /** Seconds of a loop's end that fade into its beginning; its period is that much shorter. */
 function seamOf(action) {
-  return Math.min(action.blendIn, (action.end - action.start) / 2);
+  return Math.min(action.timing.blendIn, (action.end - action.start) / 2);
 }
 
 /**

@@ -56,7 +56,7 @@ namespace Metagraph
             this.options = options ?? new CharacterOptions();
             player = new Player(graph);
             pose = new BodyPose(graph);
-            Plan = Plan.Empty(this.options.Seed ?? graph.Planner.Seed);
+            Plan = Plan.Empty(this.options.Seed ?? graph.Settings.Seed);
             Plan = Hearing.Hear(graph, Plan, 0.0, new Ask[0], this.options.Ahead, this.options.Stances, this.options.Idle);
         }
 

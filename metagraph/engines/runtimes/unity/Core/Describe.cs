@@ -1,4 +1,5 @@
 using System.Collections.Generic;
+using System.Linq;
 
 namespace Metagraph
 {
@@ -40,10 +41,10 @@ namespace Metagraph
 
         private static JsonObject Told(LayerGraph graph)
         {
-            List<object> stances = graph.Stances.ConvertAll<object>(stance => Record("id", stance.Key, "name", stance.Value));
+            List<object> stances = graph.Stances.Values.Select(stance => (object)Record("id", stance.Id, "name", stance.Name)).ToList();
             var actions = new List<object>();
             var tags = new JsonObject();
-            foreach (GraphAction action in graph.Actions)
+            foreach (GraphAction action in graph.Actions.Values)
             {
                 foreach (string tag in action.Tags)
                 {
@@ -69,7 +70,7 @@ namespace Metagraph
             {
                 found["limb"] = action.Limb;
             }
-            if (action.Tags.Length > 0)
+            if (action.Tags.Count > 0)
             {
                 found["tags"] = new List<object>(action.Tags);
             }

@@ -18,24 +18,18 @@ namespace Metagraph
         public Clip Motion;
     }
 
-    /// <summary>Clip seconds of a gesture, ascending.</summary>
-    public struct Phases
-    {
-        public double Ready, Stroke, StrokeEnd, Relax;
-    }
-
     /// <summary>
-    /// One use of a clip. Start, End: the part that plays, clip seconds. Blends lie inside it; of a stance, BlendIn is the overlap
+    /// One use of a clip. Start, End: the part that plays, clip seconds. Blends lie inside it; of a stance, the blend in is the overlap
     /// at its loop's seam. Mask: for each joint whether it moves it, null where it moves all.
     /// </summary>
     public sealed class GraphAction
     {
         public string Id, Name, Kind, Layer, Stance, EndStance, Limb;
         public ClipEntry Clip;
-        public double Start, End, BlendIn, BlendOut, Likelihood, Cooldown;
-        public double? EarliestExit;
+        public double Start, End, Likelihood, Cooldown;
+        public Timing Timing;
         public int? Spacing;
-        public string[] Joints = Basics.None, Tags = Basics.None;
+        public List<string> Joints = new List<string>(), Tags = new List<string>();
         public Phases Phases;
         public bool[] Mask;
 
@@ -49,7 +43,7 @@ namespace Metagraph
         {
             foreach (string tag in tags)
             {
-                if (System.Array.IndexOf(Tags, tag) < 0)
+                if (!Tags.Contains(tag))
                 {
                     return false;
                 }
@@ -58,20 +52,18 @@ namespace Metagraph
         }
     }
 
-    /// <summary>One layer: its stances (id, name) and actions, in the order they were placed.</summary>
+    /// <summary>One layer: its stances and actions by id, in the order they were placed.</summary>
     public sealed class LayerGraph
     {
         public readonly string Layer;
         public string Start;
-        public readonly List<KeyValuePair<string, string>> Stances = new List<KeyValuePair<string, string>>();
-        public readonly List<GraphAction> Actions = new List<GraphAction>();
+        public readonly Dictionary<string, Stance> Stances = new Dictionary<string, Stance>();
+        public readonly Dictionary<string, GraphAction> Actions = new Dictionary<string, GraphAction>();
         public Markov Markov;
         /// <summary>Joints the layer moves, and how strongly, 0..2.</summary>
         public int[] Reach;
         public double[] Weights;
 
-        private readonly Dictionary<string, string> names = new Dictionary<string, string>();
-        private readonly Dictionary<string, GraphAction> byId = new Dictionary<string, GraphAction>();
         private readonly Dictionary<string, List<GraphAction>> index = new Dictionary<string, List<GraphAction>>();
         private readonly HashSet<string> kinds = new HashSet<string>();
         private static readonly List<GraphAction> Nothing = new List<GraphAction>();
@@ -83,24 +75,22 @@ namespace Metagraph
 
         internal bool Add(string stance, string name)
         {
-            if (names.ContainsKey(stance))
+            if (Stances.ContainsKey(stance))
             {
                 return false;
             }
-            names[stance] = name;
-            Stances.Add(new KeyValuePair<string, string>(stance, name));
+            Stances[stance] = new Stance(stance, Layer, name);
             return true;
         }
 
         internal bool Add(GraphAction action)
         {
-            if (byId.ContainsKey(action.Id))
+            if (Actions.ContainsKey(action.Id))
             {
                 return false;
             }
-            byId[action.Id] = action;
-            Actions.Add(action);
-            string node = Node(action.Stance, action.Kind);
+            Actions[action.Id] = action;
+            string node = RememberingRules.Node(action.Stance, action.Kind);
             if (!index.ContainsKey(node))
             {
                 index[node] = new List<GraphAction>();
@@ -110,17 +100,11 @@ namespace Metagraph
             return true;
         }
 
-        /// <summary>What a stance and a kind are counted under.</summary>
-        public static string Node(string stance, string kind)
-        {
-            return kind + " " + stance;
-        }
-
         /// <summary>The actions of a kind placed on a stance, in the order they were placed.</summary>
         public List<GraphAction> Of(string stance, string kind)
         {
             List<GraphAction> found;
-            return stance != null && index.TryGetValue(Node(stance, kind), out found) ? found : Nothing;
+            return stance != null && index.TryGetValue(RememberingRules.Node(stance, kind), out found) ? found : Nothing;
         }
 
         /// <summary>The kinds of actions there are.</summary>
@@ -128,62 +112,13 @@ namespace Metagraph
         {
             get { return kinds; }
         }
-
-        public bool HasStance(string stance)
-        {
-            return stance != null && names.ContainsKey(stance);
-        }
-
-        public string NameOf(string stance)
-        {
-            return names[stance];
-        }
-
-        public GraphAction Action(string id)
-        {
-            GraphAction found;
-            return byId.TryGetValue(id, out found) ? found : null;
-        }
-
-        /// <summary>
-        /// The stances after `start` on the shortest way of transitions to `goal`, null where there is none. Of equally short ways
-        /// the one whose transitions were placed first. Transitions that cannot play, or end in a stance without a loop, do not count.
-        /// </summary>
-        public List<string> Chain(string start, string goal)
-        {
-            var before = new Dictionary<string, string> { { start, start } };
-            var queue = new List<string> { start };
-            for (int n = 0; n < queue.Count; n++)
-            {
-                foreach (GraphAction action in Of(queue[n], "transition"))
-                {
-                    string end = action.EndStance;
-                    if (action.Likelihood <= 0 || !HasStance(end) || Of(end, "stance").Count == 0 || before.ContainsKey(end))
-                    {
-                        continue;
-                    }
-                    before[end] = queue[n];
-                    queue.Add(end);
-                    if (end == goal)
-                    {
-                        var way = new List<string>();
-                        for (string at = end; at != start; at = before[at])
-                        {
-                            way.Insert(0, at);
-                        }
-                        return way;
-                    }
-                }
-            }
-            return null;
-        }
     }
 
-    /// <summary>Constants of planning; seconds, but for Alpha and Hurry.</summary>
+    /// <summary>Constants of planning; seconds, but for Alpha.</summary>
     public sealed class PlannerSettings
     {
         public uint Seed;
-        public double Alpha, Shortest, Wait, Window, LoopFade, Memory, Rest, Lookahead = 0.1, Hurry = 2.0, LeastBlend = 0.25;
+        public double Alpha, Shortest, Wait, Memory, Rest, Lookahead = 0.1;
         public bool NeverTwice;
     }
 
@@ -208,7 +143,7 @@ namespace Metagraph
         public float[] BaseRotations, BaseTranslations;
         public readonly Dictionary<string, LayerGraph> Layers = new Dictionary<string, LayerGraph>();
         public readonly Dictionary<string, ClipEntry> Clips = new Dictionary<string, ClipEntry>();
-        public PlannerSettings Planner;
+        public PlannerSettings Settings;
         public LifeSettings Life = new LifeSettings();
         /// <summary>What breathes and looks; null where the export does not say.</summary>
         public Body Body;
@@ -224,13 +159,19 @@ namespace Metagraph
         {
             foreach (string layer in Basics.Layers)
             {
-                GraphAction found = Layers[layer].Action(id);
-                if (found != null)
+                GraphAction found;
+                if (Layers[layer].Actions.TryGetValue(id, out found))
                 {
                     return found;
                 }
             }
             return null;
+        }
+
+        /// <summary>The seconds of its clip between which an action plays.</summary>
+        public (double, double) Span(GraphAction action)
+        {
+            return (action.Start, action.End);
         }
 
         internal int Morph(string name)

@@ -22,7 +22,7 @@ namespace Metagraph
         public static Plan Hear(
             Graph graph, Plan plan, double now, IList<Ask> asks, double end, IDictionary<string, string> stances = null, bool idle = true)
         {
-            double begins = now > 0 ? now + graph.Planner.Lookahead : 0.0;
+            double begins = now > 0 ? now + graph.Settings.Lookahead : 0.0;
             Understood meant = Understood.From(graph, asks, begins);
             var gone = new HashSet<string>(meant.Withdrawn);
             gone.UnionWith(meant.Requests.Select(r => r.Id));
@@ -170,10 +170,11 @@ namespace Metagraph
             Past past = plan.Past;
             if (gone > 0)
             {
-                past = past.Copy();
-                plan.Cues.GetRange(0, gone).ForEach(past.Remember);
-                past.Free = plan.Cues[gone - 1].End;
-                past.Stance = plan.Cues[gone - 1].Then;
+                Cue last = plan.Cues[gone - 1];
+                past = new Past(
+                    last.End, last.Then, new Dictionary<string, int>(past.Uses), new Dictionary<string, List<string>>(past.Recent),
+                    new Dictionary<string, double>(past.Ended));
+                plan.Cues.GetRange(0, gone).ForEach(cue => RememberingRules.Remember(cue, past.Uses, past.Recent, past.Ended));
             }
             return new LayerPlan(plan.Layer, metas, cues, rests, past, plan.Cursor, plan.Written);
         }

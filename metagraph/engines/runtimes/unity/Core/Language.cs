@@ -41,12 +41,6 @@ namespace Metagraph
         }
     }
 
-    /// <summary>The words everything is told apart by, as lists.</summary>
-    internal static class WordsRules
-    {
-        public static readonly List<string> Modes = Basics.Modes.ToList(), Visemes = Voice.Visemes.ToList();
-    }
-
     /// <summary>Texts, whatever the culture.</summary>
     internal static class PlainText
     {
@@ -69,6 +63,10 @@ namespace Metagraph
 
         public static string Fixed(double number, int places)
         {
+            if (places == 3) // what keys a draw
+            {
+                return Basics.ThreeDecimals(number);
+            }
             return number.ToString("F" + places, CultureInfo.InvariantCulture);
         }
 
@@ -93,7 +91,7 @@ namespace Metagraph
         }
 
         /// <summary>The largest of some numbers.</summary>
-        public static double MaxOf(List<double> values)
+        public static T MaxOf<T>(List<T> values)
         {
             return values.Max();
         }
@@ -104,7 +102,7 @@ namespace Metagraph
             return values.Count > 0 ? values.Max() : other;
         }
 
-        public static double MinOf(List<double> values)
+        public static T MinOf<T>(List<T> values)
         {
             return values.Min();
         }
@@ -136,6 +134,17 @@ namespace Metagraph
     /// <summary>Maps, whose values may be missing.</summary>
     internal static class PlainMaps
     {
+        /// <summary>A map of pairs; of two with one key the later counts, in the place of the first.</summary>
+        public static Dictionary<K, V> ToMap<K, V>(this IEnumerable<(K, V)> pairs)
+        {
+            var found = new Dictionary<K, V>();
+            foreach (var pair in pairs)
+            {
+                found[pair.Item1] = pair.Item2;
+            }
+            return found;
+        }
+
         /// <summary>The value of a key, null where there is none.</summary>
         public static T Get<T>(Dictionary<string, T> map, string key) where T : class
         {

@@ -127,18 +127,15 @@ namespace Metagraph
             {
                 throw json["blend"].Wrong("is a curve that this runtime does not know");
             }
-            Planner = new PlannerSettings
+            Settings = new PlannerSettings
             {
                 Seed = (uint)Basics.Clamp(seed, 0, uint.MaxValue), Alpha = json["alpha"].Within(0, 1e15),
                 NeverTwice = json["never_twice"].Flag, Shortest = json["shortest"].Within(0, 1e9), Wait = json["wait"].Within(0, 1e9),
-                Window = json["window"].Within(0, 1e9), LoopFade = json["loop_fade"].Within(0, 1e9),
             };
             Node found;
-            Planner.Memory = json.Maybe("memory", out found) ? found.Within(0, 600) : Planner.Memory;
-            Planner.Rest = json.Maybe("rest", out found) ? found.Within(0, 600) : Planner.Rest;
-            Planner.Lookahead = json.Maybe("lookahead", out found) ? found.Within(0, 10) : Planner.Lookahead;
-            Planner.Hurry = json.Maybe("hurry", out found) ? found.Within(1, 100) : Planner.Hurry;
-            Planner.LeastBlend = json.Maybe("least_blend", out found) ? found.Within(0, 1e9) : Planner.LeastBlend;
+            Settings.Memory = json.Maybe("memory", out found) ? found.Within(0, 600) : Settings.Memory;
+            Settings.Rest = json.Maybe("rest", out found) ? found.Within(0, 600) : Settings.Rest;
+            Settings.Lookahead = json.Maybe("lookahead", out found) ? found.Within(0, 10) : Settings.Lookahead;
         }
 
         private LayerGraph ReadLayer(string layer, Node json)
@@ -181,10 +178,13 @@ namespace Metagraph
             {
                 Id = json["id"].Text, Name = json["name"].Text, Kind = json["kind"].OneOf(Basics.Kinds), Layer = layer,
                 Stance = json["stance"].Text, EndStance = json["end_stance"].TextOrNull, Limb = json["limb"].OneOf(Basics.Limbs),
-                Start = json["start"].Within(0, 1e9), BlendIn = json["blend_in"].Within(0, 1e9), BlendOut = json["blend_out"].Within(0, 1e9),
-                Likelihood = json["likelihood"].Within(0, 1e15), EarliestExit = json["earliest_exit"].NumberOrNull, Joints = json["joints"].Texts, Tags = json["tags"].Texts,
+                Start = json["start"].Within(0, 1e9), Likelihood = json["likelihood"].Within(0, 1e15),
+                Joints = json["joints"].Texts.ToList(), Tags = json["tags"].Texts.ToList(),
             };
             action.End = json["end"].Within(action.Start, 1e9);
+            action.Timing = new Timing(
+                action.Start, action.End, json["blend_in"].Within(0, 1e9), json["blend_out"].Within(0, 1e9), action.Kind == "stance",
+                json["earliest_exit"].NumberOrNull);
             if (!Clips.TryGetValue(json["clip"].Text, out action.Clip))
             {
                 throw json["clip"].Wrong("is no clip of the export");
@@ -199,7 +199,7 @@ namespace Metagraph
                 stroke = Basics.Clamp(stroke, action.Start, action.End);
                 phases = new[] { stroke, stroke, stroke, stroke };
             }
-            action.Phases = new Phases { Ready = phases[0], Stroke = phases[1], StrokeEnd = phases[2], Relax = phases[3] };
+            action.Phases = new Phases(action.Start, phases[0], phases[1], phases[2], phases[3], action.End);
             action.Mask = Mask(action);
             return action;
         }
@@ -207,14 +207,14 @@ namespace Metagraph
         /// <summary>A one-armed action leaves the other arm alone; `Joints`, if any, names the only joints it moves.</summary>
         private bool[] Mask(GraphAction action)
         {
-            if (action.Limb == "both" && action.Joints.Length == 0)
+            if (action.Limb == "both" && action.Joints.Count == 0)
             {
                 return null;
             }
             string other = action.Limb == "left" ? "right" : "left";
             return Array.ConvertAll(Joints, joint =>
                 !(action.Limb != "both" && joint.Part == "arms" && joint.Side == other)
-                && (action.Joints.Length == 0 || Array.IndexOf(action.Joints, joint.Name) >= 0));
+                && (action.Joints.Count == 0 || action.Joints.Contains(joint.Name)));
         }
 
         private static Markov ReadMarkov(string layer, Node json)

@@ -103,7 +103,7 @@ namespace Metagraph
             {
                 row = openTo.ToList();
             }
-            return row.Select((p, i) => (PlainText.Of(i), p)).ToDictionary(pair => pair.Item1, pair => pair.Item2);
+            return row.Select((p, i) => (PlainText.Of(i), p)).ToMap();
         }
 
         /// <summary>

@@ -129,6 +129,81 @@ namespace Metagraph
     }
 
     /// <summary>
+    /// One action in the plan. It plays its clip from `entry` on during `start`..`end`, at its own speed but for its hold.
+    ///
+    /// hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not stretched. blend_in,
+    /// blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in. meta: key of the
+    /// meta action it realises.
+    /// </summary>
+    public sealed class Cue
+    {
+        public readonly GraphAction Action;
+        public readonly double Start;
+        public readonly double End;
+        public readonly double Entry;
+        public readonly double BlendIn;
+        public readonly double BlendOut;
+        public readonly string Stance;
+        public readonly string Then;
+        public readonly string Meta;
+        public readonly double HoldFrom;
+        public readonly double HoldTo;
+        public readonly double Hold;
+
+        public Cue(
+            GraphAction action,
+            double start,
+            double end,
+            double entry,
+            double blendIn,
+            double blendOut,
+            string stance,
+            string then,
+            string meta,
+            double holdFrom = 0.0,
+            double holdTo = 0.0,
+            double hold = 0.0
+        )
+        {
+            Action = action;
+            Start = start;
+            End = end;
+            Entry = entry;
+            BlendIn = blendIn;
+            BlendOut = blendOut;
+            Stance = stance;
+            Then = then;
+            Meta = meta;
+            HoldFrom = holdFrom;
+            HoldTo = holdTo;
+            Hold = hold;
+        }
+    }
+
+    /// <summary>
+    /// The stance loop that lies under the cues from `start` on: loop seconds are `time - start`, wrapped.
+    ///
+    /// fade_start, fade: when and for how many seconds it takes over from the loop before.
+    /// </summary>
+    public sealed class Rest
+    {
+        public readonly string Stance;
+        public readonly GraphAction Action;
+        public readonly double Start;
+        public readonly double FadeStart;
+        public readonly double Fade;
+
+        public Rest(string stance, GraphAction action, double start, double fadeStart, double fade)
+        {
+            Stance = stance;
+            Action = action;
+            Start = start;
+            FadeStart = fadeStart;
+            Fade = fade;
+        }
+    }
+
+    /// <summary>
     /// What became of a meta action that was not simply played as asked. played: whether something of it still plays.
     /// </summary>
     public sealed class Report
@@ -161,9 +236,75 @@ namespace Metagraph
         }
     }
 
+    /// <summary>
+    /// What planning on needs of cues that were forgotten. free: when the last ended; stance: in which. uses: how often each
+    /// action was used. recent: the actions used last, by `remembering.node`, the latest at the end. ended: when each ended last.
+    /// </summary>
+    public sealed class Past
+    {
+        public readonly double Free;
+        public readonly string Stance;
+        public readonly Dictionary<string, int> Uses;
+        public readonly Dictionary<string, List<string>> Recent;
+        public readonly Dictionary<string, double> Ended;
+
+        public Past(
+            double free = 0.0,
+            string stance = "",
+            Dictionary<string, int> uses = null,
+            Dictionary<string, List<string>> recent = null,
+            Dictionary<string, double> ended = null
+        )
+        {
+            Free = free;
+            Stance = stance;
+            Uses = uses ?? new Dictionary<string, int>();
+            Recent = recent ?? new Dictionary<string, List<string>>();
+            Ended = ended ?? new Dictionary<string, double>();
+        }
+    }
+
+    /// <summary>
+    /// cues never overlap and ascend; rests ascend by fade_start, the first covering everything before.
+    ///
+    /// past: what came before the first cue, where that was forgotten. cursor: where the Markov model writes on. written: what it
+    /// wrote for later, as it wrote it: each extension fits it in anew, so that it does not matter when it was first seen.
+    /// </summary>
+    public sealed class LayerPlan
+    {
+        public readonly string Layer;
+        public readonly List<MetaAction> Metas;
+        public readonly List<Cue> Cues;
+        public readonly List<Rest> Rests;
+        public readonly Past Past;
+        public readonly Cursor Cursor;
+        public readonly List<MetaAction> Written;
+
+        public LayerPlan(
+            string layer,
+            List<MetaAction> metas = null,
+            List<Cue> cues = null,
+            List<Rest> rests = null,
+            Past past = null,
+            Cursor cursor = null,
+            List<MetaAction> written = null
+        )
+        {
+            Layer = layer;
+            Metas = metas ?? new List<MetaAction>();
+            Cues = cues ?? new List<Cue>();
+            Rests = rests ?? new List<Rest>();
+            Past = past ?? new Past();
+            Cursor = cursor ?? new Cursor();
+            Written = written ?? new List<MetaAction>();
+        }
+    }
+
     public static class MetaPlanRules
     {
         public const int Asked = 1; // default priority of a request
         public const int Written = 0; // priority of what the Markov model writes
+        // told by temporal replanning, once
+        public static readonly HashSet<string> Temporal = new HashSet<string> { "late", "cut", "resumed", "past" };
     }
 }

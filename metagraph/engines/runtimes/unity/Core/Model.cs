@@ -6,6 +6,68 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
+    /// When an action plays within its clip; seconds of the clip.
+    ///
+    /// start, end: the part that plays; `end` None is the clip's end. blend_in, blend_out: seconds of blending from and to the
+    /// stance, within start..end (for a looping stance, blend_in is the overlap at the loop's seam). loop: repeats.
+    /// earliest_exit: from here on the action may be left, or None to play it through. stroke: its most telling moment. ready,
+    /// stroke_end, relax: where a gesture's preparation, stroke and hold end (its retraction ends with it); None as found from
+    /// the motion (`playback.phases`).
+    /// </summary>
+    public sealed class Timing
+    {
+        public readonly double Start;
+        public readonly double? End;
+        public readonly double BlendIn;
+        public readonly double BlendOut;
+        public readonly bool Loop;
+        public readonly double? EarliestExit;
+        public readonly double? Stroke;
+        public readonly double? Ready;
+        public readonly double? StrokeEnd;
+        public readonly double? Relax;
+
+        public Timing(
+            double start = 0.0,
+            double? end = null,
+            double blendIn = 0.2,
+            double blendOut = 0.3,
+            bool loop = false,
+            double? earliestExit = null,
+            double? stroke = null,
+            double? ready = null,
+            double? strokeEnd = null,
+            double? relax = null
+        )
+        {
+            Start = start;
+            End = end;
+            BlendIn = blendIn;
+            BlendOut = blendOut;
+            Loop = loop;
+            EarliestExit = earliestExit;
+            Stroke = stroke;
+            Ready = ready;
+            StrokeEnd = strokeEnd;
+            Relax = relax;
+        }
+    }
+
+    public sealed class Stance
+    {
+        public readonly string Id;
+        public readonly string Layer;
+        public readonly string Name;
+
+        public Stance(string id, string layer, string name)
+        {
+            Id = id;
+            Layer = layer;
+            Name = name;
+        }
+    }
+
+    /// <summary>
     /// A first-order model over (limb, kind) that writes meta actions when nobody asks for any (Borer et al., 7.3).
     ///
     /// matrix: rows of probabilities, each summing to 1. gap: mean seconds of rest between two actions. positive, negative: share

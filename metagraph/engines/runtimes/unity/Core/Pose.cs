@@ -211,7 +211,7 @@ namespace Metagraph
         private static double LoopSeconds(Rest rest, double time, out double other, out double old)
         {
             GraphAction action = rest.Action;
-            double elapsed = time - rest.Start, seam = Math.Min(action.BlendIn, action.Length / 2), period = action.Length - seam;
+            double elapsed = time - rest.Start, seam = Math.Min(action.Timing.BlendIn, action.Length / 2), period = action.Length - seam;
             other = action.Start;
             old = 0.0;
             if (period <= 0)

@@ -148,7 +148,7 @@ namespace Metagraph
         private static MetaRequest Head(Graph graph, Ask ask, double at)
         {
             string word = ask.Do;
-            List<GraphAction> gestures = graph.Layers["head"].Actions.FindAll(x => x.Kind == "gesture" && x.HasTags(ask.Tags));
+            List<GraphAction> gestures = graph.Layers["head"].Actions.Values.Where(x => x.Kind == "gesture" && x.HasTags(ask.Tags)).ToList();
             if (gestures.Exists(x => x.Tags.Contains(word)))
             {
                 List<string> tagged = new[] { word }.Concat(ask.Tags).ToList();
@@ -166,7 +166,7 @@ namespace Metagraph
         /// <summary>How long before its stroke any gesture with an ask's tags begins.</summary>
         private static double LongestLead(Graph graph, Ask ask)
         {
-            IEnumerable<GraphAction> gestures = graph.Layers[ask.Layer].Actions.Where(x => x.Kind == "gesture" && x.HasTags(ask.Tags));
+            IEnumerable<GraphAction> gestures = graph.Layers[ask.Layer].Actions.Values.Where(x => x.Kind == "gesture" && x.HasTags(ask.Tags));
             return gestures.Select(Lead).DefaultIfEmpty(0.0).Max();
         }
 
@@ -185,7 +185,7 @@ namespace Metagraph
                 return found;
             }
             found = null;
-            foreach (GraphAction x in Basics.Layers.Where(l => layer == null || l == layer).SelectMany(l => graph.Layers[l].Actions))
+            foreach (GraphAction x in Basics.Layers.Where(l => layer == null || l == layer).SelectMany(l => graph.Layers[l].Actions.Values))
             {
                 if (x.Name == word && (found == null || x.Likelihood > found.Likelihood))
                 {
@@ -205,7 +205,7 @@ namespace Metagraph
             foreach (string each in Basics.Layers.Where(l => layer == null || l == layer))
             {
                 LayerGraph of = graph.Layers[each];
-                stance = of.HasStance(word) ? word : of.Stances.Find(s => s.Value == word).Key;
+                stance = of.Stances.ContainsKey(word) ? word : of.Stances.Values.Where(s => s.Name == word).Select(s => s.Id).FirstOrDefault();
                 if (stance != null)
                 {
                     return each;

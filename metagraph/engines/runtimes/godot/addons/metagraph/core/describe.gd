@@ -30,7 +30,7 @@ static func describe(graph):
 static func _layer(of):
 	var stances = []
 	for id in of.stances:
-		stances.append({id = id, name = of.stances[id]})
+		stances.append({id = id, name = of.stances[id].name})
 	var actions = []
 	var tags = {}
 	for action in of.actions.values():

@@ -3,7 +3,9 @@
 
 const Util = preload("util.gd")
 const Check = preload("check.gd")
+const LayerGraph = preload("layer_graph.gd")
 const Model = preload("model.gd")
+const PhaseTimes = preload("phase_times.gd")
 const Clip = preload("clip.gd")
 const Glb = preload("glb.gd")
 const Life = preload("life.gd")
@@ -11,7 +13,7 @@ const Rig = preload("rig.gd")
 const Alphabet = preload("alphabet.gd")
 const FORMAT = 1  # the newest version of exports that is understood
 const CORE = "res://addons/metagraph/core/"
-const PLANNER_USUAL = {memory = 0.0, rest = 0.0, lookahead = 0.1, hurry = 2.0, least_blend = 0.25}
+const PLANNER_USUAL = {memory = 0.0, rest = 0.0, lookahead = 0.1}
 
 var error = ""
 var problems = []
@@ -26,7 +28,7 @@ var rest_translations = []
 var base_rotations = []
 var base_translations = []
 var clips = {}  # id -> Clip, for those whose motion is there
-var layers = {}  # layer -> {layer, start, stances {id: name}, actions {id: action}, kinds {kind: true}, markov, reach}
+var layers = {}  # layer -> see layer_graph.gd
 var settings = {}
 var life = {}
 var rig = null  # see rig.gd; null where nothing lives
@@ -38,7 +40,6 @@ var voices = {}  # line -> voice, see voice.gd
 var said = {}  # voices made from letters, by text and length
 var still_frame = {turns = [], shifts = {}}  # the base pose, as a clip's frame
 var frames = {}  # those of clips that were made so far, see clip.gd
-var _index = {}  # layer/kind/stance -> actions, in the order they were placed
 
 
 # json: the export's text. bytes: its GLB's.
@@ -103,35 +104,31 @@ func _read_skeleton(data):
 
 
 func _read_layer(layer, data):
-	var stances = {}
+	var found = LayerGraph.new(layer, data.start)
 	for stance in data.stances:
-		stances[stance.id] = stance.name
-	var actions = {}
-	var kinds = {}
+		found.stances[stance.id] = Model.Stance.new(stance.id, layer, stance.name)
 	for each in data.actions:
 		var action = each.duplicate()
 		action.layer = layer
-		if action.kind == "gesture" and (each.phases == null or each.phases.size() != 4):
+		var loops = action.kind == "stance"
+		action.timing = Model.Timing.new(each.start, each.end, each.blend_in, each.blend_out, loops, each.earliest_exit, each.stroke)
+		var told = each.phases  # ready, stroke, stroke end, relax
+		if told == null or told.size() != 4:
 			var stroke = (each.start + each.end) / 2.0 if each.stroke == null else Util.within(each.stroke, each.start, each.end)
-			action.phases = [stroke, stroke, stroke, stroke]  # ready, stroke, stroke end, relax
+			told = [stroke, stroke, stroke, stroke]
+		action.phases = PhaseTimes.Phases.new(each.start, told[0], told[1], told[2], told[3], each.end)
 		action.cooldown = 0.0 if each.cooldown == null else each.cooldown
 		action.still = _still(action)
-		actions[action.id] = action
-		kinds[action.kind] = true
-		var node = "%s/%s/%s" % [layer, action.kind, action.stance]
-		_index[node] = _index.get(node, []) + [action]
+		found.add(action)
 	var own = data.markov
-	var markov = Model.Markov.new(
+	found.markov = Model.Markov.new(
 		layer, own.states, own.matrix, own.gap, own.positive, own.negative, own.get("tags"), own.get("lengths"), own.get("modes")
 	)
-	var reach = []  # [joint, weight] of those it moves
 	for joint in range(names.size()):
 		var weight = data.weights.get(parts[joint], 0.0)
 		if weight > 0:
-			reach.append([joint, weight])
-	layers[layer] = {
-		layer = layer, start = data.start, stances = stances, actions = actions, kinds = kinds, markov = markov, reach = reach
-	}
+			found.reach.append([joint, weight])
+	layers[layer] = found
 
 
 # Returns {joint: true} of the joints an action leaves to its stance; null where it moves all.
@@ -175,9 +172,9 @@ func _read_clips(data, glb):
 	return ""
 
 
-# Returns the actions of a kind placed on a stance; `layer` is one of `layers`.
-func of(layer, stance, kind):
-	return _index.get("%s/%s/%s" % [layer.layer, kind, stance], [])
+# Returns the seconds of its clip between which an action plays.
+func span(action):
+	return [action.start, action.end]
 
 
 # Returns the action of an id or, failing that, a name; of several of one name the likeliest; null for none. layer: null for any.
@@ -204,6 +201,6 @@ func find_stance(word, layer):
 			if layers[each].stances.has(word):
 				return [each, word]
 			for stance in layers[each].stances:
-				if layers[each].stances[stance] == word:
+				if layers[each].stances[stance].name == word:
 					return [each, stance]
 	return null

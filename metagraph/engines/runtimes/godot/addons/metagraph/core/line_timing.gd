@@ -133,31 +133,31 @@ class LineTiming:
 		self.marks = marks_ if marks_ != null else []
 
 
-static func _table(name_):
-	if name_ == "oculus":
+static func _table(name):
+	if name == "oculus":
 		return OCULUS
-	if name_ == "polly":
+	if name == "polly":
 		return POLLY
-	return ARKIT if name_ == "arkit" else AZURE
+	return ARKIT if name == "arkit" else AZURE
 
 
 # Return the first set that has all of some visemes, "" where none has.
 static func set_of(marks):
-	for name_ in SETS:
+	for name in SETS:
 		var are_all = true
 		for mark in marks:
-			if not _table(name_).has(mark.viseme):
+			if not _table(name).has(mark.viseme):
 				are_all = false
 				break
 		if are_all:
-			return name_
+			return name
 	return ""
 
 
 # Return what is wrong with a line's times, where, and what would be right; "" where nothing is.
 #
 # name: of the set the visemes are of, "" for what their names tell. duration: seconds of its sound, None where that is not told.
-static func wrong_in(words, marks, name_, duration):
+static func wrong_in(words, marks, name, duration):
 	var last = 0.0
 	var why
 	for n in range(words.size()):
@@ -165,28 +165,34 @@ static func wrong_in(words, marks, name_, duration):
 		var place = "words[%d] '%s'" % [n, word.text]
 		why = _out_of_range(word.start)
 		if why == "" and word.start < last:
-			why = "begins at %.3f s, before the one before it; put words in order" % [word.start]
+			why = "begins at %s s, before the one before it; put words in order" % [Util.thousandths(word.start)]
 		var end = word.start if word.end == null else word.end
 		if why == "" and not (end >= word.start):
-			why = "ends at %.3f s, before it begins; give [word, start, end] in seconds" % [end]
+			why = "ends at %s s, before it begins; give [word, start, end] in seconds" % [Util.thousandths(end)]
 		if why == "" and duration != null and end > duration + SLACK:
-			why = "ends at %.3f s, past the end at %.3f s; give a longer duration" % [end, duration]
+			why = "ends at %s s, past the end at %s s; give a longer duration" % [
+				Util.thousandths(end),
+				Util.thousandths(duration)
+			]
 		if why != "":
 			return "%s: %s" % [place, why]
 		last = word.start
-	if name_ != "" and not SETS.has(name_):
-		return "set: '%s' is no set of visemes; there are %s" % [name_, Util.joined(SETS, ", ")]
-	var found = set_of(marks) if name_ == "" else name_
+	if name != "" and not SETS.has(name):
+		return "set: '%s' is no set of visemes; there are %s" % [name, Util.joined(SETS, ", ")]
+	var found = set_of(marks) if name == "" else name
 	last = 0.0
 	for n in range(marks.size()):
 		var mark = marks[n]
 		why = _out_of_range(mark.at)
 		if why == "" and mark.at < last:
-			why = "comes at %.3f s, before the one before it; put visemes in order" % [mark.at]
+			why = "comes at %s s, before the one before it; put visemes in order" % [Util.thousandths(mark.at)]
 		if why == "" and duration != null and mark.at > duration + SLACK:
-			why = "comes at %.3f s, past the end at %.3f s; give a longer duration" % [mark.at, duration]
+			why = "comes at %s s, past the end at %s s; give a longer duration" % [
+				Util.thousandths(mark.at),
+				Util.thousandths(duration)
+			]
 		if why == "" and not (0 <= mark.weight and mark.weight <= 1):
-			why = "has the weight %.3f; weights are from 0 to 1" % [mark.weight]
+			why = "has the weight %s; weights are from 0 to 1" % [Util.thousandths(mark.weight)]
 		if why == "" and found == "" and set_of([mark]) == "":
 			why = "is in no set of visemes; there are %s" % [Util.joined(SETS, ", ")]
 		if why == "" and found != "" and not _table(found).has(mark.viseme):
@@ -202,12 +208,12 @@ static func wrong_in(words, marks, name_, duration):
 static func _out_of_range(seconds):
 	if 0 <= seconds and seconds <= FARTHEST:
 		return ""
-	return "is at %.3f s; times are from 0 to %.1f s from the line's start" % [seconds, FARTHEST]
+	return "is at %s s; times are from 0 to %.1f s from the line's start" % [Util.thousandths(seconds), FARTHEST]
 
 
 # Return the timing that words and visemes in which nothing is wrong make. name: as for `wrong_in`.
-static func timing_of(alphabet, words, marks, name_):
-	var table = _table(set_of(marks) if name_ == "" else name_)
+static func timing_of(alphabet, words, marks, name):
+	var table = _table(set_of(marks) if name == "" else name)
 	var shown = []
 	for m in marks:
 		shown.append(VisemeMark.new(m.at, table[m.viseme], m.weight * WEAK.get(m.viseme, 1.0)))

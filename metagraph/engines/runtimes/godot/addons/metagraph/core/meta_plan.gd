@@ -97,6 +97,72 @@ class MetaAction:
 		self.key = self.request.id if self.part == 0 else "%s+%d" % [self.request.id, self.part]
 
 
+# One action in the plan. It plays its clip from `entry` on during `start`..`end`, at its own speed but for its hold.
+#
+# hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not stretched. blend_in,
+# blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in. meta: key of the meta
+# action it realises.
+class Cue:
+	var action
+	var start
+	var end
+	var entry
+	var blend_in
+	var blend_out
+	var stance
+	var then
+	var meta
+	var hold_from
+	var hold_to
+	var hold
+
+	func _init(
+		action_,
+		start_,
+		end_,
+		entry_,
+		blend_in_,
+		blend_out_,
+		stance_,
+		then_,
+		meta_,
+		hold_from_ = 0.0,
+		hold_to_ = 0.0,
+		hold_ = 0.0
+	):
+		self.action = action_
+		self.start = start_
+		self.end = end_
+		self.entry = entry_
+		self.blend_in = blend_in_
+		self.blend_out = blend_out_
+		self.stance = stance_
+		self.then = then_
+		self.meta = meta_
+		self.hold_from = hold_from_
+		self.hold_to = hold_to_
+		self.hold = hold_
+
+
+# The stance loop that lies under the cues from `start` on: loop seconds are `time - start`, wrapped.
+#
+# fade_start, fade: when and for how many seconds it takes over from the loop before.
+class Rest:
+	var stance
+	var action
+	var start
+	var fade_start
+	var fade
+
+	func _init(stance_, action_, start_, fade_start_, fade_):
+		self.stance = stance_
+		self.action = action_
+		self.start = start_
+		self.fade_start = fade_start_
+		self.fade = fade_
+const TEMPORAL = {"late": true, "cut": true, "resumed": true, "past": true}  # told by temporal replanning, once
+
+
 # What became of a meta action that was not simply played as asked. played: whether something of it still plays.
 class Report:
 	var request
@@ -115,3 +181,43 @@ class Report:
 		self.at = at_
 		self.played = played_
 		self.written = written_
+
+
+# What planning on needs of cues that were forgotten. free: when the last ended; stance: in which. uses: how often each action was
+# used. recent: the actions used last, by `remembering.node`, the latest at the end. ended: when each ended last.
+class Past:
+	var free_
+	var stance
+	var uses
+	var recent
+	var ended
+
+	func _init(free_ = 0.0, stance_ = "", uses_ = null, recent_ = null, ended_ = null):
+		self.free_ = free_
+		self.stance = stance_
+		self.uses = uses_ if uses_ != null else {}
+		self.recent = recent_ if recent_ != null else {}
+		self.ended = ended_ if ended_ != null else {}
+
+
+# cues never overlap and ascend; rests ascend by fade_start, the first covering everything before.
+#
+# past: what came before the first cue, where that was forgotten. cursor: where the Markov model writes on. written: what it wrote
+# for later, as it wrote it: each extension fits it in anew, so that it does not matter when it was first seen.
+class LayerPlan:
+	var layer
+	var metas
+	var cues
+	var rests
+	var past
+	var cursor
+	var written
+
+	func _init(layer_, metas_ = null, cues_ = null, rests_ = null, past_ = null, cursor_ = null, written_ = null):
+		self.layer = layer_
+		self.metas = metas_ if metas_ != null else []
+		self.cues = cues_ if cues_ != null else []
+		self.rests = rests_ if rests_ != null else []
+		self.past = past_ if past_ != null else Past.new()
+		self.cursor = cursor_ if cursor_ != null else Cursor.new()
+		self.written = written_ if written_ != null else []

@@ -6,6 +6,59 @@
 
 
 
+# When an action plays within its clip; seconds of the clip.
+#
+# start, end: the part that plays; `end` None is the clip's end. blend_in, blend_out: seconds of blending from and to the stance,
+# within start..end (for a looping stance, blend_in is the overlap at the loop's seam). loop: repeats. earliest_exit: from here on
+# the action may be left, or None to play it through. stroke: its most telling moment. ready, stroke_end, relax: where a gesture's
+# preparation, stroke and hold end (its retraction ends with it); None as found from the motion (`playback.phases`).
+class Timing:
+	var start
+	var end
+	var blend_in
+	var blend_out
+	var loop
+	var earliest_exit
+	var stroke
+	var ready
+	var stroke_end
+	var relax
+
+	func _init(
+		start_ = 0.0,
+		end_ = null,
+		blend_in_ = 0.2,
+		blend_out_ = 0.3,
+		loop_ = false,
+		earliest_exit_ = null,
+		stroke_ = null,
+		ready_ = null,
+		stroke_end_ = null,
+		relax_ = null
+	):
+		self.start = start_
+		self.end = end_
+		self.blend_in = blend_in_
+		self.blend_out = blend_out_
+		self.loop = loop_
+		self.earliest_exit = earliest_exit_
+		self.stroke = stroke_
+		self.ready = ready_
+		self.stroke_end = stroke_end_
+		self.relax = relax_
+
+
+class Stance:
+	var id
+	var layer
+	var name
+
+	func _init(id_, layer_, name_):
+		self.id = id_
+		self.layer = layer_
+		self.name = name_
+
+
 # A first-order model over (limb, kind) that writes meta actions when nobody asks for any (Borer et al., 7.3).
 #
 # matrix: rows of probabilities, each summing to 1. gap: mean seconds of rest between two actions. positive, negative: share of

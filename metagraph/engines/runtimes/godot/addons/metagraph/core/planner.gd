@@ -2,25 +2,22 @@
 # layer. Planning from nothing and extending a running plan are the same function.
 #
 # A plan is {seed32, end, layers {layer: layer plan}, reports, requests, track: what was asked of the life layers, life: what they
-# do}; a layer plan {layer, metas, cues, rests, past, cursor, written}, with past: what planning on needs of cues that were forgotten,
-# and written: what the model wrote for later, as it wrote it. Seconds throughout.
+# do}; layer plans are those of meta_plan.gd. Seconds throughout.
 
 const Util = preload("util.gd")
 const Markov = preload("markov.gd")
 const MetaPlan = preload("meta_plan.gd")
-const Replan = preload("replan.gd")
-const Pick = preload("pick.gd")
+const LayerPlanning = preload("layer_planning.gd")
+const Remembering = preload("remembering.gd")
 const Track = preload("track.gd")
 const Schedule = preload("schedule.gd")
-const TEMPORAL = ["late", "cut", "resumed", "past"]  # outcomes told by temporal replanning, once
 
 
 # Returns the plan of nothing yet.
 static func empty_plan(seed32):
 	var layers = {}
 	for layer in Util.LAYERS:
-		var past = {free = 0.0, stance = "", uses = {}, recent = {}, ended = {}}
-		layers[layer] = {layer = layer, metas = [], cues = [], rests = [], past = past, cursor = Markov.BEGIN(), written = []}
+		layers[layer] = MetaPlan.LayerPlan.new(layer)
 	return {
 		seed32 = seed32, end = 0.0, layers = layers, reports = [], requests = [], track = Track.empty_track(), life = Schedule.empty_life()
 	}
@@ -45,14 +42,13 @@ static func extend_plan(graph, plan, now, requests, end, stances, idle, withdraw
 				if report.layer == layer and not again.has(report.request):
 					reports.append(report)
 			continue
-		var asked = []
-		for request in fresh:
-			if request.layer == layer:
-				asked.append(_meta(request, graph.settings))
-		var begin = _begin(graph, plan.layers[layer], layer, stances.get(layer))
-		var found = _extend_layer(graph, plan, layer, now, asked, again, end, begin, idle)
-		layers[layer] = found[0]
-		reports += found[1]
+		var of = graph.layers[layer]
+		var drafted = LayerPlanning.draft(
+			graph, of, of.markov if idle else null, of.kinds, plan.layers[layer], plan.reports, plan.seed32, now, fresh, again, end,
+			stances.get(layer)
+		)
+		layers[layer] = drafted.performed(_performed(graph, plan, layer, drafted.placed), end)
+		reports += drafted.reports
 	var kept = []
 	for request in plan.requests:
 		if not again.has(request.id):
@@ -63,104 +59,16 @@ static func extend_plan(graph, plan, now, requests, end, stances, idle, withdraw
 	}
 
 
-static func _meta(request, settings):
-	var length = settings.window if request.duration == null else Util.most(0.0, request.duration)
-	if request.stroke != null:
-		length = Util.most(length, request.stroke - request.start + Pick.FITS)
-	return MetaPlan.MetaAction.new(request, request.start, request.start + length)
-
-
-# Returns [a layer's plan, its reports, old and new]. again {id: true}: requests that replace what was asked before.
-static func _extend_layer(graph, plan, layer, now, asked, again, end, begin, idle):
-	var old = plan.layers[layer]
-	var kept = []
-	var played = {}
-	var waiting = {}  # also those whose chain of transitions has begun
-	for cue in old.cues:
-		if cue.start < now:
-			kept.append(cue)
-			played[cue.meta] = true
-		else:
-			waiting[cue.meta] = true
-	var written = []
-	var cursor = old.cursor
-	again = again.duplicate()
-	if idle:
-		var more = Markov.write(graph.layers[layer].markov, plan.seed32, end, graph.layers[layer].kinds, old.cursor)
-		cursor = more[1]
-		for meta in old.written + more[0]:
-			if meta.start >= now:
-				written.append(meta)
-				again[meta.request.id] = true
-	var future = []
-	var planned_again = {}  # request -> starts
-	for meta in old.metas:
-		if again.has(meta.request.id):
-			continue
-		if waiting.has(meta.key) or (meta.start >= now and not played.has(meta.key)):
-			future.append(meta)
-			planned_again[meta.request.id] = planned_again.get(meta.request.id, []) + [meta.start]
-	# What was told about time still holds; the rest will be told again by those that are planned again.
-	var done = []
-	for meta in old.metas:
-		if again.has(meta.request.id) or planned_again.get(meta.request.id, []).has(meta.start):
-			continue
-		if played.has(meta.key) or meta.start < now:
-			done.append(meta)
-	var reports = []
-	for report in plan.reports:
-		if report.layer == layer and not again.has(report.request):
-			if TEMPORAL.has(report.outcome) or not planned_again.get(report.request, []).has(report.at):
-				reports.append(report)
-	var performer = Pick.new(graph, layer, plan.seed32, "" if begin == null else begin, old.past, kept)
-	if begin == null or not performer.begin_in(begin):
-		for meta in future + asked:
-			if not meta.written:
-				var why = "the %s layer has no stance with a loop to begin in" % layer
-				reports.append(MetaPlan.Report.new(meta.request.id, "no-stance", why, layer, meta.start))
-		return [{
-			layer = layer, metas = done + future + asked, cues = [], rests = [], past = old.past, cursor = cursor, written = written
-		}, reports]
-	if old.rests.size() > 0 and now > 0:
-		var ends = {}
-		for cue in kept:
-			ends[cue.end - cue.blend_out] = true
-		performer.rests = []
-		for rest in old.rests:
-			if rest.fade_start < now or ends.has(rest.start):
-				performer.rests.append(rest)
-	for key in played:
-		if waiting.has(key):
-			performer.begun[key] = true
-	performer.clear_from = Util.most(now - (performer.ready() - performer.clear_from), performer.clear_from)
-	var delayed = Replan.delay(asked, performer.ready(), graph.settings)
-	var busy = -INF  # what runs keeps the time it was wanted for, from the models
-	for meta in done:
-		if not meta.written:
-			busy = Util.most(busy, meta.end)
-	var placed = Replan.replan(future + written + delayed[0], graph.settings, busy)
-	var metas = []
-	for meta in placed[0]:
+# Returns those of a layer's meta actions that are performed. What a model wrote is not where it would leave a stance that was asked for, to
+# stay in, and as often as its mode says.
+static func _performed(graph, plan, layer, metas):
+	var out = []
+	for meta in metas:
 		var leaves = meta.request.kind == "transition" and Track.stays_at(plan.track, layer, meta.start)
 		var mode = Track.told_mode(plan.track, meta.start)
 		if not meta.written or (not leaves and Markov.performs(graph.layers[layer].markov, plan.seed32, meta, mode)):
-			metas.append(meta)
-	performer.perform(metas, end)
-	performer.vary_rests(end)
-	return [{
-		layer = layer, metas = done + placed[0], cues = performer.cues, rests = performer.rests, past = old.past, cursor = cursor,
-		written = written
-	}, reports + delayed[1] + placed[1] + performer.reports]
-
-
-# Returns the stance a layer begins in: as it did before, as asked, the graph's start, or the first that has a loop; null for none.
-static func _begin(graph, old, layer, stance):
-	var of = graph.layers[layer]
-	var wishes = [old.past.stance, old.rests[0].stance if old.rests.size() > 0 else null, stance, of.start] + of.stances.keys()
-	for wish in wishes:
-		if wish != null and of.stances.has(wish) and graph.of(of, wish, "stance").size() > 0:
-			return wish
-	return null
+			out.append(meta)
+	return out
 
 
 # Returns a running plan without what ended before `seconds`; what is planned on from it stays as it would have been.
@@ -205,10 +113,9 @@ static func _since(plan, seconds):
 			first = n
 	var past = plan.past
 	if gone > 0:
-		past = {
-			free = plan.cues[gone - 1].end, stance = plan.cues[gone - 1].then, uses = past.uses.duplicate(),
-			recent = past.recent.duplicate(), ended = past.ended.duplicate()
-		}
+		var last = plan.cues[gone - 1]
+		past = MetaPlan.Past.new(last.end, last.then, past.uses.duplicate(), past.recent.duplicate(), past.ended.duplicate())
 		for n in range(gone):
-			Pick.remember(plan.cues[n], past.uses, past.recent, past.ended)
-	return Util.but(plan, {metas = metas, cues = cues, rests = Util.part(plan.rests, first, plan.rests.size()), past = past})
+			Remembering.remember(plan.cues[n], past.uses, past.recent, past.ended)
+	var rests = Util.part(plan.rests, first, plan.rests.size())
+	return MetaPlan.LayerPlan.new(plan.layer, metas, cues, rests, past, plan.cursor, plan.written)

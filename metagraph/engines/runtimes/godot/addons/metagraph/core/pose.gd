@@ -59,7 +59,7 @@ static func clip_seconds(cue, time):
 # seconds the loop's last x seconds fade into its first, and its period is x shorter.
 static func loop_seconds(action, elapsed):
 	var length = action.end - action.start
-	var seam = Util.least(action.blend_in, length / 2.0)
+	var seam = Util.least(action.timing.blend_in, length / 2.0)
 	var period = length - seam
 	if period <= 0:
 		return [action.start, action.start, 0.0]

@@ -10,17 +10,17 @@ const Util = preload("util.gd")
 
 
 # Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past.
-static func delay(asked, free, settings):
+static func delay(asked, free_, settings):
 	var metas = []
 	var reports = []
 	for meta in asked:
-		var late = free - meta.start
+		var late = free_ - meta.start
 		if late <= 0:
 			metas.append(meta)
 		elif late > settings.wait:
 			reports.append(_told(meta, "past", "asked for at %.2f s, %.1f s before anything could start" % [meta.start, late]))
 		else:
-			metas.append(MetaPlan.MetaAction.new(meta.request, free, free + (meta.end - meta.start), meta.part, meta.written))
+			metas.append(MetaPlan.MetaAction.new(meta.request, free_, free_ + (meta.end - meta.start), meta.part, meta.written))
 			reports.append(_told(meta, "late", "waits %.2f s for the running action" % [late], true))
 	return [metas, reports]
 

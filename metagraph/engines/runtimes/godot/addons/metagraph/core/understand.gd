@@ -176,8 +176,4 @@ static func _longest_lead(graph, layer, tags):
 
 # Returns the seconds from an action's start to its stroke; its middle where the export says nothing.
 static func _lead(action):
-	if action.kind == "gesture":
-		return action.phases[1] - action.start
-	if action.stroke != null:
-		return Util.within(action.stroke, action.start, action.end) - action.start
-	return (action.end - action.start) / 2.0
+	return action.phases.stroke - action.start

@@ -250,6 +250,14 @@ static func extend(items, more):
 		items.append(item)
 
 
+# Returns the set of some items, or of another set's.
+static func set_of(items):
+	var out = {}
+	for item in items:
+		out[item] = true
+	return out
+
+
 # Puts something into a set, which is a record of what is in it.
 static func add_to(items, item):
 	items[item] = true

@@ -1,0 +1,232 @@
+// Does this runtime do what Metagraph does? Runs conformance vectors: folders with vectors.json and the export it names.
+#pragma once
+
+#include <fstream>
+#include <iterator>
+
+#include "metagraph.hpp"
+
+namespace metagraph {
+
+/// How many cases were run, and what differs in which, in words.
+struct Verdict {
+    int cases = 0, passed = 0;
+    List<std::string> failures;
+};
+
+namespace conformance {
+
+inline constexpr int VERSION = 1; // of the vectors
+
+inline std::optional<std::string> file(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    if (!in) return std::nullopt;
+    return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+/// Return the first difference of plain data, "" where they are alike.
+inline std::string difference(const Json& found, const Json& wanted, double tolerance, const std::string& where) {
+    const std::string words = lang::text(where, " is ", json::text(found).substr(0, 300), ", should be ", json::text(wanted).substr(0, 300));
+    if (found.is(Json::Kind::number) && wanted.is(Json::Kind::number)) {
+        return std::abs(found.number - wanted.number) <= tolerance ? "" : words;
+    }
+    if (found.kind != wanted.kind || found.items.size() != wanted.items.size() || found.fields.size() != wanted.fields.size()) return words;
+    if (found.text != wanted.text || found.flag != wanted.flag) return words;
+    for (std::size_t n = 0; n < wanted.items.size(); n++) {
+        const std::string told = difference(found.items[n], wanted.items[n], tolerance, lang::text(where, "[", n, "]"));
+        if (!told.empty()) return told;
+    }
+    for (const auto& [name, value] : wanted.fields) {
+        const Json* own = found.find(name);
+        if (own == nullptr) return lang::text(where, " has no '", name, "'");
+        const std::string told = difference(*own, value, tolerance, where + "." + name);
+        if (!told.empty()) return told;
+    }
+    return "";
+}
+
+inline Json cue_data(const Cue& cue) {
+    return Json::object({
+        {"action", cue.action->id}, {"start", cue.start}, {"end", cue.end}, {"entry", cue.entry}, {"blend_in", cue.blend_in},
+        {"blend_out", cue.blend_out}, {"stance", cue.stance}, {"then", cue.then}, {"meta", cue.meta},
+        {"hold_from", cue.hold_from}, {"hold_to", cue.hold_to}, {"hold", cue.hold},
+    });
+}
+
+inline Json layer_data(const LayerPlan& layer) {
+    Json metas = Json::list(), cues = Json::list(), rests = Json::list();
+    for (const auto& m : layer.metas) metas.items.push_back(Json::list({m->key(), m->start, m->end, m->written}));
+    for (const auto& cue : layer.cues) cues.items.push_back(cue_data(*cue));
+    for (const auto& r : layer.rests) {
+        rests.items.push_back(Json::list({r->stance, r->action->id, r->start, r->fade_start, r->fade}));
+    }
+    return Json::object({{"metas", metas}, {"cues", cues}, {"rests", rests}});
+}
+
+inline Json lane_data(const Lane& lane) {
+    Json out = Json::list();
+    for (int n = 0; n < lang::len(lane.starts); n++) {
+        Json row = Json::list({lang::at(lane.starts, n)});
+        for (const double value : lang::at(lane.values, n)) row.items.push_back(value);
+        out.items.push_back(row);
+    }
+    return out;
+}
+
+inline Json life_data(const Schedule& life) {
+    Json targets = Json::list();
+    for (const auto& t : life.targets) {
+        const Json to = t->to.point.has_value() ? Json::list({t->to.point->x, t->to.point->y, t->to.point->z}) : Json(t->to.name);
+        targets.items.push_back(Json::list({t->start, to, t->since, t->amount, t->strict, t->asked}));
+    }
+    return Json::object({
+        {"modes", lane_data(*life.modes)}, {"breaths", lane_data(*life.breaths)}, {"aversions", lane_data(*life.aversions)},
+        {"saccades", lane_data(*life.saccades)}, {"blinks", lane_data(*life.blinks)}, {"targets", targets},
+    });
+}
+
+/// Times of equal reports may differ in the last digits.
+inline Json sorted_reports(const List<Json>& rows) {
+    List<std::string> keys;
+    for (const Json& row : rows) {
+        const std::string at = lang::fixed(row.items[3].number, 5);
+        keys.push_back(json::text(Json::list({
+            row.items[0], row.items[1], row.items[2], std::string(20 - std::min<std::size_t>(20, at.size()), ' ') + at, row.items[4],
+        })));
+    }
+    return Json::list(lang::ordered(rows, keys));
+}
+
+/// The angle between two rotations, degrees.
+inline double angle(const Quat& a, const Quat& b) {
+    const Quat d = rotation::multiply(a.back(), b);
+    return 360 / lang::PI * std::atan2(std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z), std::abs(d.w));
+}
+
+/// Compare a pose and morph targets with those of the vectors. tell: takes what differs.
+template <class Tell>
+void compare_pose(
+    const Graph& graph, const List<Joined>& pose, const List<double>& morphs, const Json& wanted, const Json& tolerance, Tell tell
+) {
+    const std::string at = lang::text("pose at ", wanted.find("time")->number, " s", wanted.find("alive")->flag ? ", alive" : "");
+    const List<Joined> globals = rotation::globals(graph.parents, pose);
+    std::pair<double, int> metres{0, 0}, degrees{0, 0};
+    for (int j = 0; j < lang::len(graph.joints); j++) {
+        const List<Json>&q = lang::at(wanted.find("rotations")->items, j).items, &p = lang::at(wanted.find("positions")->items, j).items;
+        const Vec away = lang::at(globals, j).translation - Vec{p[0].number, p[1].number, p[2].number};
+        const double off = std::sqrt(rotation::dot(away, away));
+        const double turned = angle(lang::at(pose, j).rotation, {q[0].number, q[1].number, q[2].number, q[3].number});
+        if (!(off <= metres.first)) metres = {off, j};
+        if (!(turned <= degrees.first)) degrees = {turned, j};
+    }
+    for (const auto& [unit, worst] : {std::pair<const char*, std::pair<double, int>>{"metres", metres}, {"degrees", degrees}}) {
+        if (worst.first <= tolerance.find(unit)->number) continue;
+        tell(lang::text(at, ": ", lang::at(graph.joints, worst.second), " is ", worst.first, " ", unit, " off"));
+    }
+    Set<std::string> names(graph.morphs.begin(), graph.morphs.end());
+    for (const auto& field : wanted.find("morphs")->fields) names.insert(field.first);
+    for (const std::string& name : names) {
+        const int place = lang::index(graph.morphs, name);
+        const double is = place < lang::len(morphs) ? lang::at(morphs, place) : 0;
+        const Json* own = wanted.find("morphs")->find(name);
+        const double should = own == nullptr ? 0 : own->number;
+        if (!(std::abs(is - should) <= tolerance.find("weight")->number)) {
+            tell(lang::text(at, ": morph target ", name, " is ", is, ", should be ", should));
+        }
+    }
+}
+
+/// Return the plan that a case's steps make.
+inline Ref<const Plan> planned(const Graph& graph, const Json& one) {
+    PlanOptions options;
+    options.idle = one.find("idle")->flag;
+    for (const auto& [layer, stance] : one.find("stances")->fields) options.stances[layer] = stance.text;
+    Ref<const Plan> plan = lang::made<Plan>(static_cast<std::uint32_t>(one.find("seed")->number));
+    for (const Json& step : one.find("steps")->items) {
+        plan = hear(graph, *plan, step.find("now")->number, step.find("asks")->items, step.find("end")->number, options);
+        if (!step.find("forget")->empty()) plan = since(graph, *plan, step.find("forget")->number);
+    }
+    return plan;
+}
+
+template <class Tell>
+void run_case(const Ref<const Graph>& graph, const Json& one, const Json& tolerance, Tell tell) {
+    const Ref<const Plan> plan = planned(*graph, one);
+    const double seconds = tolerance.find("seconds")->number;
+    auto same = [&](const std::string& where, const Json& found, const Json& wanted) {
+        const std::string told = difference(found, wanted, seconds, where);
+        if (!told.empty()) tell(told);
+    };
+    const Json& wanted = *one.find("plan");
+    for (const std::string& layer : graph::LAYERS) {
+        same(layer, layer_data(*plan->layers.at(layer)), *wanted.find("layers")->find(layer));
+    }
+    List<Json> reports;
+    for (const auto& r : plan->reports) reports.push_back(Json::list({r->request, r->outcome, r->layer, r->at, r->played}));
+    same("reports", sorted_reports(reports), sorted_reports(wanted.find("reports")->items));
+    same("life", life_data(*plan->life), *one.find("life"));
+    Player player(graph, plan);
+    List<double> morphs;
+    for (const Json& pose : one.find("poses")->items) {
+        const double time = pose.find("time")->number;
+        const bool alive = pose.find("alive")->flag;
+        player.morphs(time, morphs, alive);
+        compare_pose(*graph, player.pose(time, alive), morphs, pose, tolerance, tell);
+    }
+}
+
+/// Run the vectors of a folder.
+inline Verdict run(const std::string& folder) {
+    Verdict out;
+    auto failed = [&](const std::string& name, const std::string& what) {
+        out.failures.push_back(lang::text(folder, ": ", name, ": ", what));
+        return out;
+    };
+    const auto text = file(folder + "/vectors.json");
+    if (!text.has_value()) return failed("vectors.json", "is not there. Give folders that `metagraph export --vectors` wrote.");
+    json::Parser parser(*text);
+    const Json vectors = parser.parse();
+    if (!parser.wrong.empty()) return failed("vectors.json", parser.wrong);
+    const Json* version = vectors.find("vectors");
+    if (version == nullptr || version->number != VERSION) {
+        return failed("vectors.json", lang::text("is of another version than ", VERSION, "; update the runtime."));
+    }
+    const std::string name = vectors.find("export")->text, json = file(folder + "/" + name).value_or("");
+    json::Parser export_parser(json);
+    const Json document = export_parser.parse();
+    const Json* word = document.find("glb");
+    const std::string glb = word == nullptr ? "" : file(folder + "/" + word->text).value_or("");
+    const Loaded loaded = load(json, reinterpret_cast<const std::uint8_t*>(glb.data()), glb.size(), name);
+    if (loaded.graph == nullptr) return failed("loading", loaded.error);
+    const Json& tolerance = *vectors.find("tolerance");
+    auto done = [&](std::size_t before) {
+        out.cases++;
+        out.passed += out.failures.size() == before;
+    };
+    std::size_t before = out.failures.size();
+    for (const Json& row : vectors.find("hashes")->items) {
+        List<std::string> words;
+        for (const Json& one : row.items[1].items) words.push_back(one.text);
+        const std::uint32_t hash = choice::key32(static_cast<std::uint32_t>(row.items[0].number), words);
+        if (hash != static_cast<std::uint32_t>(row.items[2].number)) failed("hashes", json::text(row.items[1]) + " differs");
+    }
+    done(before);
+    if (vectors.find("described") != nullptr) {
+        before = out.failures.size();
+        const std::string told = difference(
+            describe(*loaded.graph), *vectors.find("described"), tolerance.find("seconds")->number, "described"
+        );
+        if (!told.empty()) failed("described", told);
+        done(before);
+    }
+    for (const Json& one : vectors.find("cases")->items) {
+        before = out.failures.size();
+        const std::string& own = one.find("name")->text;
+        run_case(loaded.graph, one, tolerance, [&](const std::string& what) { failed(own, what); });
+        done(before);
+    }
+    return out;
+}
+
+}  // namespace conformance
+}  // namespace metagraph

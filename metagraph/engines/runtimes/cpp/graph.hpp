@@ -1,0 +1,85 @@
+// The exported graph and its clips, loaded once and shared by all characters that use it; nothing of it changes then.
+#pragma once
+
+#include "body.hpp"
+#include "project.hpp"
+#include "voice.hpp"
+
+namespace metagraph {
+
+/// The weights of one morph target in a clip, a frame each. place: among the graph's.
+struct MorphTrack {
+    int place = 0;
+    List<float> weights;
+};
+
+/// A clip as far as it is played. morphs: what it moves of a mesh.
+struct Motion {
+    double fps = 30.0;
+    int frames = 1;
+    List<MorphTrack> morphs;
+};
+
+/// A clip relative to the base pose, for the joints a layer reaches: rotations [F, n, 4], neighbours on the same side;
+/// translations [F, m, 3], metres, for the places `moved` [m] in the reach.
+struct Offsets {
+    List<float> rotations, translations;
+    List<int> moved;
+};
+
+/// An action with what it shows. motion, offsets: none where its clip is missing. still: places in the layer's reach of
+/// joints that show the stance throughout.
+struct PlacedAction : Action {
+    explicit PlacedAction(Action action) : Action(std::move(action)) {}
+
+    Ref<Motion> motion;
+    Ref<Offsets> offsets;
+    List<int> still;
+};
+
+/// How a layer reaches the joints: their places [n], and its weights on them. kinds: of its actions.
+struct LayerGraph {
+    Ref<MetaGraph> graph;
+    Ref<Markov> markov;
+    List<int> reach;
+    List<double> weights;
+    Set<std::string> kinds;
+};
+
+/// A line of dialogue. asks: what it asks for while it is said.
+struct Line {
+    std::string text;
+    std::optional<double> duration;
+    List<Json> asks;
+};
+
+/// Everything of an export that planning and posing need. Joints are told by their places, parents first.
+///
+/// base: the pose that offsets are taken against, local. morphs: names of all morph targets that anything moves.
+/// problems: what the GLB lacks, in words; the rest plays all the same. project: what the planner works with.
+struct Graph {
+    std::string name;
+    List<std::string> joints, parts, sides, problems, morphs;
+    List<int> parents;
+    List<Joined> base;
+    Ref<Project> project;
+    std::uint32_t seed = 0;
+    Map<std::string, Ref<LayerGraph>> layers;
+    Life life;
+    Map<std::string, Vec> points;
+    Map<std::string, Line> lines;
+    Map<std::string, Ref<Voice>> voices;
+    std::optional<Body> body;
+
+    const LayerGraph& layer(const std::string& word) const { return *layers.at(word); }
+};
+
+namespace graph {
+
+/// Layers in the order in which their offsets are multiplied onto the base pose.
+inline const List<std::string> LAYERS = {"body", "arms", "head"};
+inline const List<std::string> KINDS = {"stance", "gesture", "fidget", "transition"};
+inline const List<std::string> LIMBS = {"left", "right", "both"};
+
+}  // namespace graph
+}  // namespace metagraph

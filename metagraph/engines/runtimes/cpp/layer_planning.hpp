@@ -1,0 +1,269 @@
+// Planning one layer on: what was planned for later is taken back to its meta actions, merged with new requests, placed
+// and performed again (Borer et al., section 6).
+//
+// Translated from metagraph/playback/layer_planning.py; change that, and translate anew.
+#pragma once
+
+#include "model.hpp"
+#include "markov.hpp"
+#include "meta_plan.hpp"
+#include "replan.hpp"
+#include "sampling.hpp"
+#include "project.hpp"
+#include "language.hpp"
+
+namespace metagraph {
+
+struct LayerDraft;
+
+namespace layer_planning {
+
+inline constexpr double WINDOW = 1.0; // seconds a request may use when it does not say how long
+inline Ref<LayerDraft> draft(
+    const Ref<Project>& project,
+    const Ref<MetaGraph>& graph,
+    const Ref<Markov>& chain,
+    const Set<std::string>& kinds,
+    const Ref<LayerPlan>& old,
+    const List<Ref<Report>>& told,
+    std::uint32_t seed,
+    double now,
+    const List<Ref<MetaRequest>>& fresh,
+    const Set<std::string>& replaced,
+    double end,
+    const std::optional<std::string>& stance
+);
+inline Ref<MetaAction> meta_of(const Ref<MetaRequest>& request);
+inline std::string _begin(
+    const Ref<MetaGraph>& graph,
+    const Ref<LayerPlan>& old,
+    const std::optional<std::string>& stance
+);
+
+}  // namespace layer_planning
+
+/// A layer placed in time, not yet performed.
+///
+/// able: whether the layer can perform at all. done: meta actions that were performed before. placed: those to be
+/// performed, in order; what a model wrote among them is performed as its mode says. reports: what was told so far.
+struct LayerDraft {
+    std::string layer;
+    Ref<Performer> performer;
+    bool able;
+    List<Ref<MetaAction>> done;
+    List<Ref<MetaAction>> placed;
+    List<Ref<Report>> reports;
+    Ref<Past> past;
+    Ref<Cursor> cursor;
+    List<Ref<MetaAction>> written;
+
+    LayerDraft(
+        std::string layer_,
+        Ref<Performer> performer_,
+        bool able_,
+        List<Ref<MetaAction>> done_,
+        List<Ref<MetaAction>> placed_,
+        List<Ref<Report>> reports_,
+        Ref<Past> past_,
+        Ref<Cursor> cursor_,
+        List<Ref<MetaAction>> written_
+    )
+        : layer(std::move(layer_)),
+            performer(std::move(performer_)),
+            able(able_),
+            done(std::move(done_)),
+            placed(std::move(placed_)),
+            reports(std::move(reports_)),
+            past(std::move(past_)),
+            cursor(std::move(cursor_)),
+            written(std::move(written_)) {}
+
+    /// Return the layer's plan, with those of its meta actions performed that are given; `reports` then tells all.
+    Ref<LayerPlan> performed(const List<Ref<MetaAction>>& metas, double end);
+};
+
+inline Ref<LayerPlan> LayerDraft::performed(const List<Ref<MetaAction>>& metas, double end) {
+    List<Ref<Cue>> cues;
+    List<Ref<Rest>> rests;
+    if (this->able) {
+        this->performer->perform(metas, end);
+        this->performer->vary_rests(end);
+        cues = this->performer->cues;
+        rests = this->performer->rests;
+        lang::extend(this->reports, this->performer->reports);
+    }
+    List<Ref<MetaAction>> every = lang::together(this->done, this->placed);
+    return lang::made<LayerPlan>(this->layer, every, cues, rests, this->past, this->cursor, this->written);
+}
+
+namespace layer_planning {
+
+/// Return a layer's plan taken back to `now`, with what is asked for placed anew.
+///
+/// chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of the plan so
+/// far. fresh: requests, of all layers. replaced: ids of those that are asked for anew or withdrawn. stance: which the
+/// layer would begin in.
+inline Ref<LayerDraft> draft(
+    const Ref<Project>& project,
+    const Ref<MetaGraph>& graph,
+    const Ref<Markov>& chain,
+    const Set<std::string>& kinds,
+    const Ref<LayerPlan>& old,
+    const List<Ref<Report>>& told,
+    std::uint32_t seed,
+    double now,
+    const List<Ref<MetaRequest>>& fresh,
+    const Set<std::string>& replaced,
+    double end,
+    const std::optional<std::string>& stance
+) {
+    std::string layer = graph->layer;
+    List<Ref<MetaAction>> asked;
+    for (const auto& request : fresh) {
+        if (request->layer == layer) {
+            asked.push_back(layer_planning::meta_of(request));
+        }
+    }
+    List<Ref<Cue>> kept;
+    for (const auto& cue : old->cues) {
+        if (cue->start < now) {
+            kept.push_back(cue);
+        }
+    }
+    Set<std::string> played;
+    for (const auto& cue : kept) {
+        played.insert(cue->meta);
+    }
+    Set<std::string> waiting;
+    for (const auto& cue : lang::part(old->cues, lang::len(kept))) {
+        waiting.insert(cue->meta);
+    }
+    List<Ref<MetaAction>> written;
+    Ref<Cursor> cursor = old->cursor;
+    Set<std::string> again = lang::set_of(replaced);
+    if (chain != nullptr) {
+        List<Ref<MetaAction>> more{};
+        std::tie(more, cursor) = markov::write(chain, seed, end, kinds, old->cursor);
+        for (const auto& meta : lang::together(old->written, more)) {
+            if (meta->start >= now) {
+                written.push_back(meta);
+                again.insert(meta->request->id);
+            }
+        }
+    }
+    List<Ref<MetaAction>> future;
+    Map<std::string, List<double>> planned; // again: when those of a request start
+    for (const auto& meta : old->metas) {
+        if (lang::contains(again, meta->request->id)) {
+            continue;
+        }
+        if (lang::contains(waiting, meta->key()) || (meta->start >= now && !lang::contains(played, meta->key()))) {
+            future.push_back(meta);
+            planned[meta->request->id] = lang::together(
+                lang::get_or(planned, meta->request->id, List<double>{}),
+                List<double>{meta->start}
+            );
+        }
+    }
+    // What was told about time still holds; the rest will be told again by those that are planned again.
+    List<Ref<MetaAction>> done;
+    for (const auto& meta2 : old->metas) {
+        if (!lang::contains(again, meta2->request->id)
+            && !lang::contains(lang::get_or(planned, meta2->request->id, List<double>{}), meta2->start)
+            && (lang::contains(played, meta2->key()) || meta2->start < now)) {
+            done.push_back(meta2);
+        }
+    }
+    List<Ref<Report>> reports;
+    for (const auto& report : told) {
+        if (report->layer == layer
+            && !lang::contains(again, report->request)
+            && (lang::contains(meta_plan::TEMPORAL, report->outcome)
+                || !lang::contains(lang::get_or(planned, report->request, List<double>{}), report->at))) {
+            reports.push_back(report);
+        }
+    }
+    std::string begin = layer_planning::_begin(graph, old, stance);
+    Ref<Performer> performer = sampling::performer_after(project, graph, seed, begin, old->past, kept);
+    if (begin == "" || !performer->begin(begin)) {
+        std::string why = lang::text("the ", layer, " layer has no stance with a loop to begin in");
+        List<Ref<MetaAction>> waits = lang::together(future, asked);
+        for (const auto& meta : waits) {
+            if (!meta->written) {
+                reports.push_back(lang::made<Report>(meta->request->id, "no-stance", why, layer, meta->start));
+            }
+        }
+        return lang::made<LayerDraft>(layer, performer, false, done, waits, reports, old->past, cursor, written);
+    }
+    if (lang::len(old->rests) > 0 && now > 0) {
+        Set<double> begun;
+        for (const auto& cue : kept) {
+            begun.insert(cue->end - cue->blend_out);
+        }
+        List<Ref<Rest>> found;
+        for (const auto& rest : old->rests) {
+            if (rest->fade_start < now || lang::contains(begun, rest->start)) {
+                found.push_back(rest);
+            }
+        }
+        performer->rests = found;
+    }
+    Set<std::string> found2;
+    for (const auto& cue : kept) {
+        if (lang::contains(waiting, cue->meta)) {
+            found2.insert(cue->meta);
+        }
+    }
+    performer->begun = found2;
+    performer->free = std::max(now - (performer->ready() - performer->free), performer->free);
+    List<Ref<Report>> delayed{};
+    std::tie(asked, delayed) = replan::delay(asked, performer->ready(), project->settings);
+    double busy = -INFINITY; // what runs keeps the time it was wanted for, from the models
+    for (const auto& meta : done) {
+        if (!meta->written) {
+            busy = std::max(busy, meta->end);
+        }
+    }
+    auto [placed, moved] = replan::replan(lang::together(future, written, asked), project->settings, busy);
+    List<Ref<Report>> every = lang::together(reports, delayed, moved);
+    return lang::made<LayerDraft>(layer, performer, true, done, placed, every, old->past, cursor, written);
+}
+
+/// Return a request with the window it may use.
+inline Ref<MetaAction> meta_of(const Ref<MetaRequest>& request) {
+    double length = !request->duration.has_value() ? layer_planning::WINDOW : std::max(0.0, *request->duration);
+    if (request->stroke.has_value()) {
+        length = std::max(length, *request->stroke - request->start + sampling::FITS);
+    }
+    return lang::made<MetaAction>(request, request->start, request->start + length);
+}
+
+/// Return the stance a layer begins in: as it did before, as asked, the graph's start, or the first that has a loop; ""
+/// for none.
+inline std::string _begin(
+    const Ref<MetaGraph>& graph,
+    const Ref<LayerPlan>& old,
+    const std::optional<std::string>& stance
+) {
+    List<std::string> wishes = List<std::string>{old->past->stance};
+    if (lang::len(old->rests) > 0) {
+        wishes.push_back(lang::at(old->rests, 0)->stance);
+    }
+    if (stance.has_value()) {
+        wishes.push_back(*stance);
+    }
+    if (graph->start.has_value()) {
+        wishes.push_back(*graph->start);
+    }
+    lang::extend(wishes, lang::keys(graph->stances));
+    for (const auto& wish : wishes) {
+        if (lang::contains(graph->stances, wish) && lang::len(graph->of(wish, "stance")) > 0) {
+            return wish;
+        }
+    }
+    return "";
+}
+
+}  // namespace layer_planning
+
+}  // namespace metagraph

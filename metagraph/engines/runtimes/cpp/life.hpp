@@ -1,0 +1,78 @@
+// The life layers' settings, and the words of faces.
+#pragma once
+
+#include "json.hpp"
+#include "words.hpp"
+
+namespace metagraph {
+
+/// What a mode makes of the amounts: factors, 0 to 4.
+struct Manner {
+    double breathing = 1.0, breath_rate = 1.0, aversion_rate = 1.0, aversion_length = 1.0, aversion_angle = 1.0;
+    double saccades = 1.0, saccade_rate = 1.0, blinks = 1.0;
+};
+
+/// The settings; docs/format.md says what each means. manners: of idle, listening, talking.
+struct Life {
+    bool on = true;
+    double stillness = 0.0, breathing = 1.0, breath_rate = 14.0, gaze = 1.0, head_share = 0.6;
+    double aversion_rate = 12.0, aversion_length = 0.93, aversion_angle = 14.0;
+    double saccades = 1.0, saccade_rate = 60.0, lids = 1.0, blinks = 17.0, accent_blinks = 1.0;
+    double blink_close = 0.07, blink_open = 0.1, lips = 1.0, lip_smoothing = 0.03;
+    List<Manner> manners = {
+        {1.0, 1.0, 1.1, 2.4, 1.4, 1.0, 0.85, 1.0},
+        {1.0, 1.0, 0.6, 0.46, 0.8, 0.9, 1.0, 1.0},
+        {1.15, 1.1, 1.25, 1.0, 1.0, 1.0, 1.0, 1.0},
+    };
+};
+
+namespace life {
+
+inline constexpr int SHAPES = 15; // how many mouth shapes there are
+inline constexpr int LIDS = 4; // upper left, upper right, lower left, lower right
+inline constexpr int BLINK = LIDS; // place of the blink among the channels a face is worked by
+inline constexpr int CHANNELS = LIDS + 1 + SHAPES; // lids, blink, an open jaw, every shape but silence
+inline constexpr int FIRST_SHAPE = CHANNELS - (SHAPES - 1);
+
+/// Return the settings with what an export says of them, where it says anything.
+inline Life read(const Node& json) {
+    Life out;
+    if (json.empty()) return out;
+    const Node on = json.maybe("on");
+    out.on = on.empty() || on.flag();
+    auto dial = [&json](const char* name, double& value, double low, double high) {
+        value = json.maybe(name).within_or(low, high, value);
+    };
+    dial("stillness", out.stillness, 0, 1);
+    dial("breathing", out.breathing, 0, 2);
+    dial("breath_rate", out.breath_rate, 0, 40);
+    dial("gaze", out.gaze, 0, 1);
+    dial("head_share", out.head_share, 0, 1);
+    dial("aversion_rate", out.aversion_rate, 0, 40);
+    dial("aversion_length", out.aversion_length, 0, 5);
+    dial("aversion_angle", out.aversion_angle, 0, 40);
+    dial("saccades", out.saccades, 0, 2);
+    dial("saccade_rate", out.saccade_rate, 0, 180);
+    dial("lids", out.lids, 0, 2);
+    dial("blinks", out.blinks, 0, 60);
+    dial("accent_blinks", out.accent_blinks, 0, 1);
+    dial("blink_close", out.blink_close, 0.02, 1);
+    dial("blink_open", out.blink_open, 0.02, 1);
+    dial("lips", out.lips, 0, 2);
+    dial("lip_smoothing", out.lip_smoothing, 0, 0.2);
+    const Node modes = json.maybe("modes");
+    if (modes.empty()) return out;
+    for (int n = 0; n < lang::len(words::MODES); n++) {
+        const Node own = modes.maybe(lang::at(words::MODES, n));
+        if (own.empty()) continue;
+        auto factor = [&own](const char* name) { return own.maybe(name).within_or(0, 4, 1); };
+        lang::at(out.manners, n) = {
+            factor("breathing"), factor("breath_rate"), factor("aversion_rate"), factor("aversion_length"),
+            factor("aversion_angle"), factor("saccades"), factor("saccade_rate"), factor("blinks"),
+        };
+    }
+    return out;
+}
+
+}  // namespace life
+}  // namespace metagraph

@@ -1,0 +1,261 @@
+// The one evaluator: what pose a plan gives at a time. Layers add their offsets from the base pose (Borer et al., section 5):
+// a joint's rotation is `base * body^w * arms^w * head^w`, its translation a sum; then the life layers are added.
+#pragma once
+
+#include "enliven.hpp"
+#include "plan.hpp"
+
+namespace metagraph {
+
+namespace pose {
+
+/// The clip seconds a cue shows at a time: its own speed, but for its hold.
+inline double clip_seconds(const Cue& cue, double time) {
+    const double elapsed = time - cue.start;
+    if (cue.hold <= 0) return cue.entry + elapsed;
+    const double held = std::clamp(elapsed - (cue.hold_from - cue.entry), 0.0, cue.hold);
+    return cue.entry + elapsed - held + held * ((cue.hold_to - cue.hold_from) / cue.hold);
+}
+
+/// How much of a cue shows at a time within it: rising over its blend in, falling over its blend out.
+inline double cue_weight(const Cue& cue, double time) {
+    const double rise = cue.blend_in > 0 ? rotation::ease((time - cue.start) / cue.blend_in) : 1;
+    const double fall = cue.blend_out > 0 ? rotation::ease((cue.end - time) / cue.blend_out) : 1;
+    return rise * fall;
+}
+
+/// Seconds of a loop's end that fade into its beginning; its period is that much shorter.
+inline double seam_of(double start, double end, double blend_in) { return std::min(blend_in, (end - start) / 2); }
+
+/// How far into a loop it is, seconds after it began. Before its beginning a loop runs as if it had gone on for ever; one
+/// with a seam waits in its first pose, so that it starts without a jump.
+inline double phase_of(double length, double seam, double elapsed) {
+    const double period = length - seam;
+    return period > 0 ? lang::modulo(seam > 0 ? std::max(elapsed, 0.0) : elapsed, period) : 0;
+}
+
+}  // namespace pose
+
+/// Plays one plan after the other. It remembers where it was, so that asking for one time after another costs next to no
+/// search; any times in any order give the same. Players may work on threads of their own; each is for one at a time.
+class Player {
+public:
+    explicit Player(Ref<const Graph> graph, Ref<const Plan> plan = nullptr)
+        : graph_(std::move(graph)), pose_(graph_->joints.size()), shown_(pose_.size()), stance_(pose_.size()),
+          other_(pose_.size()), spare_(pose_.size()), life_(graph_->body.has_value() ? lang::made<Enlivener>(*graph_) : nullptr) {
+        set_plan(plan == nullptr ? lang::made<Plan>() : std::move(plan));
+    }
+
+    const Graph& graph() const { return *graph_; }
+
+    void set_plan(Ref<const Plan> plan) {
+        if (plan_ == plan) return;
+        const bool same = plan_ != nullptr && plan_->life == plan->life;
+        plan_ = std::move(plan);
+        for (std::size_t n = 0; n < 3; n++) layers_[n].plan = plan_->layers.at(graph::LAYERS[n]).get();
+        if (same || life_ == nullptr) return;
+        const bool looks = !graph_->body->lookers.empty() && !plan_->life->targets.empty();
+        gaze_ = looks ? lang::made<Gaze>(*graph_, plan_->life) : nullptr;
+    }
+
+    /// The pose at a time, local, of the graph's joints; the next one overwrites it. alive: with the life layers, as far as
+    /// the export has them on. Times before 0 and after the plan's end rest in the first and last stance. Actions whose clip
+    /// is missing show their stance.
+    const List<Joined>& pose(double time, bool alive = true) {
+        compose(time);
+        if (alive && lives()) {
+            life_->find(pose_, *plan_->life, *plan_->track, gaze_.get(), time);
+            life_->apply(pose_);
+        }
+        return pose_;
+    }
+
+    /// Write the weight of each of the graph's morph targets at a time, 0..1.
+    void morphs(double time, List<double>& out, bool alive = true) {
+        out.assign(graph_->morphs.size(), 0.0);
+        if (out.empty()) return;
+        for (Layer& layer : layers_) {
+            const Cue* cue = cue_at(layer, time);
+            const double weight = cue == nullptr ? 0 : pose::cue_weight(*cue, time);
+            if (cue != nullptr) add_morphs(*cue->action, pose::clip_seconds(*cue, time), weight, out);
+            if (layer.plan->rests.empty()) continue;
+            const Rest& rest = *lang::at(layer.plan->rests, rest_at(layer, time));
+            const auto [start, length, seam] = loop_of(*rest.action);
+            add_morphs(*rest.action, start + pose::phase_of(length, seam, time - rest.start), 1 - weight, out);
+        }
+        if (alive && lives() && !graph_->body->face.morphs.empty()) {
+            compose(time); // eyes made of morph targets hold while the head moves
+            life_->find(pose_, *plan_->life, *plan_->track, gaze_.get(), time);
+            life_->morphs(out);
+        }
+        for (double& weight : out) weight = std::clamp(weight, 0.0, 1.0);
+    }
+
+private:
+    /// A layer of the plan, and the cue and rest that were found last.
+    struct Layer {
+        const LayerPlan* plan = nullptr;
+        int cue = 0, rest = 0;
+    };
+
+    Ref<const Graph> graph_;
+    Ref<const Plan> plan_;
+    // room for working in
+    List<Joined> pose_, shown_, stance_, other_, spare_;
+    Ref<Enlivener> life_;
+    Ref<Gaze> gaze_;
+    std::array<Layer, 3> layers_;
+
+    bool lives() const { return graph_->life.on && life_ != nullptr && plan_->life->end > 0; }
+
+    /// Where a loop begins in its clip, how long it is, and its seam; seconds.
+    std::tuple<double, double, double> loop_of(const Action& action) const {
+        const Phases& phases = *graph_->project->phases.at(action.id);
+        return {phases.start, phases.end - phases.start, pose::seam_of(phases.start, phases.end, action.timing->blend_in)};
+    }
+
+    /// Leave the composed pose at a time in `pose_`, without the life layers.
+    void compose(double time) {
+        pose_ = graph_->base;
+        for (std::size_t n = 0; n < 3; n++) {
+            if (layers_[n].plan->rests.empty()) continue;
+            const LayerGraph& own = graph_->layer(graph::LAYERS[n]);
+            const List<Joined>& added = layer(layers_[n], time, own.reach.size());
+            for (std::size_t i = 0; i < own.reach.size(); i++) {
+                Joined& joint = lang::at(pose_, own.reach[i]);
+                const double weight = own.weights[i];
+                const Quat turn = weight == 1 ? added[i].rotation : rotation::power(added[i].rotation, weight);
+                joint.rotation = rotation::multiply(joint.rotation, turn);
+                joint.translation += added[i].translation * weight;
+            }
+        }
+        for (Joined& joint : pose_) joint.rotation = rotation::normalized(joint.rotation);
+    }
+
+    /// Return a layer's offsets at a time, on the joints it reaches.
+    const List<Joined>& layer(Layer& layer, double time, std::size_t count) {
+        const Cue* cue = cue_at(layer, time);
+        if (cue == nullptr || placed(*cue->action).offsets == nullptr) return stance(layer, time, count);
+        const PlacedAction& action = placed(*cue->action);
+        sample(action, pose::clip_seconds(*cue, time), shown_, count);
+        const bool entering = time < cue->start + cue->blend_in;
+        const bool blending = entering || time >= cue->end - cue->blend_out;
+        if (!blending && action.still.empty()) return shown_;
+        stance(layer, time, count);
+        if (blending) {
+            // Lead the clip in from, or out to, its stance: add what the stance differs from the clip's pose at that edge. A
+            // crossfade would hold the clip back and then hurry it.
+            sample(action, entering ? cue->entry : pose::clip_seconds(*cue, cue->end), other_, count);
+            const double weight = 1 - pose::cue_weight(*cue, time);
+            for (std::size_t i = 0; i < count; i++) {
+                const Quat away = rotation::multiply(other_[i].rotation.back(), stance_[i].rotation);
+                shown_[i].rotation = rotation::multiply(shown_[i].rotation, rotation::nlerp(Quat{}, away, weight));
+                shown_[i].translation += (stance_[i].translation - other_[i].translation) * weight;
+            }
+        }
+        for (const int place : action.still) lang::at(shown_, place) = lang::at(stance_, place);
+        return shown_;
+    }
+
+    /// Return the offsets of the stance that lies under the cues.
+    const List<Joined>& stance(Layer& layer, double time, std::size_t count) {
+        const int place = rest_at(layer, time);
+        const Rest& rest = *lang::at(layer.plan->rests, place);
+        loop(rest, time, stance_, other_, count);
+        if (place == 0 || rest.fade_start + rest.fade <= time) return stance_;
+        loop(*lang::at(layer.plan->rests, place - 1), time, other_, spare_, count);
+        mix(other_, stance_, rotation::ease((time - rest.fade_start) / rest.fade), count, stance_);
+        return stance_;
+    }
+
+    /// Write the offsets of a loop, its end faded into its beginning.
+    void loop(const Rest& rest, double time, List<Joined>& out, List<Joined>& room, std::size_t count) {
+        const PlacedAction& action = placed(*rest.action);
+        if (action.offsets == nullptr) {
+            std::fill(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(count), Joined{});
+            return;
+        }
+        const auto [start, length, seam] = loop_of(action);
+        const double elapsed = time - rest.start, period = length - seam, phase = pose::phase_of(length, seam, elapsed);
+        sample(action, start + phase, out, count);
+        const double old = seam > 0 && period > 0 && elapsed >= period ? 1 - rotation::ease(phase / seam) : 0;
+        if (old == 0) return;
+        sample(action, start + std::min(period + phase, length), room, count);
+        mix(out, room, old, count, out);
+    }
+
+    /// Return the cue playing at a time, none while the stance rests.
+    static const Cue* cue_at(Layer& layer, double time) {
+        const auto& cues = layer.plan->cues;
+        int& cue = layer.cue;
+        cue = std::min(cue, lang::len(cues));
+        while (cue > 0 && lang::at(cues, cue - 1)->start > time) cue--;
+        while (cue < lang::len(cues) && lang::at(cues, cue)->start <= time) cue++;
+        const Cue* found = cue > 0 ? lang::at(cues, cue - 1).get() : nullptr;
+        return found != nullptr && time < found->end ? found : nullptr;
+    }
+
+    /// Return the place of the rest that a time is in, or that is taking over.
+    static int rest_at(Layer& layer, double time) {
+        const auto& rests = layer.plan->rests;
+        int& rest = layer.rest;
+        rest = std::min(rest, lang::len(rests) - 1);
+        while (rest > 0 && lang::at(rests, rest)->fade_start > time) rest--;
+        while (rest + 1 < lang::len(rests) && lang::at(rests, rest + 1)->fade_start <= time) rest++;
+        return rest;
+    }
+
+    /// What an action shows: actions of a graph are all placed ones.
+    static const PlacedAction& placed(const Action& action) { return static_cast<const PlacedAction&>(action); }
+
+    /// Write a clip's offsets at clip seconds, straight lines between its frames.
+    static void sample(const PlacedAction& action, double seconds, List<Joined>& out, std::size_t count) {
+        const auto [low, high, part] = frame_of(*action.motion, seconds);
+        const float* a = action.offsets->rotations.data() + low * count * 4;
+        const float* b = action.offsets->rotations.data() + high * count * 4;
+        for (std::size_t i = 0; i < count; i++, a += 4, b += 4) {
+            // Neighbours are on the same side.
+            out[i].rotation = rotation::normalized({
+                a[0] + (static_cast<double>(b[0]) - a[0]) * part, a[1] + (static_cast<double>(b[1]) - a[1]) * part,
+                a[2] + (static_cast<double>(b[2]) - a[2]) * part, a[3] + (static_cast<double>(b[3]) - a[3]) * part,
+            });
+            out[i].translation = {};
+        }
+        const List<int>& moved = action.offsets->moved;
+        a = action.offsets->translations.data() + low * moved.size() * 3;
+        b = action.offsets->translations.data() + high * moved.size() * 3;
+        for (const int place : moved) {
+            const Vec from{a[0], a[1], a[2]}, to{b[0], b[1], b[2]};
+            lang::at(out, place).translation = from + (to - from) * part;
+            a += 3;
+            b += 3;
+        }
+    }
+
+    /// Return the frames before and after clip seconds, and how far it is from one to the other.
+    static std::tuple<std::size_t, std::size_t, double> frame_of(const Motion& motion, double seconds) {
+        const double at = std::clamp(seconds * motion.fps, 0.0, static_cast<double>(motion.frames - 1));
+        const int low = std::min(static_cast<int>(at), std::max(0, motion.frames - 2));
+        return {static_cast<std::size_t>(low), static_cast<std::size_t>(std::min(low + 1, motion.frames - 1)), at - low};
+    }
+
+    /// Write a crossfade, `weight` of the second; may write into either.
+    static void mix(const List<Joined>& a, const List<Joined>& b, double weight, std::size_t count, List<Joined>& out) {
+        for (std::size_t i = 0; i < count; i++) {
+            const Vec to = a[i].translation + (b[i].translation - a[i].translation) * weight;
+            out[i].rotation = rotation::nlerp(a[i].rotation, b[i].rotation, weight);
+            out[i].translation = to;
+        }
+    }
+
+    static void add_morphs(const Action& action, double seconds, double share, List<double>& out) {
+        const Ref<Motion>& motion = placed(action).motion;
+        if (motion == nullptr || share <= 0) return;
+        const auto [low, high, part] = frame_of(*motion, seconds);
+        for (const MorphTrack& morph : motion->morphs) {
+            lang::at(out, morph.place) += share * (morph.weights[low] * (1 - part) + morph.weights[high] * part);
+        }
+    }
+};
+
+}  // namespace metagraph

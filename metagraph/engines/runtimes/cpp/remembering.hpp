@@ -1,0 +1,51 @@
+// What is remembered of what was played: how often an action was, lately, and until when.
+//
+// Translated from metagraph/playback/remembering.py; change that, and translate anew.
+#pragma once
+
+#include "meta_plan.hpp"
+#include "language.hpp"
+
+namespace metagraph {
+
+
+namespace remembering {
+
+inline constexpr int REMEMBERED = 32; // draws of a stance and kind that spacing can look back on
+inline std::string node(const std::string& stance, const std::string& kind);
+inline void remember(
+    const Ref<Cue>& cue,
+    Map<std::string, int>& uses,
+    Map<std::string, List<std::string>>& recent,
+    Map<std::string, double>& ended
+);
+
+}  // namespace remembering
+
+namespace remembering {
+
+/// Return what draws of a stance and kind are remembered under.
+inline std::string node(const std::string& stance, const std::string& kind) {
+    return lang::text(kind, " ", stance);
+}
+
+/// Note that a cue was played: how often its action was, lately, and until when.
+inline void remember(
+    const Ref<Cue>& cue,
+    Map<std::string, int>& uses,
+    Map<std::string, List<std::string>>& recent,
+    Map<std::string, double>& ended
+) {
+    std::string ident = cue->action->id;
+    std::string place = remembering::node(cue->stance, cue->action->kind);
+    uses[ident] = lang::get_or(uses, ident, 0) + 1;
+    recent[place] = lang::together(
+        lang::part(lang::get_or(recent, place, List<std::string>{}), 1 - remembering::REMEMBERED),
+        List<std::string>{ident}
+    );
+    ended[ident] = cue->end;
+}
+
+}  // namespace remembering
+
+}  // namespace metagraph

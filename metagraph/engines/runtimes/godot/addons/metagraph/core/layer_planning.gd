@@ -1,0 +1,175 @@
+# Planning one layer on: what was planned for later is taken back to its meta actions, merged with new requests, placed and
+# performed again (Borer et al., section 6).
+#
+# Translated from metagraph/playback/layer_planning.py; change that, and translate anew.
+
+const Markov = preload("markov.gd")
+const MetaPlan = preload("meta_plan.gd")
+const Replan = preload("replan.gd")
+const Sampling = preload("sampling.gd")
+const Util = preload("util.gd")
+const WINDOW = 1.0  # seconds a request may use when it does not say how long
+
+
+# A layer placed in time, not yet performed.
+#
+# able: whether the layer can perform at all. done: meta actions that were performed before. placed: those to be performed, in
+# order; what a model wrote among them is performed as its mode says. reports: what was told so far.
+class LayerDraft:
+	var layer
+	var performer
+	var able
+	var done
+	var placed
+	var reports
+	var past
+	var cursor
+	var written
+
+	func _init(layer_, performer_, able_, done_, placed_, reports_, past_, cursor_, written_):
+		self.layer = layer_
+		self.performer = performer_
+		self.able = able_
+		self.done = done_
+		self.placed = placed_
+		self.reports = reports_
+		self.past = past_
+		self.cursor = cursor_
+		self.written = written_
+
+	# Return the layer's plan, with those of its meta actions performed that are given; `reports` then tells all.
+	func performed(metas, end):
+		var cues = []
+		var rests = []
+		if self.able:
+			self.performer.perform(metas, end)
+			self.performer.vary_rests(end)
+			cues = self.performer.cues
+			rests = self.performer.rests
+			Util.extend(self.reports, self.performer.reports)
+		var every = self.done + self.placed
+		return MetaPlan.LayerPlan.new(
+			self.layer,
+			every,
+			Util.list(cues),
+			Util.list(rests),
+			self.past,
+			self.cursor,
+			Util.list(self.written)
+		)
+
+
+# Return a layer's plan taken back to `now`, with what is asked for placed anew.
+#
+# chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of the plan so far. fresh:
+# requests, of all layers. replaced: ids of those that are asked for anew or withdrawn. stance: which the layer would begin in.
+static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, replaced, end, stance):
+	var layer = graph.layer
+	var asked = []
+	for request in fresh:
+		if request.layer == layer:
+			asked.append(meta_of(request))
+	var kept = []
+	for cue in old.cues:
+		if cue.start < now:
+			kept.append(cue)
+	var played = {}
+	for cue in kept:
+		Util.add_to(played, cue.meta)
+	var waiting = {}
+	for cue in Util.part(old.cues, kept.size(), old.cues.size()):
+		Util.add_to(waiting, cue.meta)
+	var written = []
+	var cursor = old.cursor
+	var again = Util.set_of(replaced)
+	if chain != null:
+		var more
+		var both = Markov.write(chain, seed_, end, kinds, old.cursor)
+		more = both[0]
+		cursor = both[1]
+		for meta in old.written + more:
+			if meta.start >= now:
+				written.append(meta)
+				Util.add_to(again, meta.request.id)
+	var future = []
+	var planned = {}  # again: when those of a request start
+	for meta in old.metas:
+		if again.has(meta.request.id):
+			continue
+		if waiting.has(meta.key) or (meta.start >= now and not played.has(meta.key)):
+			future.append(meta)
+			planned[meta.request.id] = planned.get(meta.request.id, []) + [meta.start]
+	# What was told about time still holds; the rest will be told again by those that are planned again.
+	var done = []
+	for meta2 in old.metas:
+		if (not again.has(meta2.request.id)
+			and not planned.get(meta2.request.id, []).has(meta2.start)
+			and (played.has(meta2.key) or meta2.start < now)):
+			done.append(meta2)
+	var reports = []
+	for report in told:
+		if (report.layer == layer
+			and not again.has(report.request)
+			and (MetaPlan.TEMPORAL.has(report.outcome) or not planned.get(report.request, []).has(report.at))):
+			reports.append(report)
+	var begin = _begin(graph, old, stance)
+	var performer = Sampling.performer_after(project, graph, seed_, begin, old.past, kept)
+	if begin == "" or not performer.begin(begin):
+		var why = "the %s layer has no stance with a loop to begin in" % [layer]
+		var waits = future + asked
+		for meta in waits:
+			if not meta.written:
+				reports.append(MetaPlan.Report.new(meta.request.id, "no-stance", why, layer, meta.start))
+		return LayerDraft.new(layer, performer, false, done, waits, reports, old.past, cursor, written)
+	if old.rests.size() > 0 and now > 0:
+		var begun = {}
+		for cue in kept:
+			Util.add_to(begun, cue.end - cue.blend_out)
+		var found = []
+		for rest in old.rests:
+			if rest.fade_start < now or begun.has(rest.start):
+				found.append(rest)
+		performer.rests = found
+	var found2 = {}
+	for cue in kept:
+		if waiting.has(cue.meta):
+			Util.add_to(found2, cue.meta)
+	performer.begun = found2
+	performer.free_ = Util.most(now - (performer.ready() - performer.free_), performer.free_)
+	var delayed
+	var both2 = Replan.delay(asked, performer.ready(), project.settings)
+	asked = both2[0]
+	delayed = both2[1]
+	var busy = -INF  # what runs keeps the time it was wanted for, from the models
+	for meta in done:
+		if not meta.written:
+			busy = Util.most(busy, meta.end)
+	var both3 = Replan.replan(future + written + asked, project.settings, busy)
+	var placed = both3[0]
+	var moved = both3[1]
+	var every = reports + delayed + moved
+	return LayerDraft.new(layer, performer, true, done, placed, every, old.past, cursor, written)
+
+
+# Return a request with the window it may use.
+static func meta_of(request):
+	var length = WINDOW if request.duration == null else Util.most(0.0, request.duration)
+	if request.stroke != null:
+		length = Util.most(length, request.stroke - request.start + Sampling.FITS)
+	return MetaPlan.MetaAction.new(request, request.start, request.start + length)
+
+
+# Return the stance a layer begins in: as it did before, as asked, the graph's start, or the first that has a loop; "" for none.
+static func _begin(graph, old, stance):
+	var wishes = [old.past.stance]
+	if old.rests.size() > 0:
+		wishes.append(old.rests[0].stance)
+	if stance != null:
+		wishes.append(stance)
+	if graph.start != null:
+		wishes.append(graph.start)
+	Util.extend(wishes, graph.stances.keys())
+	for wish in wishes:
+		if graph.stances.has(wish) and graph.of(wish, "stance").size() > 0:
+			return wish
+	return ""

@@ -1,0 +1,20 @@
+# What is remembered of what was played: how often an action was, lately, and until when.
+#
+# Translated from metagraph/playback/remembering.py; change that, and translate anew.
+
+const Util = preload("util.gd")
+const REMEMBERED = 32  # draws of a stance and kind that spacing can look back on
+
+
+# Return what draws of a stance and kind are remembered under.
+static func node(stance, kind):
+	return "%s %s" % [kind, stance]
+
+
+# Note that a cue was played: how often its action was, lately, and until when.
+static func remember(cue, uses, recent, ended):
+	var ident = cue.action.id
+	var place = node(cue.stance, cue.action.kind)
+	uses[ident] = uses.get(ident, 0) + 1
+	recent[place] = Util.part(recent.get(place, []), 1 - REMEMBERED, recent.get(place, []).size()) + [ident]
+	ended[ident] = cue.end

@@ -1,0 +1,545 @@
+# From a meta plan to specific actions: candidates, the three temporal cases, the draw (Borer et al., section 6.2).
+#
+# Translated from metagraph/playback/sampling.py; change that, and translate anew.
+
+const Bounds = preload("bounds.gd")
+const Choice = preload("choice.gd")
+const PhaseTimes = preload("phase_times.gd")
+const Phases = preload("phases.gd")
+const MetaPlan = preload("meta_plan.gd")
+const Remembering = preload("remembering.gd")
+const Util = preload("util.gd")
+const FITS = 1e-06  # seconds by which sums of times may be off
+const HURRY = 2.0  # a hold is played at most this many times as fast as it was made
+const LOOP_FADE = 0.6  # seconds of crossfade when a long rest changes from one loop of its stance to another
+
+
+# One action of a chain: who may play it, and for a transition on the way the stance it leads to.
+class SamplingStep:
+	var candidates
+	var hop
+
+	func _init(candidates_, hop_ = ""):
+		self.candidates = candidates_
+		self.hop = hop_
+
+
+# How an action would play: from `start` on, `length` seconds, at least `shortest`; the rest as in a cue.
+class CueShape:
+	var start
+	var entry
+	var length
+	var shortest
+	var hold_from
+	var hold_to
+	var hold
+
+	func _init(start_, entry_, length_, shortest_, hold_from_ = 0.0, hold_to_ = 0.0, hold_ = 0.0):
+		self.start = start_
+		self.entry = entry_
+		self.length = length_
+		self.shortest = shortest_
+		self.hold_from = hold_from_
+		self.hold_to = hold_to_
+		self.hold = hold_
+
+
+# One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
+#
+# uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of meta
+# actions whose chain of transitions plays already.
+class Performer:
+	var project
+	var graph
+	var seed_
+	var stance
+	var free_
+	var uses
+	var recent
+	var ended
+	var cues
+	var rests
+	var reports
+	var begun
+
+	func _init(
+		project_,
+		graph_,
+		seed_,
+		stance_,
+		free_ = 0.0,
+		uses_ = null,
+		recent_ = null,
+		ended_ = null,
+		cues_ = null,
+		rests_ = null,
+		reports_ = null,
+		begun_ = null
+	):
+		self.project = project_
+		self.graph = graph_
+		self.seed_ = seed_
+		self.stance = stance_
+		self.free_ = free_
+		self.uses = uses_ if uses_ != null else {}
+		self.recent = recent_ if recent_ != null else {}
+		self.ended = ended_ if ended_ != null else {}
+		self.cues = cues_ if cues_ != null else []
+		self.rests = rests_ if rests_ != null else []
+		self.reports = reports_ if reports_ != null else []
+		self.begun = begun_ if begun_ != null else {}
+
+	# Take a cue as played.
+	func note(cue, then):
+		self.cues.append(cue)
+		self.free_ = cue.end
+		self.stance = then
+		Remembering.remember(cue, self.uses, self.recent, self.ended)
+
+	# When the next action may begin at the earliest.
+	func ready():
+		return self.free_ + (self.project.settings.rest if self.ended.size() > 0 else 0.0)
+
+	# Lay the first loop down; return whether the layer can perform at all.
+	func begin(stance):
+		var loop = self.loop(stance, "rest/%s" % [self.graph.layer])
+		if loop == null:
+			return false
+		self.rests.append(MetaPlan.Rest.new(stance, loop, 0.0, 0.0, 0.0))
+		return true
+
+	# Realise what starts before `end` of a conflict-free meta plan, in order.
+	func perform(metas, end):
+		for bound in Bounds.bounds(metas):
+			var meta = bound.meta
+			if meta.start >= end:
+				return
+			if meta.end <= self.ready() + FITS and meta.start < self.ready() and not self.begun.has(meta.key):
+				var running = "the running action"
+				if self.cues.size() > 0:
+					running = "'%s'" % [self.cues[-1].action.name]
+				var waits = self.ready() - meta.request.start
+				# What is wanted for a certain time is over; what is wanted once may come late.
+				if meta.written or meta.request.duration != null or waits > self.project.settings.wait:
+					self._tell(meta, "covered", "wholly covered by %s, which plays until %.2f s" % [running, self.free_])
+					continue
+				self._tell(meta, "queued", "waits %.2f s for %s" % [waits, running], true)
+			self._realise(meta, Util.most(self.ready(), meta.start), bound.limit, bound.wish)
+
+	func _realise(meta, now, limit, wish):
+		var steps = self._steps(meta)
+		if steps == null:
+			return
+		var cues = []
+		var stance = self.stance
+		for step in steps:
+			var hops = step.hop != ""
+			var asked = null if hops else meta.request
+			var fitting = Util.list(step.candidates)
+			if limit < INF:  # else all fit
+				var found = []
+				for a in step.candidates:
+					if self._fits(self._shape(a, asked, now), limit):
+						found.append(a)
+				fitting = found
+			if fitting.size() == 0:
+				var before = "" if meta.written else " before something more important"
+				self._tell(meta, "no-room", "nothing fits into the %.2f s%s" % [Util.most(0.0, limit - now), before])
+				return
+			if not hops and meta.request.action == null:
+				var warm = []
+				for a in fitting:
+					if a.cooldown <= 0 or self._cooled(a) <= self._shape(a, asked, now).start + FITS:
+						warm.append(a)
+				if warm.size() == 0:
+					var found2 = []
+					for a in fitting:
+						found2.append(self._cooled(a))
+					var soonest = Util.least_of(found2)
+					self._tell(meta, "cooling", "all that fit are cooling down; the first may play again at %.2f s" % [soonest])
+					return
+				fitting = warm
+			var action = self._draw(fitting, "%s/%s" % [meta.key, step.hop] if hops else meta.key, now)
+			var shape = self._shape(action, asked, now)
+			var cue = self._cue(action, shape, limit, INF if hops else wish, stance, meta.key)
+			cues.append(cue)
+			now = cue.end
+			stance = cue.then
+		for one in cues:
+			self._keep(one)
+
+	# Whether something that plays so is over by a limit.
+	func _fits(shape, limit):
+		return shape.start + shape.shortest <= limit + FITS
+
+	# Return when an action may be drawn again.
+	func _cooled(action):
+		if action.cooldown > 0 and self.ended.has(action.id):
+			return self.ended[action.id] + action.cooldown
+		return -INF
+
+	# Return each action in turn: the transitions to get there, then the action itself; None if impossible or needless.
+	func _steps(meta):
+		var request = meta.request
+		var graph = self.graph
+		if request.action != null:
+			var action = graph.actions.get(request.action)
+			if action == null or not graph.stances.has(action.stance):
+				self._tell(meta, "unknown-action", "there is no action '%s' in the %s layer" % [request.action, graph.layer])
+				return null
+			if action.kind == "stance":
+				return self._way(meta, action.stance)
+			if not self._arrives(action):
+				self._tell(meta, "no-stance", "'%s' ends in a stance that has no loop" % [action.name])
+				return null
+			if action.stance == self.stance:
+				return [SamplingStep.new([action])]
+			var way = self._way(meta, action.stance)
+			return null if way == null else way + [SamplingStep.new([action])]
+		if request.stance != null and ["transition", "stance"].has(request.kind):
+			if not graph.stances.has(request.stance):
+				self._tell(meta, "no-stance", "there is no stance '%s' in the %s layer" % [request.stance, graph.layer])
+				return null
+			return self._way(meta, request.stance)
+		var every = []
+		for a in graph.of(self.stance, request.kind):
+			if self._usable(a):
+				every.append(a)
+		if request.among.size() > 0:
+			var found2 = []
+			for a in every:
+				if request.among.has(a.id):
+					found2.append(a)
+			every = found2
+		var found = every
+		if request.tags.size() > 0:
+			var found3 = []
+			for a in every:
+				var are_all = true
+				for tag in request.tags:
+					if not a.tags.has(tag):
+						are_all = false
+						break
+				if are_all:
+					found3.append(a)
+			found = found3
+		var exact = found
+		if request.limb != null:
+			var found4 = []
+			for a in found:
+				if a.limb == request.limb:
+					found4.append(a)
+			exact = found4
+		if meta.written:  # the model's limb and tags are wishes, not orders, nor worth playing the same again
+			var again = Util.part(
+				self.recent.get(Remembering.node(self.stance, request.kind), []),
+				-1,
+				self.recent.get(Remembering.node(self.stance, request.kind), []).size()
+			)
+			var is_any = false
+			for a in exact:
+				if not again.has(a.id):
+					is_any = true
+					break
+			if not is_any:
+				var is_any2 = false
+				for a in found:
+					if not again.has(a.id):
+						is_any2 = true
+						break
+				exact = found if is_any2 else every
+		if exact.size() == 0:
+			var name = graph.stances[self.stance].name
+			var asked = Util.joined(request.tags + [request.kind], " ")
+			if request.limb != null:
+				asked = "%s %s" % [request.limb, asked]
+			if found.size() > 0:  # whose limb is a wish, too
+				self._tell(meta, "other-limb", "stance '%s' has no %s; another will do" % [name, asked], true)
+				return [SamplingStep.new(found)]
+			var hint = "" if meta.written else self._elsewhere(request)
+			self._tell(meta, "no-candidate", "stance '%s' has no %s%s" % [name, asked, hint])
+			return null
+		return [SamplingStep.new(exact)]
+
+	func _elsewhere(request):
+		for action in self.graph.actions.values():
+			var holds = action.kind == request.kind
+			if holds:
+				var are_all = true
+				for tag in request.tags:
+					if not action.tags.has(tag):
+						are_all = false
+						break
+				holds = are_all
+			if holds:
+				holds = request.limb == null or request.limb == action.limb
+			var fits = holds
+			if fits and self.graph.stances.has(action.stance):
+				return "; there is one in '%s'" % [self.graph.stances[action.stance].name]
+		return ""
+
+	# Return the transitions hop by hop from the current stance to `goal`.
+	func _way(meta, goal):
+		if goal == self.stance:
+			var name = self.graph.stances[goal].name
+			self._tell(meta, "already-there", "the layer is in '%s' already" % [name], true)
+			return null
+		var stances = self._chain(goal)
+		if stances.size() == 0:
+			var a = self.graph.stances[self.stance].name
+			var b = self.graph.stances[goal].name
+			self._tell(meta, "no-way", "no chain of transitions leads from '%s' to '%s'" % [a, b])
+			return null
+		var steps = []
+		var at = self.stance
+		for following in stances:
+			var hops = []
+			for a2 in self.graph.of(at, "transition"):
+				if a2.end_stance == following and self._usable(a2):
+					hops.append(a2)
+			steps.append(SamplingStep.new(hops, following))
+			at = following
+		return steps
+
+	# Return the stances after the current one on the shortest way of transitions that can play, the goal last; none where there
+	# is no way. Among equally short ones that whose transitions were placed first.
+	func _chain(goal):
+		var before = {self.stance: ""}
+		var queue = [self.stance]
+		var at = 0  # what is before it was looked at
+		while at < queue.size() and not before.has(goal):
+			var stance = queue[at]
+			at += 1
+			for action in self.graph.of(stance, "transition"):
+				var end = action.end_stance
+				if end == null or before.has(end) or not self.graph.stances.has(end):
+					continue
+				if self._usable(action):
+					before[end] = stance
+					queue.append(end)
+		var way = []
+		if not before.has(goal):
+			return way
+		var step = goal
+		while step != self.stance:
+			way.append(step)
+			step = before[step]
+		return Util.list(Util.backwards(way))
+
+	# Whether an action leaves the layer in a stance that can rest.
+	func _arrives(action):
+		var end = action.end_stance
+		if action.kind != "transition":
+			return true
+		return end != null and self.graph.stances.has(end) and self.graph.of(end, "stance").size() > 0
+
+	func _usable(action):
+		return action.likelihood > 0 and self._arrives(action)
+
+	# Return how an action would play for a request from `now` on, or as a step on the way to it.
+	func _shape(action, request, now):
+		var both = self.project.span(action)
+		var start = both[0]
+		var end = both[1]
+		var begin = now
+		var entry = start
+		var hold_from = 0.0
+		var hold_to = 0.0
+		var hold = 0.0
+		if (request != null
+			and action.kind == "gesture"
+			and (request.hold != null or request.stroke != null or not request.prepare)):
+			var found = Phases.phases(self.project, action)
+			var latest = found.skip(action.timing.blend_in)
+			entry = start if request.prepare else latest
+			# Wait for the stroke, or catch up with it by cutting the preparation.
+			if request.stroke != null:
+				begin = Util.most(now, request.stroke - (found.stroke - entry))
+				entry = Util.least(
+					Util.most(entry, found.stroke - Util.most(0.0, request.stroke - begin)),
+					Util.most(entry, latest)
+				)
+			if request.hold != null:
+				hold_from = found.stroke_end
+				hold_to = found.relax
+				hold = Util.most(request.hold, (hold_to - hold_from) / HURRY)
+				if hold <= 0:
+					hold_from = 0.0
+					hold_to = 0.0
+		var length = end - entry + hold - (hold_to - hold_from)
+		var shortest = length
+		var exit_at = action.timing.earliest_exit
+		if exit_at != null:
+			var left = exit_at - entry + (hold - (hold_to - hold_from) if exit_at >= hold_to else 0.0)
+			shortest = Util.least(length, Util.most(0.0, left) + action.timing.blend_out)
+		return CueShape.new(begin, entry, length, shortest, hold_from, hold_to, hold)
+
+	# Draw with p_k ~ likelihood_k / max(c_k, 1), leaving out those used too recently as long as any others are left.
+	func _draw(candidates, key, now):
+		var left = self._spaced(candidates)
+		var weights = {}
+		for a in left:
+			weights[a.id] = a.likelihood / Util.most(self._count(a.id, now), 1.0)
+		var is_any = false
+		for w in weights.values():
+			if w > 0:
+				is_any = true
+				break
+		if not is_any:
+			return left[0]
+		var chosen = Choice.pick(self.seed_, key, "action", weights)
+		var first = null
+		for a in left:
+			if a.id == chosen:
+				first = a
+				break
+		return first
+
+	# Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and so on.
+	func _spaced(candidates):
+		var default = 1 if self.project.settings.never_twice else 0
+		var first = candidates[0]
+		var before = self.recent.get(Remembering.node(first.stance, first.kind), [])
+		if candidates.size() < 2 or before.size() == 0:
+			return candidates
+		# How many came after each.
+		var since = {}
+		for place in range(before.size()):
+			var ident = before[place]
+			since[ident] = before.size() - 1 - place
+		var needs = {}
+		for a in candidates:
+			needs[a.id] = default if a.spacing == null else a.spacing
+		var found = []
+		for a in candidates:
+			found.append(needs[a.id])
+		for less in range(Util.most_of(found) + 1):
+			var left = []
+			for a in candidates:
+				if since.get(a.id, Remembering.REMEMBERED) >= needs[a.id] - less:
+					left.append(a)
+			if left.size() > 0:
+				return left
+		return candidates
+
+	# Return c_k of section 6.2, alpha times the uses, over the settings' memory.
+	func _count(ident, now):
+		var memory = self.project.settings.memory
+		var alpha = self.project.settings.alpha
+		if memory <= 0:
+			return alpha * self.uses.get(ident, 0)
+		var used = 0
+		for cue in Util.backwards(self.cues):
+			if cue.start < now - memory:
+				break
+			if cue.action.id == ident:
+				used += 1
+		return alpha * used
+
+	func _cue(action, shape, limit, wish, stance, meta):
+		var length = shape.length
+		if action.timing.earliest_exit != null:
+			length = Util.least(length, Util.most(shape.shortest, Util.least(limit, wish) - shape.start))
+		var into = Util.most(0.0, action.timing.blend_in)
+		var out = Util.most(0.0, action.timing.blend_out)
+		if shape.entry > self.project.span(action)[0]:
+			into = Util.most(into, PhaseTimes.LEAST_BLEND)
+		var squeeze = Util.least(1.0, length / (into + out)) if into + out > 0 else 1.0
+		var then = stance
+		if action.kind == "transition" and action.end_stance != null:
+			then = action.end_stance
+		var end = shape.start + length
+		return MetaPlan.Cue.new(
+			action,
+			shape.start,
+			end,
+			shape.entry,
+			into * squeeze,
+			out * squeeze,
+			stance,
+			then,
+			meta,
+			shape.hold_from,
+			shape.hold_to,
+			shape.hold
+		)
+
+	func _keep(cue):
+		self.note(cue, cue.then)
+		var loop = self.loop(cue.then, cue.meta)
+		if loop != null:
+			# The loop begins anew under the action, so that the action's last pose meets the loop's first.
+			# Where the action leaves joints alone the change shows, and takes its time: a transition all of
+			# its own.
+			var partial = cue.action.limb != "both" or cue.action.joints.size() > 0
+			var begin = cue.start + cue.blend_in
+			var until = cue.end - cue.blend_out
+			var fade = Util.most(0.0, until - begin)
+			if partial:
+				fade = cue.end - cue.start if cue.then != cue.stance else Util.least(LOOP_FADE, cue.end - cue.start)
+				begin = Util.most(cue.start, until - fade)
+			self.rests.append(MetaPlan.Rest.new(cue.then, loop, until, begin, fade))
+
+	# Return one of a stance's loops, drawn by likelihood; None where it has none.
+	func loop(stance, key):
+		var loops = self.graph.of(stance, "stance")
+		var weights = {}
+		for a in loops:
+			if a.likelihood > 0:
+				weights[a.id] = a.likelihood
+		if weights.size() == 0:
+			return loops[0] if loops.size() > 0 else null
+		var chosen = Choice.pick(self.seed_, key, "loop", weights)
+		var first = null
+		for a in loops:
+			if a.id == chosen:
+				first = a
+				break
+		return first
+
+	# Where a stance has several loops, change between them in long rests, at a loop's end.
+	func vary_rests(end):
+		var out = []
+		for place in range(self.rests.size()):
+			var rest = self.rests[place]
+			out.append(rest)
+			var loops = self.graph.of(rest.stance, "stance")
+			if loops.size() < 2:
+				continue
+			var until = self.rests[place + 1].fade_start if place + 1 < self.rests.size() else end
+			var current = rest
+			var change = rest.start
+			while true:
+				var both = self.project.span(current.action)
+				var start = both[0]
+				var stop = both[1]
+				change += Util.most(1.0, stop - start - current.action.timing.blend_in)
+				if not (change <= until):  # nor when it is no number
+					break
+				var loop = self.loop(rest.stance, "%s/%s" % [self.graph.layer, Util.thousandths(change)])
+				if loop != null and loop.id != current.action.id:
+					current = MetaPlan.Rest.new(rest.stance, loop, change, change - LOOP_FADE, LOOP_FADE)
+					out.append(current)
+		self.rests = out
+
+	func _tell(meta, outcome, message, played = false):
+		var layer = self.graph.layer
+		self.reports.append(MetaPlan.Report.new(meta.request.id, outcome, message, layer, meta.start, played, meta.written))
+
+
+# Return the performer that stands where cues have been played after a past.
+static func performer_after(project, graph, seed_, begin, past, cues):
+	var stance = past.stance if graph.stances.has(past.stance) else begin
+	var out = Performer.new(
+		project,
+		graph,
+		seed_,
+		stance,
+		past.free_,
+		past.uses.duplicate(),
+		past.recent.duplicate(),
+		past.ended.duplicate()
+	)
+	for cue in cues:
+		out.note(cue, cue.then if graph.stances.has(cue.then) else begin)
+	return out

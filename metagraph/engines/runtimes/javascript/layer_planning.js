@@ -1,0 +1,183 @@
+/**
+ * Planning one layer on: what was planned for later is taken back to its meta actions, merged with new requests, placed and
+ * performed again (Borer et al., section 6).
+ *
+ * Translated from metagraph/playback/layer_planning.py; change that, and translate anew.
+ */
+
+import { write } from "./markov.js";
+import { LayerPlan, MetaAction, Report, TEMPORAL } from "./meta_plan.js";
+import { delay, replan } from "./replan.js";
+import { FITS, performerAfter } from "./sampling.js";
+
+export const WINDOW = 1; // seconds a request may use when it does not say how long
+
+/**
+ * A layer placed in time, not yet performed.
+ *
+ * able: whether the layer can perform at all. done: meta actions that were performed before. placed: those to be performed,
+ * in order; what a model wrote among them is performed as its mode says. reports: what was told so far.
+ *
+ * layer: string; performer: Performer; able: boolean; done: MetaAction[]; placed: MetaAction[]; reports: Report[]; past:
+ * Past; cursor: Cursor; written: MetaAction[].
+ */
+export class LayerDraft {
+  constructor(layer, performer, able, done, placed, reports, past, cursor, written) {
+    this.layer = layer;
+    this.performer = performer;
+    this.able = able;
+    this.done = done;
+    this.placed = placed;
+    this.reports = reports;
+    this.past = past;
+    this.cursor = cursor;
+    this.written = written;
+  }
+
+  /** Return the layer's plan, with those of its meta actions performed that are given; `reports` then tells all. */
+  performed(metas, end) {
+    let cues = [];
+    let rests = [];
+    if (this.able) {
+      this.performer.perform(metas, end);
+      this.performer.varyRests(end);
+      cues = this.performer.cues;
+      rests = this.performer.rests;
+      this.reports.push(...this.performer.reports);
+    }
+    const every = [...this.done, ...this.placed];
+    return new LayerPlan(this.layer, every, [...cues], [...rests], this.past, this.cursor, [...this.written]);
+  }
+}
+
+/**
+ * Return a layer's plan taken back to `now`, with what is asked for placed anew.
+ *
+ * chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of the plan so far.
+ * fresh: requests, of all layers. replaced: ids of those that are asked for anew or withdrawn. stance: which the layer would
+ * begin in.
+ * @param {Project} project
+ * @param {MetaGraph} graph
+ * @param {?Markov} chain
+ * @param {Set<string>} kinds
+ * @param {LayerPlan} old
+ * @param {Report[]} told
+ * @param {number} seed
+ * @param {number} now
+ * @param {MetaRequest[]} fresh
+ * @param {Set<string>} replaced
+ * @param {number} end
+ * @param {?string} stance
+ * @returns {LayerDraft}
+ */
+export function draft(project, graph, chain, kinds, old, told, seed, now, fresh, replaced, end, stance) {
+  const layer = graph.layer;
+  let asked = fresh.filter((request) => request.layer === layer).map((request) => metaOf(request));
+  const kept = old.cues.filter((cue) => cue.start < now);
+  const played = new Set(kept.map((cue) => cue.meta));
+  // also those whose chain of transitions has begun
+  const waiting = new Set(old.cues.slice(kept.length).map((cue) => cue.meta));
+  const written = [];
+  let cursor = old.cursor;
+  const again = new Set(replaced);
+  if (chain !== null) {
+    let more;
+    [more, cursor] = write(chain, seed, end, kinds, old.cursor);
+    for (const meta of [...old.written, ...more]) {
+      if (meta.start >= now) {
+        written.push(meta);
+        again.add(meta.request.id);
+      }
+    }
+  }
+  const future = [];
+  const planned = new Map(); // again: when those of a request start
+  for (const meta of old.metas) {
+    if (again.has(meta.request.id)) {
+      continue;
+    }
+    if (waiting.has(meta.key) || (meta.start >= now && !played.has(meta.key))) {
+      future.push(meta);
+      planned.set(meta.request.id, [...planned.get(meta.request.id) ?? [], meta.start]);
+    }
+  }
+  // What was told about time still holds; the rest will be told again by those that are planned again.
+  const done = old.metas.filter((meta) =>
+    !again.has(meta.request.id)
+      && !(planned.get(meta.request.id) ?? []).includes(meta.start)
+      && (played.has(meta.key) || meta.start < now));
+  const reports = told.filter((report) =>
+    report.layer === layer
+      && !again.has(report.request)
+      && (TEMPORAL.has(report.outcome) || !(planned.get(report.request) ?? []).includes(report.at)));
+  const begin = _begin(graph, old, stance);
+  const performer = performerAfter(project, graph, seed, begin, old.past, kept);
+  if (begin === "" || !performer.begin(begin)) {
+    const why = `the ${layer} layer has no stance with a loop to begin in`;
+    const waits = [...future, ...asked];
+    for (const meta of waits) {
+      if (!meta.written) {
+        reports.push(new Report(meta.request.id, "no-stance", why, layer, meta.start));
+      }
+    }
+    return new LayerDraft(layer, performer, false, done, waits, reports, old.past, cursor, written);
+  }
+  if (old.rests.length > 0 && now > 0) {
+    const begun = new Set(kept.map((cue) => cue.end - cue.blendOut));
+    performer.rests = old.rests.filter((rest) => rest.fadeStart < now || begun.has(rest.start));
+  }
+  performer.begun = new Set(kept.filter((cue) => waiting.has(cue.meta)).map((cue) => cue.meta));
+  performer.free = Math.max(now - (performer.ready - performer.free), performer.free);
+  let delayed;
+  [asked, delayed] = delay(asked, performer.ready, project.settings);
+  let busy = -Infinity; // what runs keeps the time it was wanted for, from the models
+  for (const meta of done) {
+    if (!meta.written) {
+      busy = Math.max(busy, meta.end);
+    }
+  }
+  const [placed, moved] = replan([...future, ...written, ...asked], project.settings, busy);
+  const every = [...reports, ...delayed, ...moved];
+  return new LayerDraft(layer, performer, true, done, placed, every, old.past, cursor, written);
+}
+
+/**
+ * Return a request with the window it may use.
+ * @param {MetaRequest} request
+ * @returns {MetaAction}
+ */
+export function metaOf(request) {
+  let length = request.duration === null ? WINDOW : Math.max(0, request.duration);
+  if (request.stroke !== null) {
+    length = Math.max(length, request.stroke - request.start + FITS);
+  }
+  return new MetaAction(request, request.start, request.start + length);
+}
+
+/**
+ * Return the stance a layer begins in: as it did before, as asked, the graph's start, or the first that has a loop; "" for
+ * none.
+ * @param {MetaGraph} graph
+ * @param {LayerPlan} old
+ * @param {?string} stance
+ * @returns {string}
+ */
+function _begin(graph, old, stance) {
+  const wishes = [old.past.stance];
+  if (old.rests.length > 0) {
+    wishes.push(old.rests[0].stance);
+  }
+  if (stance !== null) {
+    wishes.push(stance);
+  }
+  if (graph.start !== null) {
+    wishes.push(graph.start);
+  }
+  wishes.push(...[...graph.stances.keys()]);
+  for (const wish of wishes) {
+    if (graph.stances.has(wish) && graph.of(wish, "stance").length > 0) {
+      return wish;
+    }
+  }
+  return "";
+}

@@ -1,0 +1,33 @@
+/**
+ * What is remembered of what was played: how often an action was, lately, and until when.
+ *
+ * Translated from metagraph/playback/remembering.py; change that, and translate anew.
+ */
+
+
+export const REMEMBERED = 32; // draws of a stance and kind that spacing can look back on
+
+/**
+ * Return what draws of a stance and kind are remembered under.
+ * @param {string} stance
+ * @param {string} kind
+ * @returns {string}
+ */
+export function node(stance, kind) {
+  return `${kind} ${stance}`;
+}
+
+/**
+ * Note that a cue was played: how often its action was, lately, and until when.
+ * @param {Cue} cue
+ * @param {Map<string, number>} uses
+ * @param {Map<string, string[]>} recent
+ * @param {Map<string, number>} ended
+ */
+export function remember(cue, uses, recent, ended) {
+  const ident = cue.action.id;
+  const place = node(cue.stance, cue.action.kind);
+  uses.set(ident, (uses.get(ident) ?? 0) + 1);
+  recent.set(place, [...(recent.get(place) ?? []).slice(1 - REMEMBERED), ident]);
+  ended.set(ident, cue.end);
+}

@@ -1,0 +1,223 @@
+// Translated from metagraph/playback/layer_planning.py; change that, and translate anew.
+using System;
+using System.Collections.Generic;
+using System.Linq;
+
+namespace Metagraph
+{
+    /// <summary>
+    /// A layer placed in time, not yet performed.
+    ///
+    /// able: whether the layer can perform at all. done: meta actions that were performed before. placed: those to be performed,
+    /// in order; what a model wrote among them is performed as its mode says. reports: what was told so far.
+    /// </summary>
+    public sealed class LayerDraft
+    {
+        public string Layer;
+        public Performer Performer;
+        public bool Able;
+        public List<MetaAction> Done;
+        public List<MetaAction> Placed;
+        public List<Report> Reports;
+        public Past Past;
+        public Cursor Cursor;
+        public List<MetaAction> Written;
+
+        public LayerDraft(
+            string layer,
+            Performer performer,
+            bool able,
+            List<MetaAction> done,
+            List<MetaAction> placed,
+            List<Report> reports,
+            Past past,
+            Cursor cursor,
+            List<MetaAction> written
+        )
+        {
+            Layer = layer;
+            Performer = performer;
+            Able = able;
+            Done = done;
+            Placed = placed;
+            Reports = reports;
+            Past = past;
+            Cursor = cursor;
+            Written = written;
+        }
+
+        /// <summary>
+        /// Return the layer's plan, with those of its meta actions performed that are given; `reports` then tells all.
+        /// </summary>
+        public LayerPlan Performed(List<MetaAction> metas, double end)
+        {
+            var cues = new List<Cue>();
+            var rests = new List<Rest>();
+            if (Able)
+            {
+                Performer.Perform(metas, end);
+                Performer.VaryRests(end);
+                cues = Performer.Cues;
+                rests = Performer.Rests;
+                Reports.AddRange(Performer.Reports);
+            }
+            var every = Done.Concat(Placed).ToList();
+            return new LayerPlan(Layer, every, cues.ToList(), rests.ToList(), Past, Cursor, Written.ToList());
+        }
+    }
+
+    public static class LayerPlanningRules
+    {
+        public const double Window = 1.0; // seconds a request may use when it does not say how long
+
+        /// <summary>
+        /// Return a layer's plan taken back to `now`, with what is asked for placed anew.
+        ///
+        /// chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of the plan so
+        /// far. fresh: requests, of all layers. replaced: ids of those that are asked for anew or withdrawn. stance: which the
+        /// layer would begin in.
+        /// </summary>
+        public static LayerDraft Draft(
+            Graph project,
+            LayerGraph graph,
+            Markov chain,
+            HashSet<string> kinds,
+            LayerPlan old,
+            List<Report> told,
+            uint seed,
+            double now,
+            List<MetaRequest> fresh,
+            HashSet<string> replaced,
+            double end,
+            string stance
+        )
+        {
+            var layer = graph.Layer;
+            var asked = fresh.Where(request => request.Layer == layer).Select(request => MetaOf(request)).ToList();
+            var kept = old.Cues.Where(cue => cue.Start < now).ToList();
+            var played = new HashSet<string>(kept.Select(cue => cue.Meta));
+            // also those whose chain of transitions has begun
+            var waiting = new HashSet<string>(PlainLists.Part(old.Cues, kept.Count).Select(cue => cue.Meta));
+            var written = new List<MetaAction>();
+            var cursor = old.Cursor;
+            var again = new HashSet<string>(replaced);
+            if (chain != null)
+            {
+                List<MetaAction> more = default(List<MetaAction>);
+                var found = MarkovRules.Write(chain, seed, end, kinds, old.Cursor);
+                more = found.Item1;
+                cursor = found.Item2;
+                foreach (MetaAction meta in old.Written.Concat(more).ToList())
+                {
+                    if (meta.Start >= now)
+                    {
+                        written.Add(meta);
+                        again.Add(meta.Request.Id);
+                    }
+                }
+            }
+            var future = new List<MetaAction>();
+            var planned = new Dictionary<string, List<double>>(); // again: when those of a request start
+            foreach (MetaAction meta in old.Metas)
+            {
+                if (again.Contains(meta.Request.Id))
+                {
+                    continue;
+                }
+                if (waiting.Contains(meta.Key) || (meta.Start >= now && !played.Contains(meta.Key)))
+                {
+                    future.Add(meta);
+                    planned[meta.Request.Id] = PlainMaps.GetOr(planned, meta.Request.Id, new List<double>()).Concat(new List<double> { meta.Start }).ToList();
+                }
+            }
+            // What was told about time still holds; the rest will be told again by those that are planned again.
+            var done = old.Metas.Where(meta => !again.Contains(meta.Request.Id)
+                && !PlainMaps.GetOr(planned, meta.Request.Id, new List<double>()).Contains(meta.Start)
+                && (played.Contains(meta.Key) || meta.Start < now)).ToList();
+            var reports = told.Where(report => report.Layer == layer
+                && !again.Contains(report.Request)
+                && (MetaPlanRules.Temporal.Contains(report.Outcome)
+                    || !PlainMaps.GetOr(planned, report.Request, new List<double>()).Contains(report.At))).ToList();
+            var begin = Begin(graph, old, stance);
+            var performer = SamplingRules.PerformerAfter(project, graph, seed, begin, old.Past, kept);
+            if (begin == "" || !performer.Begin(begin))
+            {
+                var why = "the " + layer + " layer has no stance with a loop to begin in";
+                var waits = future.Concat(asked).ToList();
+                foreach (MetaAction meta in waits)
+                {
+                    if (!meta.Written)
+                    {
+                        reports.Add(new Report(meta.Request.Id, "no-stance", why, layer, meta.Start));
+                    }
+                }
+                return new LayerDraft(layer, performer, false, done, waits, reports, old.Past, cursor, written);
+            }
+            if (old.Rests.Count > 0 && now > 0)
+            {
+                var begun = new HashSet<double>(kept.Select(cue => cue.End - cue.BlendOut));
+                performer.Rests = old.Rests.Where(rest => rest.FadeStart < now || begun.Contains(rest.Start)).ToList();
+            }
+            performer.Begun = new HashSet<string>(kept.Where(cue => waiting.Contains(cue.Meta)).Select(cue => cue.Meta));
+            performer.Free = Math.Max(now - (performer.Ready - performer.Free), performer.Free);
+            List<Report> delayed = default(List<Report>);
+            var found2 = ReplanRules.Delay(asked, performer.Ready, project.Settings);
+            asked = found2.Item1;
+            delayed = found2.Item2;
+            var busy = double.NegativeInfinity; // what runs keeps the time it was wanted for, from the models
+            foreach (MetaAction meta in done)
+            {
+                if (!meta.Written)
+                {
+                    busy = Math.Max(busy, meta.End);
+                }
+            }
+            var found3 = ReplanRules.Replan(future.Concat(written).Concat(asked).ToList(), project.Settings, busy);
+            List<MetaAction> placed = found3.Item1;
+            List<Report> moved = found3.Item2;
+            var every = reports.Concat(delayed).Concat(moved).ToList();
+            return new LayerDraft(layer, performer, true, done, placed, every, old.Past, cursor, written);
+        }
+
+        /// <summary>Return a request with the window it may use.</summary>
+        public static MetaAction MetaOf(MetaRequest request)
+        {
+            var length = request.Duration == null ? Window : Math.Max(0.0, request.Duration.Value);
+            if (request.Stroke != null)
+            {
+                length = Math.Max(length, request.Stroke.Value - request.Start + SamplingRules.Fits);
+            }
+            return new MetaAction(request, request.Start, request.Start + length);
+        }
+
+        /// <summary>
+        /// Return the stance a layer begins in: as it did before, as asked, the graph's start, or the first that has a loop; ""
+        /// for none.
+        /// </summary>
+        private static string Begin(LayerGraph graph, LayerPlan old, string stance)
+        {
+            var wishes = new List<string> { old.Past.Stance };
+            if (old.Rests.Count > 0)
+            {
+                wishes.Add(old.Rests[0].Stance);
+            }
+            if (stance != null)
+            {
+                wishes.Add(stance);
+            }
+            if (graph.Start != null)
+            {
+                wishes.Add(graph.Start);
+            }
+            wishes.AddRange(graph.Stances.Keys.ToList());
+            foreach (string wish in wishes)
+            {
+                if (graph.Stances.ContainsKey(wish) && graph.Of(wish, "stance").Count > 0)
+                {
+                    return wish;
+                }
+            }
+            return "";
+        }
+    }
+}

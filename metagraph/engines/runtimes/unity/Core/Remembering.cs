@@ -1,0 +1,34 @@
+// Translated from metagraph/playback/remembering.py; change that, and translate anew.
+using System;
+using System.Collections.Generic;
+using System.Linq;
+
+namespace Metagraph
+{
+    /// <summary>What is remembered of what was played: how often an action was, lately, and until when.</summary>
+    public static class RememberingRules
+    {
+        public const int Remembered = 32; // draws of a stance and kind that spacing can look back on
+
+        /// <summary>Return what draws of a stance and kind are remembered under.</summary>
+        public static string Node(string stance, string kind)
+        {
+            return kind + " " + stance;
+        }
+
+        /// <summary>Note that a cue was played: how often its action was, lately, and until when.</summary>
+        public static void Remember(
+            Cue cue,
+            Dictionary<string, int> uses,
+            Dictionary<string, List<string>> recent,
+            Dictionary<string, double> ended
+        )
+        {
+            var ident = cue.Action.Id;
+            var place = Node(cue.Stance, cue.Action.Kind);
+            uses[ident] = PlainMaps.GetOr(uses, ident, 0) + 1;
+            recent[place] = PlainLists.Part(PlainMaps.GetOr(recent, place, new List<string>()), 1 - Remembered).Concat(new List<string> { ident }).ToList();
+            ended[ident] = cue.End;
+        }
+    }
+}

@@ -1,0 +1,23 @@
+"""What is remembered of what was played: how often an action was, lately, and until when."""
+
+from __future__ import annotations
+
+from metagraph.playback.plan import Cue
+
+REMEMBERED = 32  # draws of a stance and kind that spacing can look back on
+
+
+def node(stance: str, kind: str) -> str:
+    """Return what draws of a stance and kind are remembered under."""
+    return f"{kind} {stance}"
+
+
+def remember(
+    cue: Cue, uses: dict[str, int], recent: dict[str, tuple[str, ...]], ended: dict[str, float]
+) -> None:
+    """Note that a cue was played: how often its action was, lately, and until when."""
+    ident = cue.action.id
+    place = node(cue.stance, cue.action.kind)
+    uses[ident] = uses.get(ident, 0) + 1
+    recent[place] = (*recent.get(place, ())[1 - REMEMBERED :], ident)
+    ended[ident] = cue.end
