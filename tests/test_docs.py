@@ -8,6 +8,7 @@ import contextlib
 import io
 import json
 import re
+import runpy
 import shlex
 import shutil
 from importlib.util import find_spec
@@ -154,6 +155,12 @@ def test_links_and_pictures_lead_somewhere(page: Path) -> None:
         assert place.is_file(), target
         if anchor:
             assert anchor in anchors(place), target
+
+
+def test_the_page_of_requests_that_exports_carry_is_what_the_docs_say() -> None:
+    """Else: `.venv/bin/python docs/requests_page.py`."""
+    written = runpy.run_path(str(ROOT / "docs" / "requests_page.py"))
+    assert written["PAGE"].read_text(encoding="utf-8") == written["page"]()
 
 
 def test_the_readme_shows_the_window_and_the_pictures_are_pictures() -> None:

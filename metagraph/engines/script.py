@@ -4,66 +4,23 @@ planner and life.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator
 from itertools import combinations
 from random import Random
 from typing import Any
 
+from metagraph.engines.script_parts import Ask, Case, ScriptStep
+from metagraph.engines.script_parts import ask as _ask
+from metagraph.engines.script_parts import once as _once
+from metagraph.engines.script_parts import some as _some
 from metagraph.graph.expand import chain
-from metagraph.graph.model import LAYERS, Action, Kind, Layer, Project
-
-Ask = Mapping[str, Any]
-
-
-@dataclass(frozen=True)
-class ScriptStep:
-    """At `now`, `asks` become known and the plan is extended to `end` seconds; then what ended before
-    `forget` is forgotten.
-    """
-
-    now: float
-    end: float
-    asks: tuple[Ask, ...] = ()
-    forget: float | None = None
-
-
-@dataclass(frozen=True)
-class Case:
-    """One script. times: at which poses are compared, the most telling ones where empty. alive: with the life
-    layers, without, both.
-    """
-
-    name: str
-    about: str
-    steps: tuple[ScriptStep, ...]
-    seed: int = 1
-    idle: bool = False
-    stances: Mapping[Layer, str] = field(default_factory=dict)
-    times: tuple[float, ...] = ()
-    alive: tuple[bool, ...] = (False,)
+from metagraph.graph.model import LAYERS, Layer, Project
 
 
 def cases(project: Project) -> Iterator[Case]:
     """Yield the cases that suit a project."""
     for part in (_alone, _layers, _requests, _conflicts, _stances, _refused, _over_time, _life, _chatter):
         yield from part(project)
-
-
-def _once(name: str, about: str, asks: Sequence[Ask], end: float = 14.0, **more: Any) -> Case:
-    return Case(name, about, (ScriptStep(0.0, end, tuple(asks)),), **more)
-
-
-def _ask(ident: str, do: str, at: float | None = None, **more: Any) -> Ask:
-    return {"do": do, "id": ident, **({} if at is None else {"at": at}), **more}
-
-
-def _some(project: Project, layer: Layer, *kinds: Kind) -> list[Action]:
-    """Return a layer's actions of some kinds, those of its first stance first."""
-    graph = project.graphs[layer]
-    order = [s for s in (graph.start, *graph.stances) if s is not None]
-    found = [a for a in graph.actions.values() if a.kind in kinds and a.stance in graph.stances]
-    return sorted(found, key=lambda a: order.index(a.stance))
 
 
 def _alone(project: Project) -> Iterator[Case]:

@@ -8,8 +8,8 @@ are scripts over whatever a project has; a project without, say, transitions has
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from math import degrees
 from pathlib import Path
 from typing import Any
@@ -18,18 +18,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.engines.reading import read_export
-from metagraph.engines.script import Case, ScriptStep, cases
+from metagraph.engines.script import cases
+from metagraph.engines.script_boundaries import boundary_cases
+from metagraph.engines.script_parts import Case, ScriptStep
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.offered import offered
-from metagraph.graph.requests import request_from
+from metagraph.graph.requests import AnyRequest, RequestError, request_from
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.choice import key32
 from metagraph.playback.extend_performance import hear, since
 from metagraph.playback.life.lane import Lane
-from metagraph.playback.plan import LayerPlan, Plan
+from metagraph.playback.plan import LayerPlan, Plan, Report
 from metagraph.playback.player import morphs_at, pose_at
 
 Array = NDArray[Any]
@@ -49,14 +51,28 @@ HASHES: tuple[tuple[int, tuple[str, ...]], ...] = (
 
 
 def follow(project: Project, case: Case) -> Plan:
-    """Return the plan a case leads to."""
+    """Return the plan a case leads to. What cannot be read is in its reports, as a runtime tells it."""
     plan = Plan(case.seed, 0.0)
     for step in case.steps:
-        asks = [request_from(dict(ask)) for ask in step.asks]
+        asks: list[AnyRequest] = []
+        refused: list[Report] = []
+        for ask in step.asks:
+            try:
+                asks.append(request_from(dict(ask)))
+            except RequestError as error:
+                at = step.now + project.settings.lookahead if step.now > 0 else 0.0
+                refused.append(Report(ask.get("id", ""), "not-understood", str(error), "arms", at))
         plan = hear(project, plan, step.now, asks, step.end, case.stances, case.idle)
+        plan = replace(plan, reports=(*plan.reports, *refused))
         if step.forget is not None:
             plan = since(plan, step.forget)
     return plan
+
+
+def every_case(project: Project) -> Iterator[Case]:
+    """Yield all cases that suit a project."""
+    yield from cases(project)
+    yield from boundary_cases(project)
 
 
 def write_vectors(export: Path, chosen: Iterable[Case] | None = None) -> Path:
@@ -66,7 +82,7 @@ def write_vectors(export: Path, chosen: Iterable[Case] | None = None) -> Path:
     Raises FileError when the export cannot be read or the file cannot be written.
     """
     project = read_export(export, resolved=True)
-    found = [_expected(project, case) for case in (cases(project) if chosen is None else chosen)]
+    found = [_expected(project, case) for case in (every_case(project) if chosen is None else chosen)]
     head = {
         "vectors": VERSION,
         "export": export.name,
@@ -84,6 +100,7 @@ def write_vectors(export: Path, chosen: Iterable[Case] | None = None) -> Path:
 def _expected(project: Project, case: Case) -> dict[str, Any]:
     plan = follow(project, case)
     times = case.times or _telling(plan)
+    living = (*times, *_living(plan)) if len(case.steps) + case.idle > 1 else times
     return {
         "name": case.name,
         "about": case.about,
@@ -93,7 +110,9 @@ def _expected(project: Project, case: Case) -> dict[str, Any]:
         "steps": [{"now": s.now, "end": s.end, "asks": list(s.asks), "forget": s.forget} for s in case.steps],
         "plan": plan_data(plan),
         "life": life_data(plan),
-        "poses": [_pose(project, plan, time, alive) for time in times for alive in case.alive],
+        "poses": [
+            _pose(project, plan, time, alive) for alive in case.alive for time in (living if alive else times)
+        ],
     }
 
 
@@ -195,7 +214,36 @@ def _telling(plan: Plan) -> tuple[float, ...]:
         found += [rest.fade_start + 0.6 * rest.fade for rest in of.rests[1:]]
     found = sorted(found)
     chosen = found[:: max(1, len(found) // (MOST - 2))][: MOST - 2]
-    return tuple(round(x, 3) for x in (*chosen, 0.37 * plan.end, plan.end + 1.5))
+    held = [
+        c.start + c.hold_from - c.entry + 0.4 * c.hold
+        for of in plan.layers.values()
+        for c in of.cues
+        if c.hold
+    ]
+    return tuple(round(x, 3) for x in (*chosen, *held[:2], 0.37 * plan.end, plan.end + 1.5))
+
+
+def _living(plan: Plan) -> tuple[float, ...]:
+    """Return times amid what the life layers do of themselves: a dart of the eyes, a look away and back, a
+    blink, a breath.
+    """
+    life = plan.life
+    found = [t.start + 0.1 for t in life.targets[1:3]]
+    for lane, delays in (
+        (life.saccades, (0.012, 0.02)),
+        (life.aversions, (0.03, 0.2)),
+        (life.blinks, (0.03, 0.11)),
+        (life.breaths, (0.4, 1.1)),
+    ):
+        starts = [float(start) for start in lane.plain[0]]
+        last = len(starts) - 1
+        found += [
+            starts[place] + delay
+            for delay, place in zip(delays, (last // 3, 2 * last // 3), strict=True)
+            if starts
+        ]
+    found += [float(values[0]) + 0.06 for values in life.aversions.plain[1][1:3]]
+    return tuple(round(x, 4) for x in sorted(found) if x >= 0)
 
 
 # --- checking

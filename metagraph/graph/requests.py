@@ -140,7 +140,9 @@ class Say(Request, frozen=True, tag="say"):
     them and are shut between; the text may be left out then. visemes: [seconds, name], with how fully it is
     made, 0..1, where that is told; each lasts until the next. Both may be objects, as Amazon Polly's speech
     marks and Azure's events are. set: of the visemes' names; null for what they tell. While a line is said, a
-    later ask of its id adds to it what comes after now.
+    later ask of its id adds to it what comes after now. audio: of a live session alone, the next samples of
+    the line's sound, 16-bit little-endian numbers in base64, one channel, `rate` a second: lips are as loud
+    where neither words nor visemes are told.
     """
 
     line: Annotated[str, Meta(min_length=1, max_length=200)] | int | None = None
@@ -150,6 +152,8 @@ class Say(Request, frozen=True, tag="say"):
     words: Annotated[tuple[Timed, ...], Meta(max_length=4000)] = ()
     visemes: Annotated[tuple[Timed, ...], Meta(max_length=20000)] = ()
     set: Literal["oculus", "azure", "sapi", "polly", "arkit"] | None = None
+    audio: Annotated[str, Meta(max_length=60000)] | None = None
+    rate: Annotated[int, Meta(ge=8000, le=48000)] = 16000
 
 
 class Behave(Request, frozen=True, tag="mode"):

@@ -18,6 +18,8 @@ def told_timing(ask: Say) -> LineTiming | None:
     """Return when a line's words and shapes come; None where that is not told. Raises RequestError naming the
     entry.
     """
+    if ask.audio is not None:
+        raise RequestError("audio: is heard in live sessions alone; tell words or visemes, or say a line")
     words: list[SpokenWord] = []
     marks: list[VisemeMark] = []
     for n, entry in enumerate(ask.words):

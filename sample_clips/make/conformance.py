@@ -1,459 +1,30 @@
-"""The shipped conformance vectors, on small characters that have something of everything: `python -m
-sample_clips.make.conformance`.
-"""
+"""The shipped conformance vectors: `python -m sample_clips.make.conformance`."""
 
 from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from metagraph import engines
 from metagraph.engines.export import write
-from metagraph.engines.vectors import write_vectors
-from metagraph.graph import edits
-from metagraph.graph.face import with_morphs
-from metagraph.graph.life import Life, Manner
-from metagraph.graph.model import Kind, Layer, Limb, Markov, Project
-from metagraph.graph.requests import Gesture, Line, Nod
-from metagraph.motion import rotation
+from metagraph.engines.vectors import every_case, write_vectors
+from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import Character, Material, Surface
-from metagraph.motion.clip import Clip
-from metagraph.motion.skeleton import Skeleton
-from metagraph.playback.life.voice import voice_from_text
-from sample_clips.make.mannequin_skeleton import mannequin_skeleton
+from sample_clips.make.conformance_projects import BOTH_EYES, sparse, stick, still, varied
+from sample_clips.make.randomised_projects import randomised
 
-Array = NDArray[np.float64]
-
+LIVING = (
+    "the models alone",
+    "two minutes",
+    "a thing that moves",
+    "words that are said",
+    "stressed syllables",
+)
 FOLDER = Path(engines.__file__).with_name("conformance")
-LEFT_OUT = (
-    "Thumb",
-    "Index",
-    "Middle",
-    "Ring",
-    "Little",
-    "Brow",
-    "LowerLid",
-    "Toes",
-    "Leg",
-    "Foot",
-    "UpperChest",
-)
-FPS = 24.0
-
-
-def stick_skeleton(more: tuple[str, ...] = ()) -> Skeleton:
-    """Return the mannequin's skeleton with few joints, each turned some way, so that no rest rotation is the
-    identity. more: parts of the names of joints that are left out as well.
-    """
-    whole = mannequin_skeleton()
-    _, at = whole.globals(whole.rest)
-    kept = [i for i, name in enumerate(whole.names) if not any(word in name for word in (*LEFT_OUT, *more))]
-    names = [whole.names[i] for i in kept]
-    parents = []
-    for i in kept:
-        up = int(whole.parents[i])
-        while up >= 0 and up not in kept:
-            up = int(whole.parents[up])
-        parents.append(kept.index(up) if up >= 0 else -1)
-    chance = np.random.default_rng(4)
-    turns = rotation.exp(chance.normal(0.0, 0.25, (len(kept), 3)))
-    positions = at[kept]
-    local_r, local_t = np.array(turns), np.array(positions)
-    for n, up in enumerate(parents):
-        if up >= 0:
-            back = rotation.conjugate(turns[up])
-            local_r[n] = rotation.multiply(back, turns[n])
-            local_t[n] = rotation.rotate(back, positions[n] - positions[up])
-    return Skeleton(tuple(names), np.array(parents), local_r, local_t)
-
-
-class Moves:
-    """Clips of one skeleton: stances are fixed turns of some joints, actions smooth waves between them."""
-
-    def __init__(self, skeleton: Skeleton) -> None:
-        self.skeleton = skeleton
-        self.morphs: tuple[str, ...] = ()
-
-    def there(self, joints: Sequence[str]) -> list[str]:
-        """Return those of some joints that the skeleton has."""
-        return [name for name in joints if name in self.skeleton]
-
-    def stance(self, seed: int, joints: Sequence[str], size: float = 0.3) -> Array:
-        """Return rotation vectors `[J, 3]`."""
-        out = np.zeros((len(self.skeleton), 3))
-        chance = np.random.default_rng(seed)
-        for name in joints:
-            out[self.skeleton.index(name)] = chance.normal(0.0, size, 3)
-        return out
-
-    def clip(
-        self,
-        name: str,
-        seed: int,
-        seconds: float,
-        start: Array,
-        end: Array | None = None,
-        wave: Sequence[str] = (),
-        size: float = 0.6,
-    ) -> Clip:
-        """Return a clip from one stance to another, or back, with waves of some joints between."""
-        frames = max(1, round(seconds * FPS) + 1)
-        x = np.linspace(0.0, 1.0, frames)[:, None, None]
-        ease = x * x * (3 - 2 * x)
-        turns = start + ((start if end is None else end) - start) * ease
-        chance = np.random.default_rng(seed)
-        for joint in self.there(wave):
-            place = self.skeleton.index(joint)
-            a, b = chance.normal(0.0, size, 3), chance.normal(0.0, 0.4 * size, 3)
-            turns[:, place] += (
-                np.sin(np.pi * x[:, 0]) ** 2 * a + np.sin(2 * np.pi * x[:, 0]) * np.sin(np.pi * x[:, 0]) * b
-            )
-        rotations = rotation.continuous(rotation.multiply(self.skeleton.rest_rotations, rotation.exp(turns)))
-        root = np.repeat(self.skeleton.rest_translations[None, :1], frames, 0)
-        moved: tuple[int, ...] = (0,)
-        if "Hips" in wave:
-            root = root + np.sin(np.pi * x) ** 2 * chance.normal(0.0, 0.04, 3)
-            moved = (0, self.skeleton.index("Chest"))
-            chest = self.skeleton.rest_translations[moved[1]] + np.sin(np.pi * x) * 0.01
-            root = np.concatenate([root, chest], 1)
-        weights = None
-        if self.morphs:
-            weights = np.abs(np.sin(np.pi * x[:, 0] * (1 + np.arange(len(self.morphs))))) * 0.5
-        return Clip(name, self.skeleton, FPS, rotations, root, moved, self.morphs, weights)
-
-
-ARMS = tuple(
-    f"{side}{part}" for side in ("Left", "Right") for part in ("Shoulder", "UpperArm", "LowerArm", "Hand")
-)
-TRUNK = ("Hips", "Spine", "Chest")
-HEAD = ("Neck", "Head")
-SHARED = (
-    *ARMS,
-    "Spine",
-    "Chest",
-    *HEAD,
-)  # layers whose turns of these are added the other way round end elsewhere
-
-
-class Builder:
-    """A project being built."""
-
-    def __init__(self, name: str, morphs: tuple[str, ...] = ()) -> None:
-        # A face of morph targets has no joints.
-        self.moves = Moves(stick_skeleton(("Eye", "Lid", "Jaw") if morphs else ()))
-        self.moves.morphs = morphs
-        self.project = Project(name=name)
-
-    def stance(self, layer: Layer, name: str, *loops: Clip) -> str:
-        clips = [self._clip(c) for c in loops]
-        self.project = edits.add_stance(self.project, layer, name, clips)
-        return [*self.project.graphs[layer].stances][-1]
-
-    def _clip(self, clip: Clip) -> str:
-        self.project = edits.add_clips(self.project, [(f"{clip.name}.glb", 0, "", clip)])
-        return [*self.project.clips][-1]
-
-    def act(
-        self,
-        layer: Layer,
-        kind: Kind,
-        stance: str,
-        clip: Clip,
-        to: str | None = None,
-        timing: Mapping[str, object] | None = None,
-        **more: object,
-    ) -> str:
-        """Place a clip; timing and more: fields that differ from what placing gives."""
-        placed = self._clip(clip)
-        self.project = edits.place(self.project, [placed], layer, kind, stance, to)
-        ident = [*self.project.graphs[layer].actions][-1]
-        if timing:
-            action = self.project.action(ident)
-            assert action is not None
-            more["timing"] = replace(action.timing, **timing)  # type: ignore[arg-type]
-        if more:
-            self.project = edits.update_actions(self.project, [ident], **more)
-        return ident
-
-
-def stick(name: str = "stick", morphs: tuple[str, ...] = ()) -> Project:
-    """Return a project of three layers, chains of stances, several loops, masks, exits, phases and lines."""
-    b = Builder(name, morphs)
-    m = b.moves
-    stand, lean, sway = m.stance(1, TRUNK, 0.08), m.stance(2, TRUNK, 0.2), ("Hips", "Spine")
-    s_stand = b.stance(
-        "body",
-        "stand",
-        m.clip("stand", 11, 2.0, stand, None, sway, 0.05),
-        m.clip("stand too", 12, 1.5, stand, None, sway, 0.07),
-    )
-    s_lean = b.stance("body", "lean", m.clip("lean", 13, 1.25, lean, None, ("Spine",), 0.05))
-    b.act("body", "transition", s_stand, m.clip("to lean", 14, 1.0, stand, lean, sway, 0.2), s_lean)
-    b.act(
-        "body",
-        "transition",
-        s_lean,
-        m.clip("to stand", 15, 0.9, lean, stand, sway, 0.2),
-        s_stand,
-        timing={"blend_in": 0.1},
-    )
-    b.act("body", "fidget", s_stand, m.clip("shift", 16, 1.6, stand, None, TRUNK, 0.3))
-    b.act(
-        "body",
-        "gesture",
-        s_stand,
-        m.clip("bow", 17, 1.8, stand, None, (*TRUNK, *HEAD), 0.5),
-        tags=("positive",),
-    )
-    b.act("body", "gesture", s_lean, m.clip("rock", 18, 1.2, lean, None, TRUNK, 0.4))
-
-    sides, hips, crossed = m.stance(3, ARMS, 0.4), m.stance(4, ARMS, 0.6), m.stance(5, ARMS, 0.8)
-    fist = ("LeftHand", "RightHand")
-    s_sides = b.stance(
-        "arms",
-        "at sides",
-        m.clip("sides", 21, 1.9, sides, None, fist, 0.1),
-        m.clip("sides too", 22, 1.3, sides, None, ARMS, 0.05),
-    )
-    b.project = edits.set_base(b.project, [*b.project.clips][-2], 3)
-    s_hips = b.stance("arms", "on hips", m.clip("hips", 23, 1.4, hips, None, fist, 0.1))
-    loose = m.clip("crossed", 24, 2.2, crossed, crossed + m.stance(9, ARMS, 0.05), fist, 0.1)
-    s_crossed = b.stance("arms", "crossed", loose)  # its ends do not meet: it plays with a seam
-    b.act("arms", "transition", s_sides, m.clip("to hips", 25, 0.8, sides, hips, ARMS, 0.2), s_hips)
-    b.act(
-        "arms",
-        "transition",
-        s_sides,
-        m.clip("to hips slowly", 26, 1.5, sides, hips, ARMS, 0.2),
-        s_hips,
-        likelihood=0.4,
-    )
-    b.act("arms", "transition", s_hips, m.clip("to crossed", 27, 0.9, hips, crossed, ARMS, 0.2), s_crossed)
-    b.act("arms", "transition", s_crossed, m.clip("to sides", 28, 1.0, crossed, sides, ARMS, 0.2), s_sides)
-    b.act(
-        "arms",
-        "transition",
-        s_hips,
-        m.clip("drop right", 29, 0.7, hips, sides, ARMS[4:], 0.2),
-        s_sides,
-        limb="right",
-    )
-    pocket = m.stance(8, ARMS, 0.5)
-    s_pocket = b.stance("arms", "in pockets", m.clip("pockets", 51, 1.1, pocket, None, fist, 0.1))
-    b.act("arms", "transition", s_sides, m.clip("to pockets", 52, 0.8, sides, pocket, ARMS, 0.2), s_pocket)
-    b.act(
-        "arms",
-        "transition",
-        s_pocket,
-        m.clip("pockets to crossed", 53, 0.8, pocket, crossed, ARMS, 0.2),
-        s_crossed,
-    )  # as short a way
-    b.act(
-        "arms", "transition", s_hips, m.clip("to crossed too", 54, 1.1, hips, crossed, ARMS, 0.2), s_crossed
-    )
-    right, left = ARMS[4:], ARMS[:4]
-    wave = {"ready": 0.5, "stroke": 0.8, "stroke_end": 1.1, "relax": 1.5}
-    b.act(
-        "arms",
-        "gesture",
-        s_sides,
-        m.clip("wave", 31, 2.1, sides, None, (*right, "Chest", "Head")),
-        limb="right",
-        tags=("greeting", "positive"),
-        timing=wave,
-    )
-    b.act(
-        "arms",
-        "gesture",
-        s_sides,
-        m.clip("point", 32, 1.5, sides, None, left),
-        limb="left",
-        tags=("there",),
-        timing={"earliest_exit": 0.9},
-    )
-    b.act(
-        "arms",
-        "gesture",
-        s_sides,
-        m.clip("shrug", 33, 1.3, sides, None, SHARED),
-        tags=("negative", "unsure"),
-        likelihood=2.0,
-        timing={"start": 0.1, "end": 1.2},
-    )
-    b.act(
-        "arms",
-        "gesture",
-        s_sides,
-        m.clip("beat", 34, 1.0, sides, None, ARMS),
-        joints=("RightLowerArm", "RightHand"),
-        cooldown=6.0,
-        spacing=2,
-    )
-    b.act(
-        "arms",
-        "gesture",
-        s_hips,
-        m.clip("nudge", 35, 1.2, hips, None, right),
-        limb="right",
-        tags=("positive",),
-        timing={"blend_in": 0.0, "blend_out": 0.0},
-    )
-    b.act(
-        "arms",
-        "gesture",
-        s_crossed,
-        m.clip("lift", 36, 1.4, crossed, None, ARMS),
-        timing={"blend_in": 1.0, "blend_out": 1.0},
-    )
-    b.act(
-        "arms", "fidget", s_sides, m.clip("scratch", 37, 1.7, sides, None, left), limb="left", cooldown=10.0
-    )
-    b.act(
-        "arms",
-        "fidget",
-        s_crossed,
-        m.clip("tap", 38, 0.8, crossed, None, fist),
-        timing={"earliest_exit": 0.3},
-    )
-
-    level, tilted = m.stance(6, HEAD, 0.1), m.stance(7, HEAD, 0.3)
-    s_level = b.stance("head", "straight", m.clip("straight", 41, 1.2, level, None, HEAD, 0.03))
-    s_tilted = b.stance("head", "tilted", m.clip("tilted", 42, 1.2, tilted, None, HEAD, 0.03))
-    b.act("head", "transition", s_level, m.clip("tilt", 43, 0.6, level, tilted, HEAD, 0.1), s_tilted)
-    b.act("head", "transition", s_tilted, m.clip("straighten", 44, 0.6, tilted, level, HEAD, 0.1), s_level)
-    b.act(
-        "head",
-        "gesture",
-        s_level,
-        m.clip("nod yes", 45, 0.9, level, None, HEAD, 0.4),
-        tags=("nod", "positive"),
-        spacing=3,
-    )
-    b.act(
-        "head",
-        "gesture",
-        s_level,
-        m.clip("shake it", 46, 1.1, level, None, HEAD, 0.4),
-        limb="left",
-        tags=("negative",),
-        spacing=2,
-    )
-    b.act("head", "gesture", s_tilted, m.clip("nod tilted", 47, 0.8, tilted, None, HEAD, 0.4), tags=("nod",))
-    b.act(
-        "head",
-        "fidget",
-        s_level,
-        m.clip("glance", 48, 1.0, level, None, (*HEAD, "LeftUpperLid", "RightUpperLid", "LeftEye"), 0.3),
-    )
-    greeting = (Gesture(tags=("greeting",), at=0.2, stroke=0.9, priority=2), Nod(at=0.5))
-    lines = {
-        "hello": Line(text="Hello. I am a stick.", asks=greeting),
-        "7": Line(text="Seven!", duration=0.8),
-    }
-    voices = {"hello": voice_from_text(lines["hello"].text, 1.7)}
-    return replace(b.project, lines=lines, voices=voices, points={"door": (1.5, 1.2, 0.5)})
-
-
-def varied() -> Project:
-    """Return the same character with every constant and dial off its usual value, weights that share joints,
-    and a morph face.
-    """
-    morphs = (
-        "eyeBlinkLeft",
-        "eyeBlinkRight",
-        "eyeWideLeft",
-        "eyeLookUpLeft",
-        "eyeLookDownLeft",
-        "eyeLookInLeft",
-        "eyeLookOutLeft",
-        "eyeLookUpRight",
-        "eyeLookDownRight",
-        "jawOpen",
-        "mouthFunnel",
-        "mouthPucker",
-        "viseme_aa",
-        "viseme_PP",
-    )
-    project = with_morphs(stick("varied", morphs), morphs)
-    project = edits.set_settings(
-        project,
-        alpha=1.5,
-        never_twice=False,
-        shortest=0.6,
-        wait=2.0,
-        memory=8.0,
-        rest=0.3,
-        lookahead=0.5,
-        seed=0xDEADBEEF,
-    )
-    for layer, part, weight in (
-        ("arms", "spine", 0.5),
-        ("arms", "head", 0.0),
-        ("head", "head", 0.6),
-        ("head", "spine", 0.3),
-        ("body", "arms", 0.2),
-        ("body", "legs", 0.7),
-        ("body", "spine", 0.8),
-    ):
-        project = edits.set_weight(project, layer, part, weight)  # type: ignore[arg-type]
-    states: tuple[tuple[Limb, Kind], ...] = (
-        ("left", "gesture"),
-        ("both", "gesture"),
-        ("left", "fidget"),
-        ("both", "transition"),
-    )
-    rows = ((0.1, 0.4, 0.3, 0.2), (0.5, 0.0, 0.25, 0.25), (0.25, 0.25, 0.25, 0.25), (1.0, 0.0, 0.0, 0.0))
-    lengths = ((1.5, 0.5), (2.0, 1.0), (1.0, 0.1), (1.2, 0.0))
-    project = edits.set_markov(
-        project, Markov("arms", states, rows, 0.8, 0.0, 0.0, ("greeting", "negative unsure", "", ""), lengths)
-    )
-    life = Life(
-        stillness=0.2,
-        breathing=1.4,
-        breath_rate=18.0,
-        gaze=0.8,
-        head_share=0.3,
-        aversion_rate=20.0,
-        saccades=1.5,
-        saccade_rate=90.0,
-        lids=0.7,
-        blinks=30.0,
-        accent_blinks=0.6,
-        blink_close=0.12,
-        blink_open=0.2,
-        lips=0.8,
-        lip_smoothing=0.06,
-        modes={"idle": Manner(aversion_rate=0.5, blinks=2.0, breathing=0.5)},
-    )
-    return replace(edits.set_base(project, None), life=life)
-
-
-def sparse() -> Project:
-    """Return a project with gaps: a layer with nothing, one that has no loop, stances that no way leads to, a
-    loop of one frame.
-    """
-    b = Builder("sparse")
-    m = b.moves
-    sides, hips = m.stance(3, ARMS, 0.4), m.stance(4, ARMS, 0.6)
-    b.stance("body", "nowhere")
-    first = b.stance("arms", "at sides", m.clip("still", 21, 0.0, sides))
-    island = b.stance("arms", "island", m.clip("island", 23, 1.4, hips, None, ("LeftHand",), 0.1))
-    hollow = b.stance("arms", "hollow")
-    b.act(
-        "arms", "gesture", first, m.clip("wave", 31, 1.2, sides, None, ARMS), tags=("Größe",), cooldown=30.0
-    )
-    b.act("arms", "transition", first, m.clip("into the hollow", 32, 0.8, sides, hips, ARMS), hollow)
-    b.act(
-        "arms", "gesture", island, m.clip("alone", 33, 1.0, hips, None, ARMS), timing={"earliest_exit": 0.0}
-    )
-    return replace(b.project, life=Life(on=False))
 
 
 def _face(project: Project, morphs: tuple[str, ...]) -> Character:
@@ -494,7 +65,7 @@ def without_authors(path: Path) -> None:
 
 
 def main() -> None:
-    for project in (stick(), varied(), sparse()):
+    for project in (stick(), varied(), sparse(), randomised(1), randomised(2, BOTH_EYES), *still()):
         folder = FOLDER / project.name
         shutil.rmtree(folder, ignore_errors=True)
         made = write(
@@ -502,7 +73,10 @@ def main() -> None:
         )
         if project.name == "varied":
             without_authors(made.json)
-        path = write_vectors(made.json)
+        chosen = None
+        if project.life.on and not project.graphs["body"].actions:  # all else stands in "sparse"
+            chosen = [case for case in every_case(project) if case.name in LIVING]
+        path = write_vectors(made.json, chosen)
         print(
             f"{path.parent.name}: {path.stat().st_size / 1e3:.0f} kB of vectors, "
             f"{made.glb.stat().st_size / 1e3:.0f} kB of clips"

@@ -40,7 +40,7 @@ from metagraph.playback import choice, hashing, markov
 from metagraph.playback.life.voice import silent
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import ease, pose_at
-from sample_clips.make import conformance
+from sample_clips.make.conformance_projects import stick
 from tests.projects import clip, projects
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -316,7 +316,7 @@ def test_blends_that_are_only_warned_of_are_exported_as_they_play(tmp_path: Path
 
 def test_a_mesh_on_another_skeleton_is_bound_where_joints_match(sample: Project, tmp_path: Path) -> None:
     """Fewer joints than the mannequin has, all at rest in other rotations."""
-    project = conformance.stick()
+    project = stick()
     made = export(project, tmp_path / "bound", character=ROOT / "sample_clips" / "mannequin.glb")
     (told,) = (w for w in made.warnings if "mannequin.glb" in w)
     assert "another skeleton" in told and "bound by the names" in told

@@ -161,7 +161,7 @@ def test_the_importer_names_what_is_missing(tmp_path: Path) -> None:
                 return Tools()
 
     names: dict[str, object] = {"__name__": "import_metagraph"}
-    exec(compile(source.replace("import unreal", "unreal = UNREAL"), "import_metagraph.py", "exec"), names)
+    exec(compile(source.replace("import unreal ", "unreal = UNREAL "), "import_metagraph.py", "exec"), names)
     names["UNREAL"] = Unreal
     run = names["run"]
     assert callable(run)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -78,6 +79,14 @@ def test_every_target_writes_what_it_says_and_glbs_the_validator_accepts(written
     assert report.files and all(path.is_file() and path.stat().st_size for path in report.files)
     if glbs := [path for path in report.files if path.suffix == ".glb"]:
         khronos(*glbs, warnings=False)
+
+
+@pytest.mark.parametrize("name", registry.targets())
+def test_links_of_pages_that_are_exported_lead_to_what_is_exported(written: Any, name: str) -> None:
+    for page in [path for path in written(name).files if path.suffix == ".md"]:
+        links = re.findall(r"\]\(([^)\s#]+)", page.read_text(encoding="utf-8"))
+        lost = [to for to in links if not to.startswith("https://") and not (page.parent / to).is_file()]
+        assert not lost, page
 
 
 @pytest.mark.parametrize("name", registry.targets())

@@ -14,7 +14,7 @@ from metagraph.motion.character_mesh import Character, Material, Surface, bound
 from metagraph.motion.skeleton import Pose, Skeleton
 from preview.figure import SkinnedFigure, StickFigure
 from preview.mesh import ball, capsule, coarse
-from sample_clips.make.conformance import stick_skeleton
+from sample_clips.make.conformance_projects import stick_skeleton
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 from tests.preview.conftest import chain
 

@@ -12,6 +12,7 @@ from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Ma
 from metagraph.errors import FileError
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
+REQUESTS = "../../../../docs/live.md#requests"  # where a README finds them here; an export carries them along
 BML = Loss("requests in Behaviour Markup Language are read by the desktop alone")
 
 
@@ -33,7 +34,15 @@ def copied(source: Path, target: Path, leave: tuple[str, ...] = ()) -> list[Path
         place = target / inside
         try:
             place.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(path, place)
+            if path.name == "README.md":
+                text = path.read_text(encoding="utf-8")
+                if REQUESTS in text:
+                    page = place.with_name("requests.md")
+                    shutil.copyfile(RUNTIMES / page.name, page)
+                    out.append(page)
+                place.write_text(text.replace(REQUESTS, "requests.md"), encoding="utf-8")
+            else:
+                shutil.copyfile(path, place)
         except OSError as error:
             raise FileError(
                 place,

@@ -217,7 +217,7 @@ def _ends(marks: Sequence[VisemeMark]) -> list[float]:
 
 def extended(old: LineTiming, new: LineTiming, said: float) -> LineTiming:
     """Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up
-    to where the new begins; of a word that has begun meanwhile the rest is said.
+    to where the new begins; of a word or a shape that has begun meanwhile the rest is said.
     """
     words = list(old.words)
     begun = max([-1.0, *[word.start for word in old.words if word.start < said]])
@@ -237,9 +237,19 @@ def extended(old: LineTiming, new: LineTiming, said: float) -> LineTiming:
         ]
         words.extend([replace(word, start=max(word.start, said)) for word in coming])
     marks = list(old.marks)
-    shown = [mark for mark in new.marks if mark.at >= said]
+    now = max([-1.0, *[mark.at for mark in new.marks if mark.at < said]])
+    over = max([-1.0, *[mark.at for mark in old.marks if mark.at < said]])
+    shown = [
+        replace(mark, at=max(mark.at, said))
+        for mark in new.marks
+        if mark.at >= said or (mark.at == now and now >= over and not _told(old.marks, mark))
+    ]
     if len(shown) > 0:
         until = max(said, new.marks[0].at)
         marks = [mark for mark in old.marks if mark.at < until]
         marks.extend(shown)
     return LineTiming(tuple(words), tuple(marks))
+
+
+def _told(marks: Sequence[VisemeMark], mark: VisemeMark) -> bool:
+    return any(m.at == mark.at and m.viseme == mark.viseme for m in marks)

@@ -155,8 +155,9 @@ class Track:
         return Track(looks, speeches, modes, places, blinks, stays)  # type: ignore[arg-type]
 
     def going_on(self, items: Collection[Item], now: float) -> tuple[Item, ...]:
-        """Return items of which those go on that a line of the same id has begun of by `now`: they keep its
-        start and what has been said of it. Only lines whose words or shapes were told with their times do.
+        """Return items of which those go on that a line of the same id has begun of by `now`, or begins with:
+        they keep its start and what has been said of it. Only lines whose words or shapes were told with
+        their times do.
         """
         return tuple(self._on(item, now) if isinstance(item, Speech) else item for item in items)
 
@@ -164,9 +165,9 @@ class Track:
         old = next((s for s in reversed(self.speeches) if s.id == new.id), None)
         if old is None or old.timing is None or new.timing is None or old.length is not None:
             return new
-        if not old.start < now or new.start > now:
+        if max(old.start, new.start) > now and old.start != new.start:
             return new
-        timing = extended(old.timing, new.timing, now - old.start)
+        timing = extended(old.timing, new.timing, max(now - old.start, 0.0))
         length = max(timed_seconds(timing, None), new.end - new.start)
         text = told_text(timing) if new.text in ("", told_text(new.timing)) else new.text
         return replace(new, start=old.start, end=old.start + length, text=text, timing=timing)

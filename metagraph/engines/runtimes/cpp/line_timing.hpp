@@ -133,6 +133,7 @@ inline double timed_seconds(const Ref<LineTiming>& timing, const std::optional<d
 inline Ref<Spelled> timed_sounds(const Ref<Alphabet>& alphabet, const Ref<LineTiming>& timing);
 inline List<double> _ends(const List<Ref<VisemeMark>>& marks);
 inline Ref<LineTiming> extended(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said);
+inline bool _told(const List<Ref<VisemeMark>>& marks, const Ref<VisemeMark>& mark);
 
 }  // namespace line_timing
 
@@ -423,7 +424,7 @@ inline List<double> _ends(const List<Ref<VisemeMark>>& marks) {
 }
 
 /// Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up to where the
-/// new begins; of a word that has begun meanwhile the rest is said.
+/// new begins; of a word or a shape that has begun meanwhile the rest is said.
 inline Ref<LineTiming> extended(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said) {
     List<Ref<SpokenWord>> words = old->words;
     List<double> found;
@@ -462,24 +463,49 @@ inline Ref<LineTiming> extended(const Ref<LineTiming>& old, const Ref<LineTiming
         lang::extend(words, found3);
     }
     List<Ref<VisemeMark>> marks = old->marks;
+    List<double> found4;
+    for (const auto& mark : new_->marks) {
+        if (mark->at < said) {
+            found4.push_back(mark->at);
+        }
+    }
+    double now = lang::max_of(lang::together(List<double>{-1.0}, found4));
+    List<double> found5;
+    for (const auto& mark : old->marks) {
+        if (mark->at < said) {
+            found5.push_back(mark->at);
+        }
+    }
+    double over = lang::max_of(lang::together(List<double>{-1.0}, found5));
     List<Ref<VisemeMark>> shown;
     for (const auto& mark : new_->marks) {
-        if (mark->at >= said) {
-            shown.push_back(mark);
+        if (mark->at >= said || (mark->at == now && now >= over && !line_timing::_told(old->marks, mark))) {
+            shown.push_back(lang::made<VisemeMark>(std::max(mark->at, said), mark->viseme, mark->weight));
         }
     }
     if (lang::len(shown) > 0) {
         until = std::max(said, lang::at(new_->marks, 0)->at);
-        List<Ref<VisemeMark>> found4;
+        List<Ref<VisemeMark>> found6;
         for (const auto& mark : old->marks) {
             if (mark->at < until) {
-                found4.push_back(mark);
+                found6.push_back(mark);
             }
         }
-        marks = found4;
+        marks = found6;
         lang::extend(marks, shown);
     }
     return lang::made<LineTiming>(words, marks);
+}
+
+inline bool _told(const List<Ref<VisemeMark>>& marks, const Ref<VisemeMark>& mark) {
+    bool is_any = false;
+    for (const auto& m : marks) {
+        if (m->at == mark->at && m->viseme == mark->viseme) {
+            is_any = true;
+            break;
+        }
+    }
+    return is_any;
 }
 
 }  // namespace line_timing

@@ -164,17 +164,18 @@ inline Ref<const Track> plus(const Ref<const Track>& track, Items items) {
     return out;
 }
 
-/// An item as it goes on where a line of the same id has begun by `now`: it keeps its start and what has been said of it.
-/// Only lines whose words or shapes were told with their times do.
+/// An item as it goes on where a line of the same id has begun by `now`, or begins with it: it keeps its start and what has
+/// been said of it. Only lines whose words or shapes were told with their times do.
 inline Ref<const Item> goes_on(const Track& track, const Ref<const Item>& item, double now) {
     if (item->kind != Item::speech || item->timing == nullptr) return item;
     const Item* old = nullptr;
     for (const auto& speech : track.speeches()) {
         if (speech->id == item->id) old = speech.get();
     }
-    if (old == nullptr || old->timing == nullptr || old->length.has_value() || !(old->start < now) || item->start > now) return item;
+    if (old == nullptr || old->timing == nullptr || old->length.has_value()) return item;
+    if (std::max(old->start, item->start) > now && old->start != item->start) return item;
     auto out = lang::made<Item>(*item);
-    out->timing = line_timing::extended(old->timing, item->timing, now - old->start);
+    out->timing = line_timing::extended(old->timing, item->timing, std::max(now - old->start, 0.0));
     const double length = std::max(line_timing::timed_seconds(out->timing, std::nullopt), item->end - item->start);
     out->start = old->start;
     out->end = old->start + length;

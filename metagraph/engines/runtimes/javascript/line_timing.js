@@ -354,7 +354,7 @@ function _ends(marks) {
 
 /**
  * Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up to where the new
- * begins; of a word that has begun meanwhile the rest is said.
+ * begins; of a word or a shape that has begun meanwhile the rest is said.
  * @param {LineTiming} old
  * @param {LineTiming} new_
  * @param {number} said
@@ -374,11 +374,24 @@ export function extended(old, new_, said) {
     words.push(...coming.map((word) => but(word, { start: Math.max(word.start, said) })));
   }
   let marks = [...old.marks];
-  const shown = new_.marks.filter((mark) => mark.at >= said);
+  const now = maxOf([-1, ...new_.marks.filter((mark) => mark.at < said).map((mark) => mark.at)]);
+  const over = maxOf([-1, ...old.marks.filter((mark) => mark.at < said).map((mark) => mark.at)]);
+  const shown = new_.marks.filter((mark) =>
+    mark.at >= said || (mark.at === now && now >= over && !_told(old.marks, mark))).map((mark) =>
+    but(mark, { at: Math.max(mark.at, said) }));
   if (shown.length > 0) {
     until = Math.max(said, new_.marks[0].at);
     marks = old.marks.filter((mark) => mark.at < until);
     marks.push(...shown);
   }
   return new LineTiming([...words], [...marks]);
+}
+
+/**
+ * @param {VisemeMark[]} marks
+ * @param {VisemeMark} mark
+ * @returns {boolean}
+ */
+function _told(marks, mark) {
+  return marks.some((m) => m.at === mark.at && m.viseme === mark.viseme);
 }

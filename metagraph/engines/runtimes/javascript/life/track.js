@@ -56,14 +56,15 @@ export function plus(track, items) {
 }
 
 /**
- * Return an item as it goes on where a line of the same id has begun by `now`: it keeps its start and what has been said of it. Only
+ * Return an item as it goes on where a line of the same id has begun by `now`, or begins with it: it keeps its start and what has been said of it. Only
  * lines whose words or shapes were told with their times do.
  */
 export function goesOn(track, item, now) {
   if (item.kind !== "speech" || !item.timing) return item;
   const old = track.speeches.findLast((speech) => speech.id === item.id);
-  if (!old?.timing || old.length !== null || !(old.start < now) || item.start > now) return item;
-  const timing = extended(old.timing, item.timing, now - old.start);
+  if (!old?.timing || old.length !== null) return item;
+  if (Math.max(old.start, item.start) > now && old.start !== item.start) return item;
+  const timing = extended(old.timing, item.timing, Math.max(now - old.start, 0));
   const length = Math.max(timedSeconds(timing, null), item.end - item.start);
   const text = item.text === "" || item.text === toldText(item.timing) ? toldText(timing) : item.text;
   return { ...item, start: old.start, end: old.start + length, text, timing };

@@ -77,16 +77,18 @@ public static class Conformance
             stances[layer] = (string)((JsonObject)one["stances"])[layer];
         }
         Plan plan = Plan.Empty((uint)Number(one["seed"]));
+        var unread = new List<Report>();
         foreach (JsonObject step in List(one["steps"]))
         {
-            List<Ask> asks = List(step["asks"]).ConvertAll(Ask.From);
-            plan = Hearing.Hear(graph, plan, Number(step["now"]), asks, Number(step["end"]), stances, (bool)one["idle"]);
+            double now = Number(step["now"]);
+            List<Ask> asks = Readable(step, now > 0 ? now + graph.Settings.Lookahead : 0, unread);
+            plan = Hearing.Hear(graph, plan, now, asks, Number(step["end"]), stances, (bool)one["idle"]);
             plan = step["forget"] == null ? plan : Hearing.Since(plan, Number(step["forget"]));
         }
         int before = failures;
         var expected = (JsonObject)one["plan"];
         Compare(where + ", plan", PlanData(plan), expected["layers"]);
-        Compare(where + ", reports", Reports(plan), expected["reports"]);
+        Compare(where + ", reports", Reports(plan, unread), expected["reports"]);
         Compare(where + ", life", LifeData(plan.Life), one["life"]);
         if (failures > before)
         {
@@ -97,6 +99,25 @@ public static class Conformance
         {
             ComparePose(where + ", pose at " + pose["time"] + " s" + ((bool)pose["alive"] ? "" : ", not alive"), graph, player, plan, pose);
         }
+    }
+
+    /// <summary>Return the asks of a step that can be read; of others a report is added.</summary>
+    private static List<Ask> Readable(JsonObject step, double at, List<Report> unread)
+    {
+        var asks = new List<Ask>();
+        foreach (object data in List(step["asks"]))
+        {
+            try
+            {
+                asks.Add(Ask.From(data));
+            }
+            catch (AskException problem)
+            {
+                object id = ((JsonObject)data)["id"];
+                unread.Add(new Report((string)id, "not-understood", problem.Message, "arms", at));
+            }
+        }
+        return asks;
     }
 
     // --- what a plan is, as plain data in the vectors' order
@@ -132,9 +153,9 @@ public static class Conformance
         return found;
     }
 
-    private static object Reports(Plan plan)
+    private static object Reports(Plan plan, List<Report> unread)
     {
-        IEnumerable<Report> sorted = plan.Reports.OrderBy(r => r.Request, Comparer<string>.Create(Basics.Compare))
+        IEnumerable<Report> sorted = plan.Reports.Concat(unread).OrderBy(r => r.Request, Comparer<string>.Create(Basics.Compare))
             .ThenBy(r => r.Outcome, StringComparer.Ordinal).ThenBy(r => r.Layer, StringComparer.Ordinal)
             .ThenBy(r => r.At).ThenBy(r => r.Played);
         return sorted.Select(r => (object)Row(r.Request, r.Outcome, r.Layer, r.At, r.Played)).ToList();

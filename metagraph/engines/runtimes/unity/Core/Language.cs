@@ -41,12 +41,6 @@ namespace Metagraph
         }
     }
 
-    /// <summary>The words everything is told apart by, as lists.</summary>
-    internal static class WordsRules
-    {
-        public static readonly List<string> Modes = Basics.Modes.ToList(), Visemes = Voice.Visemes.ToList();
-    }
-
     /// <summary>Texts, whatever the culture.</summary>
     internal static class PlainText
     {

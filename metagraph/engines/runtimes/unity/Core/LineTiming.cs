@@ -404,7 +404,7 @@ namespace Metagraph
 
         /// <summary>
         /// Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up to where the
-        /// new begins; of a word that has begun meanwhile the rest is said.
+        /// new begins; of a word or a shape that has begun meanwhile the rest is said.
         /// </summary>
         public static LineTiming Extended(LineTiming old, LineTiming new_, double said)
         {
@@ -427,7 +427,18 @@ namespace Metagraph
                 words.AddRange(coming.Select(word => new SpokenWord(word.Text, Math.Max(word.Start, said), word.End)).ToList());
             }
             var marks = old.Marks.ToList();
-            var shown = new_.Marks.Where(mark => mark.At >= said).ToList();
+            var now = PlainNumbers.MaxOf(
+                new List<double> { -1.0 }.Concat(new_.Marks.Where(mark => mark.At < said).Select(mark => mark.At).ToList()).ToList()
+            );
+            var over = PlainNumbers.MaxOf(
+                new List<double> { -1.0 }.Concat(old.Marks.Where(mark => mark.At < said).Select(mark => mark.At).ToList()).ToList()
+            );
+            var shown = new_.Marks.Where(mark => mark.At >= said
+                || (mark.At == now && now >= over && !Told(old.Marks, mark))).Select(mark => new VisemeMark(
+                Math.Max(mark.At, said),
+                mark.Viseme,
+                mark.Weight
+            )).ToList();
             if (shown.Count > 0)
             {
                 until = Math.Max(said, new_.Marks[0].At);
@@ -435,6 +446,11 @@ namespace Metagraph
                 marks.AddRange(shown);
             }
             return new LineTiming(words.ToList(), marks.ToList());
+        }
+
+        private static bool Told(List<VisemeMark> marks, VisemeMark mark)
+        {
+            return marks.Any(m => m.At == mark.At && m.Viseme == mark.Viseme);
         }
     }
 }

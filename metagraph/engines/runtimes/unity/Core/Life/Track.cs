@@ -151,17 +151,21 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// The speech as it goes on where a line of the same id has begun by `now`: it keeps its start and what has been said of it.
+        /// The speech as it goes on where a line of the same id has begun by `now`, or begins with it: it keeps its start and what has been said of it.
         /// Only lines whose words or shapes were told with their times do.
         /// </summary>
         public Speech GoingOn(Track track, double now)
         {
             Speech old = track.Speeches.FindLast(speech => speech.Id == Id);
-            if (old == null || old.Timing == null || Timing == null || old.Length != null || !(old.Start < now) || Start > now)
+            if (old == null || old.Timing == null || Timing == null || old.Length != null)
             {
                 return this;
             }
-            LineTiming timing = LineTimingRules.Extended(old.Timing, Timing, now - old.Start);
+            if (Math.Max(old.Start, Start) > now && old.Start != Start)
+            {
+                return this;
+            }
+            LineTiming timing = LineTimingRules.Extended(old.Timing, Timing, Math.Max(now - old.Start, 0.0));
             double length = Math.Max(LineTimingRules.TimedSeconds(timing, null), End - Start);
             string text = Text == "" || Text == LineTimingRules.ToldText(Timing) ? LineTimingRules.ToldText(timing) : Text;
             return new Speech(Id, old.Start, old.Start + length, Line, LineId, text, Priority, null, timing);

@@ -16,7 +16,7 @@ def run(json_path: str, folder: str = "/Game/Metagraph") -> list[str]:
 
     Raises FileNotFoundError where one of the two is missing, RuntimeError where the editor made nothing.
     """
-    import unreal
+    import unreal  # type: ignore[import-not-found]  # the editor has it
 
     source = Path(json_path)
     made: list[str] = []

@@ -295,7 +295,7 @@ static func _ends(marks):
 
 
 # Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up to where the new begins;
-# of a word that has begun meanwhile the rest is said.
+# of a word or a shape that has begun meanwhile the rest is said.
 static func extended(old, new, said):
 	var words = Util.list(old.words)
 	var found = []
@@ -321,16 +321,35 @@ static func extended(old, new, said):
 			found3.append(SpokenWord.new(word.text, Util.most(word.start, said), word.end))
 		Util.extend(words, found3)
 	var marks = Util.list(old.marks)
+	var found4 = []
+	for mark in new.marks:
+		if mark.at < said:
+			found4.append(mark.at)
+	var now = Util.most_of([-1.0] + found4)
+	var found5 = []
+	for mark in old.marks:
+		if mark.at < said:
+			found5.append(mark.at)
+	var over = Util.most_of([-1.0] + found5)
 	var shown = []
 	for mark in new.marks:
-		if mark.at >= said:
-			shown.append(mark)
+		if mark.at >= said or (mark.at == now and now >= over and not _told(old.marks, mark)):
+			shown.append(VisemeMark.new(Util.most(mark.at, said), mark.viseme, mark.weight))
 	if shown.size() > 0:
 		until = Util.most(said, new.marks[0].at)
-		var found4 = []
+		var found6 = []
 		for mark in old.marks:
 			if mark.at < until:
-				found4.append(mark)
-		marks = found4
+				found6.append(mark)
+		marks = found6
 		Util.extend(marks, shown)
 	return LineTiming.new(Util.list(words), Util.list(marks))
+
+
+static func _told(marks, mark):
+	var is_any = false
+	for m in marks:
+		if m.at == mark.at and m.viseme == mark.viseme:
+			is_any = true
+			break
+	return is_any

@@ -75,7 +75,7 @@ static func plus(track, more):
 	return out
 
 
-# Returns an item as it goes on where a line of the same id has begun by `now`: it keeps its start and what has been said of it. Only
+# Returns an item as it goes on where a line of the same id has begun by `now`, or begins with it: it keeps its start and what has been said of it. Only
 # lines whose words or shapes were told with their times do.
 static func going_on(track, item, now):
 	if item.list != "speeches" or item.timing == null:
@@ -84,9 +84,11 @@ static func going_on(track, item, now):
 	for speech in track.speeches:
 		if speech.id == item.id:
 			old = speech
-	if old == null or old.timing == null or old.length != null or not old.start < now or item.start > now:
+	if old == null or old.timing == null or old.length != null:
 		return item
-	var timing = LineTiming.extended(old.timing, item.timing, now - old.start)
+	if Util.most(old.start, item.start) > now and old.start != item.start:
+		return item
+	var timing = LineTiming.extended(old.timing, item.timing, Util.most(now - old.start, 0.0))
 	var length = Util.most(LineTiming.timed_seconds(timing, null), item.end - item.start)
 	var text = item.text
 	if text == "" or text == LineTiming.told_text(item.timing):
