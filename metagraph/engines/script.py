@@ -409,12 +409,14 @@ def _timed() -> Iterator[Case]:
         ScriptStep(5.0, 12.0, (_ask("v", "say", visemes=[[0.0, "aa"], [0.3, "PP"], [0.5, "O"]]),)),
         ScriptStep(5.3, 12.0, (_ask("v", "say", visemes=[[0.6, "E"], [0.9, "sil"]]),)),
         ScriptStep(6.0, 12.0, (_ask("x", "withdraw", what="v"),)),
+        ScriptStep(6.2, 12.0, (_ask("n", "say", 7.0, words=[["told", 0.1, 0.4]]),)),
+        ScriptStep(6.4, 12.0, (_ask("n", "say", 7.0, words=[["beforehand", 0.5, 1.0]]),)),
     )
     yield Case(
         "a line that is added to",
         "what is said of it stands, what comes later is added",
         steps,
-        times=(3.6, 3.9, 4.15, 4.3, 4.6, 4.9, 5.2, 5.45, 5.6, 5.75, 5.95, 6.1, 6.3),
+        times=(3.6, 3.9, 4.15, 4.3, 4.6, 4.9, 5.2, 5.45, 5.6, 5.75, 5.95, 6.1, 6.3, 7.2, 7.7),
         alive=(False, True),
     )
 

@@ -968,6 +968,14 @@ MUTATIONS = [
         "const CLOSING = 0.3;",
         "a mouth that closes where speech was cut",
     ),
+    ("told_timing.js", "isNumber(x) ? x / of : x", "x", "what synthesisers count seconds in"),
+    (
+        "line_timing.js",
+        "export const SHAPE = 0.2;",
+        "export const SHAPE = 0.4;",
+        "how long a last shape stays",
+    ),
+    ("life/track.js", "Math.max(now - old.start, 0)", "0", "what has been said of a line stands"),
     ("graphemes.js", '["th", ["TH"]]', '["th", ["DD"]]', "spelling"),
     ("graphemes.js", "const finalE = ", "const finalE = false && ", "the silent e"),
     (

@@ -961,6 +961,13 @@ MUTATIONS = [
         "a blink at the first stressed syllable",
     ),
     ("Life/Solve.cs", "shut + blink * (1 - shut)", "shut + blink", "lids that meet and go no farther"),
+    ("ToldTiming.cs", "Ticks = 1e7", "Ticks = 1e6", "what synthesisers count seconds in"),
+    (
+        "Life/Track.cs",
+        "LineTimingRules.Extended(old.Timing, Timing, Math.Max(now - old.Start, 0.0))",
+        "LineTimingRules.Extended(old.Timing, Timing, 0.0)",
+        "what has been said of a line stands",
+    ),
     (
         "Mouth.cs",
         "public const double Early = 0.075",
