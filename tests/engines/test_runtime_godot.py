@@ -613,10 +613,12 @@ def test_the_readme_names_files_that_its_export_writes_and_calls_the_node_has(
 ) -> None:
     """Godot 4 is not here to run it: it is parsed, and what it names is looked up."""
     text = (ADDON.parent / "README.md").read_text(encoding="utf-8")
-    example = text.split("```gdscript\n")[1].split("```")[0]
-    pytest.importorskip("gdtoolkit.parser", reason="gdtoolkit is not here").parser.parse(
-        example, gather_metadata=False
-    )
+    examples = [block.split("```")[0] for block in text.split("```gdscript\n")[1:]]
+    assert len(examples) == 2
+    parser = pytest.importorskip("gdtoolkit.parser", reason="gdtoolkit is not here").parser
+    for each in examples:
+        parser.parse(each, gather_metadata=False)
+    example = "".join(examples)
     made = registry.write(sample, "godot", tmp_path)
     written = {path.relative_to(tmp_path).as_posix() for path in made.files}
     named = {name.replace(".motion", ".glb") for name in re.findall(r"res://([\w.]+)", example)}
