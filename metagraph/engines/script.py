@@ -343,6 +343,84 @@ def _over_time(project: Project) -> Iterator[Case]:
     yield Case("modes asked for live", "who listens or idles gestures less than who talks", steps, idle=True)
 
 
+def _timed() -> Iterator[Case]:
+    """Yield lines whose words and mouth shapes are told with their times."""
+    words = [["Hello", 0.1, 0.45], ["there", 1.5, 1.9], {"word": "friend", "start": 1.9, "end": 2.4}]
+    polly = [
+        {"time": 0, "type": "sentence", "start": 0, "end": 7, "value": "Mapped."},
+        {"time": 6, "type": "word", "start": 0, "end": 6, "value": "Mapped"},
+        {"time": 6, "type": "viseme", "value": "p"},
+        {"time": 90, "type": "viseme", "value": "a"},
+        {"time": 210, "type": "viseme", "value": "p"},
+        {"time": 300, "type": "viseme", "value": "t"},
+        {"time": 380, "type": "viseme", "value": "sil"},
+    ]
+    azure = [
+        {"audioOffset": 500_000 + 1_100_000 * n, "visemeId": id} for n, id in enumerate((21, 2, 18, 7, 0))
+    ]
+    shapes = [[0.0, "ou", 0.7], [0.2, "PP"], [0.3, "oh"], [0.6, "sil"]]
+    frames = [{"time": n / 30, "weights": {"jawOpen": 0.02 * n, "mouthFunnel": 0.3}} for n in range(40)]
+    asks = [
+        _ask("w1", "say", 1.0, words=words),
+        _ask("w2", "say", 5.0, text="Mapped.", visemes=polly),
+        _ask("w3", "say", 6.0, visemes=azure, duration=1.0),
+        _ask("w4", "say", 8.0, visemes=frames, set="arkit"),
+        _ask("w5", "say", 10.0, visemes=shapes, words=words),
+        _ask("w6", "say", 12.5, words=[["cut", 0.0, 1.0], ["short", 1.2]]),
+        _ask("w7", "say", 13.2, text="by this"),
+        _ask("r1", "say", 13.0, visemes=[[0.0, "aa"], [0.1, "nothing"]]),
+        _ask("r2", "say", 13.0, visemes=[[0.5, "aa"], [0.1, "PP"]]),
+        _ask("r3", "say", 13.0, words=[["late", 0.0, 3.0]], duration=1.0),
+        _ask("r4", "say", 13.0, words=[["back", 1.0, 0.5]]),
+        _ask("r5", "say", 13.0, words=[["only"]]),
+    ]  # fmt: skip
+    yield _once(
+        "words and shapes with their times",
+        "the mouth follows them and is shut between; what cannot be read is refused",
+        asks,
+        16.0,
+        times=(
+            1.2,
+            1.35,
+            2.0,
+            2.7,
+            3.2,
+            5.05,
+            5.15,
+            5.25,
+            6.1,
+            6.2,
+            6.4,
+            8.7,
+            9.1,
+            10.1,
+            10.25,
+            10.4,
+            12.9,
+            13.25,
+        ),
+        alive=(False, True),
+    )
+    steps = (
+        ScriptStep(0.0, 12.0, (_ask("s", "say", 1.0, words=words[:1]),)),
+        ScriptStep(1.3, 12.0, (_ask("s", "say", words=words[1:]),)),
+        ScriptStep(2.2, 12.0, (_ask("s", "say", words=[*words, ["again", 2.6, 3.2]]),)),
+        ScriptStep(4.0, 12.0, (_ask("s", "say", words=[["later", 3.0, 3.9], ["still", 4.0]]),), forget=3.5),
+        ScriptStep(5.0, 12.0, (_ask("v", "say", visemes=[[0.0, "aa"], [0.3, "PP"], [0.5, "O"]]),)),
+        ScriptStep(5.3, 12.0, (_ask("v", "say", visemes=[[0.6, "E"], [0.9, "sil"]]),)),
+        ScriptStep(6.0, 12.0, (_ask("x", "withdraw", what="v"),)),
+        ScriptStep(6.2, 12.0, (_ask("n", "say", 7.0, words=[["told", 0.1, 0.4]]),)),
+        ScriptStep(6.4, 12.0, (_ask("n", "say", 7.0, words=[["beforehand", 0.5, 1.0]]),)),
+    )
+    yield Case(
+        "a line that is added to",
+        "what is said of it stands, what comes later is added",
+        steps,
+        times=(3.6, 3.9, 4.15, 4.3, 4.6, 4.9, 5.2, 5.45, 5.6, 5.75, 5.95, 6.1, 6.3, 7.2, 7.7),
+        alive=(False, True),
+    )
+
+
 def _life(project: Project) -> Iterator[Case]:
     if not project.life.on:
         return
@@ -419,6 +497,7 @@ def _life(project: Project) -> Iterator[Case]:
         times=(1.2, 1.5, 2.0, 4.7, 5.3, 9.3, 9.8, 10.4),
         alive=both,
     )
+    yield from _timed()
     long = (
         "This is a rather long sentence, which goes on and on, so that many of its syllables are "
         "stressed, and nobody stops it for a while."

@@ -9,7 +9,7 @@ everywhere. In JSON `do` says which it is: {"do": "gesture", "layer": "arms", "t
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Union, get_args
+from typing import Annotated, Any, Literal, Union, get_args
 
 import msgspec
 from msgspec import Meta, Struct
@@ -26,6 +26,7 @@ Point = Annotated[
     tuple[Annotated[float, Meta(ge=-1e6, le=1e6)], ...],
     Meta(min_length=3, max_length=3, description="x, y, z; metres"),
 ]
+Timed = tuple[Any, ...] | dict[str, Any]  # read where lines are understood: synthesisers have many ways
 Tags = tuple[Annotated[str, Meta(max_length=200)], ...]
 
 
@@ -135,12 +136,24 @@ class Blink(Request, frozen=True, tag="blink"):
 class Say(Request, frozen=True, tag="say"):
     """Say a line of the project's list, its audio, its lip sync and its own asks with it; or other words with
     `text`, whose length is guessed from them, or `duration`. gestures: whether the line's own asks are made.
+    words: [word, start, end], seconds from the line's start, as a synthesiser tells them: the lips follow
+    them and are shut between; the text may be left out then. visemes: [seconds, name], with how fully it is
+    made, 0..1, where that is told; each lasts until the next. Both may be objects, as Amazon Polly's speech
+    marks and Azure's events are. set: of the visemes' names; null for what they tell. While a line is said, a
+    later ask of its id adds to it what comes after now. audio: of a live session alone, the next samples of
+    the line's sound, 16-bit little-endian numbers in base64, one channel, `rate` a second: lips are as loud
+    where neither words nor visemes are told.
     """
 
     line: Annotated[str, Meta(min_length=1, max_length=200)] | int | None = None
     text: Annotated[str, Meta(max_length=20000)] = ""
     duration: Seconds | None = None
     gestures: bool = True
+    words: Annotated[tuple[Timed, ...], Meta(max_length=4000)] = ()
+    visemes: Annotated[tuple[Timed, ...], Meta(max_length=20000)] = ()
+    set: Literal["oculus", "azure", "sapi", "polly", "arkit"] | None = None
+    audio: Annotated[str, Meta(max_length=60000)] | None = None
+    rate: Annotated[int, Meta(ge=8000, le=48000)] = 16000
 
 
 class Behave(Request, frozen=True, tag="mode"):

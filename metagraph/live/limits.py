@@ -28,11 +28,13 @@ FLOOD = (
     32  # asks of one client for one layer in SPAN seconds, beyond which only one waits while others are there
 )
 HUNGRY = 1.5  # seconds for which others make way for who was turned away
+ADDED = "say on"  # what is added to a line that is said, in pieces of a stream
 RATES = {
     "look": 60,
     "place": 500,
     "blink": 16,
     "say": 16,
+    ADDED: 240,
     "mode": 16,
     "withdraw": 240,
     "keypoints": 960,

@@ -26,6 +26,7 @@ from metagraph.live.graph_motion import LiveGraph
 from metagraph.live.happenings import happenings
 from metagraph.live.ledger import Known, Ledger, key_of, told
 from metagraph.live.limits import (
+    ADDED,
     BML_PER_TICK,
     BUSY,
     FARTHEST,
@@ -54,10 +55,12 @@ from metagraph.live.messages import (
     split,
 )
 from metagraph.live.pose_stream import Stream, due
+from metagraph.live.said_sound import SaidSounds, said_on
 from metagraph.live.tape import Tape
 from metagraph.live.tick_work import Client, Open, Out, TickWork, in_turn, thinned
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.bml import Block, read_block
+from metagraph.playback.life.track import Speech
 from metagraph.playback.overlay import Overlay, overlaid
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan
@@ -95,6 +98,7 @@ class LiveSession:
         self._names: set[str] = set()
         self._queue: list[tuple[int, HeardMessage | Reply]] = []
         self.tape = Tape()
+        self._sounds = SaidSounds()
         self._tidied = self._begin = 0.0
         self._past: deque[tuple[float, Plan]] = deque()
         self._edited = False
@@ -252,6 +256,14 @@ class LiveSession:
                 return f"{name}: at most {FARTHEST:g} s" + (
                     f" ahead; it is {self.now:.1f} s" if name != "duration" else ""
                 )
+        goes_on = isinstance(ask, a.Say) and self._goes_on(key, work)
+        if isinstance(ask, a.Say) and ask.audio is not None:
+            begun = self._speech(key)
+            said = 0.0 if begun is None else self.now + self.project.settings.lookahead - begun.start
+            try:
+                ask = self._sounds.told(key, ask, goes_on, said)
+            except a.RequestError as error:
+                return str(error)
         if isinstance(ask, a.Say) and len(ask.text) > SPEECH:
             return f"at most {SPEECH} characters can be said at once; say it in pieces"
         if ask.at is not None and ask.at < self.now:
@@ -263,6 +275,7 @@ class LiveSession:
         lane = self._words.lane(ask)
         if lane is None:
             return unknown(self.project, ask, self.ledger.limits)
+        lane = ADDED if goes_on else lane
         if isinstance(ask, a.Place) and ask.name not in self._names:
             if len(self._names) >= NAMES:
                 return f"{NAMES} points have names already; use one of them again"
@@ -278,11 +291,24 @@ class LiveSession:
             return why
         if key in ledger.blocks:
             self._take_back([key], work)
+        before = work.asks.get(key)
+        if isinstance(ask, a.Say) and isinstance(before, a.Say):
+            ask = said_on(before, ask)
         work.close(key, "asked again under the same id")
         ledger.limits.planned[client.number] += 1
         ledger.add(key, Known(client.number, ident, lane, ask.priority, wanted, missed=missed))
         work.asks[key] = msgspec.structs.replace(ask, id=key)
         return ""
+
+    def _speech(self, key: str) -> Speech | None:
+        """Return what is said under a key, with its words' or shapes' times."""
+        return next(
+            (s for s in reversed(self.plan.track.speeches) if s.id == key and s.timing is not None), None
+        )
+
+    def _goes_on(self, key: str, work: TickWork) -> bool:
+        """Return whether what is said under a key is added to a line."""
+        return self._speech(key) is not None or isinstance(work.asks.get(key), a.Say)
 
     def _withdraw(self, client: Client, ident: str, ask: a.Withdraw, work: TickWork) -> Reply:
         """Take back what a client asked for itself; what has begun plays on."""

@@ -62,7 +62,9 @@ def hear(
     leave = (
         [layer for layer in LAYERS if layer not in touched] if asks and now > 0 and end == plan.end else []
     )
-    track = plan.track.without(withdrawn, fixed).plus(items)
+    going_on = plan.track.going_on(items, fixed)
+    begun = {new.id for new, asked in zip(going_on, items, strict=True) if new is not asked}
+    track = plan.track.without(withdrawn - begun, fixed).without(begun).plus(going_on)
     plan = replace(plan, track=track)
     after = extend(project, plan, fixed, meant.requests, end, stances, idle, frozenset(withdrawn), leave)
     return replace(after, reports=(*after.reports, *meant.refused)) if meant.refused else after

@@ -13,9 +13,11 @@ import msgspec
 
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Action, Layer, Project
+from metagraph.playback.life.line_timing import timed_seconds, told_text
 from metagraph.playback.life.track import BlinkAt, Item, LookAt, ModeFrom, PlaceFrom, Speech, StayFrom
 from metagraph.playback.line_lengths import spoken_seconds
 from metagraph.playback.plan import MetaRequest, Report
+from metagraph.playback.told_timing import told_timing
 
 FOREVER = 1e9  # seconds; a look that lasts until the next
 
@@ -152,12 +154,18 @@ def _said(project: Project, ask: a.Say, at: float) -> list[MetaRequest | Item | 
         line = project.lines.get(ident)
         if line is None:
             raise a.RequestError(f"there is no line '{ident}'{_hint(ident, project.lines)}")
-    text = ask.text or (line.text if line is not None else "")
-    if line is None and not text:
-        raise a.RequestError("say what: a line's id, or text")
-    length = spoken_seconds(project, str(ask.line) if line is not None else None, text, ask.duration)
+    timing = told_timing(ask)
+    told = "" if timing is None else told_text(timing)
+    text = ask.text or (line.text if line is not None else told)
+    if line is None and not text and timing is None:
+        raise a.RequestError("say what: a line's id, text, or words with their times")
+    name = str(ask.line) if line is not None else None
+    if timing is None:
+        length = spoken_seconds(project, name, text, ask.duration)
+    else:
+        length = timed_seconds(timing, ask.duration)
     out: list[MetaRequest | Item | a.Withdraw] = [
-        Speech(ask.id, at, at + length, str(ask.line) if line is not None else None, text, ask.priority)
+        Speech(ask.id, at, at + length, name, text, ask.priority, timing=timing)
     ]
     for n, inner in enumerate(line.asks if line is not None and ask.gestures else ()):
         if isinstance(inner, a.Say):

@@ -231,3 +231,4 @@ def test_the_readme_is_true(sample_export: Path, tmp_path: Path) -> None:
         assert done.returncode == 0, done.stderr
         shown.append(done.stdout)
     assert shown[0].startswith("planned") and shown[1] == "[]\n"
+    assert 2.9 < float(shown[2]) < 3.2, "the line lasts as long as what was added to it"

@@ -582,13 +582,14 @@ def shown(number: int) -> str:
 
 def test_the_readme_plays_as_a_stranger_would_run_it(stranger: Path) -> None:
     assert {"sample.json", "sample.glb", "metagraph"} <= {path.name for path in stranger.iterdir()}
-    (stranger / "play.mjs").write_text(shown(0))
+    (stranger / "play.mjs").write_text(shown(0) + shown(2))
     done = subprocess.run(
         ["node", "play.mjs"], cwd=stranger, capture_output=True, text=True, timeout=60, check=False
     )
     assert done.returncode == 0, done.stderr
     assert "begin" in done.stdout
     assert any(f"state: '{state}'" in done.stdout for state in ("done", "planned", "late"))
+    assert 7.4 < float(done.stdout.splitlines()[-1]) < 7.7, "the line lasts as long as what was added to it"
 
 
 PAGE = """
@@ -968,6 +969,14 @@ MUTATIONS = [
         "const CLOSING = 0.3;",
         "a mouth that closes where speech was cut",
     ),
+    ("told_timing.js", "isNumber(x) ? x / of : x", "x", "what synthesisers count seconds in"),
+    (
+        "line_timing.js",
+        "export const SHAPE = 0.2;",
+        "export const SHAPE = 0.4;",
+        "how long a last shape stays",
+    ),
+    ("life/track.js", "Math.max(now - old.start, 0)", "0", "what has been said of a line stands"),
     ("graphemes.js", '["th", ["TH"]]', '["th", ["DD"]]', "spelling"),
     ("graphemes.js", "const finalE = ", "const finalE = false && ", "the silent e"),
     (

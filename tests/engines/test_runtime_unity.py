@@ -843,11 +843,12 @@ def test_characters_of_the_same_assets_read_them_once(scene: Path) -> None:
 
 def test_what_the_readme_shows_compiles(scene: Path) -> None:
     shown = [block.split("```")[0] for block in (RUNTIME / "README.md").read_text().split("```csharp")[1:]]
-    assert len(shown) == 2
+    assert len(shown) == 3
     source = scene.with_name("readme.cs")
     inner = (
         "public static class Shown { public static void Main() { float seconds = 0; "
         + shown[1]
+        + shown[2]
         + " System.Console.Write(pose); } }"
     )
     source.write_text("using UnityEngine; using System.IO; using Metagraph;\n" + shown[0] + inner)
@@ -961,6 +962,13 @@ MUTATIONS = [
         "a blink at the first stressed syllable",
     ),
     ("Life/Solve.cs", "shut + blink * (1 - shut)", "shut + blink", "lids that meet and go no farther"),
+    ("ToldTiming.cs", "Ticks = 1e7", "Ticks = 1e6", "what synthesisers count seconds in"),
+    (
+        "Life/Track.cs",
+        "LineTimingRules.Extended(old.Timing, Timing, Math.Max(now - old.Start, 0.0))",
+        "LineTimingRules.Extended(old.Timing, Timing, 0.0)",
+        "what has been said of a line stands",
+    ),
     (
         "Mouth.cs",
         "public const double Early = 0.075",

@@ -12,7 +12,9 @@ from pathlib import Path
 
 import pytest
 
+from metagraph.graph.model import Project
 from metagraph.live import hub, limits, messages, osc, schemas, tape
+from metagraph.live.live_session import LiveSession
 from tests.processes import metagraph, started
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -41,6 +43,20 @@ def test_every_request_and_its_fields_are_in_the_table() -> None:
             field for field in parts[name]["properties"] if field not in common and f"`{field}`" not in row
         ], (word, row)
     assert all(f"| `{field}` |" in rows for field in common - {"do"})
+
+
+def test_what_synthesisers_tell_is_said_as_the_page_shows_it(sample: Project) -> None:
+    session = LiveSession(sample, idle=False)
+    session.join(1)
+    blocks = re.findall(r"```jsonl\n(.*?)```", section("Speech synthesisers"), re.S)
+    lines = [line for block in blocks for line in block.splitlines()]
+    assert len(lines) == 7
+    for n, line in enumerate(lines):
+        session.receive(1, line)
+        (reply,) = session.tick(1.0 + 0.3 * n).replies
+        assert isinstance(reply, messages.Reply) and reply.state == "planned", (line, reply)
+    speech = next(s for s in session.plan.track.speeches if s.id.endswith("greet"))
+    assert speech.text == "Hello there my friend"
 
 
 @pytest.mark.parametrize(("part", "title"), [("Reply", "Replies"), ("Event", "Events"), ("Poses", "Poses")])

@@ -67,6 +67,7 @@ LISTING = (
     Translated("metagraph.playback.layer_planning", "layer_planning"),
     Translated("metagraph.playback.life.mouth", "mouth"),
     Translated("metagraph.playback.life.graphemes", "graphemes"),
+    Translated("metagraph.playback.life.line_timing", "line_timing"),
 )
 
 # Modules that each runtime has of its own, with what translated ones take from them.

@@ -37,7 +37,7 @@ def mouth_track(pieces: Sequence[MouthPiece], duration: float) -> list[list[floa
     """Return rows `[K][15]` of the shapes' weights, summing to 1; shut at both ends. Their times are evenly
     spaced from 0 to the duration, at least 1 ms.
     """
-    count = max(2, ceil(duration / STEP) + 1)
+    count = max(2, ceil(duration / STEP - 1e-6) + 1)  # as many for 0.88 s as languages that divide otherwise
     step = max(duration, 1e-3) / (count - 1)
     rows = [[0.0 for shape in range(len(VISEMES))] for row in range(count)]
     made = [0.0 for row in range(count)]

@@ -11,6 +11,7 @@ from math import inf
 
 from metagraph.graph.requests import Point
 from metagraph.graph.words import Layer, Mode
+from metagraph.playback.life.line_timing import LineTiming, extended, timed_seconds, told_text
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +32,8 @@ class LookAt:
 @dataclass(frozen=True, slots=True)
 class Speech:
     """Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts
-    the lower. length: seconds it would have taken, where something cut it short.
+    the lower. length: seconds it would have taken, where something cut it short. timing: when its words and
+    mouth shapes come, where that was told.
     """
 
     id: str
@@ -41,6 +43,7 @@ class Speech:
     text: str = ""
     priority: int = 1
     length: float | None = None
+    timing: LineTiming | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,6 +153,24 @@ class Track:
             else _apart(sorted((*self.speeches, *_speeches(items)), key=_order))
         )
         return Track(looks, speeches, modes, places, blinks, stays)  # type: ignore[arg-type]
+
+    def going_on(self, items: Collection[Item], now: float) -> tuple[Item, ...]:
+        """Return items of which those go on that a line of the same id has begun of by `now`, or begins with:
+        they keep its start and what has been said of it. Only lines whose words or shapes were told with
+        their times do.
+        """
+        return tuple(self._on(item, now) if isinstance(item, Speech) else item for item in items)
+
+    def _on(self, new: Speech, now: float) -> Speech:
+        old = next((s for s in reversed(self.speeches) if s.id == new.id), None)
+        if old is None or old.timing is None or new.timing is None or old.length is not None:
+            return new
+        if max(old.start, new.start) > now and old.start != new.start:
+            return new
+        timing = extended(old.timing, new.timing, max(now - old.start, 0.0))
+        length = max(timed_seconds(timing, None), new.end - new.start)
+        text = told_text(timing) if new.text in ("", told_text(new.timing)) else new.text
+        return replace(new, start=old.start, end=old.start + length, text=text, timing=timing)
 
     def _kinds(self) -> tuple[tuple[Item, ...], ...]:
         return self.looks, self.speeches, self.modes, self.places, self.blinks, self.stays

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from metagraph.graph.face_names import VISEMES
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import read_aloud, spelled
+from metagraph.playback.life.line_timing import LineTiming, timed_sounds
 from metagraph.playback.life.mouth import MouthPiece, accents_of, mouth_track
 from metagraph.playback.life.track import Speech
 
@@ -65,10 +66,21 @@ def voice_from_text(text: str, duration: float | None = None) -> Voice:
     return voiced(said.pieces, length, np.array(said.peaks), np.array(said.strengths))
 
 
+@lru_cache(maxsize=256)
+def voice_from_timing(timing: LineTiming, duration: float) -> Voice:
+    """Return the voice of a line whose words and shapes are told with their times."""
+    said = timed_sounds(ALPHABET, timing)
+    return voiced(said.pieces, duration, np.array(said.peaks), np.array(said.strengths))
+
+
 def voice_of(voices: Mapping[str, Voice], speech: Speech) -> Voice:
-    """Return the voice of something said: its line's as read from the sound, else one guessed from its
-    text.
+    """Return the voice of something said: as its words and shapes were told, as its line's was read from the
+    sound, else one guessed from its text.
     """
+    if speech.timing is not None:
+        return voice_from_timing(
+            speech.timing, speech.end - speech.start if speech.length is None else speech.length
+        )
     known = voices.get(speech.line) if speech.line is not None else None
     if isinstance(known, Voice):
         return known

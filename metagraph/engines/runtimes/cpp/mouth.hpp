@@ -64,7 +64,8 @@ namespace mouth {
 /// Return rows `[K][15]` of the shapes' weights, summing to 1; shut at both ends. Their times are evenly spaced from 0
 /// to the duration, at least 1 ms.
 inline List<List<double>> mouth_track(const List<Ref<MouthPiece>>& pieces, double duration) {
-    int count = std::max(2, static_cast<int>(std::ceil(duration / mouth::STEP)) + 1);
+    // as many for 0.88 s as languages that divide otherwise
+    int count = std::max(2, static_cast<int>(std::ceil(duration / mouth::STEP - 1e-06)) + 1);
     double step = std::max(duration, 0.001) / (count - 1);
     List<List<double>> rows;
     for (int row = 0; row < count; row++) {

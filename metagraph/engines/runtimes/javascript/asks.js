@@ -3,6 +3,7 @@
  * points metres in the character's space (Y up, the character looks along +Z).
  */
 
+import { SETS } from "./line_timing.js";
 import { LAYERS, MODES } from "./words.js";
 
 const number = (low, high) => (x) => (Number.isFinite(x) && x >= low && x <= high ? "" : `should be a number from ${low} to ${high}`);
@@ -12,6 +13,7 @@ const one = (words) => (x) => (words.includes(x) ? "" : `should be one of ${word
 const flag = (x) => (typeof x === "boolean" ? "" : "should be true or false");
 const tags = (x) => (Array.isArray(x) && x.every((tag) => !text(0, 200)(tag)) ? "" : "should be a list of texts");
 const point = (x) => (Array.isArray(x) && x.length === 3 && x.every((v) => !number(-1e6, 1e6)(v)) ? "" : "should be three numbers, metres");
+const list = (most) => (x) => (Array.isArray(x) && x.length <= most ? "" : `should be a list of at most ${most} entries`);
 const whole = (low, high) => (x) => (Number.isInteger(x) ? number(low, high)(x) : "should be a whole number");
 const either = (a, b) => (x) => a(x) && b(x);
 const seconds = number(0, 1e6);
@@ -37,7 +39,10 @@ const FIELDS = {
   shake: { tags: TAGS },
   look: { to: ["user", either(name, point)], duration: [null, seconds], amount: [1, number(0, 1)], strict: [false, flag] },
   blink: {},
-  say: { line: [null, either(name, whole(-1e15, 1e15))], text: ["", text(0, 20000)], duration: [null, seconds], gestures: [true, flag] },
+  say: {
+    line: [null, either(name, whole(-1e15, 1e15))], text: ["", text(0, 20000)], duration: [null, seconds], gestures: [true, flag],
+    words: [[], list(4000)], visemes: [[], list(20000)], set: [null, one(SETS)],
+  },
   mode: { mode: [null, one(MODES)] },
   place: { name: [undefined, name], point: [undefined, point] },
   withdraw: { what: ["", text(0, 200)] },

@@ -4,7 +4,7 @@ import { but } from "./basics.js";
 import { Past } from "./meta_plan.js";
 import { extend } from "./planner.js";
 import { remember } from "./remembering.js";
-import { plus, sinceTrack, trackItems, without } from "./life/track.js";
+import { goesOn, plus, sinceTrack, trackItems, without } from "./life/track.js";
 import { sinceSchedule } from "./life/schedule.js";
 import { understand } from "./understand.js";
 import { LAYERS } from "./words.js";
@@ -41,7 +41,10 @@ export function hear(graph, plan, now, asks, end, options = {}) {
   }
   // Without any asks everything is planned on; with some, what they have to do with.
   const leave = asks.length && now > 0 && end === plan.end ? LAYERS.filter((layer) => !touched.has(layer)) : [];
-  const track = plus(without(plan.track, withdrawn, fixed), items);
+  const goingOn = items.map((item) => goesOn(plan.track, item, fixed));
+  const begun = new Set(goingOn.filter((item, n) => item !== items[n]).map((item) => item.id)); // of which more is said
+  const ended = without(plan.track, new Set([...withdrawn].filter((id) => !begun.has(id))), fixed);
+  const track = plus(without(ended, begun, -Infinity), goingOn);
   const after = extend(graph, { ...plan, track }, fixed, meant.requests, end, options, withdrawn, leave);
   return meant.refused.length ? { ...after, reports: [...after.reports, ...meant.refused] } : after;
 }

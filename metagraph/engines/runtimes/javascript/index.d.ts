@@ -30,7 +30,10 @@ export type Ask = Common &
     | { do: "nod" | "shake"; tags?: string[] }
     | { do: "look"; to?: string | Point; duration?: number | null; amount?: number; strict?: boolean }
     | { do: "blink" }
-    | { do: "say"; line?: string | number | null; text?: string; duration?: number | null; gestures?: boolean }
+    | {
+        do: "say"; line?: string | number | null; text?: string; duration?: number | null; gestures?: boolean;
+        words?: (unknown[] | object)[]; visemes?: (unknown[] | object)[]; set?: "oculus" | "azure" | "sapi" | "polly" | "arkit" | null;
+      }
     | { do: "mode"; mode?: Mode | null }
     | { do: "place"; name: string; point: Point }
     | { do: "withdraw"; what?: string }

@@ -42,7 +42,8 @@ export class MouthPiece {
  * @returns {number[][]}
  */
 export function mouthTrack(pieces, duration) {
-  const count = Math.max(2, Math.ceil(duration / STEP) + 1);
+  // as many for 0.88 s as languages that divide otherwise
+  const count = Math.max(2, Math.ceil(duration / STEP - 1e-06) + 1);
   const step = Math.max(duration, 0.001) / (count - 1);
   const rows = range(count).map((row) => range(VISEMES.length).map((shape) => 0));
   const made = range(count).map((row) => 0);

@@ -3,7 +3,9 @@
 import { ALPHABET } from "./alphabet.js";
 import { readAsk } from "./asks.js";
 import { readAloud } from "./graphemes.js";
+import { timedSeconds, toldText } from "./line_timing.js";
 import { makeRequest } from "./plan.js";
+import { toldTiming } from "./told_timing.js";
 import { LAYERS } from "./words.js";
 
 const FOREVER = 1e9; // seconds; a look that lasts until the next
@@ -101,11 +103,13 @@ function said(graph, ask, at, item, refuse) {
   const name = ask.line === null ? null : String(ask.line);
   const line = name === null ? null : graph.lines.get(name);
   if (line === undefined) throw new AskError(`there is no line '${name}'`);
-  const text = ask.text || (line?.text ?? "");
-  if (!line && !text) throw new AskError("say what: a line's id, or text");
+  const { timing, why } = toldTiming(ask);
+  if (why) throw new AskError(why);
+  const text = ask.text || (line?.text ?? (timing ? toldText(timing) : ""));
+  if (!line && !text && !timing) throw new AskError("say what: a line's id, text, or words with their times");
   const { priority } = ask;
-  const end = at + spokenSeconds(graph, name, text, ask.duration);
-  const out = [item({ kind: "speech", end, line: name, text, priority, length: null })];
+  const end = at + (timing ? timedSeconds(timing, ask.duration) : spokenSeconds(graph, name, text, ask.duration));
+  const out = [item({ kind: "speech", end, line: name, text, priority, length: null, timing })];
   (ask.gestures ? (line?.asks ?? []) : []).forEach((data, n) => {
     const id = `${ask.id}.${n + 1}`;
     const { ask: inner, why } = readAsk(data);

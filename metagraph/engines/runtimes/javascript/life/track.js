@@ -2,11 +2,12 @@
  * What was asked for and lasts: where to look, what to say, which mode to be in, which stance to stay in. Values; times are seconds.
  *
  * Every item has `kind`, `id` and `start`; a look also `end`, `to` (a name or a point), `amount`, `strict`, `priority`; a speech `end`,
- * `line` (id or null), `text`, `priority`, `length` (seconds it would have taken, where something cut it short); a mode `mode`; a
- * place `name` and `point`; a stay `layer`, `on`, `end`.
+ * `line` (id or null), `text`, `priority`, `length` (seconds it would have taken, where something cut it short), `timing` (when its words and
+ * mouth shapes come, null where that was not told); a mode `mode`; a place `name` and `point`; a stay `layer`, `on`, `end`.
  */
 
 import { compareText } from "../basics.js";
+import { extended, timedSeconds, toldText } from "../line_timing.js";
 
 const LANES = { look: "looks", speech: "speeches", mode: "modes", place: "places", blink: "blinks", stay: "stays" };
 
@@ -54,6 +55,21 @@ export function plus(track, items) {
   return out;
 }
 
+/**
+ * Return an item as it goes on where a line of the same id has begun by `now`, or begins with it: it keeps its start and what has been said of it. Only
+ * lines whose words or shapes were told with their times do.
+ */
+export function goesOn(track, item, now) {
+  if (item.kind !== "speech" || !item.timing) return item;
+  const old = track.speeches.findLast((speech) => speech.id === item.id);
+  if (!old?.timing || old.length !== null) return item;
+  if (Math.max(old.start, item.start) > now && old.start !== item.start) return item;
+  const timing = extended(old.timing, item.timing, Math.max(now - old.start, 0));
+  const length = Math.max(timedSeconds(timing, null), item.end - item.start);
+  const text = item.text === "" || item.text === toldText(item.timing) ? toldText(timing) : item.text;
+  return { ...item, start: old.start, end: old.start + length, text, timing };
+}
+
 /** Return the track without what no time from `seconds` on needs. */
 export function sinceTrack(track, seconds) {
   const begun = (lane) => track[lane].filter((item) => item.start <= seconds);
@@ -71,8 +87,11 @@ export function alike(a, b, lanes = Object.values(LANES)) {
 }
 
 function same(a, b) {
-  return a === b || Object.keys(a).every((key) => a[key] === b[key] || ((key === "to" || key === "point") && samePlace(a[key], b[key])));
+  const alike = { to: samePlace, point: samePlace, timing: sameTiming };
+  return a === b || Object.keys(a).every((key) => a[key] === b[key] || alike[key]?.(a[key], b[key]));
 }
+
+const sameTiming = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 
 /** Return whether two names or points are the same. */
 export function samePlace(a, b) {

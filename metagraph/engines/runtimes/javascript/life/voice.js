@@ -2,6 +2,7 @@
 
 import { ALPHABET } from "../alphabet.js";
 import { readAloud, spelled } from "../graphemes.js";
+import { timedSounds } from "../line_timing.js";
 import { accentsOf, mouthTrack } from "../mouth.js";
 import { inRange } from "../words.js";
 
@@ -19,12 +20,23 @@ function readVoice({ duration, accents, weights }, where) {
 /** Return a voice guessed from letters alone. @param {string} text @param {?number} duration seconds @returns {Voice} */
 export function voiceFromText(text, duration) {
   const length = duration === null ? readAloud(ALPHABET, text) : Math.max(duration, 0);
-  const { pieces, peaks, strengths } = spelled(ALPHABET, text, length);
-  const rows = mouthTrack(pieces, pieces.length ? length : 0);
-  return { duration: length, accents: accentsOf(peaks, strengths), weights: Float32Array.from(rows.flat()) };
+  return voiced(spelled(ALPHABET, text, length), length);
 }
 
-/** Returns the voice of something said: its line's as read from the sound, else one guessed from its text; guesses are remembered. */
+/** Return the voice of a line whose words and shapes are told with their times. @returns {Voice} */
+function voiceFromTiming(timing, duration) {
+  return voiced(timedSounds(ALPHABET, timing), duration);
+}
+
+function voiced({ pieces, peaks, strengths }, duration) {
+  const rows = mouthTrack(pieces, pieces.length ? duration : 0);
+  return { duration, accents: accentsOf(peaks, strengths), weights: Float32Array.from(rows.flat()) };
+}
+
+/**
+ * Returns the voice of something said: as its words and shapes were told, as its line's was read from the sound, else one guessed from
+ * its text; what was made is remembered.
+ */
 export class Voices {
   /** @param {Record<string, object>} data of the export */
   constructor(data = {}) {
@@ -34,13 +46,14 @@ export class Voices {
 
   /** @returns {Voice} */
   of(speech) {
+    if (speech.timing) return this.guess(speech, () => voiceFromTiming(speech.timing, speech.length ?? speech.end - speech.start));
     const known = speech.line === null ? undefined : this.known.get(speech.line);
     if (known) return known;
-    let guess = this.guessed.get(speech);
-    if (!guess) {
-      guess = voiceFromText(speech.text, Math.max(0, speech.length ?? speech.end - speech.start));
-      this.guessed.set(speech, guess);
-    }
-    return guess;
+    return this.guess(speech, () => voiceFromText(speech.text, Math.max(0, speech.length ?? speech.end - speech.start)));
+  }
+
+  guess(speech, made) {
+    if (!this.guessed.has(speech)) this.guessed.set(speech, made());
+    return this.guessed.get(speech);
   }
 }

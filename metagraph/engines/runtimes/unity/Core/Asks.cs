@@ -26,6 +26,13 @@ namespace Metagraph
         public Spot To = new Spot(Wanted.Partner);
         public double[] Point;
 
+        /// <summary>
+        /// When the words and mouth shapes of a "say" come, as JSON has them: lists [word, start, end] and [seconds, viseme], or
+        /// JsonObjects. Set: of the visemes' names, null for what they tell.
+        /// </summary>
+        public List<object> Words = new List<object>(), Visemes = new List<object>();
+        public string Set;
+
         internal const double Longest = 1e6;
 
         private static readonly Dictionary<string, string> Fields = new Dictionary<string, string>
@@ -39,7 +46,7 @@ namespace Metagraph
             { "shake", "tags" },
             { "look", "to duration amount strict" },
             { "blink", "" },
-            { "say", "line text duration gestures" },
+            { "say", "line text duration gestures words visemes set" },
             { "mode", "mode" },
             { "place", "name point" },
             { "withdraw", "what" },
@@ -83,7 +90,7 @@ namespace Metagraph
                 {
                     throw new AskException("a '" + kind + "' has no field '" + name + "'");
                 }
-                ask.Set(name, fields[name]);
+                ask.Take(name, fields[name]);
             }
             foreach (string name in new[] { "action", "stance", "name", "point", "bml" })
             {
@@ -95,7 +102,7 @@ namespace Metagraph
             return ask;
         }
 
-        private void Set(string name, object value)
+        private void Take(string name, object value)
         {
             switch (name)
             {
@@ -104,7 +111,7 @@ namespace Metagraph
                 case "told": Seconds(name, value, Longest); break;
                 case "priority": Priority = Whole(name, value); break;
                 case "layer": Layer = value == null && Layer == null ? null : OneOf(name, value, Basics.Layers); break;
-                case "tags": Tags = Words(name, value); break;
+                case "tags": Tags = Texts(name, value); break;
                 case "limb": Limb = value == null ? null : OneOf(name, value, Basics.Limbs); break;
                 case "duration": Duration = Seconds(name, value, Longest); break;
                 case "stroke": Stroke = Seconds(name, value, Longest); break;
@@ -120,6 +127,9 @@ namespace Metagraph
                 case "line": Line = value is long ? ((long)value).ToString(CultureInfo.InvariantCulture) : LineName(name, value); break;
                 case "text": Text = Word(name, value, 0, 20000); break;
                 case "gestures": Gestures = Flag(name, value); break;
+                case "words": Words = Entries(name, value, 4000); break;
+                case "visemes": Visemes = Entries(name, value, 20000); break;
+                case "set": Set = value == null ? null : OneOf(name, value, LineTimingRules.Sets.ToArray()); break;
                 case "mode": Mode = value == null ? null : OneOf(name, value, Basics.Modes); break;
                 case "name": Name = Word(name, value, 1, 200); break;
                 case "point": Point = Place(name, value); break;
@@ -152,7 +162,7 @@ namespace Metagraph
             return (string)value;
         }
 
-        private static string[] Words(string name, object value)
+        private static string[] Texts(string name, object value)
         {
             var items = value as List<object>;
             if (items == null)
@@ -160,6 +170,16 @@ namespace Metagraph
                 throw new AskException(name + ": should be a list of texts");
             }
             return items.ConvertAll(item => Word(name, item, 0, 200)).ToArray();
+        }
+
+        private static List<object> Entries(string name, object value, int most)
+        {
+            var items = value as List<object>;
+            if (items == null || items.Count > most)
+            {
+                throw new AskException(name + ": should be a list of at most " + most + " entries");
+            }
+            return items;
         }
 
         private static bool Flag(string name, object value)

@@ -48,7 +48,10 @@ namespace Metagraph
             }
             bool partly = asks.Count > 0 && now > 0 && end == plan.End;
             string[] leave = partly ? Basics.Layers.Where(layer => !touched.Contains(layer)).ToArray() : Basics.None;
-            plan = plan.With(plan.Track.Without(withdrawn, begins).Plus(items));
+            List<Item> goingOn = items.ConvertAll(i => i is Speech ? ((Speech)i).GoingOn(plan.Track, begins) : i);
+            var begun = new HashSet<string>(goingOn.Where((item, n) => item != items[n]).Select(item => item.Id)); // of which more is said
+            Track ended = plan.Track.Without(new HashSet<string>(withdrawn.Except(begun)), begins);
+            plan = plan.With(ended.Without(begun, double.NegativeInfinity).Plus(goingOn));
             Plan after = Planner.Extend(graph, plan, begins, meant.Requests, end, stances, idle, withdrawn, leave);
             after.Reports.AddRange(meant.Refused);
             return after;

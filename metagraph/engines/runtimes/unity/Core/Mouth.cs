@@ -55,7 +55,8 @@ namespace Metagraph
         /// </summary>
         public static List<List<double>> MouthTrack(List<MouthPiece> pieces, double duration)
         {
-            var count = Math.Max(2, (int)Math.Ceiling(duration / Step) + 1);
+            // as many for 0.88 s as languages that divide otherwise
+            var count = Math.Max(2, (int)Math.Ceiling(duration / Step - 1e-06) + 1);
             var step = Math.Max(duration, 0.001) / (count - 1);
             var rows = PlainNumbers.Range(count).Select(row => PlainNumbers.Range(
                 WordsRules.Visemes.Count

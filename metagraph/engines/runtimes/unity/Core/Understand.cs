@@ -108,13 +108,19 @@ namespace Metagraph
             {
                 throw new AskException("there is no line '" + ask.Line + "'");
             }
-            string text = ask.Text.Length > 0 ? ask.Text : line != null ? line.Text : "";
-            if (line == null && text.Length == 0)
+            LineTiming timing = ToldTiming.Of(ask.Words, ask.Visemes, ask.Set, ask.Duration);
+            string told = timing == null ? "" : LineTimingRules.ToldText(timing);
+            string text = ask.Text.Length > 0 ? ask.Text : line != null ? line.Text : told;
+            if (line == null && text.Length == 0 && timing == null)
             {
-                throw new AskException("say what: a line's id, or text");
+                throw new AskException("say what: a line's id, text, or words with their times");
             }
             double length = GraphemesRules.ReadAloud(Alphabet.Common, text);
-            if (ask.Duration != null)
+            if (timing != null)
+            {
+                length = LineTimingRules.TimedSeconds(timing, ask.Duration);
+            }
+            else if (ask.Duration != null)
             {
                 length = Math.Max(ask.Duration.Value, 0.0);
             }
@@ -122,7 +128,7 @@ namespace Metagraph
             {
                 length = line.Voice != null ? line.Voice.Duration : line.Duration ?? length;
             }
-            Items.Add(new Speech(ask.Id, at, at + length, line, ask.Line, text, ask.Priority, null));
+            Items.Add(new Speech(ask.Id, at, at + length, line, ask.Line, text, ask.Priority, null, timing));
             for (int n = 0; line != null && ask.Gestures && n < line.Asks.Count; n++)
             {
                 Ask inner = line.Asks[n];

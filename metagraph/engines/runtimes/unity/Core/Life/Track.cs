@@ -87,18 +87,24 @@ namespace Metagraph
         }
     }
 
-    /// <summary>Something said: a line, or text alone. Length: seconds it would have taken, where something cut it short.</summary>
+    /// <summary>
+    /// Something said: a line, or text alone. Length: seconds it would have taken, where something cut it short. Timing: when its
+    /// words and mouth shapes come, null where that was not told.
+    /// </summary>
     public sealed class Speech : Item
     {
         public readonly Line Line;
         public readonly string LineId, Text;
         public readonly int Priority;
         public readonly double? Length;
+        public readonly LineTiming Timing;
         private Voice voice;
 
-        public Speech(string id, double start, double end, Line line, string lineId, string text, int priority, double? length)
+        public Speech(
+            string id, double start, double end, Line line, string lineId, string text, int priority, double? length, LineTiming timing = null)
             : base(id, start, end)
         {
+            Timing = timing;
             Line = line;
             LineId = lineId;
             Text = text;
@@ -111,7 +117,7 @@ namespace Metagraph
             get { return "speech"; }
         }
 
-        /// <summary>Its line's voice as exported, else one guessed from its text.</summary>
+        /// <summary>As its words and shapes were told, its line's voice as exported, else one guessed from its text.</summary>
         public Voice Voice
         {
             get
@@ -119,7 +125,8 @@ namespace Metagraph
                 if (voice == null)
                 {
                     bool known = Line != null && Line.Voice != null;
-                    voice = known ? Line.Voice : Voice.FromText(Text, Math.Max(0.0, Length ?? End - Start));
+                    double length = Math.Max(0.0, Length ?? End - Start);
+                    voice = Timing != null ? Voice.FromTiming(Timing, length) : known ? Line.Voice : Voice.FromText(Text, length);
                 }
                 return voice;
             }
@@ -129,13 +136,45 @@ namespace Metagraph
         {
             var speech = (Speech)other;
             return base.Same(other) && LineId == speech.LineId && Text == speech.Text && Priority == speech.Priority
-                && Length == speech.Length;
+                && Length == speech.Length && SameTiming(Timing, speech.Timing);
+        }
+
+        private static bool SameTiming(LineTiming a, LineTiming b)
+        {
+            if (a == null || b == null)
+            {
+                return a == b;
+            }
+            return a.Words.Count == b.Words.Count && a.Marks.Count == b.Marks.Count
+                && !a.Words.Where((w, n) => w.Text != b.Words[n].Text || w.Start != b.Words[n].Start || w.End != b.Words[n].End).Any()
+                && !a.Marks.Where((m, n) => m.At != b.Marks[n].At || m.Viseme != b.Marks[n].Viseme || m.Weight != b.Marks[n].Weight).Any();
+        }
+
+        /// <summary>
+        /// The speech as it goes on where a line of the same id has begun by `now`, or begins with it: it keeps its start and what has been said of it.
+        /// Only lines whose words or shapes were told with their times do.
+        /// </summary>
+        public Speech GoingOn(Track track, double now)
+        {
+            Speech old = track.Speeches.FindLast(speech => speech.Id == Id);
+            if (old == null || old.Timing == null || Timing == null || old.Length != null)
+            {
+                return this;
+            }
+            if (Math.Max(old.Start, Start) > now && old.Start != Start)
+            {
+                return this;
+            }
+            LineTiming timing = LineTimingRules.Extended(old.Timing, Timing, Math.Max(now - old.Start, 0.0));
+            double length = Math.Max(LineTimingRules.TimedSeconds(timing, null), End - Start);
+            string text = Text == "" || Text == LineTimingRules.ToldText(Timing) ? LineTimingRules.ToldText(timing) : Text;
+            return new Speech(Id, old.Start, old.Start + length, Line, LineId, text, Priority, null, timing);
         }
 
         /// <summary>The speech, ending no later than `now`; how long it would have been is remembered.</summary>
         public override Item Ended(double now)
         {
-            return End <= now ? this : new Speech(Id, Start, now, Line, LineId, Text, Priority, Length ?? End - Start);
+            return End <= now ? this : new Speech(Id, Start, now, Line, LineId, Text, Priority, Length ?? End - Start, Timing);
         }
     }
 

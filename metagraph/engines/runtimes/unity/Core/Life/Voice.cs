@@ -29,10 +29,20 @@ namespace Metagraph
         /// <summary>A voice guessed from letters alone; duration: seconds.</summary>
         public static Voice FromText(string text, double duration)
         {
-            Spelled spelled = GraphemesRules.Spelled(Alphabet.Common, text, duration);
-            List<List<double>> rows = MouthRules.MouthTrack(spelled.Pieces, spelled.Pieces.Count > 0 ? duration : 0.0);
+            return From(GraphemesRules.Spelled(Alphabet.Common, text, duration), duration);
+        }
+
+        /// <summary>The voice of a line whose words and shapes are told with their times.</summary>
+        public static Voice FromTiming(LineTiming timing, double duration)
+        {
+            return From(LineTimingRules.TimedSounds(Alphabet.Common, timing), duration);
+        }
+
+        private static Voice From(Spelled said, double duration)
+        {
+            List<List<double>> rows = MouthRules.MouthTrack(said.Pieces, said.Pieces.Count > 0 ? duration : 0.0);
             float[][] weights = rows.Select(row => row.Select(weight => (float)weight).ToArray()).ToArray();
-            return new Voice(duration, MouthRules.AccentsOf(spelled.Peaks, spelled.Strengths).ToArray(), weights);
+            return new Voice(duration, MouthRules.AccentsOf(said.Peaks, said.Strengths).ToArray(), weights);
         }
     }
 }

@@ -17,7 +17,10 @@ const FIELDS = {
 	shake = {tags = "tags"},
 	look = {to = "spot", duration = "seconds?", amount = "share", strict = "switch"},
 	blink = {},
-	say = {line = "line?", text = "text20000", duration = "seconds?", gestures = "switch"},
+	say = {
+		line = "line?", text = "text20000", duration = "seconds?", gestures = "switch", words = "entries4000", visemes = "entries20000",
+		set = "set?"
+	},
 	mode = {mode = "mode?"},
 	place = {name = "name", point = "point"},
 	withdraw = {what = "text200"},
@@ -26,9 +29,11 @@ const FIELDS = {
 # What fields are where nothing is said; those that are not here are null, or must be said.
 const USUAL = {
 	id = "", priority = 1, layer = "arms", tags = [], prepare = true, resume = false, stay = false, to = "user", amount = 1.0,
-	strict = false, text = "", gestures = true, what = ""
+	strict = false, text = "", gestures = true, what = "", words = [], visemes = []
 }
-const WORDS = {layer = ["body", "arms", "head"], limb = ["left", "right", "both"], mode = ["idle", "listening", "talking"]}
+const WORDS = {
+	set = ["oculus", "azure", "sapi", "polly", "arkit"], layer = ["body", "arms", "head"], limb = ["left", "right", "both"], mode = ["idle", "listening", "talking"]
+}
 
 
 # Returns [the ask with all its fields, ""] or, where it cannot be read, [null, why].
@@ -77,12 +82,14 @@ static func _read(value, kind):
 			return int(whole) if whole != null and whole == floor(whole) else null
 		"switch":
 			return value if typeof(value) == TYPE_BOOL else null
-		"layer", "limb", "mode":
+		"layer", "limb", "mode", "set":
 			return value if text and WORDS[kind].has(value) else null
 		"name":
 			return value if text and value.length() >= 1 and value.length() <= 200 else null
 		"text200", "text20000", "text200000":
 			return value if text and value.length() <= int(kind.trim_prefix("text")) else null
+		"entries4000", "entries20000":
+			return value if typeof(value) == TYPE_ARRAY and value.size() <= int(kind.trim_prefix("entries")) else null
 		"line":
 			if Util.is_number(value):
 				return str(int(value)) if value == floor(value) else null

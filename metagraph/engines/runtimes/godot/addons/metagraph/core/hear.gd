@@ -53,7 +53,16 @@ static func hear(graph, plan, now, asks, end, stances, idle):
 		for layer in Util.LAYERS:
 			if not touched.has(layer):
 				leave.append(layer)
-	var track = Track.plus(Track.without(plan.track, withdrawn, fixed), items)
+	var going_on = []
+	var begun = {}  # of which more is said
+	var ended = withdrawn.duplicate()
+	for item in items:
+		var on = Track.going_on(plan.track, item, fixed)
+		going_on.append(on)
+		if on != item:
+			begun[item.id] = true
+			ended.erase(item.id)
+	var track = Track.plus(Track.without(Track.without(plan.track, ended, fixed), begun, -INF), going_on)
 	plan = Util.but(plan, {track = track})
 	var after = Planner.extend_plan(graph, plan, fixed, meant.requests, end, stances, idle, withdrawn, leave)
 	after.reports += meant.refused

@@ -35,7 +35,7 @@ class MouthPiece:
 # Return rows `[K][15]` of the shapes' weights, summing to 1; shut at both ends. Their times are evenly spaced from 0 to the
 # duration, at least 1 ms.
 static func mouth_track(pieces, duration):
-	var count = Util.most(2, int(ceil(duration / STEP)) + 1)
+	var count = Util.most(2, int(ceil(duration / STEP - 1e-06)) + 1)  # as many for 0.88 s as languages that divide otherwise
 	var step = Util.most(duration, 0.001) / (count - 1)
 	var rows = []
 	for row in range(count):

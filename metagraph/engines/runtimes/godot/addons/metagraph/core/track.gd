@@ -2,8 +2,10 @@
 #
 # A track is {looks, speeches, modes, places, blinks, stays}, each by start; speeches do not overlap. Items have `list` (which of
 # these), id, start, and: looks end, to (a name or [x, y, z] metres), amount, strict, priority; speeches end, line, text, priority, length
-# (seconds it would have taken, where something cut it short); modes mode; places name, point; stays layer, on, end.
+# (seconds it would have taken, where something cut it short), timing (when its words and mouth shapes come, null where that was not
+# told); modes mode; places name, point; stays layer, on, end.
 
+const LineTiming = preload("line_timing.gd")
 const Util = preload("util.gd")
 const LISTS = ["looks", "speeches", "modes", "places", "blinks", "stays"]
 
@@ -71,6 +73,27 @@ static func plus(track, more):
 	if spoken:
 		out.speeches = _apart(out.speeches)
 	return out
+
+
+# Returns an item as it goes on where a line of the same id has begun by `now`, or begins with it: it keeps its start and what has been said of it. Only
+# lines whose words or shapes were told with their times do.
+static func going_on(track, item, now):
+	if item.list != "speeches" or item.timing == null:
+		return item
+	var old = null
+	for speech in track.speeches:
+		if speech.id == item.id:
+			old = speech
+	if old == null or old.timing == null or old.length != null:
+		return item
+	if Util.most(old.start, item.start) > now and old.start != item.start:
+		return item
+	var timing = LineTiming.extended(old.timing, item.timing, Util.most(now - old.start, 0.0))
+	var length = Util.most(LineTiming.timed_seconds(timing, null), item.end - item.start)
+	var text = item.text
+	if text == "" or text == LineTiming.told_text(item.timing):
+		text = LineTiming.told_text(timing)
+	return Util.but(item, {start = old.start, end = old.start + length, text = text, timing = timing})
 
 
 # Returns the track without what no time from `seconds` on needs.

@@ -3,6 +3,8 @@
 const Util = preload("util.gd")
 const Asks = preload("asks.gd")
 const Graphemes = preload("graphemes.gd")
+const LineTiming = preload("line_timing.gd")
+const ToldTiming = preload("told_timing.gd")
 const Request = preload("request.gd")
 const FOREVER = 1e9  # seconds; a look that lasts until the next
 
@@ -93,11 +95,22 @@ static func _say(graph, ask, at, out):
 	var text = ask.text
 	if text == "" and line != null:
 		text = line.get("text", "")
-	if line == null and text == "":
-		return "say what: a line's id, or text"
-	var length = spoken_seconds(graph, ask.line, text, ask.duration)
+	var told = ToldTiming.told_timing(graph.alphabet, ask)
+	if told[1] != "":
+		return told[1]
+	var timing = told[0]
+	if text == "" and line == null and timing != null:
+		text = LineTiming.told_text(timing)
+	if line == null and text == "" and timing == null:
+		return "say what: a line's id, text, or words with their times"
+	var length
+	if timing == null:
+		length = spoken_seconds(graph, ask.line, text, ask.duration)
+	else:
+		length = LineTiming.timed_seconds(timing, ask.duration)
 	out.items.append({
-		list = "speeches", id = ask.id, start = at, end = at + length, line = ask.line, text = text, priority = ask.priority, length = null
+		list = "speeches", id = ask.id, start = at, end = at + length, line = ask.line, text = text, priority = ask.priority, length = null,
+		timing = timing
 	})
 	if line == null or not ask.gestures:
 		return ""

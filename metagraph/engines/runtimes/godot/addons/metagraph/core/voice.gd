@@ -3,24 +3,31 @@
 
 const Util = preload("util.gd")
 const Graphemes = preload("graphemes.gd")
+const LineTiming = preload("line_timing.gd")
 const Mouth = preload("mouth.gd")
 const MOST = 256  # texts remembered
 
 
-# Returns the voice of something said: its line's, else one guessed from its text.
+# Returns the voice of something said: as its words and shapes were told, its line's, else one guessed from its text.
 static func of(graph, speech):
-	if speech.line != null and graph.voices.has(speech.line):
+	var timing = speech.get("timing")
+	if timing == null and speech.line != null and graph.voices.has(speech.line):
 		return graph.voices[speech.line]
 	var duration = Util.most(0.0, speech.end - speech.start if speech.length == null else speech.length)
-	var key = "%s/%s" % [str(duration), speech.text]
+	var key = timing  # which is never changed once made
+	if timing == null:
+		key = "%s/%s" % [str(duration), speech.text]
 	if not graph.said.has(key):
 		if graph.said.size() >= MOST:
 			graph.said.clear()
-		graph.said[key] = _of_text(graph.alphabet, speech.text, duration)
+		graph.said[key] = _voice(_sounds(graph.alphabet, speech.text, timing, duration), duration)
 	return graph.said[key]
 
 
-static func _of_text(alphabet, text, duration):
-	var found = Graphemes.spelled(alphabet, text, duration)
+static func _sounds(alphabet, text, timing, duration):
+	return Graphemes.spelled(alphabet, text, duration) if timing == null else LineTiming.timed_sounds(alphabet, timing)
+
+
+static func _voice(found, duration):
 	var rows = Mouth.mouth_track(found.pieces, duration if found.pieces.size() > 0 else 0.0)
 	return {duration = duration, accents = Mouth.accents_of(found.peaks, found.strengths), weights = rows}

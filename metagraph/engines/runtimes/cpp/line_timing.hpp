@@ -1,0 +1,513 @@
+// When a line's words and mouth shapes come, as a synthesiser tells them: the mouth follows them and is shut between.
+// Times are seconds from the line's start.
+//
+// Translated from metagraph/playback/life/line_timing.py; change that, and translate anew.
+#pragma once
+
+#include "alphabet.hpp"
+#include "graphemes.hpp"
+#include "mouth.hpp"
+#include "language.hpp"
+
+namespace metagraph {
+
+struct SpokenWord;
+struct VisemeMark;
+struct LineTiming;
+
+namespace line_timing {
+
+inline constexpr double WORD = 0.15; // seconds a word takes of which only the start is told, if nothing comes before
+inline constexpr double LETTER = 0.07; // and for each of its letters
+inline constexpr double SHAPE = 0.2; // seconds the last shape of a line stays
+inline constexpr double FARTHEST = 3600.0; // seconds of a line
+inline constexpr double SLACK = 0.05; // seconds by which times may be past the end they are told with
+// What each viseme of a set shows of the mouth shapes, and how fully.
+inline const Map<std::string, std::string> OCULUS = Map<std::string, std::string>{
+    {"sil", "sil"},
+    {"PP", "PP"},
+    {"FF", "FF"},
+    {"TH", "TH"},
+    {"DD", "DD"},
+    {"kk", "kk"},
+    {"CH", "CH"},
+    {"SS", "SS"},
+    {"nn", "nn"},
+    {"RR", "RR"},
+    {"aa", "aa"},
+    {"E", "E"},
+    {"ih", "I"},
+    {"oh", "O"},
+    {"ou", "U"},
+    {"I", "I"},
+    {"O", "O"},
+    {"U", "U"}
+};
+// SAPI's numbers, which Azure has, too.
+inline const Map<std::string, std::string> AZURE = Map<std::string, std::string>{
+    {"0", "sil"},
+    {"1", "E"},
+    {"2", "aa"},
+    {"3", "O"},
+    {"4", "E"},
+    {"5", "RR"},
+    {"6", "I"},
+    {"7", "U"},
+    {"8", "O"},
+    {"9", "aa"},
+    {"10", "O"},
+    {"11", "aa"},
+    {"12", "kk"},
+    {"13", "RR"},
+    {"14", "nn"},
+    {"15", "SS"},
+    {"16", "CH"},
+    {"17", "TH"},
+    {"18", "FF"},
+    {"19", "DD"},
+    {"20", "kk"},
+    {"21", "PP"}
+};
+// Amazon Polly's speech marks.
+inline const Map<std::string, std::string> POLLY = Map<std::string, std::string>{
+    {"sil", "sil"},
+    {"p", "PP"},
+    {"t", "DD"},
+    {"S", "CH"},
+    {"T", "TH"},
+    {"f", "FF"},
+    {"k", "kk"},
+    {"i", "I"},
+    {"r", "RR"},
+    {"s", "SS"},
+    {"u", "U"},
+    {"@", "E"},
+    {"a", "aa"},
+    {"e", "E"},
+    {"E", "E"},
+    {"o", "O"},
+    {"O", "O"}
+};
+// Of ARKit's blend shapes those that make the mouth.
+inline const Map<std::string, std::string> ARKIT = Map<std::string, std::string>{
+    {"jawOpen", "aa"},
+    {"mouthClose", "PP"},
+    {"mouthPressLeft", "PP"},
+    {"mouthPressRight", "PP"},
+    {"mouthFunnel", "O"},
+    {"mouthPucker", "U"},
+    {"mouthRollLower", "FF"},
+    {"mouthRollUpper", "PP"},
+    {"mouthStretchLeft", "E"},
+    {"mouthStretchRight", "E"},
+    {"mouthSmileLeft", "I"},
+    {"mouthSmileRight", "I"},
+    {"mouthShrugUpper", "CH"},
+    {"tongueOut", "TH"}
+};
+inline const List<std::string> SETS = List<std::string>{"oculus", "azure", "sapi", "polly", "arkit"};
+inline const Map<std::string, double> WEAK = Map<std::string, double>{
+    {"@", 0.6},
+    {"12", 0.5},
+    {"1", 0.8},
+    {"mouthSmileLeft", 0.3},
+    {"mouthSmileRight", 0.3}
+};
+inline Map<std::string, std::string> _table(const std::string& name);
+inline std::string set_of(const List<Ref<VisemeMark>>& marks);
+inline std::string wrong_in(
+    const List<Ref<SpokenWord>>& words,
+    const List<Ref<VisemeMark>>& marks,
+    const std::string& name,
+    const std::optional<double>& duration
+);
+inline std::string _out_of_range(double seconds);
+inline Ref<LineTiming> timing_of(
+    const Ref<Alphabet>& alphabet,
+    const List<Ref<SpokenWord>>& words,
+    const List<Ref<VisemeMark>>& marks,
+    const std::string& name
+);
+inline std::string told_text(const Ref<LineTiming>& timing);
+inline double timed_seconds(const Ref<LineTiming>& timing, const std::optional<double>& duration);
+inline Ref<Spelled> timed_sounds(const Ref<Alphabet>& alphabet, const Ref<LineTiming>& timing);
+inline List<double> _ends(const List<Ref<VisemeMark>>& marks);
+inline Ref<LineTiming> extended(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said);
+inline bool _told(const List<Ref<VisemeMark>>& marks, const Ref<VisemeMark>& mark);
+
+}  // namespace line_timing
+
+/// A word from `start` to `end`; None where only its start is told.
+struct SpokenWord {
+    std::string text;
+    double start;
+    std::optional<double> end;
+
+    SpokenWord(std::string text_, double start_, std::optional<double> end_ = std::nullopt)
+        : text(std::move(text_)), start(start_), end(end_) {}
+};
+
+/// A mouth shape from `at` until the next mark of a later time. viseme: its name in the set it is of, of `VISEMES` in a
+/// `LineTiming`. weight: how fully it is made, 0..1.
+struct VisemeMark {
+    double at;
+    std::string viseme;
+    double weight;
+
+    VisemeMark(double at_, std::string viseme_, double weight_ = 1.0)
+        : at(at_), viseme(std::move(viseme_)), weight(weight_) {}
+};
+
+/// A line's words and mouth shapes, each by time.
+struct LineTiming {
+    List<Ref<SpokenWord>> words;
+    List<Ref<VisemeMark>> marks;
+
+    explicit LineTiming(
+        List<Ref<SpokenWord>> words_ = List<Ref<SpokenWord>>{},
+        List<Ref<VisemeMark>> marks_ = List<Ref<VisemeMark>>{}
+    )
+        : words(std::move(words_)), marks(std::move(marks_)) {}
+};
+
+namespace line_timing {
+
+inline Map<std::string, std::string> _table(const std::string& name) {
+    if (name == "oculus") {
+        return line_timing::OCULUS;
+    }
+    if (name == "polly") {
+        return line_timing::POLLY;
+    }
+    return name == "arkit" ? line_timing::ARKIT : line_timing::AZURE;
+}
+
+/// Return the first set that has all of some visemes, "" where none has.
+inline std::string set_of(const List<Ref<VisemeMark>>& marks) {
+    for (const auto& name : line_timing::SETS) {
+        bool are_all = true;
+        for (const auto& mark : marks) {
+            if (!lang::contains(line_timing::_table(name), mark->viseme)) {
+                are_all = false;
+                break;
+            }
+        }
+        if (are_all) {
+            return name;
+        }
+    }
+    return "";
+}
+
+/// Return what is wrong with a line's times, where, and what would be right; "" where nothing is.
+///
+/// name: of the set the visemes are of, "" for what their names tell. duration: seconds of its sound, None where that
+/// is not told.
+inline std::string wrong_in(
+    const List<Ref<SpokenWord>>& words,
+    const List<Ref<VisemeMark>>& marks,
+    const std::string& name,
+    const std::optional<double>& duration
+) {
+    double last = 0.0;
+    std::string why{};
+    for (int n = 0; n < lang::len(words); n++) {
+        const auto& word = lang::at(words, n);
+        std::string place = lang::text("words[", n, "] '", word->text, "'");
+        why = line_timing::_out_of_range(word->start);
+        if (why == "" && word->start < last) {
+            why = lang::text(
+                "begins at ",
+                lang::fixed(word->start, 3),
+                " s, before the one before it; put words in order"
+            );
+        }
+        double end = !word->end.has_value() ? word->start : *word->end;
+        if (why == "" && !(end >= word->start)) {
+            why = lang::text(
+                "ends at ",
+                lang::fixed(end, 3),
+                " s, before it begins; give [word, start, end] in seconds"
+            );
+        }
+        if (why == "" && duration.has_value() && end > *duration + line_timing::SLACK) {
+            why = lang::text(
+                "ends at ",
+                lang::fixed(end, 3),
+                " s, past the end at ",
+                lang::fixed(*duration, 3),
+                " s; give a longer duration"
+            );
+        }
+        if (why != "") {
+            return lang::text(place, ": ", why);
+        }
+        last = word->start;
+    }
+    if (name != "" && !lang::contains(line_timing::SETS, name)) {
+        return lang::text("set: '", name, "' is no set of visemes; there are ", lang::joined(line_timing::SETS, ", "));
+    }
+    std::string found = name == "" ? line_timing::set_of(marks) : name;
+    last = 0.0;
+    for (int n = 0; n < lang::len(marks); n++) {
+        const auto& mark = lang::at(marks, n);
+        why = line_timing::_out_of_range(mark->at);
+        if (why == "" && mark->at < last) {
+            why = lang::text(
+                "comes at ",
+                lang::fixed(mark->at, 3),
+                " s, before the one before it; put visemes in order"
+            );
+        }
+        if (why == "" && duration.has_value() && mark->at > *duration + line_timing::SLACK) {
+            why = lang::text(
+                "comes at ",
+                lang::fixed(mark->at, 3),
+                " s, past the end at ",
+                lang::fixed(*duration, 3),
+                " s; give a longer duration"
+            );
+        }
+        if (why == "" && !(0 <= mark->weight && mark->weight <= 1)) {
+            why = lang::text("has the weight ", lang::fixed(mark->weight, 3), "; weights are from 0 to 1");
+        }
+        if (why == "" && found == "" && line_timing::set_of(List<Ref<VisemeMark>>{mark}) == "") {
+            why = lang::text("is in no set of visemes; there are ", lang::joined(line_timing::SETS, ", "));
+        }
+        if (why == "" && found != "" && !lang::contains(line_timing::_table(found), mark->viseme)) {
+            why = lang::text(
+                "is not in the set '",
+                found,
+                "', which has ",
+                lang::joined(lang::keys(line_timing::_table(found)), ", ")
+            );
+        }
+        if (why != "") {
+            return lang::text("visemes[", n, "] '", mark->viseme, "': ", why);
+        }
+        last = mark->at;
+    }
+    if (found == "") {
+        return lang::text("visemes: no set has all of them; there are ", lang::joined(line_timing::SETS, ", "));
+    }
+    return "";
+}
+
+inline std::string _out_of_range(double seconds) {
+    if (0 <= seconds && seconds <= line_timing::FARTHEST) {
+        return "";
+    }
+    return lang::text(
+        "is at ",
+        lang::fixed(seconds, 3),
+        " s; times are from 0 to ",
+        lang::fixed(line_timing::FARTHEST, 1),
+        " s from the line's start"
+    );
+}
+
+/// Return the timing that words and visemes in which nothing is wrong make. name: as for `wrong_in`.
+inline Ref<LineTiming> timing_of(
+    const Ref<Alphabet>& alphabet,
+    const List<Ref<SpokenWord>>& words,
+    const List<Ref<VisemeMark>>& marks,
+    const std::string& name
+) {
+    Map<std::string, std::string> table = line_timing::_table(name == "" ? line_timing::set_of(marks) : name);
+    List<Ref<VisemeMark>> shown;
+    for (const auto& m : marks) {
+        shown.push_back(lang::made<VisemeMark>(
+            m->at,
+            table.at(m->viseme),
+            m->weight * lang::get_or(line_timing::WEAK, m->viseme, 1.0)
+        ));
+    }
+    List<Ref<SpokenWord>> said;
+    for (int n = 0; n < lang::len(words); n++) {
+        const auto& word = lang::at(words, n);
+        double end = !word->end.has_value()
+            ? word->start + line_timing::WORD + line_timing::LETTER * lang::len(alphabet->letters(word->text))
+            : *word->end;
+        if (n + 1 < lang::len(words)) {
+            end = std::min(end, lang::at(words, n + 1)->start);
+        }
+        if (!word->end.has_value()) { // a pause ends it
+            double first = end;
+            for (const auto& m : shown) {
+                if (m->viseme == "sil" && m->at > word->start) {
+                    first = m->at;
+                    break;
+                }
+            }
+            end = std::min(end, first);
+        }
+        said.push_back(lang::made<SpokenWord>(word->text, word->start, std::max(end, word->start)));
+    }
+    return lang::made<LineTiming>(said, shown);
+}
+
+/// Return the words of a line as its text.
+inline std::string told_text(const Ref<LineTiming>& timing) {
+    List<std::string> found;
+    for (const auto& word : timing->words) {
+        found.push_back(word->text);
+    }
+    return lang::joined(found, " ");
+}
+
+/// Return how long a line lasts, to whole rows of a mouth's track, so that what is added to it later moves nothing.
+/// duration: of its sound, None for as long as its words and shapes need.
+inline double timed_seconds(const Ref<LineTiming>& timing, const std::optional<double>& duration) {
+    double last = 0.0;
+    for (const auto& word : timing->words) {
+        last = std::max(last, !word->end.has_value() ? word->start : *word->end);
+    }
+    if (lang::len(timing->marks) > 0) {
+        Ref<VisemeMark> mark = lang::at(timing->marks, -1);
+        last = std::max(last, mark->at + (mark->viseme == "sil" ? 0.0 : line_timing::SHAPE));
+    }
+    return static_cast<int>(std::ceil((!duration.has_value() ? last + mouth::LATE : std::max(*duration, last))
+                / mouth::STEP
+            - 1e-06))
+        * mouth::STEP;
+}
+
+/// Return the mouth's pieces and the syllables of a line's words and shapes: shapes are the mouth's where any are told,
+/// words those of gestures and blinks.
+inline Ref<Spelled> timed_sounds(const Ref<Alphabet>& alphabet, const Ref<LineTiming>& timing) {
+    Ref<Spelled> out = lang::made<Spelled>();
+    for (const auto& word : timing->words) {
+        List<Ref<SpelledSound>> plan = graphemes::sounds(alphabet, word->text);
+        double over = !word->end.has_value() ? word->start : *word->end;
+        if (lang::len(plan) > 0 && over > word->start) {
+            out->add(plan, word->start, over);
+        }
+    }
+    if (lang::len(timing->marks) == 0) {
+        return out;
+    }
+    Ref<Spelled> shown = lang::made<Spelled>();
+    std::string before = "sil";
+    for (int n = 0; n < lang::len(timing->marks); n++) {
+        const auto& mark = lang::at(timing->marks, n);
+        const auto& end = lang::at(line_timing::_ends(timing->marks), n);
+        if (mark->viseme != "sil" && end > mark->at) {
+            shown->pieces.push_back(lang::made<MouthPiece>(mark->at, end, mark->viseme, mark->weight));
+            if (lang::contains(graphemes::VOWELS, mark->viseme)
+                && !lang::contains(graphemes::VOWELS, before)
+                && mark->weight > 0) {
+                shown->peaks.push_back(0.5 * (mark->at + end));
+                shown->strengths.push_back(mark->weight * std::min(1.0, 0.3 + 4 * (end - mark->at)));
+            }
+        }
+        before = mark->viseme;
+    }
+    if (lang::len(out->peaks) > 0) {
+        return lang::made<Spelled>(shown->pieces, out->peaks, out->strengths);
+    }
+    return shown;
+}
+
+/// Return when each mark is over: several at one time are the mouth's together.
+inline List<double> _ends(const List<Ref<VisemeMark>>& marks) {
+    List<double> out;
+    double end = 0.0;
+    double at = -1.0;
+    for (const auto& mark : lang::backwards(marks)) {
+        if (mark->at != at) {
+            end = at < 0 ? mark->at + line_timing::SHAPE : at;
+            at = mark->at;
+        }
+        out.push_back(end);
+    }
+    return lang::backwards(out);
+}
+
+/// Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up to where the
+/// new begins; of a word or a shape that has begun meanwhile the rest is said.
+inline Ref<LineTiming> extended(const Ref<LineTiming>& old, const Ref<LineTiming>& new_, double said) {
+    List<Ref<SpokenWord>> words = old->words;
+    List<double> found;
+    for (const auto& word : old->words) {
+        if (word->start < said) {
+            found.push_back(word->start);
+        }
+    }
+    double begun = lang::max_of(lang::together(List<double>{-1.0}, found));
+    List<Ref<SpokenWord>> coming;
+    for (const auto& word : new_->words) {
+        if (word->start >= said
+            || (word->start > begun && (!word->end.has_value() ? word->start : *word->end) > said)) {
+            coming.push_back(word);
+        }
+    }
+    double until{};
+    if (lang::len(coming) > 0) {
+        until = std::max(said, lang::at(new_->words, 0)->start);
+        double first = std::max(lang::at(coming, 0)->start, said);
+        List<Ref<SpokenWord>> found2;
+        for (const auto& word : old->words) {
+            if (word->start < until) {
+                found2.push_back(lang::made<SpokenWord>(
+                    word->text,
+                    word->start,
+                    std::min(!word->end.has_value() ? first : *word->end, first)
+                ));
+            }
+        }
+        words = found2;
+        List<Ref<SpokenWord>> found3;
+        for (const auto& word : coming) {
+            found3.push_back(lang::made<SpokenWord>(word->text, std::max(word->start, said), word->end));
+        }
+        lang::extend(words, found3);
+    }
+    List<Ref<VisemeMark>> marks = old->marks;
+    List<double> found4;
+    for (const auto& mark : new_->marks) {
+        if (mark->at < said) {
+            found4.push_back(mark->at);
+        }
+    }
+    double now = lang::max_of(lang::together(List<double>{-1.0}, found4));
+    List<double> found5;
+    for (const auto& mark : old->marks) {
+        if (mark->at < said) {
+            found5.push_back(mark->at);
+        }
+    }
+    double over = lang::max_of(lang::together(List<double>{-1.0}, found5));
+    List<Ref<VisemeMark>> shown;
+    for (const auto& mark : new_->marks) {
+        if (mark->at >= said || (mark->at == now && now >= over && !line_timing::_told(old->marks, mark))) {
+            shown.push_back(lang::made<VisemeMark>(std::max(mark->at, said), mark->viseme, mark->weight));
+        }
+    }
+    if (lang::len(shown) > 0) {
+        until = std::max(said, lang::at(new_->marks, 0)->at);
+        List<Ref<VisemeMark>> found6;
+        for (const auto& mark : old->marks) {
+            if (mark->at < until) {
+                found6.push_back(mark);
+            }
+        }
+        marks = found6;
+        lang::extend(marks, shown);
+    }
+    return lang::made<LineTiming>(words, marks);
+}
+
+inline bool _told(const List<Ref<VisemeMark>>& marks, const Ref<VisemeMark>& mark) {
+    bool is_any = false;
+    for (const auto& m : marks) {
+        if (m->at == mark->at && m->viseme == mark->viseme) {
+            is_any = true;
+            break;
+        }
+    }
+    return is_any;
+}
+
+}  // namespace line_timing
+
+}  // namespace metagraph

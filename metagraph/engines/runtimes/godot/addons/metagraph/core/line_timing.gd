@@ -1,0 +1,355 @@
+# When a line's words and mouth shapes come, as a synthesiser tells them: the mouth follows them and is shut between. Times are
+# seconds from the line's start.
+#
+# Translated from metagraph/playback/life/line_timing.py; change that, and translate anew.
+
+const Graphemes = preload("graphemes.gd")
+const Mouth = preload("mouth.gd")
+const Util = preload("util.gd")
+const WORD = 0.15  # seconds a word takes of which only the start is told, if nothing comes before
+const LETTER = 0.07  # and for each of its letters
+const SHAPE = 0.2  # seconds the last shape of a line stays
+const FARTHEST = 3600.0  # seconds of a line
+const SLACK = 0.05  # seconds by which times may be past the end they are told with
+# What each viseme of a set shows of the mouth shapes, and how fully.
+const OCULUS = {
+	"sil": "sil",
+	"PP": "PP",
+	"FF": "FF",
+	"TH": "TH",
+	"DD": "DD",
+	"kk": "kk",
+	"CH": "CH",
+	"SS": "SS",
+	"nn": "nn",
+	"RR": "RR",
+	"aa": "aa",
+	"E": "E",
+	"ih": "I",
+	"oh": "O",
+	"ou": "U",
+	"I": "I",
+	"O": "O",
+	"U": "U"
+}
+# SAPI's numbers, which Azure has, too.
+const AZURE = {
+	"0": "sil",
+	"1": "E",
+	"2": "aa",
+	"3": "O",
+	"4": "E",
+	"5": "RR",
+	"6": "I",
+	"7": "U",
+	"8": "O",
+	"9": "aa",
+	"10": "O",
+	"11": "aa",
+	"12": "kk",
+	"13": "RR",
+	"14": "nn",
+	"15": "SS",
+	"16": "CH",
+	"17": "TH",
+	"18": "FF",
+	"19": "DD",
+	"20": "kk",
+	"21": "PP"
+}
+# Amazon Polly's speech marks.
+const POLLY = {
+	"sil": "sil",
+	"p": "PP",
+	"t": "DD",
+	"S": "CH",
+	"T": "TH",
+	"f": "FF",
+	"k": "kk",
+	"i": "I",
+	"r": "RR",
+	"s": "SS",
+	"u": "U",
+	"@": "E",
+	"a": "aa",
+	"e": "E",
+	"E": "E",
+	"o": "O",
+	"O": "O"
+}
+# Of ARKit's blend shapes those that make the mouth.
+const ARKIT = {
+	"jawOpen": "aa",
+	"mouthClose": "PP",
+	"mouthPressLeft": "PP",
+	"mouthPressRight": "PP",
+	"mouthFunnel": "O",
+	"mouthPucker": "U",
+	"mouthRollLower": "FF",
+	"mouthRollUpper": "PP",
+	"mouthStretchLeft": "E",
+	"mouthStretchRight": "E",
+	"mouthSmileLeft": "I",
+	"mouthSmileRight": "I",
+	"mouthShrugUpper": "CH",
+	"tongueOut": "TH"
+}
+const SETS = ["oculus", "azure", "sapi", "polly", "arkit"]
+const WEAK = {"@": 0.6, "12": 0.5, "1": 0.8, "mouthSmileLeft": 0.3, "mouthSmileRight": 0.3}
+
+
+# A word from `start` to `end`; None where only its start is told.
+class SpokenWord:
+	var text
+	var start
+	var end
+
+	func _init(text_, start_, end_ = null):
+		self.text = text_
+		self.start = start_
+		self.end = end_
+
+
+# A mouth shape from `at` until the next mark of a later time. viseme: its name in the set it is of, of `VISEMES` in a
+# `LineTiming`. weight: how fully it is made, 0..1.
+class VisemeMark:
+	var at
+	var viseme
+	var weight
+
+	func _init(at_, viseme_, weight_ = 1.0):
+		self.at = at_
+		self.viseme = viseme_
+		self.weight = weight_
+
+
+# A line's words and mouth shapes, each by time.
+class LineTiming:
+	var words
+	var marks
+
+	func _init(words_ = null, marks_ = null):
+		self.words = words_ if words_ != null else []
+		self.marks = marks_ if marks_ != null else []
+
+
+static func _table(name):
+	if name == "oculus":
+		return OCULUS
+	if name == "polly":
+		return POLLY
+	return ARKIT if name == "arkit" else AZURE
+
+
+# Return the first set that has all of some visemes, "" where none has.
+static func set_of(marks):
+	for name in SETS:
+		var are_all = true
+		for mark in marks:
+			if not _table(name).has(mark.viseme):
+				are_all = false
+				break
+		if are_all:
+			return name
+	return ""
+
+
+# Return what is wrong with a line's times, where, and what would be right; "" where nothing is.
+#
+# name: of the set the visemes are of, "" for what their names tell. duration: seconds of its sound, None where that is not told.
+static func wrong_in(words, marks, name, duration):
+	var last = 0.0
+	var why
+	for n in range(words.size()):
+		var word = words[n]
+		var place = "words[%d] '%s'" % [n, word.text]
+		why = _out_of_range(word.start)
+		if why == "" and word.start < last:
+			why = "begins at %s s, before the one before it; put words in order" % [Util.thousandths(word.start)]
+		var end = word.start if word.end == null else word.end
+		if why == "" and not (end >= word.start):
+			why = "ends at %s s, before it begins; give [word, start, end] in seconds" % [Util.thousandths(end)]
+		if why == "" and duration != null and end > duration + SLACK:
+			why = "ends at %s s, past the end at %s s; give a longer duration" % [
+				Util.thousandths(end),
+				Util.thousandths(duration)
+			]
+		if why != "":
+			return "%s: %s" % [place, why]
+		last = word.start
+	if name != "" and not SETS.has(name):
+		return "set: '%s' is no set of visemes; there are %s" % [name, Util.joined(SETS, ", ")]
+	var found = set_of(marks) if name == "" else name
+	last = 0.0
+	for n in range(marks.size()):
+		var mark = marks[n]
+		why = _out_of_range(mark.at)
+		if why == "" and mark.at < last:
+			why = "comes at %s s, before the one before it; put visemes in order" % [Util.thousandths(mark.at)]
+		if why == "" and duration != null and mark.at > duration + SLACK:
+			why = "comes at %s s, past the end at %s s; give a longer duration" % [
+				Util.thousandths(mark.at),
+				Util.thousandths(duration)
+			]
+		if why == "" and not (0 <= mark.weight and mark.weight <= 1):
+			why = "has the weight %s; weights are from 0 to 1" % [Util.thousandths(mark.weight)]
+		if why == "" and found == "" and set_of([mark]) == "":
+			why = "is in no set of visemes; there are %s" % [Util.joined(SETS, ", ")]
+		if why == "" and found != "" and not _table(found).has(mark.viseme):
+			why = "is not in the set '%s', which has %s" % [found, Util.joined(Util.list(_table(found).keys()), ", ")]
+		if why != "":
+			return "visemes[%d] '%s': %s" % [n, mark.viseme, why]
+		last = mark.at
+	if found == "":
+		return "visemes: no set has all of them; there are %s" % [Util.joined(SETS, ", ")]
+	return ""
+
+
+static func _out_of_range(seconds):
+	if 0 <= seconds and seconds <= FARTHEST:
+		return ""
+	return "is at %s s; times are from 0 to %.1f s from the line's start" % [Util.thousandths(seconds), FARTHEST]
+
+
+# Return the timing that words and visemes in which nothing is wrong make. name: as for `wrong_in`.
+static func timing_of(alphabet, words, marks, name):
+	var table = _table(set_of(marks) if name == "" else name)
+	var shown = []
+	for m in marks:
+		shown.append(VisemeMark.new(m.at, table[m.viseme], m.weight * WEAK.get(m.viseme, 1.0)))
+	var said = []
+	for n in range(words.size()):
+		var word = words[n]
+		var end = word.start + WORD + LETTER * alphabet.letters(word.text).size() if word.end == null else word.end
+		if n + 1 < words.size():
+			end = Util.least(end, words[n + 1].start)
+		if word.end == null:  # a pause ends it
+			var first = end
+			for m in shown:
+				if m.viseme == "sil" and m.at > word.start:
+					first = m.at
+					break
+			end = Util.least(end, first)
+		said.append(SpokenWord.new(word.text, word.start, Util.most(end, word.start)))
+	return LineTiming.new(Util.list(said), Util.list(shown))
+
+
+# Return the words of a line as its text.
+static func told_text(timing):
+	var found = []
+	for word in timing.words:
+		found.append(word.text)
+	return Util.joined(found, " ")
+
+
+# Return how long a line lasts, to whole rows of a mouth's track, so that what is added to it later moves nothing. duration: of
+# its sound, None for as long as its words and shapes need.
+static func timed_seconds(timing, duration):
+	var last = 0.0
+	for word in timing.words:
+		last = Util.most(last, word.start if word.end == null else word.end)
+	if timing.marks.size() > 0:
+		var mark = timing.marks[-1]
+		last = Util.most(last, mark.at + (0.0 if mark.viseme == "sil" else SHAPE))
+	return int(ceil((last + Mouth.LATE if duration == null else Util.most(duration, last)) / Mouth.STEP - 1e-06)) * Mouth.STEP
+
+
+# Return the mouth's pieces and the syllables of a line's words and shapes: shapes are the mouth's where any are told, words those
+# of gestures and blinks.
+static func timed_sounds(alphabet, timing):
+	var out = Graphemes.Spelled.new()
+	for word in timing.words:
+		var plan = Graphemes.sounds(alphabet, word.text)
+		var over = word.start if word.end == null else word.end
+		if plan.size() > 0 and over > word.start:
+			out.add(plan, word.start, over)
+	if timing.marks.size() == 0:
+		return out
+	var shown = Graphemes.Spelled.new()
+	var before = "sil"
+	for n in range(timing.marks.size()):
+		var mark = timing.marks[n]
+		var end = _ends(timing.marks)[n]
+		if mark.viseme != "sil" and end > mark.at:
+			shown.pieces.append(Mouth.MouthPiece.new(mark.at, end, mark.viseme, mark.weight))
+			if Graphemes.VOWELS.has(mark.viseme) and not Graphemes.VOWELS.has(before) and mark.weight > 0:
+				shown.peaks.append(0.5 * (mark.at + end))
+				shown.strengths.append(mark.weight * Util.least(1.0, 0.3 + 4 * (end - mark.at)))
+		before = mark.viseme
+	if out.peaks.size() > 0:
+		return Graphemes.Spelled.new(shown.pieces, out.peaks, out.strengths)
+	return shown
+
+
+# Return when each mark is over: several at one time are the mouth's together.
+static func _ends(marks):
+	var out = []
+	var end = 0.0
+	var at = -1.0
+	for mark in Util.backwards(marks):
+		if mark.at != at:
+			end = mark.at + SHAPE if at < 0 else at
+			at = mark.at
+		out.append(end)
+	return Util.list(Util.backwards(out))
+
+
+# Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up to where the new begins;
+# of a word or a shape that has begun meanwhile the rest is said.
+static func extended(old, new, said):
+	var words = Util.list(old.words)
+	var found = []
+	for word in old.words:
+		if word.start < said:
+			found.append(word.start)
+	var begun = Util.most_of([-1.0] + found)
+	var coming = []
+	for word in new.words:
+		if word.start >= said or (word.start > begun and (word.start if word.end == null else word.end) > said):
+			coming.append(word)
+	var until
+	if coming.size() > 0:
+		until = Util.most(said, new.words[0].start)
+		var first = Util.most(coming[0].start, said)
+		var found2 = []
+		for word in old.words:
+			if word.start < until:
+				found2.append(SpokenWord.new(word.text, word.start, Util.least(first if word.end == null else word.end, first)))
+		words = found2
+		var found3 = []
+		for word in coming:
+			found3.append(SpokenWord.new(word.text, Util.most(word.start, said), word.end))
+		Util.extend(words, found3)
+	var marks = Util.list(old.marks)
+	var found4 = []
+	for mark in new.marks:
+		if mark.at < said:
+			found4.append(mark.at)
+	var now = Util.most_of([-1.0] + found4)
+	var found5 = []
+	for mark in old.marks:
+		if mark.at < said:
+			found5.append(mark.at)
+	var over = Util.most_of([-1.0] + found5)
+	var shown = []
+	for mark in new.marks:
+		if mark.at >= said or (mark.at == now and now >= over and not _told(old.marks, mark)):
+			shown.append(VisemeMark.new(Util.most(mark.at, said), mark.viseme, mark.weight))
+	if shown.size() > 0:
+		until = Util.most(said, new.marks[0].at)
+		var found6 = []
+		for mark in old.marks:
+			if mark.at < until:
+				found6.append(mark)
+		marks = found6
+		Util.extend(marks, shown)
+	return LineTiming.new(Util.list(words), Util.list(marks))
+
+
+static func _told(marks, mark):
+	var is_any = false
+	for m in marks:
+		if m.at == mark.at and m.viseme == mark.viseme:
+			is_any = true
+			break
+	return is_any

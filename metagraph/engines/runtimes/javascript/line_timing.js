@@ -1,0 +1,397 @@
+/**
+ * When a line's words and mouth shapes come, as a synthesiser tells them: the mouth follows them and is shut between. Times
+ * are seconds from the line's start.
+ *
+ * Translated from metagraph/playback/life/line_timing.py; change that, and translate anew.
+ */
+
+import { Spelled, VOWELS, sounds } from "./graphemes.js";
+import { LATE, MouthPiece, STEP } from "./mouth.js";
+import { but, maxOf, thousandths, zip } from "./basics.js";
+
+export const WORD = 0.15; // seconds a word takes of which only the start is told, if nothing comes before
+export const LETTER = 0.07; // and for each of its letters
+export const SHAPE = 0.2; // seconds the last shape of a line stays
+export const FARTHEST = 3600; // seconds of a line
+export const SLACK = 0.05; // seconds by which times may be past the end they are told with
+// What each viseme of a set shows of the mouth shapes, and how fully.
+export const OCULUS = new Map([
+  ["sil", "sil"],
+  ["PP", "PP"],
+  ["FF", "FF"],
+  ["TH", "TH"],
+  ["DD", "DD"],
+  ["kk", "kk"],
+  ["CH", "CH"],
+  ["SS", "SS"],
+  ["nn", "nn"],
+  ["RR", "RR"],
+  ["aa", "aa"],
+  ["E", "E"],
+  ["ih", "I"],
+  ["oh", "O"],
+  ["ou", "U"],
+  ["I", "I"],
+  ["O", "O"],
+  ["U", "U"],
+]);
+// SAPI's numbers, which Azure has, too.
+export const AZURE = new Map([
+  ["0", "sil"],
+  ["1", "E"],
+  ["2", "aa"],
+  ["3", "O"],
+  ["4", "E"],
+  ["5", "RR"],
+  ["6", "I"],
+  ["7", "U"],
+  ["8", "O"],
+  ["9", "aa"],
+  ["10", "O"],
+  ["11", "aa"],
+  ["12", "kk"],
+  ["13", "RR"],
+  ["14", "nn"],
+  ["15", "SS"],
+  ["16", "CH"],
+  ["17", "TH"],
+  ["18", "FF"],
+  ["19", "DD"],
+  ["20", "kk"],
+  ["21", "PP"],
+]);
+// Amazon Polly's speech marks.
+export const POLLY = new Map([
+  ["sil", "sil"],
+  ["p", "PP"],
+  ["t", "DD"],
+  ["S", "CH"],
+  ["T", "TH"],
+  ["f", "FF"],
+  ["k", "kk"],
+  ["i", "I"],
+  ["r", "RR"],
+  ["s", "SS"],
+  ["u", "U"],
+  ["@", "E"],
+  ["a", "aa"],
+  ["e", "E"],
+  ["E", "E"],
+  ["o", "O"],
+  ["O", "O"],
+]);
+// Of ARKit's blend shapes those that make the mouth.
+export const ARKIT = new Map([
+  ["jawOpen", "aa"],
+  ["mouthClose", "PP"],
+  ["mouthPressLeft", "PP"],
+  ["mouthPressRight", "PP"],
+  ["mouthFunnel", "O"],
+  ["mouthPucker", "U"],
+  ["mouthRollLower", "FF"],
+  ["mouthRollUpper", "PP"],
+  ["mouthStretchLeft", "E"],
+  ["mouthStretchRight", "E"],
+  ["mouthSmileLeft", "I"],
+  ["mouthSmileRight", "I"],
+  ["mouthShrugUpper", "CH"],
+  ["tongueOut", "TH"],
+]);
+export const SETS = ["oculus", "azure", "sapi", "polly", "arkit"];
+export const WEAK = new Map([["@", 0.6], ["12", 0.5], ["1", 0.8], ["mouthSmileLeft", 0.3], ["mouthSmileRight", 0.3]]);
+
+/**
+ * A word from `start` to `end`; None where only its start is told.
+ *
+ * text: string; start: number; end: ?number.
+ */
+export class SpokenWord {
+  constructor(text, start, end = null) {
+    this.text = text;
+    this.start = start;
+    this.end = end;
+  }
+}
+
+/**
+ * A mouth shape from `at` until the next mark of a later time. viseme: its name in the set it is of, of `VISEMES` in a
+ * `LineTiming`. weight: how fully it is made, 0..1.
+ *
+ * at: number; viseme: string; weight: number.
+ */
+export class VisemeMark {
+  constructor(at, viseme, weight = 1) {
+    this.at = at;
+    this.viseme = viseme;
+    this.weight = weight;
+  }
+}
+
+/**
+ * A line's words and mouth shapes, each by time.
+ *
+ * words: SpokenWord[]; marks: VisemeMark[].
+ */
+export class LineTiming {
+  constructor(words = [], marks = []) {
+    this.words = words;
+    this.marks = marks;
+  }
+}
+
+/**
+ * @param {string} name
+ * @returns {Map<string, string>}
+ */
+function _table(name) {
+  if (name === "oculus") {
+    return OCULUS;
+  }
+  if (name === "polly") {
+    return POLLY;
+  }
+  return name === "arkit" ? ARKIT : AZURE;
+}
+
+/**
+ * Return the first set that has all of some visemes, "" where none has.
+ * @param {VisemeMark[]} marks
+ * @returns {string}
+ */
+export function setOf(marks) {
+  for (const name of SETS) {
+    if (marks.every((mark) => _table(name).has(mark.viseme))) {
+      return name;
+    }
+  }
+  return "";
+}
+
+/**
+ * Return what is wrong with a line's times, where, and what would be right; "" where nothing is.
+ *
+ * name: of the set the visemes are of, "" for what their names tell. duration: seconds of its sound, None where that is not
+ * told.
+ * @param {SpokenWord[]} words
+ * @param {VisemeMark[]} marks
+ * @param {string} name
+ * @param {?number} duration
+ * @returns {string}
+ */
+export function wrongIn(words, marks, name, duration) {
+  let last = 0;
+  let why;
+  for (const [n, word] of words.entries()) {
+    const place = `words[${n}] '${word.text}'`;
+    why = _outOfRange(word.start);
+    if (why === "" && word.start < last) {
+      why = `begins at ${thousandths(word.start)} s, before the one before it; put words in order`;
+    }
+    const end = word.end === null ? word.start : word.end;
+    if (why === "" && !(end >= word.start)) {
+      why = `ends at ${thousandths(end)} s, before it begins; give [word, start, end] in seconds`;
+    }
+    if (why === "" && duration !== null && end > duration + SLACK) {
+      why = `ends at ${thousandths(end)} s, past the end at ${thousandths(duration)} s; give a longer duration`;
+    }
+    if (why !== "") {
+      return `${place}: ${why}`;
+    }
+    last = word.start;
+  }
+  if (name !== "" && !SETS.includes(name)) {
+    return `set: '${name}' is no set of visemes; there are ${SETS.join(", ")}`;
+  }
+  const found = name === "" ? setOf(marks) : name;
+  last = 0;
+  for (const [n, mark] of marks.entries()) {
+    why = _outOfRange(mark.at);
+    if (why === "" && mark.at < last) {
+      why = `comes at ${thousandths(mark.at)} s, before the one before it; put visemes in order`;
+    }
+    if (why === "" && duration !== null && mark.at > duration + SLACK) {
+      why = `comes at ${thousandths(mark.at)} s, past the end at ${thousandths(duration)} s; give a longer duration`;
+    }
+    if (why === "" && !(0 <= mark.weight && mark.weight <= 1)) {
+      why = `has the weight ${thousandths(mark.weight)}; weights are from 0 to 1`;
+    }
+    if (why === "" && found === "" && setOf([mark]) === "") {
+      why = `is in no set of visemes; there are ${SETS.join(", ")}`;
+    }
+    if (why === "" && found !== "" && !_table(found).has(mark.viseme)) {
+      why = `is not in the set '${found}', which has ${[...[..._table(found).keys()]].join(", ")}`;
+    }
+    if (why !== "") {
+      return `visemes[${n}] '${mark.viseme}': ${why}`;
+    }
+    last = mark.at;
+  }
+  if (found === "") {
+    return `visemes: no set has all of them; there are ${SETS.join(", ")}`;
+  }
+  return "";
+}
+
+/**
+ * @param {number} seconds
+ * @returns {string}
+ */
+function _outOfRange(seconds) {
+  if (0 <= seconds && seconds <= FARTHEST) {
+    return "";
+  }
+  return `is at ${thousandths(seconds)} s; times are from 0 to ${FARTHEST.toFixed(1)} s from the line's start`;
+}
+
+/**
+ * Return the timing that words and visemes in which nothing is wrong make. name: as for `wrong_in`.
+ * @param {Alphabet} alphabet
+ * @param {SpokenWord[]} words
+ * @param {VisemeMark[]} marks
+ * @param {string} name
+ * @returns {LineTiming}
+ */
+export function timingOf(alphabet, words, marks, name) {
+  const table = _table(name === "" ? setOf(marks) : name);
+  const shown = marks.map((m) => new VisemeMark(m.at, table.get(m.viseme), m.weight * (WEAK.get(m.viseme) ?? 1)));
+  const said = [];
+  for (const [n, word] of words.entries()) {
+    let end = word.end === null ? word.start + WORD + LETTER * alphabet.letters(word.text).length : word.end;
+    if (n + 1 < words.length) {
+      end = Math.min(end, words[n + 1].start);
+    }
+    if (word.end === null) { // a pause ends it
+      end = Math.min(end, shown.filter((m) => m.viseme === "sil" && m.at > word.start).map((m) => m.at)[0] ?? end);
+    }
+    said.push(new SpokenWord(word.text, word.start, Math.max(end, word.start)));
+  }
+  return new LineTiming([...said], [...shown]);
+}
+
+/**
+ * Return the words of a line as its text.
+ * @param {LineTiming} timing
+ * @returns {string}
+ */
+export function toldText(timing) {
+  return timing.words.map((word) => word.text).join(" ");
+}
+
+/**
+ * Return how long a line lasts, to whole rows of a mouth's track, so that what is added to it later moves nothing. duration:
+ * of its sound, None for as long as its words and shapes need.
+ * @param {LineTiming} timing
+ * @param {?number} duration
+ * @returns {number}
+ */
+export function timedSeconds(timing, duration) {
+  let last = 0;
+  for (const word of timing.words) {
+    last = Math.max(last, word.end === null ? word.start : word.end);
+  }
+  if (timing.marks.length > 0) {
+    const mark = timing.marks[timing.marks.length - 1];
+    last = Math.max(last, mark.at + (mark.viseme === "sil" ? 0 : SHAPE));
+  }
+  return Math.ceil((duration === null ? last + LATE : Math.max(duration, last)) / STEP - 1e-06) * STEP;
+}
+
+/**
+ * Return the mouth's pieces and the syllables of a line's words and shapes: shapes are the mouth's where any are told, words
+ * those of gestures and blinks.
+ * @param {Alphabet} alphabet
+ * @param {LineTiming} timing
+ * @returns {Spelled}
+ */
+export function timedSounds(alphabet, timing) {
+  const out = new Spelled();
+  for (const word of timing.words) {
+    const plan = sounds(alphabet, word.text);
+    const over = word.end === null ? word.start : word.end;
+    if (plan.length > 0 && over > word.start) {
+      out.add(plan, word.start, over);
+    }
+  }
+  if (timing.marks.length === 0) {
+    return out;
+  }
+  const shown = new Spelled();
+  let before = "sil";
+  for (const [mark, end] of zip(timing.marks, _ends(timing.marks))) {
+    if (mark.viseme !== "sil" && end > mark.at) {
+      shown.pieces.push(new MouthPiece(mark.at, end, mark.viseme, mark.weight));
+      if (VOWELS.includes(mark.viseme) && !VOWELS.includes(before) && mark.weight > 0) {
+        shown.peaks.push(0.5 * (mark.at + end));
+        shown.strengths.push(mark.weight * Math.min(1, 0.3 + 4 * (end - mark.at)));
+      }
+    }
+    before = mark.viseme;
+  }
+  if (out.peaks.length > 0) {
+    return new Spelled(shown.pieces, out.peaks, out.strengths);
+  }
+  return shown;
+}
+
+/**
+ * Return when each mark is over: several at one time are the mouth's together.
+ * @param {VisemeMark[]} marks
+ * @returns {number[]}
+ */
+function _ends(marks) {
+  const out = [];
+  let end = 0;
+  let at = -1;
+  for (const mark of [...marks].reverse()) {
+    if (mark.at !== at) {
+      end = at < 0 ? mark.at + SHAPE : at;
+      at = mark.at;
+    }
+    out.push(end);
+  }
+  return [...[...out].reverse()];
+}
+
+/**
+ * Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up to where the new
+ * begins; of a word or a shape that has begun meanwhile the rest is said.
+ * @param {LineTiming} old
+ * @param {LineTiming} new_
+ * @param {number} said
+ * @returns {LineTiming}
+ */
+export function extended(old, new_, said) {
+  let words = [...old.words];
+  const begun = maxOf([-1, ...old.words.filter((word) => word.start < said).map((word) => word.start)]);
+  const coming = new_.words.filter((word) =>
+    word.start >= said || (word.start > begun && (word.end === null ? word.start : word.end) > said));
+  let until;
+  if (coming.length > 0) {
+    until = Math.max(said, new_.words[0].start);
+    const first = Math.max(coming[0].start, said);
+    words = old.words.filter((word) => word.start < until).map((word) =>
+      but(word, { end: Math.min(word.end === null ? first : word.end, first) }));
+    words.push(...coming.map((word) => but(word, { start: Math.max(word.start, said) })));
+  }
+  let marks = [...old.marks];
+  const now = maxOf([-1, ...new_.marks.filter((mark) => mark.at < said).map((mark) => mark.at)]);
+  const over = maxOf([-1, ...old.marks.filter((mark) => mark.at < said).map((mark) => mark.at)]);
+  const shown = new_.marks.filter((mark) =>
+    mark.at >= said || (mark.at === now && now >= over && !_told(old.marks, mark))).map((mark) =>
+    but(mark, { at: Math.max(mark.at, said) }));
+  if (shown.length > 0) {
+    until = Math.max(said, new_.marks[0].at);
+    marks = old.marks.filter((mark) => mark.at < until);
+    marks.push(...shown);
+  }
+  return new LineTiming([...words], [...marks]);
+}
+
+/**
+ * @param {VisemeMark[]} marks
+ * @param {VisemeMark} mark
+ * @returns {boolean}
+ */
+function _told(marks, mark) {
+  return marks.some((m) => m.at === mark.at && m.viseme === mark.viseme);
+}

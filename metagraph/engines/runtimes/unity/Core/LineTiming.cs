@@ -1,0 +1,456 @@
+// Translated from metagraph/playback/life/line_timing.py; change that, and translate anew.
+using System;
+using System.Collections.Generic;
+using System.Linq;
+
+namespace Metagraph
+{
+    /// <summary>A word from `start` to `end`; None where only its start is told.</summary>
+    public sealed class SpokenWord
+    {
+        public readonly string Text;
+        public readonly double Start;
+        public readonly double? End;
+
+        public SpokenWord(string text, double start, double? end = null)
+        {
+            Text = text;
+            Start = start;
+            End = end;
+        }
+    }
+
+    /// <summary>
+    /// A mouth shape from `at` until the next mark of a later time. viseme: its name in the set it is of, of `VISEMES` in a
+    /// `LineTiming`. weight: how fully it is made, 0..1.
+    /// </summary>
+    public sealed class VisemeMark
+    {
+        public readonly double At;
+        public readonly string Viseme;
+        public readonly double Weight;
+
+        public VisemeMark(double at, string viseme, double weight = 1.0)
+        {
+            At = at;
+            Viseme = viseme;
+            Weight = weight;
+        }
+    }
+
+    /// <summary>A line's words and mouth shapes, each by time.</summary>
+    public sealed class LineTiming
+    {
+        public readonly List<SpokenWord> Words;
+        public readonly List<VisemeMark> Marks;
+
+        public LineTiming(List<SpokenWord> words = null, List<VisemeMark> marks = null)
+        {
+            Words = words ?? new List<SpokenWord>();
+            Marks = marks ?? new List<VisemeMark>();
+        }
+    }
+
+    public static class LineTimingRules
+    {
+        public const double Word = 0.15; // seconds a word takes of which only the start is told, if nothing comes before
+        public const double Letter = 0.07; // and for each of its letters
+        public const double Shape = 0.2; // seconds the last shape of a line stays
+        public const double Farthest = 3600.0; // seconds of a line
+        public const double Slack = 0.05; // seconds by which times may be past the end they are told with
+        // What each viseme of a set shows of the mouth shapes, and how fully.
+        public static readonly Dictionary<string, string> Oculus = new Dictionary<string, string> {
+            { "sil", "sil" },
+            { "PP", "PP" },
+            { "FF", "FF" },
+            { "TH", "TH" },
+            { "DD", "DD" },
+            { "kk", "kk" },
+            { "CH", "CH" },
+            { "SS", "SS" },
+            { "nn", "nn" },
+            { "RR", "RR" },
+            { "aa", "aa" },
+            { "E", "E" },
+            { "ih", "I" },
+            { "oh", "O" },
+            { "ou", "U" },
+            { "I", "I" },
+            { "O", "O" },
+            { "U", "U" }
+         };
+        // SAPI's numbers, which Azure has, too.
+        public static readonly Dictionary<string, string> Azure = new Dictionary<string, string> {
+            { "0", "sil" },
+            { "1", "E" },
+            { "2", "aa" },
+            { "3", "O" },
+            { "4", "E" },
+            { "5", "RR" },
+            { "6", "I" },
+            { "7", "U" },
+            { "8", "O" },
+            { "9", "aa" },
+            { "10", "O" },
+            { "11", "aa" },
+            { "12", "kk" },
+            { "13", "RR" },
+            { "14", "nn" },
+            { "15", "SS" },
+            { "16", "CH" },
+            { "17", "TH" },
+            { "18", "FF" },
+            { "19", "DD" },
+            { "20", "kk" },
+            { "21", "PP" }
+         };
+        // Amazon Polly's speech marks.
+        public static readonly Dictionary<string, string> Polly = new Dictionary<string, string> {
+            { "sil", "sil" },
+            { "p", "PP" },
+            { "t", "DD" },
+            { "S", "CH" },
+            { "T", "TH" },
+            { "f", "FF" },
+            { "k", "kk" },
+            { "i", "I" },
+            { "r", "RR" },
+            { "s", "SS" },
+            { "u", "U" },
+            { "@", "E" },
+            { "a", "aa" },
+            { "e", "E" },
+            { "E", "E" },
+            { "o", "O" },
+            { "O", "O" }
+         };
+        // Of ARKit's blend shapes those that make the mouth.
+        public static readonly Dictionary<string, string> Arkit = new Dictionary<string, string> {
+            { "jawOpen", "aa" },
+            { "mouthClose", "PP" },
+            { "mouthPressLeft", "PP" },
+            { "mouthPressRight", "PP" },
+            { "mouthFunnel", "O" },
+            { "mouthPucker", "U" },
+            { "mouthRollLower", "FF" },
+            { "mouthRollUpper", "PP" },
+            { "mouthStretchLeft", "E" },
+            { "mouthStretchRight", "E" },
+            { "mouthSmileLeft", "I" },
+            { "mouthSmileRight", "I" },
+            { "mouthShrugUpper", "CH" },
+            { "tongueOut", "TH" }
+         };
+        public static readonly List<string> Sets = new List<string> { "oculus", "azure", "sapi", "polly", "arkit" };
+        public static readonly Dictionary<string, double> Weak = new Dictionary<string, double> {
+            { "@", 0.6 },
+            { "12", 0.5 },
+            { "1", 0.8 },
+            { "mouthSmileLeft", 0.3 },
+            { "mouthSmileRight", 0.3 }
+         };
+
+        private static Dictionary<string, string> Table(string name)
+        {
+            if (name == "oculus")
+            {
+                return Oculus;
+            }
+            if (name == "polly")
+            {
+                return Polly;
+            }
+            return name == "arkit" ? Arkit : Azure;
+        }
+
+        /// <summary>Return the first set that has all of some visemes, "" where none has.</summary>
+        public static string SetOf(List<VisemeMark> marks)
+        {
+            foreach (string name in Sets)
+            {
+                if (marks.All(mark => Table(name).ContainsKey(mark.Viseme)))
+                {
+                    return name;
+                }
+            }
+            return "";
+        }
+
+        /// <summary>
+        /// Return what is wrong with a line's times, where, and what would be right; "" where nothing is.
+        ///
+        /// name: of the set the visemes are of, "" for what their names tell. duration: seconds of its sound, None where that is
+        /// not told.
+        /// </summary>
+        public static string WrongIn(List<SpokenWord> words, List<VisemeMark> marks, string name, double? duration)
+        {
+            var last = 0.0;
+            string why = default(string);
+            foreach (var one in words.Select((item, n) => (n, item)))
+            {
+                var n = one.Item1;
+                var word = one.Item2;
+                var place = "words[" + PlainText.Of(n) + "] '" + word.Text + "'";
+                why = OutOfRange(word.Start);
+                if (why == "" && word.Start < last)
+                {
+                    why = "begins at " + PlainText.Fixed(word.Start, 3) + " s, before the one before it; put words in order";
+                }
+                var end = word.End == null ? word.Start : word.End.Value;
+                if (why == "" && !(end >= word.Start))
+                {
+                    why = "ends at " + PlainText.Fixed(end, 3) + " s, before it begins; give [word, start, end] in seconds";
+                }
+                if (why == "" && duration != null && end > duration.Value + Slack)
+                {
+                    why = "ends at "
+                        + PlainText.Fixed(end, 3)
+                        + " s, past the end at "
+                        + PlainText.Fixed(duration.Value, 3)
+                        + " s; give a longer duration";
+                }
+                if (why != "")
+                {
+                    return place + ": " + why;
+                }
+                last = word.Start;
+            }
+            if (name != "" && !Sets.Contains(name))
+            {
+                return "set: '" + name + "' is no set of visemes; there are " + string.Join(", ", Sets);
+            }
+            var found = name == "" ? SetOf(marks) : name;
+            last = 0.0;
+            foreach (var one in marks.Select((item, n) => (n, item)))
+            {
+                var n = one.Item1;
+                var mark = one.Item2;
+                why = OutOfRange(mark.At);
+                if (why == "" && mark.At < last)
+                {
+                    why = "comes at " + PlainText.Fixed(mark.At, 3) + " s, before the one before it; put visemes in order";
+                }
+                if (why == "" && duration != null && mark.At > duration.Value + Slack)
+                {
+                    why = "comes at "
+                        + PlainText.Fixed(mark.At, 3)
+                        + " s, past the end at "
+                        + PlainText.Fixed(duration.Value, 3)
+                        + " s; give a longer duration";
+                }
+                if (why == "" && !(0 <= mark.Weight && mark.Weight <= 1))
+                {
+                    why = "has the weight " + PlainText.Fixed(mark.Weight, 3) + "; weights are from 0 to 1";
+                }
+                if (why == "" && found == "" && SetOf(new List<VisemeMark> { mark }) == "")
+                {
+                    why = "is in no set of visemes; there are " + string.Join(", ", Sets);
+                }
+                if (why == "" && found != "" && !Table(found).ContainsKey(mark.Viseme))
+                {
+                    why = "is not in the set '"
+                        + found
+                        + "', which has "
+                        + string.Join(", ", Table(found).Keys.ToList().ToList());
+                }
+                if (why != "")
+                {
+                    return "visemes[" + PlainText.Of(n) + "] '" + mark.Viseme + "': " + why;
+                }
+                last = mark.At;
+            }
+            if (found == "")
+            {
+                return "visemes: no set has all of them; there are " + string.Join(", ", Sets);
+            }
+            return "";
+        }
+
+        private static string OutOfRange(double seconds)
+        {
+            if (0 <= seconds && seconds <= Farthest)
+            {
+                return "";
+            }
+            return "is at "
+                + PlainText.Fixed(seconds, 3)
+                + " s; times are from 0 to "
+                + PlainText.Fixed(Farthest, 1)
+                + " s from the line's start";
+        }
+
+        /// <summary>
+        /// Return the timing that words and visemes in which nothing is wrong make. name: as for `wrong_in`.
+        /// </summary>
+        public static LineTiming TimingOf(Alphabet alphabet, List<SpokenWord> words, List<VisemeMark> marks, string name)
+        {
+            var table = Table(name == "" ? SetOf(marks) : name);
+            var shown = marks.Select(m => new VisemeMark(
+                m.At,
+                table[m.Viseme],
+                m.Weight * PlainMaps.GetOr(Weak, m.Viseme, 1.0)
+            )).ToList();
+            var said = new List<SpokenWord>();
+            foreach (var one in words.Select((item, n) => (n, item)))
+            {
+                var n = one.Item1;
+                var word = one.Item2;
+                var end = word.End == null ? word.Start + Word + Letter * alphabet.Letters(word.Text).Count : word.End.Value;
+                if (n + 1 < words.Count)
+                {
+                    end = Math.Min(end, words[n + 1].Start);
+                }
+                if (word.End == null) // a pause ends it
+                {
+                    end = Math.Min(
+                        end,
+                        shown.Where(m => m.Viseme == "sil" && m.At > word.Start).Select(m => m.At).DefaultIfEmpty(end).First()
+                    );
+                }
+                said.Add(new SpokenWord(word.Text, word.Start, Math.Max(end, word.Start)));
+            }
+            return new LineTiming(said.ToList(), shown.ToList());
+        }
+
+        /// <summary>Return the words of a line as its text.</summary>
+        public static string ToldText(LineTiming timing)
+        {
+            return string.Join(" ", timing.Words.Select(word => word.Text).ToList());
+        }
+
+        /// <summary>
+        /// Return how long a line lasts, to whole rows of a mouth's track, so that what is added to it later moves nothing.
+        /// duration: of its sound, None for as long as its words and shapes need.
+        /// </summary>
+        public static double TimedSeconds(LineTiming timing, double? duration)
+        {
+            var last = 0.0;
+            foreach (SpokenWord word in timing.Words)
+            {
+                last = Math.Max(last, word.End == null ? word.Start : word.End.Value);
+            }
+            if (timing.Marks.Count > 0)
+            {
+                var mark = timing.Marks[timing.Marks.Count - 1];
+                last = Math.Max(last, mark.At + (mark.Viseme == "sil" ? 0.0 : Shape));
+            }
+            return (int)Math.Ceiling((duration == null ? last + MouthRules.Late : Math.Max(duration.Value, last))
+                        / MouthRules.Step
+                    - 1e-06)
+                * MouthRules.Step;
+        }
+
+        /// <summary>
+        /// Return the mouth's pieces and the syllables of a line's words and shapes: shapes are the mouth's where any are told,
+        /// words those of gestures and blinks.
+        /// </summary>
+        public static Spelled TimedSounds(Alphabet alphabet, LineTiming timing)
+        {
+            var out_ = new Spelled();
+            foreach (SpokenWord word in timing.Words)
+            {
+                var plan = GraphemesRules.Sounds(alphabet, word.Text);
+                var over = word.End == null ? word.Start : word.End.Value;
+                if (plan.Count > 0 && over > word.Start)
+                {
+                    out_.Add(plan, word.Start, over);
+                }
+            }
+            if (timing.Marks.Count == 0)
+            {
+                return out_;
+            }
+            var shown = new Spelled();
+            var before = "sil";
+            foreach (var one in timing.Marks.Zip(Ends(timing.Marks), (a, b) => (a, b)))
+            {
+                var mark = one.Item1;
+                var end = one.Item2;
+                if (mark.Viseme != "sil" && end > mark.At)
+                {
+                    shown.Pieces.Add(new MouthPiece(mark.At, end, mark.Viseme, mark.Weight));
+                    if (GraphemesRules.Vowels.Contains(mark.Viseme) && !GraphemesRules.Vowels.Contains(before) && mark.Weight > 0)
+                    {
+                        shown.Peaks.Add(0.5 * (mark.At + end));
+                        shown.Strengths.Add(mark.Weight * Math.Min(1.0, 0.3 + 4 * (end - mark.At)));
+                    }
+                }
+                before = mark.Viseme;
+            }
+            if (out_.Peaks.Count > 0)
+            {
+                return new Spelled(shown.Pieces, out_.Peaks, out_.Strengths);
+            }
+            return shown;
+        }
+
+        /// <summary>Return when each mark is over: several at one time are the mouth's together.</summary>
+        private static List<double> Ends(List<VisemeMark> marks)
+        {
+            var out_ = new List<double>();
+            var end = 0.0;
+            var at = -1.0;
+            foreach (VisemeMark mark in marks.AsEnumerable().Reverse().ToList())
+            {
+                if (mark.At != at)
+                {
+                    end = at < 0 ? mark.At + Shape : at;
+                    at = mark.At;
+                }
+                out_.Add(end);
+            }
+            return out_.AsEnumerable().Reverse().ToList().ToList();
+        }
+
+        /// <summary>
+        /// Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up to where the
+        /// new begins; of a word or a shape that has begun meanwhile the rest is said.
+        /// </summary>
+        public static LineTiming Extended(LineTiming old, LineTiming new_, double said)
+        {
+            var words = old.Words.ToList();
+            var begun = PlainNumbers.MaxOf(
+                new List<double> { -1.0 }.Concat(old.Words.Where(word => word.Start < said).Select(word => word.Start).ToList()).ToList()
+            );
+            var coming = new_.Words.Where(word => word.Start >= said
+                || (word.Start > begun && (word.End == null ? word.Start : word.End.Value) > said)).ToList();
+            double until = default(double);
+            if (coming.Count > 0)
+            {
+                until = Math.Max(said, new_.Words[0].Start);
+                var first = Math.Max(coming[0].Start, said);
+                words = old.Words.Where(word => word.Start < until).Select(word => new SpokenWord(
+                    word.Text,
+                    word.Start,
+                    Math.Min(word.End == null ? first : word.End.Value, first)
+                )).ToList();
+                words.AddRange(coming.Select(word => new SpokenWord(word.Text, Math.Max(word.Start, said), word.End)).ToList());
+            }
+            var marks = old.Marks.ToList();
+            var now = PlainNumbers.MaxOf(
+                new List<double> { -1.0 }.Concat(new_.Marks.Where(mark => mark.At < said).Select(mark => mark.At).ToList()).ToList()
+            );
+            var over = PlainNumbers.MaxOf(
+                new List<double> { -1.0 }.Concat(old.Marks.Where(mark => mark.At < said).Select(mark => mark.At).ToList()).ToList()
+            );
+            var shown = new_.Marks.Where(mark => mark.At >= said
+                || (mark.At == now && now >= over && !Told(old.Marks, mark))).Select(mark => new VisemeMark(
+                Math.Max(mark.At, said),
+                mark.Viseme,
+                mark.Weight
+            )).ToList();
+            if (shown.Count > 0)
+            {
+                until = Math.Max(said, new_.Marks[0].At);
+                marks = old.Marks.Where(mark => mark.At < until).ToList();
+                marks.AddRange(shown);
+            }
+            return new LineTiming(words.ToList(), marks.ToList());
+        }
+
+        private static bool Told(List<VisemeMark> marks, VisemeMark mark)
+        {
+            return marks.Any(m => m.At == mark.At && m.Viseme == mark.Viseme);
+        }
+    }
+}

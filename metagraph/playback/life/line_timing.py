@@ -1,0 +1,255 @@
+"""When a line's words and mouth shapes come, as a synthesiser tells them: the mouth follows them and is shut
+between. Times are seconds from the line's start.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import ceil
+
+from metagraph.playback.life.alphabet import Alphabet
+from metagraph.playback.life.graphemes import VOWELS, Spelled, sounds
+from metagraph.playback.life.mouth import LATE, STEP, MouthPiece
+
+WORD = 0.15  # seconds a word takes of which only the start is told, if nothing comes before
+LETTER = 0.07  # and for each of its letters
+SHAPE = 0.2  # seconds the last shape of a line stays
+FARTHEST = 3600.0  # seconds of a line
+SLACK = 0.05  # seconds by which times may be past the end they are told with
+
+# What each viseme of a set shows of the mouth shapes, and how fully.
+OCULUS: dict[str, str] = {
+    "sil": "sil", "PP": "PP", "FF": "FF", "TH": "TH", "DD": "DD", "kk": "kk", "CH": "CH", "SS": "SS",
+    "nn": "nn", "RR": "RR", "aa": "aa", "E": "E", "ih": "I", "oh": "O", "ou": "U", "I": "I", "O": "O",
+    "U": "U",
+}  # fmt: skip
+# SAPI's numbers, which Azure has, too.
+AZURE: dict[str, str] = {
+    "0": "sil", "1": "E", "2": "aa", "3": "O", "4": "E", "5": "RR", "6": "I", "7": "U", "8": "O", "9": "aa",
+    "10": "O", "11": "aa", "12": "kk", "13": "RR", "14": "nn", "15": "SS", "16": "CH", "17": "TH",
+    "18": "FF", "19": "DD", "20": "kk", "21": "PP",
+}  # fmt: skip
+# Amazon Polly's speech marks.
+POLLY: dict[str, str] = {
+    "sil": "sil", "p": "PP", "t": "DD", "S": "CH", "T": "TH", "f": "FF", "k": "kk", "i": "I", "r": "RR",
+    "s": "SS", "u": "U", "@": "E", "a": "aa", "e": "E", "E": "E", "o": "O", "O": "O",
+}  # fmt: skip
+# Of ARKit's blend shapes those that make the mouth.
+ARKIT: dict[str, str] = {
+    "jawOpen": "aa", "mouthClose": "PP", "mouthPressLeft": "PP", "mouthPressRight": "PP",
+    "mouthFunnel": "O", "mouthPucker": "U", "mouthRollLower": "FF", "mouthRollUpper": "PP",
+    "mouthStretchLeft": "E", "mouthStretchRight": "E", "mouthSmileLeft": "I", "mouthSmileRight": "I",
+    "mouthShrugUpper": "CH", "tongueOut": "TH",
+}  # fmt: skip
+SETS: tuple[str, ...] = ("oculus", "azure", "sapi", "polly", "arkit")
+WEAK: dict[str, float] = {"@": 0.6, "12": 0.5, "1": 0.8, "mouthSmileLeft": 0.3, "mouthSmileRight": 0.3}
+
+
+@dataclass(frozen=True, slots=True)
+class SpokenWord:
+    """A word from `start` to `end`; None where only its start is told."""
+
+    text: str
+    start: float
+    end: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class VisemeMark:
+    """A mouth shape from `at` until the next mark of a later time. viseme: its name in the set it is of, of
+    `VISEMES` in a `LineTiming`. weight: how fully it is made, 0..1.
+    """
+
+    at: float
+    viseme: str
+    weight: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class LineTiming:
+    """A line's words and mouth shapes, each by time."""
+
+    words: tuple[SpokenWord, ...] = ()
+    marks: tuple[VisemeMark, ...] = ()
+
+
+def _table(name: str) -> dict[str, str]:
+    if name == "oculus":
+        return OCULUS
+    if name == "polly":
+        return POLLY
+    return ARKIT if name == "arkit" else AZURE
+
+
+def set_of(marks: Sequence[VisemeMark]) -> str:
+    """Return the first set that has all of some visemes, "" where none has."""
+    for name in SETS:
+        if all(mark.viseme in _table(name) for mark in marks):
+            return name
+    return ""
+
+
+def wrong_in(
+    words: Sequence[SpokenWord], marks: Sequence[VisemeMark], name: str, duration: float | None
+) -> str:
+    """Return what is wrong with a line's times, where, and what would be right; "" where nothing is.
+
+    name: of the set the visemes are of, "" for what their names tell. duration: seconds of its sound, None
+    where that is not told.
+    """
+    last = 0.0
+    for n, word in enumerate(words):
+        place = f"words[{n}] '{word.text}'"
+        why = _out_of_range(word.start)
+        if why == "" and word.start < last:
+            why = f"begins at {word.start:.3f} s, before the one before it; put words in order"
+        end = word.start if word.end is None else word.end
+        if why == "" and not end >= word.start:
+            why = f"ends at {end:.3f} s, before it begins; give [word, start, end] in seconds"
+        if why == "" and duration is not None and end > duration + SLACK:
+            why = f"ends at {end:.3f} s, past the end at {duration:.3f} s; give a longer duration"
+        if why != "":
+            return f"{place}: {why}"
+        last = word.start
+    if name != "" and name not in SETS:
+        return f"set: '{name}' is no set of visemes; there are {', '.join(SETS)}"
+    found = set_of(marks) if name == "" else name
+    last = 0.0
+    for n, mark in enumerate(marks):
+        why = _out_of_range(mark.at)
+        if why == "" and mark.at < last:
+            why = f"comes at {mark.at:.3f} s, before the one before it; put visemes in order"
+        if why == "" and duration is not None and mark.at > duration + SLACK:
+            why = f"comes at {mark.at:.3f} s, past the end at {duration:.3f} s; give a longer duration"
+        if why == "" and not 0 <= mark.weight <= 1:
+            why = f"has the weight {mark.weight:.3f}; weights are from 0 to 1"
+        if why == "" and found == "" and set_of([mark]) == "":
+            why = f"is in no set of visemes; there are {', '.join(SETS)}"
+        if why == "" and found != "" and mark.viseme not in _table(found):
+            why = f"is not in the set '{found}', which has {', '.join(list(_table(found).keys()))}"
+        if why != "":
+            return f"visemes[{n}] '{mark.viseme}': {why}"
+        last = mark.at
+    if found == "":
+        return f"visemes: no set has all of them; there are {', '.join(SETS)}"
+    return ""
+
+
+def _out_of_range(seconds: float) -> str:
+    if 0 <= seconds <= FARTHEST:
+        return ""
+    return f"is at {seconds:.3f} s; times are from 0 to {FARTHEST:.1f} s from the line's start"
+
+
+def timing_of(
+    alphabet: Alphabet, words: Sequence[SpokenWord], marks: Sequence[VisemeMark], name: str
+) -> LineTiming:
+    """Return the timing that words and visemes in which nothing is wrong make. name: as for `wrong_in`."""
+    table = _table(set_of(marks) if name == "" else name)
+    shown = [VisemeMark(m.at, table[m.viseme], m.weight * WEAK.get(m.viseme, 1.0)) for m in marks]
+    said: list[SpokenWord] = []
+    for n, word in enumerate(words):
+        end = word.start + WORD + LETTER * len(alphabet.letters(word.text)) if word.end is None else word.end
+        if n + 1 < len(words):
+            end = min(end, words[n + 1].start)
+        if word.end is None:  # a pause ends it
+            end = min(end, next((m.at for m in shown if m.viseme == "sil" and m.at > word.start), end))
+        said.append(SpokenWord(word.text, word.start, max(end, word.start)))
+    return LineTiming(tuple(said), tuple(shown))
+
+
+def told_text(timing: LineTiming) -> str:
+    """Return the words of a line as its text."""
+    return " ".join([word.text for word in timing.words])
+
+
+def timed_seconds(timing: LineTiming, duration: float | None) -> float:
+    """Return how long a line lasts, to whole rows of a mouth's track, so that what is added to it later moves
+    nothing. duration: of its sound, None for as long as its words and shapes need.
+    """
+    last = 0.0
+    for word in timing.words:
+        last = max(last, word.start if word.end is None else word.end)
+    if len(timing.marks) > 0:
+        mark = timing.marks[-1]
+        last = max(last, mark.at + (0.0 if mark.viseme == "sil" else SHAPE))
+    return ceil((last + LATE if duration is None else max(duration, last)) / STEP - 1e-6) * STEP
+
+
+def timed_sounds(alphabet: Alphabet, timing: LineTiming) -> Spelled:
+    """Return the mouth's pieces and the syllables of a line's words and shapes: shapes are the mouth's where
+    any are told, words those of gestures and blinks.
+    """
+    out = Spelled()
+    for word in timing.words:
+        plan = sounds(alphabet, word.text)
+        over = word.start if word.end is None else word.end
+        if len(plan) > 0 and over > word.start:
+            out.add(plan, word.start, over)
+    if len(timing.marks) == 0:
+        return out
+    shown = Spelled()
+    before = "sil"
+    for mark, end in zip(timing.marks, _ends(timing.marks), strict=True):
+        if mark.viseme != "sil" and end > mark.at:
+            shown.pieces.append(MouthPiece(mark.at, end, mark.viseme, mark.weight))
+            if mark.viseme in VOWELS and before not in VOWELS and mark.weight > 0:
+                shown.peaks.append(0.5 * (mark.at + end))
+                shown.strengths.append(mark.weight * min(1.0, 0.3 + 4 * (end - mark.at)))
+        before = mark.viseme
+    if len(out.peaks) > 0:
+        return Spelled(shown.pieces, out.peaks, out.strengths)
+    return shown
+
+
+def _ends(marks: Sequence[VisemeMark]) -> list[float]:
+    """Return when each mark is over: several at one time are the mouth's together."""
+    out: list[float] = []
+    end, at = 0.0, -1.0
+    for mark in reversed(marks):
+        if mark.at != at:
+            end = mark.at + SHAPE if at < 0 else at
+            at = mark.at
+        out.append(end)
+    return list(reversed(out))
+
+
+def extended(old: LineTiming, new: LineTiming, said: float) -> LineTiming:
+    """Return a line's timing with what is told of it later: what was told stands up to `said` seconds, and up
+    to where the new begins; of a word or a shape that has begun meanwhile the rest is said.
+    """
+    words = list(old.words)
+    begun = max([-1.0, *[word.start for word in old.words if word.start < said]])
+    coming = [
+        word
+        for word in new.words
+        if word.start >= said
+        or (word.start > begun and (word.start if word.end is None else word.end) > said)
+    ]
+    if len(coming) > 0:
+        until = max(said, new.words[0].start)
+        first = max(coming[0].start, said)
+        words = [
+            replace(word, end=min(first if word.end is None else word.end, first))
+            for word in old.words
+            if word.start < until
+        ]
+        words.extend([replace(word, start=max(word.start, said)) for word in coming])
+    marks = list(old.marks)
+    now = max([-1.0, *[mark.at for mark in new.marks if mark.at < said]])
+    over = max([-1.0, *[mark.at for mark in old.marks if mark.at < said]])
+    shown = [
+        replace(mark, at=max(mark.at, said))
+        for mark in new.marks
+        if mark.at >= said or (mark.at == now and now >= over and not _told(old.marks, mark))
+    ]
+    if len(shown) > 0:
+        until = max(said, new.marks[0].at)
+        marks = [mark for mark in old.marks if mark.at < until]
+        marks.extend(shown)
+    return LineTiming(tuple(words), tuple(marks))
+
+
+def _told(marks: Sequence[VisemeMark], mark: VisemeMark) -> bool:
+    return any(m.at == mark.at and m.viseme == mark.viseme for m in marks)
