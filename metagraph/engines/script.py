@@ -222,12 +222,9 @@ def _timely(project: Project) -> Iterator[Case]:
         asks += [
             _ask(f"c{n}", "gesture", stroke=12.0 + 0.2 * n, tags=[t], **own) for n, t in enumerate(many[:2])
         ]
-        steps = (
-            ScriptStep(0.0, 20.0, tuple(asks)),
-            *(ScriptStep(now, now + 18.0) for now in (1.0, 3.0, 12.0, 13.0)),
-        )
+        on = [ScriptStep(now, now + 18.0) for now in (1.0, 3.0, 12.0, 13.0)]
         about = "lateness is told once, and what serves two is not played twice"
-        yield Case(f"{layer}: strokes that are planned on", about, steps)
+        yield Case(f"{layer}: strokes that are planned on", about, (ScriptStep(0.0, 20.0, tuple(asks)), *on))
     for layer in LAYERS:
         graph = project.graphs[layer]
         gestures, late = _some(project, layer, "gesture"), {"late": 0.4}
