@@ -2,6 +2,7 @@
 
 import { readAsk } from "./asks.js";
 import { strip } from "./life/letters.js";
+import { Report } from "./meta_plan.js";
 import { makeRequest } from "./plan.js";
 import { LAYERS } from "./words.js";
 
@@ -26,7 +27,7 @@ export function understand(graph, asks, now) {
     const refuse = (id, message) => {
       const at = ask?.at ?? now;
       const layer = ask?.layer ?? "arms";
-      out.refused.push({ request: id, outcome: "not-understood", message, layer, at, played: false, written: false });
+      out.refused.push(new Report(id, "not-understood", message, layer, at));
     };
     if (!ask) {
       refuse(typeof data?.id === "string" ? data.id : "", why);
