@@ -20,7 +20,7 @@ def delay(
     asked: Iterable[MetaAction], free: float, settings: Settings
 ) -> tuple[list[MetaAction], list[Report]]:
     """Let new requests wait until `free` seconds, the end of the running action; what would wait too long is
-    past.
+    past. Those that say how late they may be are judged where it shows how late they are.
     """
     metas: list[MetaAction] = []
     reports: list[Report] = []
@@ -28,6 +28,8 @@ def delay(
         late = free - meta.start
         if late <= 0:
             metas.append(meta)
+        elif meta.request.late is not None:
+            metas.append(_after(meta, free))
         elif late > settings.wait:
             reports.append(
                 _told(
@@ -35,7 +37,7 @@ def delay(
                 )
             )
         else:
-            metas.append(replace(meta, start=free, end=free + (meta.end - meta.start)))
+            metas.append(_after(meta, free))
             reports.append(_told(meta, "late", f"waits {late:.2f} s for the running action", True))
     return metas, reports
 
@@ -128,17 +130,23 @@ def _placed(metas: Sequence[MetaAction], settings: Settings) -> tuple[list[MetaA
             message = f"{word} at {meta.start:.2f} s for '{meta.request.id}', which is more important{after}"
             reports.append(_told(last, outcome, message, kept or resumes))
             insort(queue, meta, lo=at, key=_order)  # it may reach back over what was placed before, too
+        elif meta.request.late is not None:
+            insort(queue, _after(meta, last.end), lo=at, key=_order)
         elif last.end - meta.request.start > settings.wait:
             reports.append(_told(meta, "covered", _no_time(last)))
         else:
-            later = replace(meta, start=last.end, end=last.end + (meta.end - meta.start))
-            insort(queue, later, lo=at, key=_order)
+            insort(queue, _after(meta, last.end), lo=at, key=_order)
             reports.append(
                 _told(
                     meta, "late", f"waits {last.end - meta.request.start:.2f} s for '{last.request.id}'", True
                 )
             )
     return placed, reports
+
+
+def _after(meta: MetaAction, free: float) -> MetaAction:
+    """Return a meta action from `free` on."""
+    return replace(meta, start=free, end=free + (meta.end - meta.start))
 
 
 def _no_time(other: MetaAction) -> str:

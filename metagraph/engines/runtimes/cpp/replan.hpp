@@ -37,6 +37,7 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> _placed(
     const List<Ref<MetaAction>>& metas,
     const Ref<Settings>& settings
 );
+inline Ref<MetaAction> _after(const Ref<MetaAction>& meta, double free);
 inline std::string _no_time(const Ref<MetaAction>& other);
 inline Ref<Report> _told(
     const Ref<MetaAction>& meta,
@@ -49,7 +50,8 @@ inline Ref<Report> _told(
 
 namespace replan {
 
-/// Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past.
+/// Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past. Those
+/// that say how late they may be are judged where it shows how late they are.
 inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> delay(
     const List<Ref<MetaAction>>& asked,
     double free,
@@ -61,6 +63,8 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> delay(
         double late = free - meta->start;
         if (late <= 0) {
             metas.push_back(meta);
+        } else if (meta->request->late.has_value()) {
+            metas.push_back(replan::_after(meta, free));
         } else if (late > settings->wait) {
             reports.push_back(replan::_told(
                 meta,
@@ -74,13 +78,7 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> delay(
                 )
             ));
         } else {
-            metas.push_back(lang::made<MetaAction>(
-                meta->request,
-                free,
-                free + (meta->end - meta->start),
-                meta->part,
-                meta->written
-            ));
+            metas.push_back(replan::_after(meta, free));
             reports.push_back(replan::_told(
                 meta,
                 "late",
@@ -270,22 +268,22 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> _placed(
                 place2 += 1;
             }
             lang::insert(queue, place2, meta);
-        } else if (last->end - meta->request->start > settings->wait) {
-            reports.push_back(replan::_told(meta, "covered", replan::_no_time(last)));
-        } else {
-            Ref<MetaAction> later = lang::made<MetaAction>(
-                meta->request,
-                last->end,
-                last->end + (meta->end - meta->start),
-                meta->part,
-                meta->written
-            );
-            std::tuple<double, int, std::string, int> own3 = replan::_order(later);
+        } else if (meta->request->late.has_value()) {
+            std::tuple<double, int, std::string, int> own3 = replan::_order(replan::_after(meta, last->end));
             int place3 = at;
             while (place3 < lang::len(queue) && !(own3 < replan::_order(lang::at(queue, place3)))) {
                 place3 += 1;
             }
-            lang::insert(queue, place3, later);
+            lang::insert(queue, place3, replan::_after(meta, last->end));
+        } else if (last->end - meta->request->start > settings->wait) {
+            reports.push_back(replan::_told(meta, "covered", replan::_no_time(last)));
+        } else {
+            std::tuple<double, int, std::string, int> own4 = replan::_order(replan::_after(meta, last->end));
+            int place4 = at;
+            while (place4 < lang::len(queue) && !(own4 < replan::_order(lang::at(queue, place4)))) {
+                place4 += 1;
+            }
+            lang::insert(queue, place4, replan::_after(meta, last->end));
             reports.push_back(replan::_told(
                 meta,
                 "late",
@@ -301,6 +299,11 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> _placed(
         }
     }
     return std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>>{placed, reports};
+}
+
+/// Return a meta action from `free` on.
+inline Ref<MetaAction> _after(const Ref<MetaAction>& meta, double free) {
+    return lang::made<MetaAction>(meta->request, free, free + (meta->end - meta->start), meta->part, meta->written);
 }
 
 inline std::string _no_time(const Ref<MetaAction>& other) {

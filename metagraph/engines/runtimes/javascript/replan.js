@@ -11,7 +11,8 @@ import { Report } from "./meta_plan.js";
 import { bisectRight, but, insort, sortedBy } from "./basics.js";
 
 /**
- * Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past.
+ * Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past. Those that
+ * say how late they may be are judged where it shows how late they are.
  * @param {MetaAction[]} asked
  * @param {number} free
  * @param {Settings} settings
@@ -24,6 +25,8 @@ export function delay(asked, free, settings) {
     const late = free - meta.start;
     if (late <= 0) {
       metas.push(meta);
+    } else if (meta.request.late !== null) {
+      metas.push(_after(meta, free));
     } else if (late > settings.wait) {
       reports.push(_told(
         meta,
@@ -31,7 +34,7 @@ export function delay(asked, free, settings) {
         `asked for at ${meta.start.toFixed(2)} s, ${late.toFixed(1)} s before anything could start`,
       ));
     } else {
-      metas.push(but(meta, { start: free, end: free + (meta.end - meta.start) }));
+      metas.push(_after(meta, free));
       reports.push(_told(meta, "late", `waits ${late.toFixed(2)} s for the running action`, true));
     }
   }
@@ -151,11 +154,12 @@ function _placed(metas, settings) {
       const message = `${word} at ${meta.start.toFixed(2)} s for '${meta.request.id}', which is more important${after}`;
       reports.push(_told(last, outcome, message, kept || resumes));
       insort(queue, meta, at, _order); // it may reach back over what was placed before, too
+    } else if (meta.request.late !== null) {
+      insort(queue, _after(meta, last.end), at, _order);
     } else if (last.end - meta.request.start > settings.wait) {
       reports.push(_told(meta, "covered", _noTime(last)));
     } else {
-      const later = but(meta, { start: last.end, end: last.end + (meta.end - meta.start) });
-      insort(queue, later, at, _order);
+      insort(queue, _after(meta, last.end), at, _order);
       reports.push(_told(
         meta,
         "late",
@@ -165,6 +169,16 @@ function _placed(metas, settings) {
     }
   }
   return [placed, reports];
+}
+
+/**
+ * Return a meta action from `free` on.
+ * @param {MetaAction} meta
+ * @param {number} free
+ * @returns {MetaAction}
+ */
+function _after(meta, free) {
+  return but(meta, { start: free, end: free + (meta.end - meta.start) });
 }
 
 /**

@@ -4,6 +4,7 @@ import { ALPHABET } from "./alphabet.js";
 import { readAsk } from "./asks.js";
 import { readAloud } from "./graphemes.js";
 import { timedSeconds, toldText } from "./line_timing.js";
+import { Report } from "./meta_plan.js";
 import { makeRequest } from "./plan.js";
 import { toldTiming } from "./told_timing.js";
 import { LAYERS } from "./words.js";
@@ -27,7 +28,7 @@ export function understand(graph, asks, now) {
     const refuse = (id, message) => {
       const at = ask?.at ?? now;
       const layer = ask?.layer ?? "arms";
-      out.refused.push({ request: id, outcome: "not-understood", message, layer, at, played: false, written: false });
+      out.refused.push(new Report(id, "not-understood", message, layer, at));
     };
     if (!ask) {
       refuse(typeof data?.id === "string" ? data.id : "", why);
@@ -50,7 +51,7 @@ export function understand(graph, asks, now) {
 /** Return what one ask means, each `as` a request, an item of the track or a withdrawal. Throws AskError where it can mean nothing. */
 function meaning(graph, ask, at, refuse) {
   const { id, priority } = ask;
-  const request = (fields) => [{ as: "request", id, priority, start: at, ...fields }];
+  const request = (fields) => [{ as: "request", id, priority, start: at, late: ask.late, ...fields }];
   const item = (fields) => ({ as: "item", id, start: at, ...fields });
   switch (ask.do) {
     case "gesture": {

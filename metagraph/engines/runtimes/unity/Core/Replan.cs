@@ -14,7 +14,8 @@ namespace Metagraph
     public static class ReplanRules
     {
         /// <summary>
-        /// Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past.
+        /// Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past. Those
+        /// that say how late they may be are judged where it shows how late they are.
         /// </summary>
         public static (List<MetaAction>, List<Report>) Delay(List<MetaAction> asked, double free, PlannerSettings settings)
         {
@@ -26,6 +27,10 @@ namespace Metagraph
                 if (late <= 0)
                 {
                     metas.Add(meta);
+                }
+                else if (meta.Request.Late != null)
+                {
+                    metas.Add(After(meta, free));
                 }
                 else if (late > settings.Wait)
                 {
@@ -41,7 +46,7 @@ namespace Metagraph
                 }
                 else
                 {
-                    metas.Add(new MetaAction(meta.Request, free, free + (meta.End - meta.Start), meta.Part, meta.Written));
+                    metas.Add(After(meta, free));
                     reports.Add(Told(meta, "late", "waits " + PlainText.Fixed(late, 2) + " s for the running action", true));
                 }
             }
@@ -187,20 +192,17 @@ namespace Metagraph
                     // it may reach back over what was placed before, too
                     PlainLists.Insert(queue, meta, at, item => Order(item));
                 }
+                else if (meta.Request.Late != null)
+                {
+                    PlainLists.Insert(queue, After(meta, last.End), at, item => Order(item));
+                }
                 else if (last.End - meta.Request.Start > settings.Wait)
                 {
                     reports.Add(Told(meta, "covered", NoTime(last)));
                 }
                 else
                 {
-                    var later = new MetaAction(
-                        meta.Request,
-                        last.End,
-                        last.End + (meta.End - meta.Start),
-                        meta.Part,
-                        meta.Written
-                    );
-                    PlainLists.Insert(queue, later, at, item => Order(item));
+                    PlainLists.Insert(queue, After(meta, last.End), at, item => Order(item));
                     reports.Add(Told(
                         meta,
                         "late",
@@ -210,6 +212,12 @@ namespace Metagraph
                 }
             }
             return (placed, reports);
+        }
+
+        /// <summary>Return a meta action from `free` on.</summary>
+        private static MetaAction After(MetaAction meta, double free)
+        {
+            return new MetaAction(meta.Request, free, free + (meta.End - meta.Start), meta.Part, meta.Written);
         }
 
         private static string NoTime(MetaAction other)

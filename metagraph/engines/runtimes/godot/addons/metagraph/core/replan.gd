@@ -9,7 +9,8 @@ const MetaPlan = preload("meta_plan.gd")
 const Util = preload("util.gd")
 
 
-# Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past.
+# Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past. Those that say how
+# late they may be are judged where it shows how late they are.
 static func delay(asked, free_, settings):
 	var metas = []
 	var reports = []
@@ -17,10 +18,12 @@ static func delay(asked, free_, settings):
 		var late = free_ - meta.start
 		if late <= 0:
 			metas.append(meta)
+		elif meta.request.late != null:
+			metas.append(_after(meta, free_))
 		elif late > settings.wait:
 			reports.append(_told(meta, "past", "asked for at %.2f s, %.1f s before anything could start" % [meta.start, late]))
 		else:
-			metas.append(MetaPlan.MetaAction.new(meta.request, free_, free_ + (meta.end - meta.start), meta.part, meta.written))
+			metas.append(_after(meta, free_))
 			reports.append(_told(meta, "late", "waits %.2f s for the running action" % [late], true))
 	return [metas, reports]
 
@@ -143,23 +146,27 @@ static func _placed(metas, settings):
 			while place2 < queue.size() and not Util.less(own2, _order(queue[place2])):
 				place2 += 1
 			queue.insert(place2, meta)
-		elif last.end - meta.request.start > settings.wait:
-			reports.append(_told(meta, "covered", _no_time(last)))
-		else:
-			var later = MetaPlan.MetaAction.new(
-				meta.request,
-				last.end,
-				last.end + (meta.end - meta.start),
-				meta.part,
-				meta.written
-			)
-			var own3 = _order(later)
+		elif meta.request.late != null:
+			var own3 = _order(_after(meta, last.end))
 			var place3 = at
 			while place3 < queue.size() and not Util.less(own3, _order(queue[place3])):
 				place3 += 1
-			queue.insert(place3, later)
+			queue.insert(place3, _after(meta, last.end))
+		elif last.end - meta.request.start > settings.wait:
+			reports.append(_told(meta, "covered", _no_time(last)))
+		else:
+			var own4 = _order(_after(meta, last.end))
+			var place4 = at
+			while place4 < queue.size() and not Util.less(own4, _order(queue[place4])):
+				place4 += 1
+			queue.insert(place4, _after(meta, last.end))
 			reports.append(_told(meta, "late", "waits %.2f s for '%s'" % [last.end - meta.request.start, last.request.id], true))
 	return [placed, reports]
+
+
+# Return a meta action from `free` on.
+static func _after(meta, free_):
+	return MetaPlan.MetaAction.new(meta.request, free_, free_ + (meta.end - meta.start), meta.part, meta.written)
 
 
 static func _no_time(other):
