@@ -46,6 +46,8 @@ LONG = (
     "engines/test_target_web.py",
     "app/shell/test_window.py",
     "engines/test_runtime_unity.py",
+    "engines/test_runtime_cpp.py",
+    "engines/test_runtime_unreal.py",
     "app/features/timing_editor/test_timing_editor.py",
     "motion/test_retarget.py",
     "label_zoo/test_label_zoo.py",

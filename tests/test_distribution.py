@@ -94,6 +94,9 @@ def test_every_file_of_the_packages_is_in_the_wheel(wheel: Path) -> None:
         "metagraph/engines/runtimes/unity/Core/Planner.cs",
         "metagraph/engines/runtimes/godot/addons/metagraph/plugin.cfg",
         "metagraph/engines/runtimes/javascript/index.js",
+        "metagraph/engines/runtimes/cpp/conformance.cpp",
+        "metagraph/engines/runtimes/unreal/Metagraph.uplugin",
+        "metagraph/engines/runtimes/unreal/Source/Metagraph/Private/MetagraphCore.h",
         "sample_clips/sample.metagraph.yaml",
         "sample_clips/mannequin.glb",
     ):

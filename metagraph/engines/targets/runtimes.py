@@ -62,6 +62,18 @@ def _with(runtime: str, under: str) -> Callable[[ExportOrder], Made]:
     return write
 
 
+PLUGIN = "Plugins/Metagraph"  # where Unreal looks for a project's plugins
+
+
+def _plugin(order: ExportOrder) -> Made:
+    """Write the export and Unreal's plugin, the C++ runtime inside it."""
+    made = written(order)
+    files = copied(RUNTIMES / "unreal", order.folder / PLUGIN)
+    core = order.folder / PLUGIN / "Source" / "Metagraph" / "Private" / "Core"
+    files += copied(RUNTIMES / "cpp", core, ("README.md", "conformance.hpp", "conformance.cpp"))
+    return Made((*made.files, *files), made.notes)
+
+
 TARGETS = (
     ExportTarget(
         "metagraph",
@@ -93,6 +105,23 @@ TARGETS = (
         _with("unity", "Metagraph"),
         (BML,),
         untried="compiled and checked outside Unity; not run in Unity",
+        group="Played as the preview does",
+    ),
+    ExportTarget(
+        "cpp",
+        "C++17",
+        "JSON and GLB, and in metagraph/ the runtime: headers that need the standard library alone",
+        _with("cpp", "metagraph"),
+        (BML,),
+        group="Played as the preview does",
+    ),
+    ExportTarget(
+        "unreal",
+        "Unreal 5 plugin",
+        "JSON and GLB, and in Plugins/Metagraph/ a plugin with the runtime in C++",
+        _plugin,
+        (BML,),
+        untried="compiled and played against stand-ins for Unreal's types; not run in Unreal",
         group="Played as the preview does",
     ),
 )

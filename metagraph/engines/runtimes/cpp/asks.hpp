@@ -64,6 +64,13 @@ inline std::string point(const Json& value) {
     for (const Json& one : value.items) fine = fine && ranged(one, -1e6, 1e6).empty();
     return fine ? "" : "should be three numbers, metres";
 }
+inline std::string list(const Json& value, std::size_t most) {
+    const bool fine = value.is(Json::Kind::list) && value.items.size() <= most;
+    return fine ? "" : lang::text("should be a list of at most ", most, " entries");
+}
+inline std::string word_list(const Json& value) { return list(value, 4000); }
+inline std::string viseme_list(const Json& value) { return list(value, 20000); }
+inline std::string viseme_set(const Json& value) { return one_of(value, line_timing::SETS); }
 inline std::string flag(const Json& value) { return value.is(Json::Kind::flag) ? "" : "should be true or false"; }
 inline std::string id(const Json& value) { return sized(value, 0, 200); }
 inline std::string name(const Json& value) { return sized(value, 1, 200); }
@@ -115,7 +122,9 @@ inline const Map<std::string, List<Field>>& fields() {
         {"shake", {tags_}},
         {"look", {{"to", "user", place}, duration, {"amount", 1.0, share}, {"strict", false, flag}}},
         {"blink", {}},
-        {"say", {{"line", Json(), line}, {"text", "", words}, duration, {"gestures", true, flag}}},
+        {"say",
+         {{"line", Json(), line}, {"text", "", words}, duration, {"gestures", true, flag},
+          {"words", Json::list(), word_list}, {"visemes", Json::list(), viseme_list}, {"set", Json(), viseme_set}}},
         {"mode", {{"mode", Json(), mode}}},
         {"place", {{"name", Json(), name, true}, {"point", Json(), point, true}}},
         {"withdraw", {{"what", "", id}}},

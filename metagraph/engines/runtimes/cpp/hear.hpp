@@ -157,7 +157,15 @@ inline Ref<const Plan> hear(
         if (!asks.empty() && now > 0 && end == plan.end && touched.count(layer) == 0) leave.insert(layer);
     }
     Plan with = plan;
-    with.track = track::plus(track::without(plan.track, withdrawn, fixed), items);
+    Items going_on;
+    Set<std::string> begun, ended = withdrawn; // begun: of which more is said
+    for (const auto& item : items) {
+        going_on.push_back(track::goes_on(*plan.track, item, fixed));
+        if (going_on.back() == item) continue;
+        begun.insert(item->id);
+        ended.erase(item->id);
+    }
+    with.track = track::plus(track::without(track::without(plan.track, ended, fixed), begun, -INFINITY), going_on);
     const Ref<const Plan> after = planner::extend(graph, with, fixed, meant.requests, end, options, withdrawn, leave);
     if (meant.refused.empty()) return after;
     auto out = lang::made<Plan>(*after);

@@ -230,6 +230,7 @@ private:
                 at_ = before;
             }
         }
+        if (code >= 0xD800 && code < 0xE000) return fail("half a letter, \\ud800 to \\udfff alone");
         append_utf8(out, code);
     }
     std::uint32_t four() {
@@ -295,7 +296,7 @@ private:
         in.imbue(std::locale::classic());
         double out = 0.0;
         in >> out;
-        if (!std::isfinite(out) || std::abs(out) >= 1.7e308) return fail("a number is too large"), Json();
+        if (!std::isfinite(out) || (in.fail() && std::abs(out) > 1)) return fail("a number is too large"), Json();
         return Json(out);
     }
 

@@ -41,12 +41,10 @@ inline void read_joints(Graph& out, const Node& root) {
 inline Ref<Settings> read_settings(Graph& out, const Node& json) {
     if (json["blend"].text() != "3x^2-2x^3") json["blend"].wrong("is a curve that this runtime does not know", "Update the runtime.");
     out.seed = static_cast<std::uint32_t>(json["seed"].within(0, 4294967295.0));
-    // What the planner has as constants must be what the export was made with.
-    auto constant = [&json](const char* name, double value) {
-        const Node own = json.maybe(name);
-        if (!own.empty() && std::abs(own.number() - value) > 1e-9) {
-            own.wrong(lang::text("is ", own.number(), ", and this runtime knows ", value, " only"), "Update the runtime.");
-        }
+    // What the planner has as constants, other makers' exports may have otherwise.
+    auto constant = [&json, &out](const char* name, double value) {
+        const double told = json.maybe(name).within_or(0, 1e9, value);
+        if (std::abs(told - value) > 1e-9) out.problems.push_back(lang::text("planner.", name, " is ", told, "; it plays with ", value));
     };
     constant("window", layer_planning::WINDOW);
     constant("loop_fade", sampling::LOOP_FADE);

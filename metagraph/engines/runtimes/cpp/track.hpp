@@ -19,8 +19,9 @@ struct Spot {
 /// Something asked for: `kind` tells which fields count. Never changed once made.
 ///
 /// look: to, end, amount, strict, priority. speech: end, line (none for `text` alone), text, priority, length (seconds it
-/// would have taken, where something cut it short), voice (guessed from the text, where the line has none). mode: none for
-/// talking while something is said and idling otherwise. place: name, to. stay: layer, on, end.
+/// would have taken, where something cut it short), timing (when its words and mouth shapes come, none where that was not
+/// told), voice (of the timing, else guessed from the text). mode: none for talking while something is said and idling
+/// otherwise. place: name, to. stay: layer, on, end.
 struct Item {
     enum Kind { look, speech, mode_from, place, blink, stay };
     static constexpr int KINDS = 6;
@@ -35,6 +36,7 @@ struct Item {
     std::optional<std::string> line;
     std::string text;
     std::optional<double> length;
+    Ref<LineTiming> timing;
     Ref<Voice> voice;
     std::optional<std::string> mode;
     std::string name, layer;
@@ -43,7 +45,7 @@ struct Item {
     bool operator==(const Item& b) const {
         return kind == b.kind && id == b.id && start == b.start && end == b.end && to == b.to && amount == b.amount
             && strict == b.strict && priority == b.priority && line == b.line && text == b.text && length == b.length
-            && mode == b.mode && name == b.name && layer == b.layer && on == b.on;
+            && voice::alike(timing, b.timing) && mode == b.mode && name == b.name && layer == b.layer && on == b.on;
     }
 };
 
@@ -162,6 +164,26 @@ inline Ref<const Track> plus(const Ref<const Track>& track, Items items) {
     return out;
 }
 
+/// An item as it goes on where a line of the same id has begun by `now`, or begins with it: it keeps its start and what has
+/// been said of it. Only lines whose words or shapes were told with their times do.
+inline Ref<const Item> goes_on(const Track& track, const Ref<const Item>& item, double now) {
+    if (item->kind != Item::speech || item->timing == nullptr) return item;
+    const Item* old = nullptr;
+    for (const auto& speech : track.speeches()) {
+        if (speech->id == item->id) old = speech.get();
+    }
+    if (old == nullptr || old->timing == nullptr || old->length.has_value()) return item;
+    if (std::max(old->start, item->start) > now && old->start != item->start) return item;
+    auto out = lang::made<Item>(*item);
+    out->timing = line_timing::extended(old->timing, item->timing, std::max(now - old->start, 0.0));
+    const double length = std::max(line_timing::timed_seconds(out->timing, std::nullopt), item->end - item->start);
+    out->start = old->start;
+    out->end = old->start + length;
+    if (item->text.empty() || item->text == line_timing::told_text(item->timing)) out->text = line_timing::told_text(out->timing);
+    out->voice = voice::from_timing(out->timing, out->end - out->start);
+    return out;
+}
+
 /// The track without what no time from `seconds` on needs.
 inline Ref<const Track> since(const Ref<const Track>& track, double seconds) {
     Map<std::string, const Item*> last; // of modes, of each place, of each layer's stays
@@ -198,9 +220,10 @@ inline bool alike(const Track& a, const Track& b, Item::Kind kind) {
 
 }  // namespace track
 
-/// The voice of something said: its line's as read from the sound, else the one guessed from its text.
+/// The voice of something said: as its words and shapes were told, as its line's was read from the sound, else guessed from its
+/// text.
 inline Ref<Voice> voice_of(const Map<std::string, Ref<Voice>>& voices, const Item& speech) {
-    const Ref<Voice>* known = speech.line.has_value() ? voices.find(*speech.line) : nullptr;
+    const Ref<Voice>* known = speech.timing == nullptr && speech.line.has_value() ? voices.find(*speech.line) : nullptr;
     return known == nullptr ? speech.voice : *known;
 }
 

@@ -4,6 +4,7 @@
 
 #include "asks.hpp"
 #include "plan.hpp"
+#include "told_timing.hpp"
 
 namespace metagraph {
 
@@ -160,14 +161,25 @@ private:
         if (!given.empty()) name = given.is(Json::Kind::text) ? given.text : lang::fixed(given.number, 0);
         const Line* line = name.has_value() ? graph_.lines.find(*name) : nullptr;
         if (name.has_value() && line == nullptr) return "there is no line '" + *name + "'";
-        const std::string text = !ask.text("text").empty() ? ask.text("text") : line != nullptr ? line->text : "";
-        if (line == nullptr && text.empty()) return "say what: a line's id, or text";
+        const auto [timing, why] = told_timing::read(ask);
+        if (!why.empty()) return why;
+        const std::string told = timing == nullptr ? "" : line_timing::told_text(timing);
+        const std::string text = !ask.text("text").empty() ? ask.text("text") : line != nullptr ? line->text : told;
+        if (line == nullptr && text.empty() && timing == nullptr) {
+            return "say what: a line's id, text, or words with their times";
+        }
         auto speech = item(ask, Item::speech, at);
         speech->line = name;
         speech->text = text;
-        speech->end = at + spoken_seconds(ask, name, line, text);
-        const bool heard = name.has_value() && graph_.voices.find(*name) != nullptr;
-        if (!heard) speech->voice = voice::from_text(text, speech->end - speech->start);
+        speech->timing = timing;
+        if (timing != nullptr) {
+            speech->end = at + line_timing::timed_seconds(timing, ask.maybe_number("duration"));
+            speech->voice = voice::from_timing(timing, speech->end - speech->start);
+        } else {
+            speech->end = at + spoken_seconds(ask, name, line, text);
+            const bool heard = name.has_value() && graph_.voices.find(*name) != nullptr;
+            if (!heard) speech->voice = voice::from_text(text, speech->end - speech->start);
+        }
         meant.items.push_back(speech);
         if (line == nullptr || !ask.at("gestures").flag) return "";
         for (int n = 0; n < lang::len(line->asks); n++) {

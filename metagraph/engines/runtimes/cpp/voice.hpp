@@ -3,6 +3,7 @@
 
 #include "graphemes.hpp"
 #include "life.hpp"
+#include "line_timing.hpp"
 
 namespace metagraph {
 
@@ -21,17 +22,35 @@ inline const Ref<Alphabet>& alphabet() {
     return one;
 }
 
+inline Ref<Voice> voiced(const Spelled& sounds, double duration) {
+    Voice out;
+    out.duration = duration;
+    out.accents = mouth::accents_of(sounds.peaks, sounds.strengths);
+    for (const auto& row : mouth::mouth_track(sounds.pieces, sounds.pieces.empty() ? 0 : duration)) {
+        for (const double weight : row) out.weights.push_back(static_cast<float>(weight));
+    }
+    return lang::made<Voice>(out);
+}
+
 /// Return a voice guessed from letters alone. duration: seconds.
 inline Ref<Voice> from_text(const std::string& text, double duration) {
     const double length = std::max(duration, 0.0);
-    const Ref<Spelled> found = graphemes::spelled(alphabet(), text, length);
-    Voice out;
-    out.duration = length;
-    out.accents = mouth::accents_of(found->peaks, found->strengths);
-    for (const auto& row : mouth::mouth_track(found->pieces, found->pieces.empty() ? 0 : length)) {
-        out.weights.insert(out.weights.end(), row.begin(), row.end());
-    }
-    return lang::made<Voice>(out);
+    return voiced(*graphemes::spelled(alphabet(), text, length), length);
+}
+
+/// Return the voice of a line whose words and shapes are told with their times.
+inline Ref<Voice> from_timing(const Ref<LineTiming>& timing, double duration) {
+    return voiced(*line_timing::timed_sounds(alphabet(), timing), duration);
+}
+
+/// Whether two lines' times are the same.
+inline bool alike(const Ref<LineTiming>& a, const Ref<LineTiming>& b) {
+    if (a == b) return true;
+    if (a == nullptr || b == nullptr) return false;
+    auto word = [](const auto& x, const auto& y) { return x->text == y->text && x->start == y->start && x->end == y->end; };
+    auto mark = [](const auto& x, const auto& y) { return x->at == y->at && x->viseme == y->viseme && x->weight == y->weight; };
+    return std::equal(a->words.begin(), a->words.end(), b->words.begin(), b->words.end(), word)
+        && std::equal(a->marks.begin(), a->marks.end(), b->marks.begin(), b->marks.end(), mark);
 }
 
 inline Ref<Voice> read(const Node& json) {

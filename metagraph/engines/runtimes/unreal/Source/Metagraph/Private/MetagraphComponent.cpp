@@ -1,0 +1,169 @@
+#include "MetagraphComponent.h"
+
+#include "Components/SkeletalMeshComponent.h"
+#include "GameFramework/Actor.h"
+#include "MetagraphAsset.h"
+#include "MetagraphPoses.h"
+
+UMetagraphComponent::UMetagraphComponent()
+{
+	PrimaryComponentTick.bCanEverTick = true;
+	PrimaryComponentTick.TickGroup = TG_PrePhysics;
+}
+
+void UMetagraphComponent::BeginPlay()
+{
+	UActorComponent::BeginPlay();
+	if (AActor* Owner = GetOwner())
+	{
+		Mesh = Owner->FindComponentByClass<USkeletalMeshComponent>();
+	}
+	if (Mesh)
+	{
+		Mesh->AddTickPrerequisiteComponent(this); // so that the pose is this frame's
+	}
+	Advance(0.0f);
+}
+
+void UMetagraphComponent::TickComponent(float DeltaTime, ELevelTick TickType, FActorComponentTickFunction* ThisTickFunction)
+{
+	UActorComponent::TickComponent(DeltaTime, TickType, ThisTickFunction);
+	Advance(DeltaTime);
+}
+
+bool UMetagraphComponent::Begin()
+{
+	if (Character.IsValid())
+	{
+		return true;
+	}
+	const TSharedPtr<FMetagraphGraph> Graph = Asset ? Asset->Graph() : nullptr;
+	if (!Graph.IsValid())
+	{
+		return false;
+	}
+	metagraph::CharacterOptions Options;
+	Options.idle = bIdle;
+	if (Seed != 0)
+	{
+		Options.seed = static_cast<std::uint32_t>(Seed);
+	}
+	Character = MakeShared<FMetagraphCharacter>(Graph->Graph, Options);
+	Bones = MetagraphPoses::Bones(*Graph->Graph);
+	return true;
+}
+
+void UMetagraphComponent::Advance(float Seconds)
+{
+	if (!Begin())
+	{
+		return;
+	}
+	metagraph::Character& Own = Character->Character;
+	Own.update(Own.now() + Seconds);
+	Show();
+	Tell();
+}
+
+/** Make this frame's pose, and show what morph targets do. */
+void UMetagraphComponent::Show()
+{
+	metagraph::Character& Own = Character->Character;
+	Latest = MetagraphPoses::Made(Bones, Own.pose(bAlive));
+	if (!Mesh)
+	{
+		return;
+	}
+	const metagraph::List<double>& Weights = Own.morphs(bAlive);
+	for (std::size_t N = 0; N < Weights.size(); N++)
+	{
+		Mesh->SetMorphTarget(FName(*MetagraphText::Unreal(Own.graph().morphs[N])), static_cast<float>(Weights[N]), false);
+	}
+}
+
+void UMetagraphComponent::Tell()
+{
+	for (const metagraph::Happening& Event : Character->Character.events())
+	{
+		FMetagraphHappened& Delegate = Event.kind == "begin" ? OnBegin : OnEnd;
+		Delegate.Broadcast(
+			MetagraphText::Unreal(Event.layer), MetagraphText::Unreal(Event.action), MetagraphText::Unreal(Event.meta));
+	}
+}
+
+FString UMetagraphComponent::Ask(const FString& Request)
+{
+	return Begin() ? MetagraphText::Unreal(Character->Character.ask(MetagraphText::Plain(Request))) : FString();
+}
+
+TArray<FString> UMetagraphComponent::Hear(const TArray<FString>& Requests)
+{
+	TArray<FString> Ids;
+	for (const FString& Request : Requests)
+	{
+		Ids.Add(Ask(Request));
+	}
+	return Ids;
+}
+
+FString UMetagraphComponent::Say(const FString& Text)
+{
+	return Begin() ? MetagraphText::Unreal(Character->Character.say(MetagraphText::Plain(Text))) : FString();
+}
+
+FString UMetagraphComponent::SayLine(const FString& Line)
+{
+	return Begin() ? MetagraphText::Unreal(Character->Character.say_line(MetagraphText::Plain(Line))) : FString();
+}
+
+FString UMetagraphComponent::LookAt(FVector Place)
+{
+	if (!Begin())
+	{
+		return FString();
+	}
+	const FVector Own = Mesh ? Mesh->GetComponentTransform().InverseTransformPosition(Place) : Place;
+	const FVector Point = MetagraphSpace::FromUnreal(Own);
+	return MetagraphText::Unreal(Character->Character.look(metagraph::Vec{Point.X, Point.Y, Point.Z}));
+}
+
+FString UMetagraphComponent::LookAtPoint(const FString& Point)
+{
+	return Begin() ? MetagraphText::Unreal(Character->Character.look(MetagraphText::Plain(Point))) : FString();
+}
+
+FString UMetagraphComponent::Withdraw(const FString& Request)
+{
+	return Begin() ? MetagraphText::Unreal(Character->Character.withdraw(MetagraphText::Plain(Request))) : FString();
+}
+
+FMetagraphAnswer UMetagraphComponent::Answer(const FString& Request) const
+{
+	FMetagraphAnswer Out;
+	if (!Character.IsValid())
+	{
+		Out.State = TEXT("refused");
+		Out.Why = TEXT("the component has no export that can be read");
+		return Out;
+	}
+	const metagraph::Answer Found = Character->Character.answer(MetagraphText::Plain(Request));
+	Out.State = MetagraphText::Unreal(Found.state);
+	Out.Why = MetagraphText::Unreal(Found.why);
+	Out.At = static_cast<float>(Found.at.value_or(-1.0));
+	Out.Until = static_cast<float>(Found.until.value_or(-1.0));
+	for (const std::string& What : Found.what)
+	{
+		Out.What.Add(MetagraphText::Unreal(What));
+	}
+	return Out;
+}
+
+FString UMetagraphComponent::Describe() const
+{
+	return Character.IsValid() ? MetagraphText::Unreal(metagraph::json::text(Character->Character.describe())) : FString();
+}
+
+float UMetagraphComponent::Now() const
+{
+	return Character.IsValid() ? static_cast<float>(Character->Character.now()) : 0.0f;
+}

@@ -1,0 +1,141 @@
+#pragma once
+
+#include "CoreMinimal.h"
+#include "Components/ActorComponent.h"
+#include "MetagraphComponent.generated.h"
+
+class UMetagraphAsset;
+class USkeletalMeshComponent;
+struct FMetagraphCharacter;
+
+/** A pose as the animation node reads it, on any thread: bones by name, local, in Unreal's space. Never changed once made. */
+struct METAGRAPH_API FMetagraphPose
+{
+	TArray<FName> Bones;
+	TArray<FTransform> Transforms;
+};
+
+/** What becomes of a request. */
+USTRUCT(BlueprintType)
+struct METAGRAPH_API FMetagraphAnswer
+{
+	GENERATED_BODY()
+
+	/** planned, late, refused or done. */
+	UPROPERTY(BlueprintReadOnly, Category = "Metagraph")
+	FString State;
+
+	/** When it plays, seconds of the character's time; -1 where that is not known, or never. */
+	UPROPERTY(BlueprintReadOnly, Category = "Metagraph")
+	float At = -1.0f;
+
+	UPROPERTY(BlueprintReadOnly, Category = "Metagraph")
+	float Until = -1.0f;
+
+	/** Names of the actions that play. */
+	UPROPERTY(BlueprintReadOnly, Category = "Metagraph")
+	TArray<FString> What;
+
+	/** Why not as asked. */
+	UPROPERTY(BlueprintReadOnly, Category = "Metagraph")
+	FString Why;
+};
+
+/** Layer ("speech" for what is said); Action: its name, of what is said the line's id or its words; Request: the id it is for. */
+DECLARE_DYNAMIC_MULTICAST_DELEGATE_ThreeParams(FMetagraphHappened, FString, Layer, FString, Action, FString, Request);
+
+/**
+ * A character: plans what it is asked, and makes a pose each frame, which the animation node "Metagraph" of the same actor's
+ * animation blueprint shows. It plans on the game thread; the node takes poses from any thread.
+ */
+UCLASS(ClassGroup = (Animation), meta = (BlueprintSpawnableComponent))
+class METAGRAPH_API UMetagraphComponent : public UActorComponent
+{
+	GENERATED_BODY()
+
+public:
+	UMetagraphComponent();
+
+	/** The export it plays. */
+	UPROPERTY(EditAnywhere, BlueprintReadWrite, Category = "Metagraph")
+	TObjectPtr<UMetagraphAsset> Asset;
+
+	/** What chance draws from; 0 for the export's own. Characters of one export want different ones. */
+	UPROPERTY(EditAnywhere, BlueprintReadWrite, Category = "Metagraph")
+	int32 Seed = 0;
+
+	/** Whether it moves of its own accord when nobody asks for anything. */
+	UPROPERTY(EditAnywhere, BlueprintReadWrite, Category = "Metagraph")
+	bool bIdle = true;
+
+	/** Whether it breathes, looks, blinks and moves its lips. */
+	UPROPERTY(EditAnywhere, BlueprintReadWrite, Category = "Metagraph")
+	bool bAlive = true;
+
+	UPROPERTY(BlueprintAssignable, Category = "Metagraph")
+	FMetagraphHappened OnBegin;
+
+	UPROPERTY(BlueprintAssignable, Category = "Metagraph")
+	FMetagraphHappened OnEnd;
+
+	/** Ask for something, as JSON: {"do": "gesture", "tags": ["positive"]}. Returns the request's id. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString Ask(const FString& Request);
+
+	/** Ask for several things at once. Returns their ids. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	TArray<FString> Hear(const TArray<FString>& Requests);
+
+	/** Say words. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString Say(const FString& Text);
+
+	/** Say a line of the export, with what it asks for meanwhile. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString SayLine(const FString& Line);
+
+	/** Look at a place in the world, until the next look. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString LookAt(FVector Place);
+
+	/** Look at a named point of the export; "user" is whom it talks with, "ahead" nothing in particular. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString LookAtPoint(const FString& Point);
+
+	/** Take a request back; all of them where no id is given. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString Withdraw(const FString& Request);
+
+	/** What becomes of a request. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FMetagraphAnswer Answer(const FString& Request) const;
+
+	/** What may be asked, as JSON. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString Describe() const;
+
+	/** Seconds of the character's own time. */
+	UFUNCTION(BlueprintPure, Category = "Metagraph")
+	float Now() const;
+
+	/** The latest pose, for the animation node; nothing before the first frame. */
+	TSharedPtr<const FMetagraphPose, ESPMode::ThreadSafe> Pose() const { return Latest; }
+
+	/** Move on by seconds; what a frame does. */
+	void Advance(float Seconds);
+
+	virtual void BeginPlay() override;
+	virtual void TickComponent(float DeltaTime, ELevelTick TickType, FActorComponentTickFunction* ThisTickFunction) override;
+
+private:
+	TSharedPtr<FMetagraphCharacter> Character;
+	TSharedPtr<const FMetagraphPose, ESPMode::ThreadSafe> Latest;
+	TArray<FName> Bones;
+
+	UPROPERTY(Transient)
+	TObjectPtr<USkeletalMeshComponent> Mesh;
+
+	bool Begin();
+	void Tell();
+	void Show();
+};

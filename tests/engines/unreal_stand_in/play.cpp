@@ -1,0 +1,159 @@
+// Plays the plugin against the stand-ins: the node shows the vectors' poses, the component a character's.
+#include "AnimNode_Metagraph.cpp"
+#include "MetagraphAsset.cpp"
+#include "MetagraphComponent.cpp"
+#include "MetagraphModule.cpp"
+
+#include "AnimGraphNode_Metagraph.cpp"
+#include "MetagraphEditorModule.cpp"
+#include "MetagraphFactory.cpp"
+
+#undef PI
+#undef check
+#undef verify
+#include <iostream>
+
+#include "Core/conformance.hpp"
+
+static FString Wide(const std::string& text) { return MetagraphText::Unreal(text); }
+
+/// A mesh with a graph's joints, in another order, one left out by its level of detail, and a bone that is not the export's.
+static FPoseContext Mesh(const metagraph::Graph& graph, std::size_t left_out) {
+    FPoseContext out;
+    FBoneContainer& bones = out.Pose.Container;
+    bones.Bones.push_back(FName(u"attachment"));
+    bones.Compact.push_back(0);
+    for (std::size_t n = graph.joints.size(); n-- > 0;) {
+        bones.Bones.push_back(FName(*Wide(graph.joints[n])));
+        bones.Compact.push_back(n == left_out ? INDEX_NONE : static_cast<int32>(out.Pose.Transforms.size() + 1));
+        if (n != left_out) out.Pose.Transforms.emplace_back();
+    }
+    out.Pose.Transforms.emplace_back();
+    return out;
+}
+
+/// What a mesh shows, in the export's space again.
+static metagraph::List<metagraph::Joined> Shown(const metagraph::Graph& graph, FPoseContext& output) {
+    metagraph::List<metagraph::Joined> out;
+    const FBoneContainer& bones = output.Pose.Container;
+    for (const std::string& joint : graph.joints) {
+        const FMeshPoseBoneIndex place(bones.GetPoseBoneIndexForBoneName(FName(*Wide(joint))));
+        const FTransform& bone = output.Pose[bones.MakeCompactPoseIndex(place)];
+        const FQuat turn = MetagraphSpace::FromUnreal(bone.GetRotation());
+        const FVector at = MetagraphSpace::FromUnreal(bone.GetLocation());
+        out.push_back({{turn.X, turn.Y, turn.Z, turn.W}, {at.X, at.Y, at.Z}});
+    }
+    return out;
+}
+
+static int Vectors(const std::string& folder, UMetagraphAsset& asset) {
+    const std::string text = *metagraph::conformance::file(folder + "/vectors.json");
+    metagraph::json::Parser parser(text);
+    const metagraph::Json vectors = parser.parse();
+    const metagraph::Ref<const metagraph::Graph> graph = asset.Graph()->Graph;
+    int poses = 0, failures = 0;
+    for (const metagraph::Json& one : vectors.find("cases")->items) {
+        metagraph::Player player(graph, metagraph::conformance::planned(*graph, one));
+        for (const metagraph::Json& pose : one.find("poses")->items) {
+            const double time = pose.find("time")->number;
+            const bool alive = pose.find("alive")->flag;
+            metagraph::List<double> morphs;
+            player.morphs(time, morphs, alive);
+            FAnimNode_Metagraph node;
+            node.Take(MetagraphPoses::Made(MetagraphPoses::Bones(*graph), player.pose(time, alive)));
+            FPoseContext output = Mesh(*graph, graph->joints.size());
+            node.Evaluate_AnyThread(output);
+            metagraph::conformance::compare_pose(
+                *graph, Shown(*graph, output), morphs, pose, *vectors.find("tolerance"),
+                [&](const std::string& what) { failures += (std::cout << one.find("name")->text << ": " << what << "\n", 1); }
+            );
+            poses++;
+        }
+    }
+    std::cout << poses << " poses\n";
+    return failures;
+}
+
+/// Round trips, and that turning and then changing space is changing space and then turning.
+static int Space() {
+    std::uint32_t seed = 7;
+    auto draw = [&seed]() { return (seed = metagraph::hashing::mix(seed + 1)) / 4294967296.0 * 2 - 1; };
+    double off = 0;
+    for (int n = 0; n < 1000; n++) {
+        const metagraph::Quat q = metagraph::rotation::normalized({draw(), draw(), draw(), draw()});
+        const metagraph::Vec v{draw(), draw(), draw()};
+        const FQuat turn = MetagraphSpace::ToUnreal(q.x, q.y, q.z, q.w);
+        const FVector place = MetagraphSpace::ToUnreal(v.x, v.y, v.z);
+        const FQuat back = MetagraphSpace::FromUnreal(turn);
+        const FVector there = MetagraphSpace::FromUnreal(place);
+        const metagraph::Vec turned = metagraph::rotation::rotate(q, v);
+        const FVector same = MetagraphSpace::ToUnreal(turned.x, turned.y, turned.z) - turn.RotateVector(place);
+        for (const double x : {back.X - q.x, back.Y - q.y, back.Z - q.z, back.W - q.w, there.X - v.x, there.Y - v.y, there.Z - v.z,
+                               same.X, same.Y, same.Z}) {
+            off = std::max(off, std::abs(x));
+        }
+    }
+    const FVector up = MetagraphSpace::ToUnreal(0, 1, 0), ahead = MetagraphSpace::ToUnreal(0, 0, 1);
+    std::cout << (off < 1e-9 ? "fits" : "is off") << " up " << up.Z << " ahead " << ahead.Y << "\n";
+    return off < 1e-9 ? 0 : 1;
+}
+
+static int Play(UMetagraphAsset& asset) {
+    AActor actor;
+    UAnimInstance instance;
+    USkeletalMeshComponent mesh;
+    struct Component : UMetagraphComponent {
+        UClass* GetClass() const override { return UMetagraphComponent::StaticClass(); }
+    } component;
+    actor.Components = {&mesh, &component};
+    component.Owner = mesh.Owner = &actor;
+    mesh.Transform.Place = FVector(1000, 0, 0);
+    instance.Actor = &actor;
+    int begun = 0, ended = 0;
+    component.OnBegin.Listeners.push_back([&](FString, FString, FString) { begun++; });
+    component.OnEnd.Listeners.push_back([&](FString, FString, FString) { ended++; });
+    std::cout << "before " << FTCHARToUTF8(*component.Answer(FString(u"x")).State).Get() << "\n";
+    component.Asset = &asset;
+    component.Seed = 3;
+    component.BeginPlay();
+    const TArray<FString> ids = component.Hear(TArray<FString>({FString(u"{\"do\": \"gesture\"}"), FString(u"nonsense"), FString(u"{\"do\": \"gesture\", \"tags\": [\"no such tag\"]}")}));
+    const FString said = component.Say(FString(u"Grüße!")), look = component.LookAt(FVector(1100, 200, 150));
+    FAnimNode_Metagraph node;
+    FAnimInstanceProxy proxy;
+    FPoseContext output = Mesh(*asset.Graph()->Graph, 2);
+    proxy.Required = output.Pose.Container;
+    FAnimationCacheBonesContext cached;
+    cached.AnimInstanceProxy = &proxy;
+    for (int frame = 0; frame < 300; frame++) {
+        component.TickComponent(0.02f, LEVELTICK_All, nullptr);
+        node.PreUpdate(&instance);
+        if (frame % 100 == 0) node.CacheBones_AnyThread(cached);
+        node.Update_AnyThread({});
+        node.Evaluate_AnyThread(output);
+    }
+    for (const FString& id : ids) std::cout << FTCHARToUTF8(*component.Answer(id).State).Get() << " ";
+    std::cout << FTCHARToUTF8(*component.Answer(said).State).Get() << " " << FTCHARToUTF8(*component.Answer(look).State).Get() << "\n";
+    std::cout << (begun > 0 && ended > 0 ? "told" : "not told") << " " << (mesh.Before == &component) << " "
+              << (component.Pose()->Transforms.Num() == static_cast<int32>(asset.Graph()->Graph->joints.size())) << " "
+              << (component.Describe().Contains(u"\"layers\"") ? 1 : 0) << "\n";
+    return 0;
+}
+
+int main(int, char** words) {
+    const std::string what = words[1];
+    if (what == "space") return Space();
+    UMetagraphFactory factory;
+    FFeedbackContext feedback;
+    bool cancelled = true;
+    const FString file = Wide(words[2]);
+    const bool can = factory.FactoryCanImport(file);
+    UObject* made = factory.FactoryCreateFile(UMetagraphAsset::StaticClass(), nullptr, FName(u"x"), RF_NoFlags, file, nullptr, &feedback, cancelled);
+    if (made == nullptr || !can || cancelled) {
+        std::cout << (can ? "can " : "cannot ") << feedback.Said;
+        return 3;
+    }
+    UMetagraphAsset& asset = static_cast<UMetagraphAsset&>(*made);
+    const int out = what == "vectors" ? Vectors(words[3], asset) : what == "play" ? Play(asset) : 0;
+    delete made;
+    return out;
+}
