@@ -27,6 +27,7 @@ Point = Annotated[
     Meta(min_length=3, max_length=3, description="x, y, z; metres"),
 ]
 Timed = tuple[Any, ...] | dict[str, Any]  # read where lines are understood: synthesisers have many ways
+Late = Annotated[float, Meta(ge=0, le=600, description="seconds")] | None
 Tags = tuple[Annotated[str, Meta(max_length=200)], ...]
 
 
@@ -50,7 +51,8 @@ class Gesture(Request, frozen=True, tag="gesture"):
     plays where the stance has none such, and the report tells. duration: how long the activity is
     wanted. stroke: when its most telling moment should come, instead of `at`. hold: seconds its hold should
     last. prepare: whether the preparation plays. resume: whether its rest goes on after something more
-    important has cut it.
+    important has cut it. late: by how much its stroke, or where none is asked for its start, may come late:
+    0 for on time or not at all, null for as late as the planner's settings allow.
     """
 
     layer: Layer = "arms"
@@ -61,20 +63,22 @@ class Gesture(Request, frozen=True, tag="gesture"):
     hold: Annotated[float, Meta(ge=0, le=600)] | None = None
     prepare: bool = True
     resume: bool = False
+    late: Late = None
 
 
 class Fidget(Request, frozen=True, tag="fidget"):
-    """A fidget of the stance the layer is in."""
+    """A fidget of the stance the layer is in. late: as for a gesture."""
 
     layer: Layer = "arms"
     tags: Tags = ()
     limb: Limb | None = None
     duration: Seconds | None = None
     resume: bool = False
+    late: Late = None
 
 
 class Play(Request, frozen=True, tag="action"):
-    """One action, by id or name; the layer goes to its stance first. stroke, hold, prepare: as for a
+    """One action, by id or name; the layer goes to its stance first. stroke, hold, prepare, late: as for a
     gesture.
     """
 
@@ -83,39 +87,45 @@ class Play(Request, frozen=True, tag="action"):
     stroke: Seconds | None = None
     hold: Annotated[float, Meta(ge=0, le=600)] | None = None
     prepare: bool = True
+    late: Late = None
 
 
 class Go(Request, frozen=True, tag="stance"):
     """Go to a stance, by id or name, by the shortest chain of transitions. stay: the models do not leave it
-    of their own accord, until another stance is asked for or this is taken back.
+    of their own accord, until another stance is asked for or this is taken back. late: by how much it may
+    set off late.
     """
 
     stance: Id
     layer: Layer | None = None
     stay: bool = False
+    late: Late = None
 
 
 class Change(Request, frozen=True, tag="change"):
     """Change to another stance, whichever: a transition drawn among those of the stance the layer is in.
     limb, duration: which arm was seen to move, and for how long; any transition will do, and takes its own
-    time.
+    time. late: as for a stance.
     """
 
     layer: Layer = "arms"
     limb: Limb | None = None
     duration: Seconds | None = None
+    late: Late = None
 
 
 class Nod(Request, frozen=True, tag="nod"):
-    """Nod: a gesture of the head that is tagged or called so."""
+    """Nod: a gesture of the head that is tagged or called so. late: as for a gesture."""
 
     tags: Tags = ()
+    late: Late = None
 
 
 class Shake(Request, frozen=True, tag="shake"):
-    """Shake the head."""
+    """Shake the head. late: as for a gesture."""
 
     tags: Tags = ()
+    late: Late = None
 
 
 class Look(Request, frozen=True, tag="look"):

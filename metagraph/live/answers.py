@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field
 from math import inf
 
+from metagraph.playback.extend_performance import served_by
 from metagraph.playback.life.track import Item, LookAt, Speech
 from metagraph.playback.plan import MetaAction, Plan, Report
 
@@ -73,16 +74,18 @@ def find(plan: Plan, wanted: Collection[str], since: float = -inf) -> dict[str, 
         owner = owner_of(ident, wanted)
         return None if owner is None else out.setdefault(owner, FoundAnswer())
 
+    served = served_by(plan)
     for layer, lane in plan.layers.items():
         for cue in reversed(lane.cues):
             if cue.end < since:
                 break
-            found = of(cue.meta.partition("+")[0])
-            if found is not None:
-                found.starts.append(cue.start)
-                found.ends.append(cue.end)
-                found.what.append(cue.action.name)
-                found.layer = layer
+            for made in (cue.meta.partition("+")[0], *served.get(cue.meta, ())):
+                found = of(made)
+                if found is not None:
+                    found.starts.append(cue.start)
+                    found.ends.append(cue.end)
+                    found.what.append(cue.action.name)
+                    found.layer = layer
         for meta in _far(lane.metas, plan.end):
             found = of(meta.request.id)
             if found is not None:

@@ -270,6 +270,11 @@ class LiveSession:
             missed, ask = self.now - ask.at, msgspec.structs.replace(ask, at=None)
         if stroke is not None:
             missed = max(0.0, self.now - stroke)
+        late = getattr(ask, "late", None)
+        if late is not None and missed > late:
+            return f"asked for {missed:.2f} s ago, and may come {late:g} s late; it is {self.now:.1f} s"
+        if late is not None and stroke is None and missed > 0:
+            ask = msgspec.structs.replace(ask, late=late - missed)  # it counts from when it was asked for
         if missed > wait:
             return f"asked for {missed:.1f} s ago; it is {self.now:.1f} s"
         lane = self._words.lane(ask)

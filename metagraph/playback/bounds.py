@@ -7,16 +7,20 @@ from dataclasses import dataclass
 
 from metagraph.playback.plan import MetaAction
 
+LOOKED_AT = 6  # how many that follow a meta action are told
+
 
 @dataclass(frozen=True, slots=True)
 class Bound:
     """A meta action with when the next more important one begins (limit), and the next as important that was
-    asked for (wish); infinity where there is none.
+    asked for (wish); infinity where there is none. after: those as important that were asked for and say how
+    late they may be, the next first.
     """
 
     meta: MetaAction
     limit: float
     wish: float
+    after: Sequence[MetaAction] = ()
 
 
 @dataclass(slots=True)
@@ -32,10 +36,12 @@ def bounds(metas: Sequence[MetaAction]) -> list[Bound]:
     """Return each meta action with what bounds it."""
     out: list[Bound] = []
     first: list[_First] = []
+    pressing: list[MetaAction] = []  # what says how late it may be, the last first
     for meta in reversed(metas):
         limit = float("inf")
         wish = float("inf")
         own: _First | None = None
+        start = begins(meta)
         for one in first:
             if one.rank > meta.rank:
                 limit = min(limit, one.start)
@@ -43,9 +49,21 @@ def bounds(metas: Sequence[MetaAction]) -> list[Bound]:
                 wish = min(wish, one.start)
             if one.rank == meta.rank and one.written == meta.written:
                 own = one
-        out.append(Bound(meta, limit, wish))
+        after = [one for one in reversed(pressing[-LOOKED_AT:]) if one.rank >= meta.rank]
+        out.append(Bound(meta, limit, wish, after))
+        if meta.request.late is not None:
+            pressing.append(meta)
         if own is None:
-            first.append(_First(meta.rank, meta.written, meta.start))
+            first.append(_First(meta.rank, meta.written, start))
         else:
-            own.start = meta.start
+            own.start = start
     return list(reversed(out))
+
+
+def begins(meta: MetaAction) -> float:
+    """Return when a meta action may begin at the earliest. One whose stroke is judged is placed where that
+    comes.
+    """
+    if meta.request.late is not None and meta.request.stroke is not None:
+        return min(meta.start, meta.request.start)
+    return meta.start

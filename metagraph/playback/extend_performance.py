@@ -108,10 +108,12 @@ def answers(plan: Plan, idents: Iterable[str]) -> dict[str, Answer]:
     def of(made: str) -> Iterator[_Found]:
         return (found[owner] for owner in owners(made) if owner in found)
 
+    served = served_by(plan)
     for layer in plan.layers.values():
         for cue in layer.cues:
-            for x in of(cue.meta.partition("+")[0]):
-                x.cues.append(cue)
+            for made in (cue.meta.partition("+")[0], *served.get(cue.meta, ())):
+                for x in of(made):
+                    x.cues.append(cue)
         for meta in layer.metas:
             if meta.start >= plan.end:
                 for x in of(meta.request.id):
@@ -124,6 +126,15 @@ def answers(plan: Plan, idents: Iterable[str]) -> dict[str, Answer]:
         for x in of(report.request):
             x.told.append(report)
     return {ident: _answer(ident, x) for ident, x in found.items()}
+
+
+def served_by(plan: Plan) -> dict[str, list[str]]:
+    """Return the requests that the action of another serves, by that one's key."""
+    served: dict[str, list[str]] = {}
+    for report in plan.reports:
+        if report.by:
+            served.setdefault(report.by, []).append(report.request)
+    return served
 
 
 @dataclass(slots=True)

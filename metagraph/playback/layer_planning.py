@@ -22,7 +22,7 @@ from metagraph.playback.plan import (
     Report,
     Rest,
 )
-from metagraph.playback.replan import delay, replan
+from metagraph.playback.replan import LEAST, delay, replan
 from metagraph.playback.sampling import FITS, Performer, performer_after
 
 WINDOW = 1.0  # seconds a request may use when it does not say how long
@@ -92,6 +92,8 @@ def draft(
     waiting = {cue.meta for cue in old.cues[len(kept) :]}  # also those whose chain of transitions has begun
     written: list[MetaAction] = []
     cursor = old.cursor
+    # What another's action has served since it began is played as that is.
+    served = {report.request for report in told if report.outcome == "shared" and report.by in played}
     again = set(replaced)
     if chain is not None:
         more, cursor = markov.write(chain, seed, end, kinds, old.cursor)
@@ -101,11 +103,14 @@ def draft(
                 again.add(meta.request.id)
     future: list[MetaAction] = []
     planned: dict[str, list[float]] = {}  # again: when those of a request start
+    judged: set[str] = set()  # those whose lateness is told by what is performed
     for meta in old.metas:
-        if meta.request.id in again:
+        if meta.request.id in again or meta.request.id in served:
             continue
         if meta.key in waiting or (meta.start >= now and meta.key not in played):
             future.append(meta)
+            if meta.request.late is not None:
+                judged.add(meta.request.id)
             planned[meta.request.id] = [*planned.get(meta.request.id, []), meta.start]
     # What was told about time still holds; the rest will be told again by those that are planned again.
     done = [
@@ -113,14 +118,17 @@ def draft(
         for meta in old.metas
         if meta.request.id not in again
         and meta.start not in planned.get(meta.request.id, [])
-        and (meta.key in played or meta.start < now)
+        and (meta.key in played or meta.start < now or meta.request.id in served)
     ]
     reports = [
         report
         for report in told
         if report.layer == layer
         and report.request not in again
-        and (report.outcome in TEMPORAL or report.at not in planned.get(report.request, []))
+        and (
+            (report.outcome in TEMPORAL and report.request not in judged)
+            or report.at not in planned.get(report.request, [])
+        )
     ]
     begin = _begin(graph, old, stance)
     performer = performer_after(project, graph, seed, begin, old.past, kept)
@@ -135,6 +143,9 @@ def draft(
         begun = {cue.end - cue.blend_out for cue in kept}
         performer.rests = [rest for rest in old.rests if rest.fade_start < now or rest.start in begun]
     performer.begun = {cue.meta for cue in kept if cue.meta in waiting}
+    if len(kept) > 0 and kept[-1].end > now:
+        running = next((meta for meta in old.metas if meta.key == kept[-1].meta), None)
+        performer.make_way(running, asked, now)
     performer.free = max(now - (performer.ready - performer.free), performer.free)
     asked, delayed = delay(asked, performer.ready, project.settings)
     busy = float("-inf")  # what runs keeps the time it was wanted for, from the models
@@ -147,7 +158,9 @@ def draft(
 
 
 def meta_of(request: MetaRequest) -> MetaAction:
-    """Return a request with the window it may use."""
+    """Return a request with the window it may use; where its stroke is judged, the moment it is wanted at."""
+    if request.late is not None and request.stroke is not None:
+        return MetaAction(request, request.stroke, request.stroke + LEAST)
     length = WINDOW if request.duration is None else max(0.0, request.duration)
     if request.stroke is not None:
         length = max(length, request.stroke - request.start + FITS)

@@ -31,7 +31,8 @@ class MetaRequest:
     something more important cuts it, its remainder goes on afterwards. stroke: when a gesture's stroke should
     come; `start` is then the earliest it may begin. hold: seconds its hold should last, None for as long as
     it was made. prepare: whether its preparation plays. among: ids of the only actions it may be, any where
-    empty.
+    empty. late: by how many seconds its stroke, or where none is asked for its start, may come late, 0 for on
+    time or not at all; None for as late as the settings allow.
     """
 
     id: str
@@ -49,9 +50,11 @@ class MetaRequest:
     hold: float | None = None
     prepare: bool = True
     among: tuple[str, ...] = ()
+    late: float | None = None
 
     def __post_init__(self) -> None:
-        if not all(isfinite(x or 0.0) for x in (self.start, self.duration, self.stroke, self.hold)):
+        times = (self.start, self.duration, self.stroke, self.hold, self.late)
+        if not all(isfinite(x or 0.0) for x in times):
             raise ValueError(f"request '{self.id}': its times must be finite numbers of seconds")
 
 
@@ -160,6 +163,8 @@ Outcome = Literal[
     "queued",
     "not-understood",
     "withdrawn",
+    "too-late",
+    "shared",
 ]
 TEMPORAL: frozenset[Outcome] = frozenset(
     ("late", "cut", "resumed", "past")
@@ -169,7 +174,8 @@ TEMPORAL: frozenset[Outcome] = frozenset(
 @dataclass(frozen=True, slots=True)
 class Report:
     """What became of a meta action that was not simply played as asked. played: whether something of it still
-    plays.
+    plays. late: by how many seconds it comes late, or would have come, where it said how late it may. by: key
+    of the meta action whose action serves it, too.
     """
 
     request: str
@@ -179,6 +185,8 @@ class Report:
     at: float
     played: bool = False
     written: bool = False
+    late: float = 0.0
+    by: str = ""
 
 
 @dataclass(frozen=True, slots=True)

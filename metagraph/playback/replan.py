@@ -15,12 +15,14 @@ from dataclasses import replace
 from metagraph.graph.model import Settings
 from metagraph.playback.plan import MetaAction, Outcome, Report
 
+LEAST = 1e-6  # seconds of the window of what is placed at its stroke
+
 
 def delay(
     asked: Iterable[MetaAction], free: float, settings: Settings
 ) -> tuple[list[MetaAction], list[Report]]:
     """Let new requests wait until `free` seconds, the end of the running action; what would wait too long is
-    past.
+    past. Those that say how late they may be are judged where it shows how late they are.
     """
     metas: list[MetaAction] = []
     reports: list[Report] = []
@@ -28,6 +30,8 @@ def delay(
         late = free - meta.start
         if late <= 0:
             metas.append(meta)
+        elif meta.request.late is not None:
+            metas.append(_after(meta, free))
         elif late > settings.wait:
             reports.append(
                 _told(
@@ -128,6 +132,8 @@ def _placed(metas: Sequence[MetaAction], settings: Settings) -> tuple[list[MetaA
             message = f"{word} at {meta.start:.2f} s for '{meta.request.id}', which is more important{after}"
             reports.append(_told(last, outcome, message, kept or resumes))
             insort(queue, meta, lo=at, key=_order)  # it may reach back over what was placed before, too
+        elif meta.request.late is not None:
+            insort(queue, _after(meta, last.end), lo=at, key=_order)
         elif last.end - meta.request.start > settings.wait:
             reports.append(_told(meta, "covered", _no_time(last)))
         else:
@@ -139,6 +145,13 @@ def _placed(metas: Sequence[MetaAction], settings: Settings) -> tuple[list[MetaA
                 )
             )
     return placed, reports
+
+
+def _after(meta: MetaAction, free: float) -> MetaAction:
+    """Return a meta action from `free` on; where its stroke is judged, that is placed there."""
+    if meta.request.stroke is not None:
+        return replace(meta, start=free, end=free + LEAST)
+    return replace(meta, start=free, end=free + (meta.end - meta.start))
 
 
 def _no_time(other: MetaAction) -> str:

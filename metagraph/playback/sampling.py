@@ -6,10 +6,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from metagraph.graph.model import Action, MetaGraph, Project
-from metagraph.playback.bounds import bounds
+from metagraph.playback.bounds import Bound, begins, bounds
 from metagraph.playback.choice import pick
 from metagraph.playback.hashing import Bits
 from metagraph.playback.phase_times import LEAST_BLEND
@@ -19,6 +19,8 @@ from metagraph.playback.remembering import REMEMBERED, node, remember
 
 FITS = 1e-6  # seconds by which sums of times may be off
 HURRY = 2.0  # a hold is played at most this many times as fast as it was made
+RETRACTION = 0.4  # seconds in which an action whose retraction is cut goes back to its stance, at the least
+SHARED = 0.25  # seconds within which two strokes may be one
 LOOP_FADE = 0.6  # seconds of crossfade when a long rest changes from one loop of its stance to another
 
 
@@ -50,7 +52,8 @@ class Performer:
     """One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
 
     uses: how often each action was used. recent: the last draws of each `node`. ended: when each action
-    ended. begun: keys of meta actions whose chain of transitions plays already.
+    ended. begun: keys of meta actions whose chain of transitions plays already. served: keys of those that
+    another's action serves, too.
     """
 
     project: Project
@@ -65,6 +68,7 @@ class Performer:
     rests: list[Rest] = field(default_factory=list)
     reports: list[Report] = field(default_factory=list)
     begun: AbstractSet[str] = frozenset()
+    served: set[str] = field(default_factory=set)
 
     def note(self, cue: Cue, then: str) -> None:
         """Take a cue as played."""
@@ -89,8 +93,13 @@ class Performer:
         """Realise what starts before `end` of a conflict-free meta plan, in order."""
         for bound in bounds(metas):
             meta = bound.meta
-            if meta.start >= end:
-                return
+            if begins(meta) >= end:
+                continue
+            if meta.key in self.served:
+                continue
+            if meta.request.late is not None:
+                self._realise(bound, max(self.ready, begins(meta)))
+                continue
             if meta.end <= self.ready + FITS and meta.start < self.ready and meta.key not in self.begun:
                 running = "the running action"
                 if len(self.cues) > 0:
@@ -103,9 +112,11 @@ class Performer:
                     )
                     continue
                 self._tell(meta, "queued", f"waits {waits:.2f} s for {running}", True)
-            self._realise(meta, max(self.ready, meta.start), bound.limit, bound.wish)
+            self._realise(bound, max(self.ready, meta.start))
 
-    def _realise(self, meta: MetaAction, now: float, limit: float, wish: float) -> None:
+    def _realise(self, bound: Bound, now: float) -> None:
+        meta = bound.meta
+        limit = bound.limit
         steps = self._steps(meta)
         if steps is None:
             return
@@ -136,13 +147,178 @@ class Performer:
                     )
                     return
                 fitting = warm
+            # On the way to a stance it counts when that begins.
+            if meta.request.late is not None and (
+                not hops or (len(cues) == 0 and steps[len(steps) - 1].hop != "")
+            ):
+                fitting = self._timely(bound, fitting, now)
+                if len(fitting) == 0:
+                    return
             action = self._draw(fitting, f"{meta.key}/{step.hop}" if hops else meta.key, now)
             shape = self._shape(action, asked, now)
-            cue = self._cue(action, shape, limit, float("inf") if hops else wish, stance, meta.key)
+            cue = self._cue(action, shape, bound, hops, stance)
             cues.append(cue)
             now, stance = cue.end, cue.then
         for one in cues:
             self._keep(one)
+
+    def _timely(self, bound: Bound, fitting: Sequence[Action], now: float) -> list[Action]:
+        """Return those that come least late, if that is not too late; of them those that leave most of what
+        follows its time, and serve most of it.
+        """
+        meta = bound.meta
+        request = meta.request
+        allowed = 0.0 if request.late is None else request.late
+        late = {a.id: self._lateness(a, request, self._shape(a, request, now)) for a in fitting}
+        least = min([late[a.id] for a in fitting])
+        if least > allowed + FITS:
+            waits = self._cause(request, now)
+            self._tell(
+                meta,
+                "too-late",
+                f"would come {least:.2f} s late, {allowed:.2f} s are allowed; it waits for {waits}",
+                False,
+                least,
+            )
+            return []
+        if least > FITS:
+            waits = self._cause(request, now)
+            self._tell(meta, "late", f"comes {least:.2f} s late; it waits for {waits}", True, least)
+        timely = [a for a in fitting if late[a.id] <= max(least, 0.0) + FITS]
+        for other in bound.after:
+            if not self._shares(request, other.request):
+                continue
+            both = [a for a in timely if self._meets(a, other.request)]
+            behind = 0.0
+            if request.stroke is not None and other.request.stroke is not None:
+                behind = max(0.0, request.stroke + max(least, 0.0) - other.request.stroke)
+            if len(both) > 0 and other.request.late is not None and behind <= other.request.late + FITS:
+                timely = both
+                self.served.add(other.key)
+                message = f"shares the stroke of '{request.id}'"
+                self._tell(other, "shared", message, True, behind, meta.key)
+        following = [other for other in bound.after if other.key not in self.served]
+        for other in following:
+            for slack in (0.0, self._slack(other.request)):
+                by = self._latest(other.request) + slack
+                over = [a for a in timely if self._over(a, request, now) <= by]
+                if len(over) > 0:
+                    return over
+        return timely
+
+    def _lateness(self, action: Action, request: MetaRequest, shape: CueShape) -> float:
+        """Return by how many seconds an action that plays so comes late, at its stroke where one is asked
+        for; less than 0 before its time.
+        """
+        if request.stroke is not None and action.kind == "gesture":
+            found = phases(self.project, action)
+            return shape.start + found.stroke - shape.entry - request.stroke
+        return shape.start - request.start
+
+    def _cause(self, request: MetaRequest, now: float) -> str:
+        """Return what a request that comes late waits for."""
+        if now <= request.start + FITS:
+            return "its own preparation"
+        if len(self.cues) > 0 and self.ready >= now - FITS and self.cues[-1].end >= self.free - FITS:
+            return f"'{self.cues[-1].action.name}', which plays until {self.free:.2f} s"
+        return "what comes before it" if len(self.cues) > 0 else "the time it became known at"
+
+    def _shares(self, request: MetaRequest, other: MetaRequest) -> bool:
+        """Whether two requests may be met by one stroke."""
+        if request.stroke is None or other.stroke is None:
+            return False
+        return (
+            request.action is None
+            and other.action is None
+            and request.kind == other.kind
+            and (other.hold is None or other.hold == request.hold)
+            and abs(request.stroke - other.stroke) <= SHARED
+        )
+
+    def _meets(self, action: Action, request: MetaRequest) -> bool:
+        """Whether an action is what a request for any asks for."""
+        return (
+            all(tag in action.tags for tag in request.tags)
+            and (request.limb is None or action.limb == request.limb)
+            and (len(request.among) == 0 or action.id in request.among)
+        )
+
+    def _latest(self, request: MetaRequest) -> float:
+        """Return when something that is asked for has to begin at the latest, to be on time; never in the
+        past, where nothing meets it.
+        """
+        if request.stroke is None:
+            return request.start
+        least = float("inf")
+        for action in self.graph.of(self.stance, request.kind):
+            fits = self._meets(action, request)
+            if request.action is not None:
+                fits = action.id == request.action
+            if fits and self._usable(action):
+                found = phases(self.project, action)
+                least = min(least, found.stroke - found.skip(action.timing.blend_in))
+        return request.stroke - least
+
+    def _slack(self, request: MetaRequest) -> float:
+        return 0.0 if request.late is None else request.late
+
+    def _over(self, action: Action, request: MetaRequest, now: float) -> float:
+        """Return when what follows an action could begin at the earliest."""
+        shape = self._shape(action, request, now)
+        return shape.start + self._hurried(action, shape) + self.project.settings.rest - FITS
+
+    def _hurried(self, action: Action, shape: CueShape) -> float:
+        """Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless
+        it was asked for.
+        """
+        if action.kind != "gesture" or action.timing.earliest_exit is not None:
+            return shape.shortest
+        found = phases(self.project, action)
+        left = found.relax - shape.entry + shape.hold - (shape.hold_to - shape.hold_from)
+        if shape.hold <= 0:
+            left = found.stroke_end - shape.entry
+        return min(shape.length, left + max(action.timing.blend_out, RETRACTION))
+
+    def _until(self, action: Action, shape: CueShape, bound: Bound) -> float:
+        """Return when an action that is to be played through is left nevertheless: early enough for the first
+        of what follows that can be in time then, late enough for its own stroke; infinity for never.
+        """
+        rest = self.project.settings.rest
+        soonest = shape.start + self._hurried(action, shape)
+        for other in bound.after:
+            in_time = self._latest(other.request) + self._slack(other.request)
+            if other.key not in self.served and soonest + rest <= in_time + FITS:
+                return max(soonest, begins(other) - rest)
+        return float("inf")
+
+    def make_way(self, running: MetaAction | None, asked: Sequence[MetaAction], now: float) -> None:
+        """Leave the running action early for the first of what is asked for that can be in time then. What a
+        model wrote is left at once, what was asked for where its retraction begins.
+        """
+        cue = self.cues[-1]
+        if running is None or cue.action.kind == "transition" or cue.end - cue.blend_out <= now:
+            return
+        soonest = now + max(cue.blend_out, RETRACTION)
+        if not running.written:
+            shape = CueShape(
+                cue.start, cue.entry, cue.end - cue.start, cue.end - cue.start,
+                cue.hold_from, cue.hold_to, cue.hold,
+            )  # fmt: skip
+            soonest = max(soonest, cue.start + self._hurried(cue.action, shape))
+        rest = self.project.settings.rest
+        for meta in asked:
+            request = meta.request
+            in_time = self._latest(request) + self._slack(request)
+            if request.late is None or meta.rank < running.rank or in_time < soonest + rest - FITS:
+                continue
+            end = max(soonest, begins(meta) - rest)
+            if end < cue.end:
+                out = max(cue.blend_out, RETRACTION)
+                into = min(cue.blend_in, max(0.0, end - out - cue.start))
+                self.cues[-1] = replace(cue, end=end, blend_in=into, blend_out=out)
+                self.free = end
+                self.ended[cue.action.id] = end
+            return
 
     def _fits(self, shape: CueShape, limit: float) -> bool:
         """Whether something that plays so is over by a limit."""
@@ -351,12 +527,18 @@ class Performer:
                 used += 1
         return alpha * used
 
-    def _cue(self, action: Action, shape: CueShape, limit: float, wish: float, stance: str, meta: str) -> Cue:
+    def _cue(self, action: Action, shape: CueShape, bound: Bound, hops: bool, stance: str) -> Cue:
+        """hops: whether it is a transition on the way to what is asked for."""
         length = shape.length
-        if action.timing.earliest_exit is not None:
-            length = min(length, max(shape.shortest, min(limit, wish) - shape.start))
         into = max(0.0, action.timing.blend_in)
         out = max(0.0, action.timing.blend_out)
+        if action.timing.earliest_exit is not None:
+            wish = float("inf") if hops else bound.wish
+            length = min(length, max(shape.shortest, min(bound.limit, wish) - shape.start))
+        elif not hops:
+            length = min(length, self._until(action, shape, bound) - shape.start)
+            if length < shape.length:
+                out = max(out, RETRACTION)
         if shape.entry > self.project.span(action)[0]:
             into = max(into, LEAST_BLEND)
         squeeze = min(1.0, length / (into + out)) if into + out > 0 else 1.0
@@ -365,7 +547,8 @@ class Performer:
             then = action.end_stance
         end = shape.start + length
         return Cue(
-            action, shape.start, end, shape.entry, into * squeeze, out * squeeze, stance, then, meta,
+            action, shape.start, end, shape.entry, into * squeeze, out * squeeze, stance, then,
+            bound.meta.key,
             shape.hold_from, shape.hold_to, shape.hold,
         )  # fmt: skip
 
@@ -415,10 +598,18 @@ class Performer:
                     out.append(current)
         self.rests = out
 
-    def _tell(self, meta: MetaAction, outcome: Outcome, message: str, played: bool = False) -> None:
+    def _tell(
+        self,
+        meta: MetaAction,
+        outcome: Outcome,
+        message: str,
+        played: bool = False,
+        late: float = 0.0,
+        by: str = "",
+    ) -> None:
         layer = self.graph.layer
         self.reports.append(
-            Report(meta.request.id, outcome, message, layer, meta.start, played, meta.written)
+            Report(meta.request.id, outcome, message, layer, meta.start, played, meta.written, late, by)
         )
 
 

@@ -80,6 +80,7 @@ def _meant(project: Project, ask: a.AnyRequest, at: float) -> Sequence[MetaReque
                     stroke,
                     ask.hold,
                     ask.prepare,
+                    late=ask.late,
                 )
             ]
         case a.Fidget():
@@ -96,6 +97,7 @@ def _meant(project: Project, ask: a.AnyRequest, at: float) -> Sequence[MetaReque
                     None,
                     ask.priority,
                     ask.resume,
+                    late=ask.late,
                 )
             ]
         case a.Play():
@@ -104,18 +106,20 @@ def _meant(project: Project, ask: a.AnyRequest, at: float) -> Sequence[MetaReque
             return [
                 MetaRequest(
                     ask.id, action.layer, action.kind, start, action=action.id, priority=ask.priority,
-                    stroke=ask.stroke, hold=ask.hold, prepare=ask.prepare,
+                    stroke=ask.stroke, hold=ask.hold, prepare=ask.prepare, late=ask.late,
                 )
             ]  # fmt: skip
         case a.Go():
             layer, stance = find_stance(project, ask.stance, ask.layer)
             return [
-                MetaRequest(ask.id, layer, "transition", at, stance=stance, priority=ask.priority),
+                MetaRequest(
+                    ask.id, layer, "transition", at, stance=stance, priority=ask.priority, late=ask.late
+                ),
                 StayFrom(ask.id, at, layer, ask.stay),
             ]
         case a.Change():
             # Whichever arm was seen to move: stances are joined by few transitions, and mostly of both.
-            return [MetaRequest(ask.id, ask.layer, "transition", at, priority=ask.priority)]
+            return [MetaRequest(ask.id, ask.layer, "transition", at, priority=ask.priority, late=ask.late)]
         case a.Nod() | a.Shake():
             return [_head(project, ask, "nod" if isinstance(ask, a.Nod) else "shake", at)]
         case a.Look():
@@ -188,12 +192,13 @@ def _head(project: Project, ask: a.Nod | a.Shake, word: str, at: float) -> MetaR
         if x.kind == "gesture" and set(ask.tags) <= set(x.tags)
     ]
     if any(word in x.tags for x in gestures):
-        return MetaRequest(ask.id, "head", "gesture", at, tags=(word, *ask.tags), priority=ask.priority)
+        wanted = (word, *ask.tags)
+        return MetaRequest(ask.id, "head", "gesture", at, tags=wanted, priority=ask.priority, late=ask.late)
     called = tuple(x.id for x in gestures if word in x.name.lower())
     if not called:
         tags = f" with the tags {', '.join(ask.tags)}" if ask.tags else ""
         raise a.RequestError(f"the head layer has no gesture tagged or called '{word}'{tags}")
-    return MetaRequest(ask.id, "head", "gesture", at, priority=ask.priority, among=called)
+    return MetaRequest(ask.id, "head", "gesture", at, priority=ask.priority, among=called, late=ask.late)
 
 
 def _timed(

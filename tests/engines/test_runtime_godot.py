@@ -132,6 +132,8 @@ MUTATIONS = {
     "the hash": ("hashing.gd", "value ^= value >> 13", "value ^= value >> 12"),
     "a remainder has a key of its own": ("replan.gd", "last.part + 1 if kept else last.part", "last.part"),
     "holds hurry": ("sampling.gd", "(hold_to - hold_from) / HURRY", "(hold_to - hold_from)"),
+    "what is too late": ("sampling.gd", "if least > allowed + FITS:", "if least > allowed + 9.0:"),
+    "a stroke may be shared": ("sampling.gd", "<= SHARED", "<= 0.0"),
     "the head sets off after the eyes": (
         "gaze.gd",
         "settle((gone - HEAD_LAG) / aim.head)",
@@ -159,6 +161,8 @@ HINTS = {
     "the hash": "stick: hashes",
     "a remainder has a key of its own": "stick: cut and resumed",
     "holds hurry": "stick: arms: holds and preparations",
+    "what is too late": "stick: arms: starts that may not be late",
+    "a stroke may be shared": "stick: arms: strokes that may not be late",
     "the head sets off after the eyes": "stick: looks",
     "a blink shuts what is open": "stick: blinks and modes",
     "the other arm keeps to the stance": "stick: no room",

@@ -889,7 +889,7 @@ MUTATIONS = [
     ("Sampling.cs", "NeverTwice ? 1 : 0;", "NeverTwice ? 0 : 0;", "never the same twice"),
     (
         "Sampling.cs",
-        "Math.Max(shape.Shortest, Math.Min(limit, wish) - shape.Start)",
+        "Math.Max(shape.Shortest, Math.Min(bound.Limit, wish) - shape.Start)",
         "shape.Length",
         "the earliest exit",
     ),
@@ -916,6 +916,20 @@ MUTATIONS = [
         "staying in a stance",
     ),
     ("Markov.cs", "return share >= 1 ||", "return share >= 0 ||", "modes of the models"),
+    (
+        "Sampling.cs",
+        "if (least > allowed + SamplingRules.Fits)",
+        "if (least > allowed + 9)",
+        "what is too late",
+    ),
+    ("Sampling.cs", "if (over.Count > 0)", "if (over.Count > 99)", "room for what follows"),
+    ("Replan.cs", "meta.Request.Stroke != null", "meta.Start < -1", "the window of a stroke that is judged"),
+    (
+        "Asks.cs",
+        'case "late": Late = Seconds(name, value, 600);',
+        'case "late":',
+        "reading how late it may be",
+    ),
     ("Plan.cs", "held * ((cue.HoldTo - cue.HoldFrom) / cue.Hold)", "held", "the stretch of a hold"),
     ("Replan.cs", "-meta.Request.Priority, meta", "0, meta", "priority at equal starts"),
     (

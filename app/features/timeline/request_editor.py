@@ -33,6 +33,7 @@ LABELS = {
     "stroke": "Stroke at",
     "duration": "Wanted for",
     "hold": "Hold",
+    "late": "Late by at most",
     "priority": "Priority",
     "tags": "Tags",
     "limb": "Arm",
@@ -53,6 +54,7 @@ LABELS = {
 TIPS = {
     "at": "Seconds of the performance; it may come later when something else plays",
     "stroke": "When its most telling moment should come, instead of when it begins",
+    "late": "Seconds by which its stroke, or else its start, may come late, or it does not play",
     "hold": "How long the hold lasts; the motion before and after keeps its speed",
     "prepare": "Off: the preparation is skipped, and it begins shortly before its stroke",
     "priority": "Higher wins over lower; what the models play gives way to all",
@@ -128,7 +130,7 @@ class RequestEditor(QDialog):
     # --- one widget a field
 
     def _field(self, name: str, value: Any, project: Project) -> QWidget | None:
-        if name in ("at", "stroke", "duration", "hold"):
+        if name in ("at", "stroke", "duration", "hold", "late"):
             return self._seconds(name, value)
         if name == "priority":
             spin = SpinBox(self)
@@ -161,7 +163,7 @@ class RequestEditor(QDialog):
     def _seconds(self, name: str, value: float | None) -> QDoubleSpinBox:
         """Return a number of seconds; at its lowest it is left open."""
         spin = DoubleSpinBox(self, decimals=2, singleStep=0.1, suffix=" s")
-        spin.setRange(-0.01, 600.0 if name == "hold" else 1e6)
+        spin.setRange(-0.01, 600.0 if name in ("hold", "late") else 1e6)
         spin.setSpecialValueText(UNSET)
         spin.setValue(-0.01 if value is None else value)
         spin.setKeyboardTracking(False)

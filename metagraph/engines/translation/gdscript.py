@@ -154,10 +154,10 @@ class GDScript(Printer):
         beside = node.beside
         match node:
             case x.Declare():
-                value: Document = "" if node.value is None else (" = ", self.plain(node.value))
+                value: Document = "" if node.value is None else (" = ", self.held(node.value))
                 self.line((f"var {self.word(node.variable.name)}", value), beside)
             case x.Assign():
-                self.line((self.plain(node.target), f" {node.operator}= ", self.plain(node.value)), beside)
+                self.line((self.plain(node.target), f" {node.operator}= ", self.held(node.value)), beside)
             case x.Unpack():
                 self.serial += 1
                 name = "both" if self.serial == 1 else f"both{self.serial}"
@@ -167,7 +167,7 @@ class GDScript(Printer):
             case x.Do():
                 self.line(self.plain(node.value), beside)
             case x.Return():
-                self.line(("return", "" if node.value is None else (" ", self.plain(node.value))), beside)
+                self.line(("return", "" if node.value is None else (" ", self.held(node.value))), beside)
             case x.Raise():
                 self.line(("push_error(", self.plain(node.message), ")"), beside)
                 self.line("return null")
@@ -186,6 +186,10 @@ class GDScript(Printer):
         found = self.plain(test)
         room = self.WIDTH - 4 * self.depth - 12
         return found if len(flat(found)) <= room else ("(", found, ")")
+
+    def held(self, value: x.Expression) -> Document:
+        """A value, in brackets where it must be broken over lines and has none of its own."""
+        return self.within(value) if isinstance(value, x.Logic | x.Compared) else self.plain(value)
 
     def body(self, body: tuple[x.Statement, ...]) -> None:
         self.block(body)

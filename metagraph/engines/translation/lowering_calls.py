@@ -244,11 +244,12 @@ class Calls(Typed):
     def default(self, node: m.Expression, kind: x.Type) -> x.Expression:
         if isinstance(node, m.CallExpr) and full_name(node.callee) == "dataclasses.field":
             (factory,) = node.args
-            empty = {"builtins.dict": x.Mapped(kind, ()), "builtins.list": x.Gathered(kind, ())}
+            none = x.Gathered(kind, ())
+            empty = {"builtins.dict": x.Mapped(kind, ()), "builtins.list": none, "builtins.set": none}
             full = full_name(factory)
             if full not in empty:
                 raise self.refuse(
-                    node, "a default made by a function", "use an empty list or map, or a value"
+                    node, "a default made by a function", "use an empty list, map or set, or a value"
                 )
             return empty[full]
         return self.fitted(self.expression(node), kind)

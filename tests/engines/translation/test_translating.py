@@ -216,7 +216,12 @@ def _requests(graph: MetaGraph) -> list[MetaRequest]:
             {"kind": "transition", "stance": "none"},
         ][n % 8]
         out.append(MetaRequest(f"r{n}", "arms", start=at, **more))
-        out.append(MetaRequest(f"q{n}", "arms", "gesture", at + 0.4, 0.3, priority=n % 4))
+        if n % 3 == 0:  # on time or not at all, with a stroke that may be shared
+            out.append(
+                MetaRequest(f"q{n}", "arms", "gesture", at + 2.0, stroke=at + 3.0 + 0.02 * n, late=n / 60)
+            )
+        else:
+            out.append(MetaRequest(f"q{n}", "arms", "gesture", at + 0.4, 0.3, priority=n % 4))
     return out
 
 
@@ -263,6 +268,7 @@ def _graph_in_cpp(project: Project, graph: MetaGraph) -> str:
         ]
         given += [_texts(r.tags), _text(r.limb), _text(r.stance), str(r.priority), str(r.resume).lower()]
         given += [_number(r.stroke), _number(r.hold), str(r.prepare).lower(), _texts(r.among)]
+        given.append(_number(r.late))
         asked.append(f"out.push_back(made<MetaRequest>({', '.join(given)}));")
     s = project.settings
     twice = str(s.never_twice).lower()

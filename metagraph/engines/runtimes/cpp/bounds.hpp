@@ -13,19 +13,23 @@ struct _First;
 
 namespace bounds {
 
+inline constexpr int LOOKED_AT = 6; // how many that follow a meta action are told
 inline List<Ref<Bound>> bounds(const List<Ref<MetaAction>>& metas);
+inline double begins(const Ref<MetaAction>& meta);
 
 }  // namespace bounds
 
 /// A meta action with when the next more important one begins (limit), and the next as important that was asked for
-/// (wish); infinity where there is none.
+/// (wish); infinity where there is none. after: those as important that were asked for and say how late they may be,
+/// the next first.
 struct Bound {
     Ref<MetaAction> meta;
     double limit;
     double wish;
+    List<Ref<MetaAction>> after;
 
-    Bound(Ref<MetaAction> meta_, double limit_, double wish_)
-        : meta(std::move(meta_)), limit(limit_), wish(wish_) {}
+    Bound(Ref<MetaAction> meta_, double limit_, double wish_, List<Ref<MetaAction>> after_ = List<Ref<MetaAction>>{})
+        : meta(std::move(meta_)), limit(limit_), wish(wish_), after(std::move(after_)) {}
 };
 
 /// The first of some meta actions of a rank, written or asked for, and when it starts.
@@ -44,10 +48,12 @@ namespace bounds {
 inline List<Ref<Bound>> bounds(const List<Ref<MetaAction>>& metas) {
     List<Ref<Bound>> out;
     List<Ref<_First>> first;
+    List<Ref<MetaAction>> pressing; // what says how late it may be, the last first
     for (const auto& meta : lang::backwards(metas)) {
         double limit = INFINITY;
         double wish = INFINITY;
         Ref<_First> own;
+        double start = bounds::begins(meta);
         for (const auto& one : first) {
             if (one->rank > meta->rank()) {
                 limit = std::min(limit, one->start);
@@ -59,14 +65,31 @@ inline List<Ref<Bound>> bounds(const List<Ref<MetaAction>>& metas) {
                 own = one;
             }
         }
-        out.push_back(lang::made<Bound>(meta, limit, wish));
+        List<Ref<MetaAction>> after;
+        for (const auto& one2 : lang::backwards(lang::part(pressing, -bounds::LOOKED_AT))) {
+            if (one2->rank() >= meta->rank()) {
+                after.push_back(one2);
+            }
+        }
+        out.push_back(lang::made<Bound>(meta, limit, wish, after));
+        if (meta->request->late.has_value()) {
+            pressing.push_back(meta);
+        }
         if (own == nullptr) {
-            first.push_back(lang::made<_First>(meta->rank(), meta->written, meta->start));
+            first.push_back(lang::made<_First>(meta->rank(), meta->written, start));
         } else {
-            own->start = meta->start;
+            own->start = start;
         }
     }
     return lang::backwards(out);
+}
+
+/// Return when a meta action may begin at the earliest. One whose stroke is judged is placed where that comes.
+inline double begins(const Ref<MetaAction>& meta) {
+    if (meta->request->late.has_value() && meta->request->stroke.has_value()) {
+        return std::min(meta->start, meta->request->start);
+    }
+    return meta->start;
 }
 
 }  // namespace bounds

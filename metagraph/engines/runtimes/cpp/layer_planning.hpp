@@ -140,6 +140,13 @@ inline Ref<LayerDraft> draft(
     }
     List<Ref<MetaAction>> written;
     Ref<Cursor> cursor = old->cursor;
+    // What another's action has served since it began is played as that is.
+    Set<std::string> served;
+    for (const auto& report : told) {
+        if (report->outcome == "shared" && lang::contains(played, report->by)) {
+            served.insert(report->request);
+        }
+    }
     Set<std::string> again = lang::set_of(replaced);
     if (chain != nullptr) {
         List<Ref<MetaAction>> more{};
@@ -153,12 +160,16 @@ inline Ref<LayerDraft> draft(
     }
     List<Ref<MetaAction>> future;
     Map<std::string, List<double>> planned; // again: when those of a request start
+    Set<std::string> judged; // those whose lateness is told by what is performed
     for (const auto& meta : old->metas) {
-        if (lang::contains(again, meta->request->id)) {
+        if (lang::contains(again, meta->request->id) || lang::contains(served, meta->request->id)) {
             continue;
         }
         if (lang::contains(waiting, meta->key()) || (meta->start >= now && !lang::contains(played, meta->key()))) {
             future.push_back(meta);
+            if (meta->request->late.has_value()) {
+                judged.insert(meta->request->id);
+            }
             planned[meta->request->id] = lang::together(
                 lang::get_or(planned, meta->request->id, List<double>{}),
                 List<double>{meta->start}
@@ -170,7 +181,9 @@ inline Ref<LayerDraft> draft(
     for (const auto& meta2 : old->metas) {
         if (!lang::contains(again, meta2->request->id)
             && !lang::contains(lang::get_or(planned, meta2->request->id, List<double>{}), meta2->start)
-            && (lang::contains(played, meta2->key()) || meta2->start < now)) {
+            && (lang::contains(played, meta2->key())
+                || meta2->start < now
+                || lang::contains(served, meta2->request->id))) {
             done.push_back(meta2);
         }
     }
@@ -178,7 +191,7 @@ inline Ref<LayerDraft> draft(
     for (const auto& report : told) {
         if (report->layer == layer
             && !lang::contains(again, report->request)
-            && (lang::contains(meta_plan::TEMPORAL, report->outcome)
+            && ((lang::contains(meta_plan::TEMPORAL, report->outcome) && !lang::contains(judged, report->request))
                 || !lang::contains(lang::get_or(planned, report->request, List<double>{}), report->at))) {
             reports.push_back(report);
         }
@@ -215,6 +228,17 @@ inline Ref<LayerDraft> draft(
         }
     }
     performer->begun = found2;
+    if (lang::len(kept) > 0 && lang::at(kept, -1)->end > now) {
+        Ref<MetaAction> first;
+        for (const auto& meta3 : old->metas) {
+            if (meta3->key() == lang::at(kept, -1)->meta) {
+                first = meta3;
+                break;
+            }
+        }
+        Ref<MetaAction> running = first;
+        performer->make_way(running, asked, now);
+    }
     performer->free = std::max(now - (performer->ready() - performer->free), performer->free);
     List<Ref<Report>> delayed{};
     std::tie(asked, delayed) = replan::delay(asked, performer->ready(), project->settings);
@@ -229,8 +253,11 @@ inline Ref<LayerDraft> draft(
     return lang::made<LayerDraft>(layer, performer, true, done, placed, every, old->past, cursor, written);
 }
 
-/// Return a request with the window it may use.
+/// Return a request with the window it may use; where its stroke is judged, the moment it is wanted at.
 inline Ref<MetaAction> meta_of(const Ref<MetaRequest>& request) {
+    if (request->late.has_value() && request->stroke.has_value()) {
+        return lang::made<MetaAction>(request, *request->stroke, *request->stroke + replan::LEAST);
+    }
     double length = !request->duration.has_value() ? layer_planning::WINDOW : std::max(0.0, *request->duration);
     if (request->stroke.has_value()) {
         length = std::max(length, *request->stroke - request->start + sampling::FITS);

@@ -33,7 +33,8 @@ inline const Set<std::string> TEMPORAL = Set<std::string>{"late", "cut", "resume
 /// stance to go to (kind "transition"). priority: higher wins. resume: whether, when something more important cuts it,
 /// its remainder goes on afterwards. stroke: when a gesture's stroke should come; `start` is then the earliest it may
 /// begin. hold: seconds its hold should last, None for as long as it was made. prepare: whether its preparation plays.
-/// among: ids of the only actions it may be, any where empty.
+/// among: ids of the only actions it may be, any where empty. late: by how many seconds its stroke, or where none is
+/// asked for its start, may come late, 0 for on time or not at all; None for as late as the settings allow.
 struct MetaRequest {
     std::string id;
     std::string layer;
@@ -50,6 +51,7 @@ struct MetaRequest {
     std::optional<double> hold;
     bool prepare;
     List<std::string> among;
+    std::optional<double> late;
 
     MetaRequest(
         std::string id_,
@@ -66,7 +68,8 @@ struct MetaRequest {
         std::optional<double> stroke_ = std::nullopt,
         std::optional<double> hold_ = std::nullopt,
         bool prepare_ = true,
-        List<std::string> among_ = List<std::string>{}
+        List<std::string> among_ = List<std::string>{},
+        std::optional<double> late_ = std::nullopt
     )
         : id(std::move(id_)),
             layer(std::move(layer_)),
@@ -82,7 +85,8 @@ struct MetaRequest {
             stroke(stroke_),
             hold(hold_),
             prepare(prepare_),
-            among(std::move(among_)) {}
+            among(std::move(among_)),
+            late(late_) {}
 };
 
 /// Where writing stands: before meta action `number`, in state number `state` (-1: none yet), which ended at `time`
@@ -176,7 +180,9 @@ struct Rest {
         : stance(std::move(stance_)), action(std::move(action_)), start(start_), fade_start(fade_start_), fade(fade_) {}
 };
 
-/// What became of a meta action that was not simply played as asked. played: whether something of it still plays.
+/// What became of a meta action that was not simply played as asked. played: whether something of it still plays. late:
+/// by how many seconds it comes late, or would have come, where it said how late it may. by: key of the meta action
+/// whose action serves it, too.
 struct Report {
     std::string request;
     std::string outcome;
@@ -185,6 +191,8 @@ struct Report {
     double at;
     bool played;
     bool written;
+    double late;
+    std::string by;
 
     Report(
         std::string request_,
@@ -193,7 +201,9 @@ struct Report {
         std::string layer_,
         double at_,
         bool played_ = false,
-        bool written_ = false
+        bool written_ = false,
+        double late_ = 0.0,
+        std::string by_ = ""
     )
         : request(std::move(request_)),
             outcome(std::move(outcome_)),
@@ -201,7 +211,9 @@ struct Report {
             layer(std::move(layer_)),
             at(at_),
             played(played_),
-            written(written_) {}
+            written(written_),
+            late(late_),
+            by(std::move(by_)) {}
 };
 
 /// What planning on needs of cues that were forgotten. free: when the last ended; stance: in which. uses: how often

@@ -16,6 +16,7 @@ namespace metagraph {
 
 namespace replan {
 
+inline constexpr double LEAST = 1e-06; // seconds of the window of what is placed at its stroke
 inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> delay(
     const List<Ref<MetaAction>>& asked,
     double free,
@@ -37,6 +38,7 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> _placed(
     const List<Ref<MetaAction>>& metas,
     const Ref<Settings>& settings
 );
+inline Ref<MetaAction> _after(const Ref<MetaAction>& meta, double free);
 inline std::string _no_time(const Ref<MetaAction>& other);
 inline Ref<Report> _told(
     const Ref<MetaAction>& meta,
@@ -49,7 +51,8 @@ inline Ref<Report> _told(
 
 namespace replan {
 
-/// Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past.
+/// Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past. Those
+/// that say how late they may be are judged where it shows how late they are.
 inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> delay(
     const List<Ref<MetaAction>>& asked,
     double free,
@@ -61,6 +64,8 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> delay(
         double late = free - meta->start;
         if (late <= 0) {
             metas.push_back(meta);
+        } else if (meta->request->late.has_value()) {
+            metas.push_back(replan::_after(meta, free));
         } else if (late > settings->wait) {
             reports.push_back(replan::_told(
                 meta,
@@ -270,6 +275,13 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> _placed(
                 place2 += 1;
             }
             lang::insert(queue, place2, meta);
+        } else if (meta->request->late.has_value()) {
+            std::tuple<double, int, std::string, int> own3 = replan::_order(replan::_after(meta, last->end));
+            int place3 = at;
+            while (place3 < lang::len(queue) && !(own3 < replan::_order(lang::at(queue, place3)))) {
+                place3 += 1;
+            }
+            lang::insert(queue, place3, replan::_after(meta, last->end));
         } else if (last->end - meta->request->start > settings->wait) {
             reports.push_back(replan::_told(meta, "covered", replan::_no_time(last)));
         } else {
@@ -280,12 +292,12 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> _placed(
                 meta->part,
                 meta->written
             );
-            std::tuple<double, int, std::string, int> own3 = replan::_order(later);
-            int place3 = at;
-            while (place3 < lang::len(queue) && !(own3 < replan::_order(lang::at(queue, place3)))) {
-                place3 += 1;
+            std::tuple<double, int, std::string, int> own4 = replan::_order(later);
+            int place4 = at;
+            while (place4 < lang::len(queue) && !(own4 < replan::_order(lang::at(queue, place4)))) {
+                place4 += 1;
             }
-            lang::insert(queue, place3, later);
+            lang::insert(queue, place4, later);
             reports.push_back(replan::_told(
                 meta,
                 "late",
@@ -301,6 +313,14 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> _placed(
         }
     }
     return std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>>{placed, reports};
+}
+
+/// Return a meta action from `free` on; where its stroke is judged, that is placed there.
+inline Ref<MetaAction> _after(const Ref<MetaAction>& meta, double free) {
+    if (meta->request->stroke.has_value()) {
+        return lang::made<MetaAction>(meta->request, free, free + replan::LEAST, meta->part, meta->written);
+    }
+    return lang::made<MetaAction>(meta->request, free, free + (meta->end - meta->start), meta->part, meta->written);
 }
 
 inline std::string _no_time(const Ref<MetaAction>& other) {

@@ -23,6 +23,9 @@ namespace sampling {
 
 inline constexpr double FITS = 1e-06; // seconds by which sums of times may be off
 inline constexpr double HURRY = 2.0; // a hold is played at most this many times as fast as it was made
+// seconds in which an action whose retraction is cut goes back to its stance, at the least
+inline constexpr double RETRACTION = 0.4;
+inline constexpr double SHARED = 0.25; // seconds within which two strokes may be one
 // seconds of crossfade when a long rest changes from one loop of its stance to another
 inline constexpr double LOOP_FADE = 0.6;
 inline Ref<Performer> performer_after(
@@ -76,7 +79,8 @@ struct CueShape {
 /// One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
 ///
 /// uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun:
-/// keys of meta actions whose chain of transitions plays already.
+/// keys of meta actions whose chain of transitions plays already. served: keys of those that another's action serves,
+/// too.
 struct Performer {
     Ref<Project> project;
     Ref<MetaGraph> graph;
@@ -90,6 +94,7 @@ struct Performer {
     List<Ref<Rest>> rests;
     List<Ref<Report>> reports;
     Set<std::string> begun;
+    Set<std::string> served;
 
     Performer(
         Ref<Project> project_,
@@ -103,7 +108,8 @@ struct Performer {
         List<Ref<Cue>> cues_ = List<Ref<Cue>>{},
         List<Ref<Rest>> rests_ = List<Ref<Rest>>{},
         List<Ref<Report>> reports_ = List<Ref<Report>>{},
-        Set<std::string> begun_ = Set<std::string>{}
+        Set<std::string> begun_ = Set<std::string>{},
+        Set<std::string> served_ = Set<std::string>{}
     )
         : project(std::move(project_)),
             graph(std::move(graph_)),
@@ -116,7 +122,8 @@ struct Performer {
             cues(std::move(cues_)),
             rests(std::move(rests_)),
             reports(std::move(reports_)),
-            begun(std::move(begun_)) {}
+            begun(std::move(begun_)),
+            served(std::move(served_)) {}
 
     /// Take a cue as played.
     void note(const Ref<Cue>& cue, const std::string& then);
@@ -130,7 +137,45 @@ struct Performer {
     /// Realise what starts before `end` of a conflict-free meta plan, in order.
     void perform(const List<Ref<MetaAction>>& metas, double end);
 
-    void _realise(const Ref<MetaAction>& meta, double now, double limit, double wish);
+    void _realise(const Ref<Bound>& bound, double now);
+
+    /// Return those that come least late, if that is not too late; of them those that leave most of what follows its
+    /// time, and serve most of it.
+    List<Ref<Action>> _timely(const Ref<Bound>& bound, const List<Ref<Action>>& fitting, double now);
+
+    /// Return by how many seconds an action that plays so comes late, at its stroke where one is asked for; less than 0
+    /// before its time.
+    double _lateness(const Ref<Action>& action, const Ref<MetaRequest>& request, const Ref<CueShape>& shape);
+
+    /// Return what a request that comes late waits for.
+    std::string _cause(const Ref<MetaRequest>& request, double now);
+
+    /// Whether two requests may be met by one stroke.
+    bool _shares(const Ref<MetaRequest>& request, const Ref<MetaRequest>& other);
+
+    /// Whether an action is what a request for any asks for.
+    bool _meets(const Ref<Action>& action, const Ref<MetaRequest>& request);
+
+    /// Return when something that is asked for has to begin at the latest, to be on time; never in the past, where
+    /// nothing meets it.
+    double _latest(const Ref<MetaRequest>& request);
+
+    double _slack(const Ref<MetaRequest>& request);
+
+    /// Return when what follows an action could begin at the earliest.
+    double _over(const Ref<Action>& action, const Ref<MetaRequest>& request, double now);
+
+    /// Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless it was asked
+    /// for.
+    double _hurried(const Ref<Action>& action, const Ref<CueShape>& shape);
+
+    /// Return when an action that is to be played through is left nevertheless: early enough for the first of what
+    /// follows that can be in time then, late enough for its own stroke; infinity for never.
+    double _until(const Ref<Action>& action, const Ref<CueShape>& shape, const Ref<Bound>& bound);
+
+    /// Leave the running action early for the first of what is asked for that can be in time then. What a model wrote
+    /// is left at once, what was asked for where its retraction begins.
+    void make_way(const Ref<MetaAction>& running, const List<Ref<MetaAction>>& asked, double now);
 
     /// Whether something that plays so is over by a limit.
     bool _fits(const Ref<CueShape>& shape, double limit);
@@ -169,13 +214,13 @@ struct Performer {
     /// Return c_k of section 6.2, alpha times the uses, over the settings' memory.
     double _count(const std::string& ident, double now);
 
+    /// hops: whether it is a transition on the way to what is asked for.
     Ref<Cue> _cue(
         const Ref<Action>& action,
         const Ref<CueShape>& shape,
-        double limit,
-        double wish,
-        const std::string& stance,
-        const std::string& meta
+        const Ref<Bound>& bound,
+        bool hops,
+        const std::string& stance
     );
 
     void _keep(const Ref<Cue>& cue);
@@ -190,7 +235,9 @@ struct Performer {
         const Ref<MetaAction>& meta,
         const std::string& outcome,
         const std::string& message,
-        bool played = false
+        bool played = false,
+        double late = 0.0,
+        const std::string& by = ""
     );
 };
 
@@ -217,8 +264,15 @@ inline bool Performer::begin(const std::string& stance) {
 inline void Performer::perform(const List<Ref<MetaAction>>& metas, double end) {
     for (const auto& bound : bounds::bounds(metas)) {
         Ref<MetaAction> meta = bound->meta;
-        if (meta->start >= end) {
-            return;
+        if (bounds::begins(meta) >= end) {
+            continue;
+        }
+        if (lang::contains(this->served, meta->key())) {
+            continue;
+        }
+        if (meta->request->late.has_value()) {
+            this->_realise(bound, std::max(this->ready(), bounds::begins(meta)));
+            continue;
         }
         if (meta->end <= this->ready() + sampling::FITS
             && meta->start < this->ready()
@@ -239,11 +293,13 @@ inline void Performer::perform(const List<Ref<MetaAction>>& metas, double end) {
             }
             this->_tell(meta, "queued", lang::text("waits ", lang::fixed(waits, 2), " s for ", running), true);
         }
-        this->_realise(meta, std::max(this->ready(), meta->start), bound->limit, bound->wish);
+        this->_realise(bound, std::max(this->ready(), meta->start));
     }
 }
 
-inline void Performer::_realise(const Ref<MetaAction>& meta, double now, double limit, double wish) {
+inline void Performer::_realise(const Ref<Bound>& bound, double now) {
+    Ref<MetaAction> meta = bound->meta;
+    double limit = bound->limit;
     std::optional<List<Ref<SamplingStep>>> steps = this->_steps(meta);
     if (!steps.has_value()) {
         return;
@@ -298,15 +354,272 @@ inline void Performer::_realise(const Ref<MetaAction>& meta, double now, double 
             }
             fitting = warm;
         }
+        // On the way to a stance it counts when that begins.
+        if (meta->request->late.has_value()
+            && (!hops || (lang::len(cues) == 0 && lang::at(*steps, lang::len(*steps) - 1)->hop != ""))) {
+            fitting = this->_timely(bound, fitting, now);
+            if (lang::len(fitting) == 0) {
+                return;
+            }
+        }
         Ref<Action> action = this->_draw(fitting, hops ? lang::text(meta->key(), "/", step->hop) : meta->key(), now);
         Ref<CueShape> shape = this->_shape(action, asked, now);
-        Ref<Cue> cue = this->_cue(action, shape, limit, hops ? INFINITY : wish, stance, meta->key());
+        Ref<Cue> cue = this->_cue(action, shape, bound, hops, stance);
         cues.push_back(cue);
         now = cue->end;
         stance = cue->then;
     }
     for (const auto& one : cues) {
         this->_keep(one);
+    }
+}
+
+inline List<Ref<Action>> Performer::_timely(const Ref<Bound>& bound, const List<Ref<Action>>& fitting, double now) {
+    Ref<MetaAction> meta = bound->meta;
+    Ref<MetaRequest> request = meta->request;
+    double allowed = !request->late.has_value() ? 0.0 : *request->late;
+    Map<std::string, double> late;
+    for (const auto& a : fitting) {
+        late[a->id] = this->_lateness(a, request, this->_shape(a, request, now));
+    }
+    List<double> found;
+    for (const auto& a : fitting) {
+        found.push_back(late.at(a->id));
+    }
+    double least = lang::min_of(found);
+    std::string waits{};
+    if (least > allowed + sampling::FITS) {
+        waits = this->_cause(request, now);
+        this->_tell(
+            meta,
+            "too-late",
+            lang::text(
+                "would come ",
+                lang::fixed(least, 2),
+                " s late, ",
+                lang::fixed(allowed, 2),
+                " s are allowed; it waits for ",
+                waits
+            ),
+            false,
+            least
+        );
+        return List<Ref<Action>>{};
+    }
+    if (least > sampling::FITS) {
+        waits = this->_cause(request, now);
+        this->_tell(
+            meta,
+            "late",
+            lang::text("comes ", lang::fixed(least, 2), " s late; it waits for ", waits),
+            true,
+            least
+        );
+    }
+    List<Ref<Action>> timely;
+    for (const auto& a : fitting) {
+        if (late.at(a->id) <= std::max(least, 0.0) + sampling::FITS) {
+            timely.push_back(a);
+        }
+    }
+    for (const auto& other : bound->after) {
+        if (!this->_shares(request, other->request)) {
+            continue;
+        }
+        List<Ref<Action>> both;
+        for (const auto& a : timely) {
+            if (this->_meets(a, other->request)) {
+                both.push_back(a);
+            }
+        }
+        double behind = 0.0;
+        if (request->stroke.has_value() && other->request->stroke.has_value()) {
+            behind = std::max(0.0, *request->stroke + std::max(least, 0.0) - *other->request->stroke);
+        }
+        if (lang::len(both) > 0
+            && other->request->late.has_value()
+            && behind <= *other->request->late + sampling::FITS) {
+            timely = both;
+            this->served.insert(other->key());
+            std::string message = lang::text("shares the stroke of '", request->id, "'");
+            this->_tell(other, "shared", message, true, behind, meta->key());
+        }
+    }
+    List<Ref<MetaAction>> following;
+    for (const auto& other2 : bound->after) {
+        if (!lang::contains(this->served, other2->key())) {
+            following.push_back(other2);
+        }
+    }
+    for (const auto& other : following) {
+        for (const auto& slack : List<double>{0.0, this->_slack(other->request)}) {
+            double by = this->_latest(other->request) + slack;
+            List<Ref<Action>> over;
+            for (const auto& a : timely) {
+                if (this->_over(a, request, now) <= by) {
+                    over.push_back(a);
+                }
+            }
+            if (lang::len(over) > 0) {
+                return over;
+            }
+        }
+    }
+    return timely;
+}
+
+inline double Performer::_lateness(
+    const Ref<Action>& action,
+    const Ref<MetaRequest>& request,
+    const Ref<CueShape>& shape
+) {
+    if (request->stroke.has_value() && action->kind == "gesture") {
+        Ref<Phases> found = phases::phases(this->project, action);
+        return shape->start + found->stroke - shape->entry - *request->stroke;
+    }
+    return shape->start - request->start;
+}
+
+inline std::string Performer::_cause(const Ref<MetaRequest>& request, double now) {
+    if (now <= request->start + sampling::FITS) {
+        return "its own preparation";
+    }
+    if (lang::len(this->cues) > 0
+        && this->ready() >= now - sampling::FITS
+        && lang::at(this->cues, -1)->end >= this->free - sampling::FITS) {
+        return lang::text(
+            "'",
+            lang::at(this->cues, -1)->action->name,
+            "', which plays until ",
+            lang::fixed(this->free, 2),
+            " s"
+        );
+    }
+    return lang::len(this->cues) > 0 ? std::string("what comes before it") : std::string("the time it became known at");
+}
+
+inline bool Performer::_shares(const Ref<MetaRequest>& request, const Ref<MetaRequest>& other) {
+    if (!request->stroke.has_value() || !other->stroke.has_value()) {
+        return false;
+    }
+    return !request->action.has_value()
+        && !other->action.has_value()
+        && request->kind == other->kind
+        && (!other->hold.has_value() || *other->hold == request->hold)
+        && std::abs(*request->stroke - *other->stroke) <= sampling::SHARED;
+}
+
+inline bool Performer::_meets(const Ref<Action>& action, const Ref<MetaRequest>& request) {
+    bool are_all = true;
+    for (const auto& tag : request->tags) {
+        if (!lang::contains(action->tags, tag)) {
+            are_all = false;
+            break;
+        }
+    }
+    return are_all
+        && (!request->limb.has_value() || action->limb == *request->limb)
+        && (lang::len(request->among) == 0 || lang::contains(request->among, action->id));
+}
+
+inline double Performer::_latest(const Ref<MetaRequest>& request) {
+    if (!request->stroke.has_value()) {
+        return request->start;
+    }
+    double least = INFINITY;
+    for (const auto& action : this->graph->of(this->stance, request->kind)) {
+        bool fits = this->_meets(action, request);
+        if (request->action.has_value()) {
+            fits = action->id == *request->action;
+        }
+        if (fits && this->_usable(action)) {
+            Ref<Phases> found = phases::phases(this->project, action);
+            least = std::min(least, found->stroke - found->skip(action->timing->blend_in));
+        }
+    }
+    return *request->stroke - least;
+}
+
+inline double Performer::_slack(const Ref<MetaRequest>& request) {
+    return !request->late.has_value() ? 0.0 : *request->late;
+}
+
+inline double Performer::_over(const Ref<Action>& action, const Ref<MetaRequest>& request, double now) {
+    Ref<CueShape> shape = this->_shape(action, request, now);
+    return shape->start + this->_hurried(action, shape) + this->project->settings->rest - sampling::FITS;
+}
+
+inline double Performer::_hurried(const Ref<Action>& action, const Ref<CueShape>& shape) {
+    if (action->kind != "gesture" || action->timing->earliest_exit.has_value()) {
+        return shape->shortest;
+    }
+    Ref<Phases> found = phases::phases(this->project, action);
+    double left = found->relax - shape->entry + shape->hold - (shape->hold_to - shape->hold_from);
+    if (shape->hold <= 0) {
+        left = found->stroke_end - shape->entry;
+    }
+    return std::min(shape->length, left + std::max(action->timing->blend_out, sampling::RETRACTION));
+}
+
+inline double Performer::_until(const Ref<Action>& action, const Ref<CueShape>& shape, const Ref<Bound>& bound) {
+    double rest = this->project->settings->rest;
+    double soonest = shape->start + this->_hurried(action, shape);
+    for (const auto& other : bound->after) {
+        double in_time = this->_latest(other->request) + this->_slack(other->request);
+        if (!lang::contains(this->served, other->key()) && soonest + rest <= in_time + sampling::FITS) {
+            return std::max(soonest, bounds::begins(other) - rest);
+        }
+    }
+    return INFINITY;
+}
+
+inline void Performer::make_way(const Ref<MetaAction>& running, const List<Ref<MetaAction>>& asked, double now) {
+    Ref<Cue> cue = lang::at(this->cues, -1);
+    if (running == nullptr || cue->action->kind == "transition" || cue->end - cue->blend_out <= now) {
+        return;
+    }
+    double soonest = now + std::max(cue->blend_out, sampling::RETRACTION);
+    if (!running->written) {
+        Ref<CueShape> shape = lang::made<CueShape>(
+            cue->start,
+            cue->entry,
+            cue->end - cue->start,
+            cue->end - cue->start,
+            cue->hold_from,
+            cue->hold_to,
+            cue->hold
+        );
+        soonest = std::max(soonest, cue->start + this->_hurried(cue->action, shape));
+    }
+    double rest = this->project->settings->rest;
+    for (const auto& meta : asked) {
+        Ref<MetaRequest> request = meta->request;
+        double in_time = this->_latest(request) + this->_slack(request);
+        if (!request->late.has_value() || meta->rank() < running->rank() || in_time < soonest + rest - sampling::FITS) {
+            continue;
+        }
+        double end = std::max(soonest, bounds::begins(meta) - rest);
+        if (end < cue->end) {
+            double out = std::max(cue->blend_out, sampling::RETRACTION);
+            double into = std::min(cue->blend_in, std::max(0.0, end - out - cue->start));
+            lang::at(this->cues, -1) = lang::made<Cue>(
+                cue->action,
+                cue->start,
+                end,
+                cue->entry,
+                into,
+                out,
+                cue->stance,
+                cue->then,
+                cue->meta,
+                cue->hold_from,
+                cue->hold_to,
+                cue->hold
+            );
+            this->free = end;
+            this->ended[cue->action->id] = end;
+        }
+        return;
     }
 }
 
@@ -670,17 +983,22 @@ inline double Performer::_count(const std::string& ident, double now) {
 inline Ref<Cue> Performer::_cue(
     const Ref<Action>& action,
     const Ref<CueShape>& shape,
-    double limit,
-    double wish,
-    const std::string& stance,
-    const std::string& meta
+    const Ref<Bound>& bound,
+    bool hops,
+    const std::string& stance
 ) {
     double length = shape->length;
-    if (action->timing->earliest_exit.has_value()) {
-        length = std::min(length, std::max(shape->shortest, std::min(limit, wish) - shape->start));
-    }
     double into = std::max(0.0, action->timing->blend_in);
     double out = std::max(0.0, action->timing->blend_out);
+    if (action->timing->earliest_exit.has_value()) {
+        double wish = hops ? INFINITY : bound->wish;
+        length = std::min(length, std::max(shape->shortest, std::min(bound->limit, wish) - shape->start));
+    } else if (!hops) {
+        length = std::min(length, this->_until(action, shape, bound) - shape->start);
+        if (length < shape->length) {
+            out = std::max(out, sampling::RETRACTION);
+        }
+    }
     if (shape->entry > std::get<0>(this->project->span(action))) {
         into = std::max(into, phase_times::LEAST_BLEND);
     }
@@ -699,7 +1017,7 @@ inline Ref<Cue> Performer::_cue(
         out * squeeze,
         stance,
         then,
-        meta,
+        bound->meta->key(),
         shape->hold_from,
         shape->hold_to,
         shape->hold
@@ -787,7 +1105,9 @@ inline void Performer::_tell(
     const Ref<MetaAction>& meta,
     const std::string& outcome,
     const std::string& message,
-    bool played
+    bool played,
+    double late,
+    const std::string& by
 ) {
     std::string layer = this->graph->layer;
     this->reports.push_back(lang::made<Report>(
@@ -797,7 +1117,9 @@ inline void Performer::_tell(
         layer,
         meta->start,
         played,
-        meta->written
+        meta->written,
+        late,
+        by
     ));
 }
 

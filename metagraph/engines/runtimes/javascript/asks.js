@@ -26,17 +26,18 @@ const ANY_LAYER = [null, one(LAYERS)];
 const TAGS = [[], tags];
 const LIMB = [null, one(["left", "right", "both"])];
 const HOLD = [null, number(0, 600)];
+const LATE = [null, number(0, 600)];
 const FIELDS = {
   gesture: {
     layer: LAYER, tags: TAGS, limb: LIMB, duration: [null, seconds], stroke: [null, seconds], hold: HOLD, prepare: [true, flag],
-    resume: [false, flag],
+    resume: [false, flag], late: LATE,
   },
-  fidget: { layer: LAYER, tags: TAGS, limb: LIMB, duration: [null, seconds], resume: [false, flag] },
-  action: { action: [undefined, name], layer: ANY_LAYER, stroke: [null, seconds], hold: HOLD, prepare: [true, flag] },
-  stance: { stance: [undefined, name], layer: ANY_LAYER, stay: [false, flag] },
-  change: { layer: LAYER, limb: LIMB, duration: [null, seconds] },
-  nod: { tags: TAGS },
-  shake: { tags: TAGS },
+  fidget: { layer: LAYER, tags: TAGS, limb: LIMB, duration: [null, seconds], resume: [false, flag], late: LATE },
+  action: { action: [undefined, name], layer: ANY_LAYER, stroke: [null, seconds], hold: HOLD, prepare: [true, flag], late: LATE },
+  stance: { stance: [undefined, name], layer: ANY_LAYER, stay: [false, flag], late: LATE },
+  change: { layer: LAYER, limb: LIMB, duration: [null, seconds], late: LATE },
+  nod: { tags: TAGS, late: LATE },
+  shake: { tags: TAGS, late: LATE },
   look: { to: ["user", either(name, point)], duration: [null, seconds], amount: [1, number(0, 1)], strict: [false, flag] },
   blink: {},
   say: {

@@ -5,17 +5,20 @@
  */
 
 
+export const LOOKED_AT = 6; // how many that follow a meta action are told
+
 /**
  * A meta action with when the next more important one begins (limit), and the next as important that was asked for (wish);
- * infinity where there is none.
+ * infinity where there is none. after: those as important that were asked for and say how late they may be, the next first.
  *
- * meta: MetaAction; limit: number; wish: number.
+ * meta: MetaAction; limit: number; wish: number; after: MetaAction[].
  */
 export class Bound {
-  constructor(meta, limit, wish) {
+  constructor(meta, limit, wish, after = []) {
     this.meta = meta;
     this.limit = limit;
     this.wish = wish;
+    this.after = after;
   }
 }
 
@@ -40,10 +43,12 @@ export class _First {
 export function bounds(metas) {
   const out = [];
   const first = [];
+  const pressing = []; // what says how late it may be, the last first
   for (const meta of [...metas].reverse()) {
     let limit = Infinity;
     let wish = Infinity;
     let own = null;
+    const start = begins(meta);
     for (const one of first) {
       if (one.rank > meta.rank) {
         limit = Math.min(limit, one.start);
@@ -55,12 +60,28 @@ export function bounds(metas) {
         own = one;
       }
     }
-    out.push(new Bound(meta, limit, wish));
+    const after = [...pressing.slice(-LOOKED_AT)].reverse().filter((one) => one.rank >= meta.rank);
+    out.push(new Bound(meta, limit, wish, after));
+    if (meta.request.late !== null) {
+      pressing.push(meta);
+    }
     if (own === null) {
-      first.push(new _First(meta.rank, meta.written, meta.start));
+      first.push(new _First(meta.rank, meta.written, start));
     } else {
-      own.start = meta.start;
+      own.start = start;
     }
   }
   return [...[...out].reverse()];
+}
+
+/**
+ * Return when a meta action may begin at the earliest. One whose stroke is judged is placed where that comes.
+ * @param {MetaAction} meta
+ * @returns {number}
+ */
+export function begins(meta) {
+  if (meta.request.late !== null && meta.request.stroke !== null) {
+    return Math.min(meta.start, meta.request.start);
+  }
+  return meta.start;
 }

@@ -66,8 +66,13 @@ export function answers(plan, ids) {
   const each = (made, note) => {
     for (const owner of owners(made)) if (found.has(owner)) note(found.get(owner));
   };
+  const served = servedBy(plan.reports);
   for (const { cues, metas } of Object.values(plan.layers)) {
-    for (const cue of cues) each(cue.meta.split("+")[0], (x) => x.plays.push({ start: cue.start, end: cue.end, what: cue.action.name }));
+    const play = (id, cue) => each(id, (x) => x.plays.push({ start: cue.start, end: cue.end, what: cue.action.name }));
+    for (const cue of cues) {
+      play(cue.meta.split("+")[0], cue);
+      for (const id of served.get(cue.meta) ?? []) play(id, cue);
+    }
     for (const meta of metas) if (meta.start >= plan.end) each(meta.request.id, (x) => x.waiting.push(meta.start));
   }
   for (const item of trackItems(plan.track)) {
@@ -76,6 +81,13 @@ export function answers(plan, ids) {
   }
   for (const told of plan.reports) each(told.request, (x) => x.told.push(told));
   return new Map([...found].map(([id, x]) => [id, { id, ...answer(x) }]));
+}
+
+/** Return the requests that the action of another serves, by that one's key. */
+function servedBy(reports) {
+  const served = new Map();
+  for (const { by, request } of reports) if (by) served.set(by, [...(served.get(by) ?? []), request]);
+  return served;
 }
 
 function answer({ plays, told, waiting }) {

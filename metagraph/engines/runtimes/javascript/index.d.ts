@@ -21,13 +21,16 @@ export type Ask = Common &
   (
     | {
         do: "gesture"; layer?: Layer; tags?: string[]; limb?: Limb | null; duration?: number | null; stroke?: number | null;
-        hold?: number | null; prepare?: boolean; resume?: boolean;
+        hold?: number | null; prepare?: boolean; resume?: boolean; late?: number | null;
       }
-    | { do: "fidget"; layer?: Layer; tags?: string[]; limb?: Limb | null; duration?: number | null; resume?: boolean }
-    | { do: "action"; action: string; layer?: Layer | null; stroke?: number | null; hold?: number | null; prepare?: boolean }
-    | { do: "stance"; stance: string; layer?: Layer | null; stay?: boolean }
-    | { do: "change"; layer?: Layer; limb?: Limb | null; duration?: number | null }
-    | { do: "nod" | "shake"; tags?: string[] }
+    | { do: "fidget"; layer?: Layer; tags?: string[]; limb?: Limb | null; duration?: number | null; resume?: boolean; late?: number | null }
+    | {
+        do: "action"; action: string; layer?: Layer | null; stroke?: number | null; hold?: number | null; prepare?: boolean;
+        late?: number | null;
+      }
+    | { do: "stance"; stance: string; layer?: Layer | null; stay?: boolean; late?: number | null }
+    | { do: "change"; layer?: Layer; limb?: Limb | null; duration?: number | null; late?: number | null }
+    | { do: "nod" | "shake"; tags?: string[]; late?: number | null }
     | { do: "look"; to?: string | Point; duration?: number | null; amount?: number; strict?: boolean }
     | { do: "blink" }
     | {
@@ -162,6 +165,10 @@ export interface Report {
   readonly at: number;
   readonly played: boolean;
   readonly written: boolean;
+  /** Seconds by which it comes late, or would have, where it said how late it may. */
+  readonly late: number;
+  /** Key of the meta action whose action serves it, too; "" for none. */
+  readonly by: string;
 }
 
 /** A value: planning makes new ones. */

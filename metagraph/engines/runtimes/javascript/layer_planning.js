@@ -7,7 +7,7 @@
 
 import { write } from "./markov.js";
 import { LayerPlan, MetaAction, Report, TEMPORAL } from "./meta_plan.js";
-import { delay, replan } from "./replan.js";
+import { LEAST, delay, replan } from "./replan.js";
 import { FITS, performerAfter } from "./sampling.js";
 
 export const WINDOW = 1; // seconds a request may use when it does not say how long
@@ -79,6 +79,9 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
   const waiting = new Set(old.cues.slice(kept.length).map((cue) => cue.meta));
   const written = [];
   let cursor = old.cursor;
+  // What another's action has served since it began is played as that is.
+  const served = new Set(told.filter((report) => report.outcome === "shared" && played.has(report.by)).map((report) =>
+    report.request));
   const again = new Set(replaced);
   if (chain !== null) {
     let more;
@@ -92,12 +95,16 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
   }
   const future = [];
   const planned = new Map(); // again: when those of a request start
+  const judged = new Set([]); // those whose lateness is told by what is performed
   for (const meta of old.metas) {
-    if (again.has(meta.request.id)) {
+    if (again.has(meta.request.id) || served.has(meta.request.id)) {
       continue;
     }
     if (waiting.has(meta.key) || (meta.start >= now && !played.has(meta.key))) {
       future.push(meta);
+      if (meta.request.late !== null) {
+        judged.add(meta.request.id);
+      }
       planned.set(meta.request.id, [...planned.get(meta.request.id) ?? [], meta.start]);
     }
   }
@@ -105,11 +112,12 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
   const done = old.metas.filter((meta) =>
     !again.has(meta.request.id)
       && !(planned.get(meta.request.id) ?? []).includes(meta.start)
-      && (played.has(meta.key) || meta.start < now));
+      && (played.has(meta.key) || meta.start < now || served.has(meta.request.id)));
   const reports = told.filter((report) =>
     report.layer === layer
       && !again.has(report.request)
-      && (TEMPORAL.has(report.outcome) || !(planned.get(report.request) ?? []).includes(report.at)));
+      && ((TEMPORAL.has(report.outcome) && !judged.has(report.request))
+        || !(planned.get(report.request) ?? []).includes(report.at)));
   const begin = _begin(graph, old, stance);
   const performer = performerAfter(project, graph, seed, begin, old.past, kept);
   if (begin === "" || !performer.begin(begin)) {
@@ -127,6 +135,10 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
     performer.rests = old.rests.filter((rest) => rest.fadeStart < now || begun.has(rest.start));
   }
   performer.begun = new Set(kept.filter((cue) => waiting.has(cue.meta)).map((cue) => cue.meta));
+  if (kept.length > 0 && kept[kept.length - 1].end > now) {
+    const running = old.metas.find((meta) => meta.key === kept[kept.length - 1].meta) ?? null;
+    performer.makeWay(running, asked, now);
+  }
   performer.free = Math.max(now - (performer.ready - performer.free), performer.free);
   let delayed;
   [asked, delayed] = delay(asked, performer.ready, project.settings);
@@ -142,11 +154,14 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
 }
 
 /**
- * Return a request with the window it may use.
+ * Return a request with the window it may use; where its stroke is judged, the moment it is wanted at.
  * @param {MetaRequest} request
  * @returns {MetaAction}
  */
 export function metaOf(request) {
+  if (request.late !== null && request.stroke !== null) {
+    return new MetaAction(request, request.stroke, request.stroke + LEAST);
+  }
   let length = request.duration === null ? WINDOW : Math.max(0, request.duration);
   if (request.stroke !== null) {
     length = Math.max(length, request.stroke - request.start + FITS);

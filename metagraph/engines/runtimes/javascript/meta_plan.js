@@ -16,10 +16,12 @@ export const WRITTEN = 0; // priority of what the Markov model writes
  * to (kind "transition"). priority: higher wins. resume: whether, when something more important cuts it, its remainder goes
  * on afterwards. stroke: when a gesture's stroke should come; `start` is then the earliest it may begin. hold: seconds its
  * hold should last, None for as long as it was made. prepare: whether its preparation plays. among: ids of the only actions
- * it may be, any where empty.
+ * it may be, any where empty. late: by how many seconds its stroke, or where none is asked for its start, may come late, 0
+ * for on time or not at all; None for as late as the settings allow.
  *
  * id: string; layer: string; kind: string; start: number; duration: ?number; action: ?string; tags: string[]; limb: ?string;
- * stance: ?string; priority: number; resume: boolean; stroke: ?number; hold: ?number; prepare: boolean; among: string[].
+ * stance: ?string; priority: number; resume: boolean; stroke: ?number; hold: ?number; prepare: boolean; among: string[];
+ * late: ?number.
  */
 export class MetaRequest {
   constructor(
@@ -38,6 +40,7 @@ export class MetaRequest {
     hold = null,
     prepare = true,
     among = [],
+    late = null,
   ) {
     this.id = id;
     this.layer = layer;
@@ -54,6 +57,7 @@ export class MetaRequest {
     this.hold = hold;
     this.prepare = prepare;
     this.among = among;
+    this.late = late;
   }
 }
 
@@ -142,12 +146,15 @@ export class Rest {
 export const TEMPORAL = new Set(["late", "cut", "resumed", "past"]); // told by temporal replanning, once
 
 /**
- * What became of a meta action that was not simply played as asked. played: whether something of it still plays.
+ * What became of a meta action that was not simply played as asked. played: whether something of it still plays. late: by
+ * how many seconds it comes late, or would have come, where it said how late it may. by: key of the meta action whose action
+ * serves it, too.
  *
- * request: string; outcome: string; message: string; layer: string; at: number; played: boolean; written: boolean.
+ * request: string; outcome: string; message: string; layer: string; at: number; played: boolean; written: boolean; late:
+ * number; by: string.
  */
 export class Report {
-  constructor(request, outcome, message, layer, at, played = false, written = false) {
+  constructor(request, outcome, message, layer, at, played = false, written = false, late = 0, by = "") {
     this.request = request;
     this.outcome = outcome;
     this.message = message;
@@ -155,6 +162,8 @@ export class Report {
     this.at = at;
     this.played = played;
     this.written = written;
+    this.late = late;
+    this.by = by;
   }
 }
 

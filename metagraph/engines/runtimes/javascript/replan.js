@@ -10,8 +10,11 @@
 import { Report } from "./meta_plan.js";
 import { bisectRight, but, insort, sortedBy } from "./basics.js";
 
+export const LEAST = 1e-06; // seconds of the window of what is placed at its stroke
+
 /**
- * Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past.
+ * Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past. Those that
+ * say how late they may be are judged where it shows how late they are.
  * @param {MetaAction[]} asked
  * @param {number} free
  * @param {Settings} settings
@@ -24,6 +27,8 @@ export function delay(asked, free, settings) {
     const late = free - meta.start;
     if (late <= 0) {
       metas.push(meta);
+    } else if (meta.request.late !== null) {
+      metas.push(_after(meta, free));
     } else if (late > settings.wait) {
       reports.push(_told(
         meta,
@@ -151,6 +156,8 @@ function _placed(metas, settings) {
       const message = `${word} at ${meta.start.toFixed(2)} s for '${meta.request.id}', which is more important${after}`;
       reports.push(_told(last, outcome, message, kept || resumes));
       insort(queue, meta, at, _order); // it may reach back over what was placed before, too
+    } else if (meta.request.late !== null) {
+      insort(queue, _after(meta, last.end), at, _order);
     } else if (last.end - meta.request.start > settings.wait) {
       reports.push(_told(meta, "covered", _noTime(last)));
     } else {
@@ -165,6 +172,19 @@ function _placed(metas, settings) {
     }
   }
   return [placed, reports];
+}
+
+/**
+ * Return a meta action from `free` on; where its stroke is judged, that is placed there.
+ * @param {MetaAction} meta
+ * @param {number} free
+ * @returns {MetaAction}
+ */
+function _after(meta, free) {
+  if (meta.request.stroke !== null) {
+    return but(meta, { start: free, end: free + LEAST });
+  }
+  return but(meta, { start: free, end: free + (meta.end - meta.start) });
 }
 
 /**

@@ -4,16 +4,18 @@
  * Translated from metagraph/playback/sampling.py; change that, and translate anew.
  */
 
-import { bounds } from "./bounds.js";
+import { begins, bounds } from "./bounds.js";
 import { pick } from "./choice.js";
 import { LEAST_BLEND } from "./phase_times.js";
 import { phases } from "./phases.js";
 import { Cue, Report, Rest } from "./meta_plan.js";
 import { REMEMBERED, node, remember } from "./remembering.js";
-import { maxOf, minOf, thousandths } from "./basics.js";
+import { but, maxOf, minOf, thousandths } from "./basics.js";
 
 export const FITS = 1e-06; // seconds by which sums of times may be off
 export const HURRY = 2; // a hold is played at most this many times as fast as it was made
+export const RETRACTION = 0.4; // seconds in which an action whose retraction is cut goes back to its stance, at the least
+export const SHARED = 0.25; // seconds within which two strokes may be one
 export const LOOP_FADE = 0.6; // seconds of crossfade when a long rest changes from one loop of its stance to another
 
 /**
@@ -49,10 +51,11 @@ export class CueShape {
  * One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
  *
  * uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of
- * meta actions whose chain of transitions plays already.
+ * meta actions whose chain of transitions plays already. served: keys of those that another's action serves, too.
  *
  * project: Project; graph: MetaGraph; seed: number; stance: string; free: number; uses: Map<string, number>; recent:
- * Map<string, string[]>; ended: Map<string, number>; cues: Cue[]; rests: Rest[]; reports: Report[]; begun: Set<string>.
+ * Map<string, string[]>; ended: Map<string, number>; cues: Cue[]; rests: Rest[]; reports: Report[]; begun: Set<string>;
+ * served: Set<string>.
  */
 export class Performer {
   constructor(
@@ -68,6 +71,7 @@ export class Performer {
     rests = [],
     reports = [],
     begun = new Set([]),
+    served = new Set([]),
   ) {
     this.project = project;
     this.graph = graph;
@@ -81,6 +85,7 @@ export class Performer {
     this.rests = rests;
     this.reports = reports;
     this.begun = begun;
+    this.served = served;
   }
 
   /** Take a cue as played. */
@@ -110,8 +115,15 @@ export class Performer {
   perform(metas, end) {
     for (const bound of bounds(metas)) {
       const meta = bound.meta;
-      if (meta.start >= end) {
-        return;
+      if (begins(meta) >= end) {
+        continue;
+      }
+      if (this.served.has(meta.key)) {
+        continue;
+      }
+      if (meta.request.late !== null) {
+        this.realise(bound, Math.max(this.ready, begins(meta)));
+        continue;
       }
       if (meta.end <= this.ready + FITS && meta.start < this.ready && !this.begun.has(meta.key)) {
         let running = "the running action";
@@ -126,11 +138,13 @@ export class Performer {
         }
         this.tell(meta, "queued", `waits ${waits.toFixed(2)} s for ${running}`, true);
       }
-      this.realise(meta, Math.max(this.ready, meta.start), bound.limit, bound.wish);
+      this.realise(bound, Math.max(this.ready, meta.start));
     }
   }
 
-  realise(meta, now, limit, wish) {
+  realise(bound, now) {
+    const meta = bound.meta;
+    const limit = bound.limit;
     const steps = this.steps(meta);
     if (steps === null) {
       return;
@@ -158,15 +172,222 @@ export class Performer {
         }
         fitting = warm;
       }
+      // On the way to a stance it counts when that begins.
+      if (meta.request.late !== null && (!hops || (cues.length === 0 && steps[steps.length - 1].hop !== ""))) {
+        fitting = this.timely(bound, fitting, now);
+        if (fitting.length === 0) {
+          return;
+        }
+      }
       const action = this.draw(fitting, hops ? `${meta.key}/${step.hop}` : meta.key, now);
       const shape = this.shape(action, asked, now);
-      const cue = this.cue(action, shape, limit, hops ? Infinity : wish, stance, meta.key);
+      const cue = this.cue(action, shape, bound, hops, stance);
       cues.push(cue);
       now = cue.end;
       stance = cue.then;
     }
     for (const one of cues) {
       this.keep(one);
+    }
+  }
+
+  /**
+   * Return those that come least late, if that is not too late; of them those that leave most of what follows its time, and
+   * serve most of it.
+   */
+  timely(bound, fitting, now) {
+    const meta = bound.meta;
+    const request = meta.request;
+    const allowed = request.late === null ? 0 : request.late;
+    const late = new Map(fitting.map((a) => [a.id, this.lateness(a, request, this.shape(a, request, now))]));
+    const least = minOf(fitting.map((a) => late.get(a.id)));
+    let waits;
+    if (least > allowed + FITS) {
+      waits = this.cause(request, now);
+      this.tell(
+        meta,
+        "too-late",
+        `would come ${least.toFixed(2)} s late, ${allowed.toFixed(2)} s are allowed; it waits for ${waits}`,
+        false,
+        least,
+      );
+      return [];
+    }
+    if (least > FITS) {
+      waits = this.cause(request, now);
+      this.tell(meta, "late", `comes ${least.toFixed(2)} s late; it waits for ${waits}`, true, least);
+    }
+    let timely = fitting.filter((a) => late.get(a.id) <= Math.max(least, 0) + FITS);
+    for (const other of bound.after) {
+      if (!this.shares(request, other.request)) {
+        continue;
+      }
+      const both = timely.filter((a) => this.meets(a, other.request));
+      let behind = 0;
+      if (request.stroke !== null && other.request.stroke !== null) {
+        behind = Math.max(0, request.stroke + Math.max(least, 0) - other.request.stroke);
+      }
+      if (both.length > 0 && other.request.late !== null && behind <= other.request.late + FITS) {
+        timely = both;
+        this.served.add(other.key);
+        const message = `shares the stroke of '${request.id}'`;
+        this.tell(other, "shared", message, true, behind, meta.key);
+      }
+    }
+    const following = bound.after.filter((other) => !this.served.has(other.key));
+    for (const other of following) {
+      for (const slack of [0, this.slack(other.request)]) {
+        const by = this.latest(other.request) + slack;
+        const over = timely.filter((a) => this.over(a, request, now) <= by);
+        if (over.length > 0) {
+          return over;
+        }
+      }
+    }
+    return timely;
+  }
+
+  /**
+   * Return by how many seconds an action that plays so comes late, at its stroke where one is asked for; less than 0 before
+   * its time.
+   */
+  lateness(action, request, shape) {
+    if (request.stroke !== null && action.kind === "gesture") {
+      const found = phases(this.project, action);
+      return shape.start + found.stroke - shape.entry - request.stroke;
+    }
+    return shape.start - request.start;
+  }
+
+  /** Return what a request that comes late waits for. */
+  cause(request, now) {
+    if (now <= request.start + FITS) {
+      return "its own preparation";
+    }
+    if (this.cues.length > 0 && this.ready >= now - FITS && this.cues[this.cues.length - 1].end >= this.free - FITS) {
+      return `'${this.cues[this.cues.length - 1].action.name}', which plays until ${this.free.toFixed(2)} s`;
+    }
+    return this.cues.length > 0 ? "what comes before it" : "the time it became known at";
+  }
+
+  /** Whether two requests may be met by one stroke. */
+  shares(request, other) {
+    if (request.stroke === null || other.stroke === null) {
+      return false;
+    }
+    return request.action === null
+      && other.action === null
+      && request.kind === other.kind
+      && (other.hold === null || other.hold === request.hold)
+      && Math.abs(request.stroke - other.stroke) <= SHARED;
+  }
+
+  /** Whether an action is what a request for any asks for. */
+  meets(action, request) {
+    return request.tags.every((tag) => action.tags.includes(tag))
+      && (request.limb === null || action.limb === request.limb)
+      && (request.among.length === 0 || request.among.includes(action.id));
+  }
+
+  /**
+   * Return when something that is asked for has to begin at the latest, to be on time; never in the past, where nothing
+   * meets it.
+   */
+  latest(request) {
+    if (request.stroke === null) {
+      return request.start;
+    }
+    let least = Infinity;
+    for (const action of this.graph.of(this.stance, request.kind)) {
+      let fits = this.meets(action, request);
+      if (request.action !== null) {
+        fits = action.id === request.action;
+      }
+      if (fits && this.usable(action)) {
+        const found = phases(this.project, action);
+        least = Math.min(least, found.stroke - found.skip(action.timing.blendIn));
+      }
+    }
+    return request.stroke - least;
+  }
+
+  slack(request) {
+    return request.late === null ? 0 : request.late;
+  }
+
+  /** Return when what follows an action could begin at the earliest. */
+  over(action, request, now) {
+    const shape = this.shape(action, request, now);
+    return shape.start + this.hurried(action, shape) + this.project.settings.rest - FITS;
+  }
+
+  /** Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless it was asked for. */
+  hurried(action, shape) {
+    if (action.kind !== "gesture" || action.timing.earliestExit !== null) {
+      return shape.shortest;
+    }
+    const found = phases(this.project, action);
+    let left = found.relax - shape.entry + shape.hold - (shape.holdTo - shape.holdFrom);
+    if (shape.hold <= 0) {
+      left = found.strokeEnd - shape.entry;
+    }
+    return Math.min(shape.length, left + Math.max(action.timing.blendOut, RETRACTION));
+  }
+
+  /**
+   * Return when an action that is to be played through is left nevertheless: early enough for the first of what follows that
+   * can be in time then, late enough for its own stroke; infinity for never.
+   */
+  until(action, shape, bound) {
+    const rest = this.project.settings.rest;
+    const soonest = shape.start + this.hurried(action, shape);
+    for (const other of bound.after) {
+      const inTime = this.latest(other.request) + this.slack(other.request);
+      if (!this.served.has(other.key) && soonest + rest <= inTime + FITS) {
+        return Math.max(soonest, begins(other) - rest);
+      }
+    }
+    return Infinity;
+  }
+
+  /**
+   * Leave the running action early for the first of what is asked for that can be in time then. What a model wrote is left
+   * at once, what was asked for where its retraction begins.
+   */
+  makeWay(running, asked, now) {
+    const cue = this.cues[this.cues.length - 1];
+    if (running === null || cue.action.kind === "transition" || cue.end - cue.blendOut <= now) {
+      return;
+    }
+    let soonest = now + Math.max(cue.blendOut, RETRACTION);
+    if (!running.written) {
+      const shape = new CueShape(
+        cue.start,
+        cue.entry,
+        cue.end - cue.start,
+        cue.end - cue.start,
+        cue.holdFrom,
+        cue.holdTo,
+        cue.hold,
+      );
+      soonest = Math.max(soonest, cue.start + this.hurried(cue.action, shape));
+    }
+    const rest = this.project.settings.rest;
+    for (const meta of asked) {
+      const request = meta.request;
+      const inTime = this.latest(request) + this.slack(request);
+      if (request.late === null || meta.rank < running.rank || inTime < soonest + rest - FITS) {
+        continue;
+      }
+      const end = Math.max(soonest, begins(meta) - rest);
+      if (end < cue.end) {
+        const out = Math.max(cue.blendOut, RETRACTION);
+        const into = Math.min(cue.blendIn, Math.max(0, end - out - cue.start));
+        this.cues[this.cues.length - 1] = but(cue, { end: end, blendIn: into, blendOut: out });
+        this.free = end;
+        this.ended.set(cue.action.id, end);
+      }
+      return;
     }
   }
 
@@ -420,13 +641,20 @@ export class Performer {
     return alpha * used;
   }
 
-  cue(action, shape, limit, wish, stance, meta) {
+  /** hops: whether it is a transition on the way to what is asked for. */
+  cue(action, shape, bound, hops, stance) {
     let length = shape.length;
-    if (action.timing.earliestExit !== null) {
-      length = Math.min(length, Math.max(shape.shortest, Math.min(limit, wish) - shape.start));
-    }
     let into = Math.max(0, action.timing.blendIn);
-    const out = Math.max(0, action.timing.blendOut);
+    let out = Math.max(0, action.timing.blendOut);
+    if (action.timing.earliestExit !== null) {
+      const wish = hops ? Infinity : bound.wish;
+      length = Math.min(length, Math.max(shape.shortest, Math.min(bound.limit, wish) - shape.start));
+    } else if (!hops) {
+      length = Math.min(length, this.until(action, shape, bound) - shape.start);
+      if (length < shape.length) {
+        out = Math.max(out, RETRACTION);
+      }
+    }
     if (shape.entry > this.project.span(action)[0]) {
       into = Math.max(into, LEAST_BLEND);
     }
@@ -445,7 +673,7 @@ export class Performer {
       out * squeeze,
       stance,
       then,
-      meta,
+      bound.meta.key,
       shape.holdFrom,
       shape.holdTo,
       shape.hold,
@@ -510,9 +738,9 @@ export class Performer {
     this.rests = out;
   }
 
-  tell(meta, outcome, message, played = false) {
+  tell(meta, outcome, message, played = false, late = 0, by = "") {
     const layer = this.graph.layer;
-    this.reports.push(new Report(meta.request.id, outcome, message, layer, meta.start, played, meta.written));
+    this.reports.push(new Report(meta.request.id, outcome, message, layer, meta.start, played, meta.written, late, by));
   }
 }
 

@@ -50,7 +50,7 @@ export function understand(graph, asks, now) {
 /** Return what one ask means, each `as` a request, an item of the track or a withdrawal. Throws AskError where it can mean nothing. */
 function meaning(graph, ask, at, refuse) {
   const { id, priority } = ask;
-  const request = (fields) => [{ as: "request", id, priority, start: at, ...fields }];
+  const request = (fields) => [{ as: "request", id, priority, start: at, late: ask.late, ...fields }];
   const item = (fields) => ({ as: "item", id, start: at, ...fields });
   switch (ask.do) {
     case "gesture": {

@@ -18,7 +18,7 @@ namespace Metagraph
     public sealed class Ask
     {
         public string Do, Id = "", Layer, Limb, Action, Stance, Line, Text = "", Mode, Name, What = "";
-        public double? At, Duration, Stroke, Hold;
+        public double? At, Duration, Stroke, Hold, Late;
         public double Amount = 1.0;
         public int Priority = 1;
         public bool Prepare = true, Gestures = true, Resume, Stay, Strict;
@@ -37,13 +37,13 @@ namespace Metagraph
 
         private static readonly Dictionary<string, string> Fields = new Dictionary<string, string>
         {
-            { "gesture", "layer tags limb duration stroke hold prepare resume" },
-            { "fidget", "layer tags limb duration resume" },
-            { "action", "action layer stroke hold prepare" },
-            { "stance", "stance layer stay" },
-            { "change", "layer limb duration" },
-            { "nod", "tags" },
-            { "shake", "tags" },
+            { "gesture", "layer tags limb duration stroke hold prepare resume late" },
+            { "fidget", "layer tags limb duration resume late" },
+            { "action", "action layer stroke hold prepare late" },
+            { "stance", "stance layer stay late" },
+            { "change", "layer limb duration late" },
+            { "nod", "tags late" },
+            { "shake", "tags late" },
             { "look", "to duration amount strict" },
             { "blink", "" },
             { "say", "line text duration gestures words visemes set" },
@@ -116,6 +116,7 @@ namespace Metagraph
                 case "duration": Duration = Seconds(name, value, Longest); break;
                 case "stroke": Stroke = Seconds(name, value, Longest); break;
                 case "hold": Hold = Seconds(name, value, 600); break;
+                case "late": Late = Seconds(name, value, 600); break;
                 case "prepare": Prepare = Flag(name, value); break;
                 case "resume": Resume = Flag(name, value); break;
                 case "action": Action = Word(name, value, 1, 200); break;

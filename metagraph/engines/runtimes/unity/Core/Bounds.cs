@@ -7,19 +7,21 @@ namespace Metagraph
 {
     /// <summary>
     /// A meta action with when the next more important one begins (limit), and the next as important that was asked for (wish);
-    /// infinity where there is none.
+    /// infinity where there is none. after: those as important that were asked for and say how late they may be, the next first.
     /// </summary>
     public sealed class Bound
     {
         public readonly MetaAction Meta;
         public readonly double Limit;
         public readonly double Wish;
+        public readonly List<MetaAction> After;
 
-        public Bound(MetaAction meta, double limit, double wish)
+        public Bound(MetaAction meta, double limit, double wish, List<MetaAction> after = null)
         {
             Meta = meta;
             Limit = limit;
             Wish = wish;
+            After = after ?? new List<MetaAction>();
         }
     }
 
@@ -40,16 +42,20 @@ namespace Metagraph
 
     public static class BoundsRules
     {
+        public const int LookedAt = 6; // how many that follow a meta action are told
+
         /// <summary>Return each meta action with what bounds it.</summary>
         public static List<Bound> Bounds(List<MetaAction> metas)
         {
             var out_ = new List<Bound>();
             var first = new List<_First>();
+            var pressing = new List<MetaAction>(); // what says how late it may be, the last first
             foreach (MetaAction meta in metas.AsEnumerable().Reverse().ToList())
             {
                 var limit = double.PositiveInfinity;
                 var wish = double.PositiveInfinity;
                 _First own = null;
+                var start = Begins(meta);
                 foreach (_First one in first)
                 {
                     if (one.Rank > meta.Rank)
@@ -65,17 +71,35 @@ namespace Metagraph
                         own = one;
                     }
                 }
-                out_.Add(new Bound(meta, limit, wish));
+                var after = PlainLists.Part(pressing, -LookedAt).AsEnumerable().Reverse().ToList().Where(one => one.Rank
+                    >= meta.Rank).ToList();
+                out_.Add(new Bound(meta, limit, wish, after));
+                if (meta.Request.Late != null)
+                {
+                    pressing.Add(meta);
+                }
                 if (own == null)
                 {
-                    first.Add(new _First(meta.Rank, meta.Written, meta.Start));
+                    first.Add(new _First(meta.Rank, meta.Written, start));
                 }
                 else
                 {
-                    own.Start = meta.Start;
+                    own.Start = start;
                 }
             }
             return out_.AsEnumerable().Reverse().ToList().ToList();
+        }
+
+        /// <summary>
+        /// Return when a meta action may begin at the earliest. One whose stroke is judged is placed where that comes.
+        /// </summary>
+        public static double Begins(MetaAction meta)
+        {
+            if (meta.Request.Late != null && meta.Request.Stroke != null)
+            {
+                return Math.Min(meta.Start, meta.Request.Start);
+            }
+            return meta.Start;
         }
     }
 }

@@ -86,6 +86,10 @@ namespace Metagraph
             foreach (LayerPlan layer in plan.Layers.Values)
             {
                 layer.Cues.ForEach(cue => Each(of(cue.Meta.Split('+')[0]), one => one.Cues.Add(cue)));
+                foreach (Report report in plan.Reports.Where(r => r.By.Length > 0))
+                {
+                    layer.Cues.FindAll(cue => cue.Meta == report.By).ForEach(cue => Each(of(report.Request), one => one.Cues.Add(cue)));
+                }
                 layer.Metas.FindAll(m => m.Start >= plan.End).ForEach(m => Each(of(m.Request.Id), one => one.Waiting.Add(m.Start)));
             }
             Each(plan.Track.Items.Where(i => !(i is StayFrom)), item => Each(of(item.Id), one => one.Items.Add(item)));

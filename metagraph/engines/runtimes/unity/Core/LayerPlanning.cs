@@ -100,6 +100,9 @@ namespace Metagraph
             var waiting = new HashSet<string>(PlainLists.Part(old.Cues, kept.Count).Select(cue => cue.Meta));
             var written = new List<MetaAction>();
             var cursor = old.Cursor;
+            // What another's action has served since it began is played as that is.
+            var served = new HashSet<string>(told.Where(report => report.Outcome == "shared"
+                && played.Contains(report.By)).Select(report => report.Request));
             var again = new HashSet<string>(replaced);
             if (chain != null)
             {
@@ -118,25 +121,30 @@ namespace Metagraph
             }
             var future = new List<MetaAction>();
             var planned = new Dictionary<string, List<double>>(); // again: when those of a request start
+            var judged = new HashSet<string>(); // those whose lateness is told by what is performed
             foreach (MetaAction meta in old.Metas)
             {
-                if (again.Contains(meta.Request.Id))
+                if (again.Contains(meta.Request.Id) || served.Contains(meta.Request.Id))
                 {
                     continue;
                 }
                 if (waiting.Contains(meta.Key) || (meta.Start >= now && !played.Contains(meta.Key)))
                 {
                     future.Add(meta);
+                    if (meta.Request.Late != null)
+                    {
+                        judged.Add(meta.Request.Id);
+                    }
                     planned[meta.Request.Id] = PlainMaps.GetOr(planned, meta.Request.Id, new List<double>()).Concat(new List<double> { meta.Start }).ToList();
                 }
             }
             // What was told about time still holds; the rest will be told again by those that are planned again.
             var done = old.Metas.Where(meta => !again.Contains(meta.Request.Id)
                 && !PlainMaps.GetOr(planned, meta.Request.Id, new List<double>()).Contains(meta.Start)
-                && (played.Contains(meta.Key) || meta.Start < now)).ToList();
+                && (played.Contains(meta.Key) || meta.Start < now || served.Contains(meta.Request.Id))).ToList();
             var reports = told.Where(report => report.Layer == layer
                 && !again.Contains(report.Request)
-                && (MetaPlanRules.Temporal.Contains(report.Outcome)
+                && ((MetaPlanRules.Temporal.Contains(report.Outcome) && !judged.Contains(report.Request))
                     || !PlainMaps.GetOr(planned, report.Request, new List<double>()).Contains(report.At))).ToList();
             var begin = Begin(graph, old, stance);
             var performer = SamplingRules.PerformerAfter(project, graph, seed, begin, old.Past, kept);
@@ -159,6 +167,11 @@ namespace Metagraph
                 performer.Rests = old.Rests.Where(rest => rest.FadeStart < now || begun.Contains(rest.Start)).ToList();
             }
             performer.Begun = new HashSet<string>(kept.Where(cue => waiting.Contains(cue.Meta)).Select(cue => cue.Meta));
+            if (kept.Count > 0 && kept[kept.Count - 1].End > now)
+            {
+                var running = old.Metas.Where(meta => meta.Key == kept[kept.Count - 1].Meta).FirstOrDefault();
+                performer.MakeWay(running, asked, now);
+            }
             performer.Free = Math.Max(now - (performer.Ready - performer.Free), performer.Free);
             List<Report> delayed = default(List<Report>);
             var found2 = ReplanRules.Delay(asked, performer.Ready, project.Settings);
@@ -179,9 +192,15 @@ namespace Metagraph
             return new LayerDraft(layer, performer, true, done, placed, every, old.Past, cursor, written);
         }
 
-        /// <summary>Return a request with the window it may use.</summary>
+        /// <summary>
+        /// Return a request with the window it may use; where its stroke is judged, the moment it is wanted at.
+        /// </summary>
         public static MetaAction MetaOf(MetaRequest request)
         {
+            if (request.Late != null && request.Stroke != null)
+            {
+                return new MetaAction(request, request.Stroke.Value, request.Stroke.Value + ReplanRules.Least);
+            }
             var length = request.Duration == null ? Window : Math.Max(0.0, request.Duration.Value);
             if (request.Stroke != null)
             {

@@ -13,7 +13,8 @@ namespace Metagraph
     /// to (kind "transition"). priority: higher wins. resume: whether, when something more important cuts it, its remainder goes
     /// on afterwards. stroke: when a gesture's stroke should come; `start` is then the earliest it may begin. hold: seconds its
     /// hold should last, None for as long as it was made. prepare: whether its preparation plays. among: ids of the only actions
-    /// it may be, any where empty.
+    /// it may be, any where empty. late: by how many seconds its stroke, or where none is asked for its start, may come late, 0
+    /// for on time or not at all; None for as late as the settings allow.
     /// </summary>
     public sealed class MetaRequest
     {
@@ -32,6 +33,7 @@ namespace Metagraph
         public readonly double? Hold;
         public readonly bool Prepare;
         public readonly List<string> Among;
+        public readonly double? Late;
 
         public MetaRequest(
             string id,
@@ -48,7 +50,8 @@ namespace Metagraph
             double? stroke = null,
             double? hold = null,
             bool prepare = true,
-            List<string> among = null
+            List<string> among = null,
+            double? late = null
         )
         {
             Id = id;
@@ -66,6 +69,7 @@ namespace Metagraph
             Hold = hold;
             Prepare = prepare;
             Among = among ?? new List<string>();
+            Late = late;
         }
     }
 
@@ -204,7 +208,9 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// What became of a meta action that was not simply played as asked. played: whether something of it still plays.
+    /// What became of a meta action that was not simply played as asked. played: whether something of it still plays. late: by
+    /// how many seconds it comes late, or would have come, where it said how late it may. by: key of the meta action whose action
+    /// serves it, too.
     /// </summary>
     public sealed class Report
     {
@@ -215,6 +221,8 @@ namespace Metagraph
         public readonly double At;
         public readonly bool Played;
         public readonly bool Written;
+        public readonly double Late;
+        public readonly string By;
 
         public Report(
             string request,
@@ -223,7 +231,9 @@ namespace Metagraph
             string layer,
             double at,
             bool played = false,
-            bool written = false
+            bool written = false,
+            double late = 0.0,
+            string by = ""
         )
         {
             Request = request;
@@ -233,6 +243,8 @@ namespace Metagraph
             At = at;
             Played = played;
             Written = written;
+            Late = late;
+            By = by;
         }
     }
 

@@ -13,8 +13,11 @@ namespace Metagraph
     /// </summary>
     public static class ReplanRules
     {
+        public const double Least = 1e-06; // seconds of the window of what is placed at its stroke
+
         /// <summary>
-        /// Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past.
+        /// Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past. Those
+        /// that say how late they may be are judged where it shows how late they are.
         /// </summary>
         public static (List<MetaAction>, List<Report>) Delay(List<MetaAction> asked, double free, PlannerSettings settings)
         {
@@ -26,6 +29,10 @@ namespace Metagraph
                 if (late <= 0)
                 {
                     metas.Add(meta);
+                }
+                else if (meta.Request.Late != null)
+                {
+                    metas.Add(After(meta, free));
                 }
                 else if (late > settings.Wait)
                 {
@@ -187,6 +194,10 @@ namespace Metagraph
                     // it may reach back over what was placed before, too
                     PlainLists.Insert(queue, meta, at, item => Order(item));
                 }
+                else if (meta.Request.Late != null)
+                {
+                    PlainLists.Insert(queue, After(meta, last.End), at, item => Order(item));
+                }
                 else if (last.End - meta.Request.Start > settings.Wait)
                 {
                     reports.Add(Told(meta, "covered", NoTime(last)));
@@ -210,6 +221,16 @@ namespace Metagraph
                 }
             }
             return (placed, reports);
+        }
+
+        /// <summary>Return a meta action from `free` on; where its stroke is judged, that is placed there.</summary>
+        private static MetaAction After(MetaAction meta, double free)
+        {
+            if (meta.Request.Stroke != null)
+            {
+                return new MetaAction(meta.Request, free, free + Least, meta.Part, meta.Written);
+            }
+            return new MetaAction(meta.Request, free, free + (meta.End - meta.Start), meta.Part, meta.Written);
         }
 
         private static string NoTime(MetaAction other)

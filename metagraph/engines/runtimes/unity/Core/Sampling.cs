@@ -55,7 +55,7 @@ namespace Metagraph
     /// One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
     ///
     /// uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of
-    /// meta actions whose chain of transitions plays already.
+    /// meta actions whose chain of transitions plays already. served: keys of those that another's action serves, too.
     /// </summary>
     public sealed class Performer
     {
@@ -71,6 +71,7 @@ namespace Metagraph
         public List<Rest> Rests;
         public List<Report> Reports;
         public HashSet<string> Begun;
+        public HashSet<string> Served;
 
         public Performer(
             Graph project,
@@ -84,7 +85,8 @@ namespace Metagraph
             List<Cue> cues = null,
             List<Rest> rests = null,
             List<Report> reports = null,
-            HashSet<string> begun = null
+            HashSet<string> begun = null,
+            HashSet<string> served = null
         )
         {
             Project = project;
@@ -99,6 +101,7 @@ namespace Metagraph
             Rests = rests ?? new List<Rest>();
             Reports = reports ?? new List<Report>();
             Begun = begun ?? new HashSet<string>();
+            Served = served ?? new HashSet<string>();
         }
 
         /// <summary>Take a cue as played.</summary>
@@ -137,9 +140,18 @@ namespace Metagraph
             foreach (Bound bound in BoundsRules.Bounds(metas))
             {
                 var meta = bound.Meta;
-                if (meta.Start >= end)
+                if (BoundsRules.Begins(meta) >= end)
                 {
-                    return;
+                    continue;
+                }
+                if (Served.Contains(meta.Key))
+                {
+                    continue;
+                }
+                if (meta.Request.Late != null)
+                {
+                    Realise(bound, Math.Max(Ready, BoundsRules.Begins(meta)));
+                    continue;
                 }
                 if (meta.End <= Ready + SamplingRules.Fits && meta.Start < Ready && !Begun.Contains(meta.Key))
                 {
@@ -161,12 +173,14 @@ namespace Metagraph
                     }
                     Tell(meta, "queued", "waits " + PlainText.Fixed(waits, 2) + " s for " + running, true);
                 }
-                Realise(meta, Math.Max(Ready, meta.Start), bound.Limit, bound.Wish);
+                Realise(bound, Math.Max(Ready, meta.Start));
             }
         }
 
-        public void Realise(MetaAction meta, double now, double limit, double wish)
+        public void Realise(Bound bound, double now)
         {
+            var meta = bound.Meta;
+            var limit = bound.Limit;
             var steps = Steps(meta);
             if (steps == null)
             {
@@ -209,9 +223,18 @@ namespace Metagraph
                     }
                     fitting = warm;
                 }
+                // On the way to a stance it counts when that begins.
+                if (meta.Request.Late != null && (!hops || (cues.Count == 0 && steps[steps.Count - 1].Hop != "")))
+                {
+                    fitting = Timely(bound, fitting, now);
+                    if (fitting.Count == 0)
+                    {
+                        return;
+                    }
+                }
                 var action = Draw(fitting, hops ? meta.Key + "/" + step.Hop : meta.Key, now);
                 var shape = Shape(action, asked, now);
-                var cue = Cue(action, shape, limit, hops ? double.PositiveInfinity : wish, stance, meta.Key);
+                var cue = Cue(action, shape, bound, hops, stance);
                 cues.Add(cue);
                 now = cue.End;
                 stance = cue.Then;
@@ -219,6 +242,263 @@ namespace Metagraph
             foreach (Cue one in cues)
             {
                 Keep(one);
+            }
+        }
+
+        /// <summary>
+        /// Return those that come least late, if that is not too late; of them those that leave most of what follows its time,
+        /// and serve most of it.
+        /// </summary>
+        public List<GraphAction> Timely(Bound bound, List<GraphAction> fitting, double now)
+        {
+            var meta = bound.Meta;
+            var request = meta.Request;
+            var allowed = request.Late == null ? 0.0 : request.Late.Value;
+            var late = fitting.Select(a => (a.Id, Lateness(a, request, Shape(a, request, now)))).ToMap();
+            var least = PlainNumbers.MinOf(fitting.Select(a => late[a.Id]).ToList());
+            string waits = default(string);
+            if (least > allowed + SamplingRules.Fits)
+            {
+                waits = Cause(request, now);
+                Tell(
+                    meta,
+                    "too-late",
+                    "would come "
+                        + PlainText.Fixed(least, 2)
+                        + " s late, "
+                        + PlainText.Fixed(allowed, 2)
+                        + " s are allowed; it waits for "
+                        + waits,
+                    false,
+                    least
+                );
+                return new List<GraphAction>();
+            }
+            if (least > SamplingRules.Fits)
+            {
+                waits = Cause(request, now);
+                Tell(meta, "late", "comes " + PlainText.Fixed(least, 2) + " s late; it waits for " + waits, true, least);
+            }
+            var timely = fitting.Where(a => late[a.Id] <= Math.Max(least, 0.0) + SamplingRules.Fits).ToList();
+            foreach (MetaAction other in bound.After)
+            {
+                if (!Shares(request, other.Request))
+                {
+                    continue;
+                }
+                var both = timely.Where(a => Meets(a, other.Request)).ToList();
+                var behind = 0.0;
+                if (request.Stroke != null && other.Request.Stroke != null)
+                {
+                    behind = Math.Max(0.0, request.Stroke.Value + Math.Max(least, 0.0) - other.Request.Stroke.Value);
+                }
+                if (both.Count > 0 && other.Request.Late != null && behind <= other.Request.Late.Value + SamplingRules.Fits)
+                {
+                    timely = both;
+                    Served.Add(other.Key);
+                    var message = "shares the stroke of '" + request.Id + "'";
+                    Tell(other, "shared", message, true, behind, meta.Key);
+                }
+            }
+            var following = bound.After.Where(other => !Served.Contains(other.Key)).ToList();
+            foreach (MetaAction other in following)
+            {
+                foreach (double slack in new List<double> { 0.0, Slack(other.Request) })
+                {
+                    var by = Latest(other.Request) + slack;
+                    var over = timely.Where(a => Over(a, request, now) <= by).ToList();
+                    if (over.Count > 0)
+                    {
+                        return over;
+                    }
+                }
+            }
+            return timely;
+        }
+
+        /// <summary>
+        /// Return by how many seconds an action that plays so comes late, at its stroke where one is asked for; less than 0
+        /// before its time.
+        /// </summary>
+        public double Lateness(GraphAction action, MetaRequest request, CueShape shape)
+        {
+            if (request.Stroke != null && action.Kind == "gesture")
+            {
+                var found = PhasesRules.Phases(Project, action);
+                return shape.Start + found.Stroke - shape.Entry - request.Stroke.Value;
+            }
+            return shape.Start - request.Start;
+        }
+
+        /// <summary>Return what a request that comes late waits for.</summary>
+        public string Cause(MetaRequest request, double now)
+        {
+            if (now <= request.Start + SamplingRules.Fits)
+            {
+                return "its own preparation";
+            }
+            if (Cues.Count > 0 && Ready >= now - SamplingRules.Fits && Cues[Cues.Count - 1].End >= Free - SamplingRules.Fits)
+            {
+                return "'" + Cues[Cues.Count - 1].Action.Name + "', which plays until " + PlainText.Fixed(Free, 2) + " s";
+            }
+            return Cues.Count > 0 ? "what comes before it" : "the time it became known at";
+        }
+
+        /// <summary>Whether two requests may be met by one stroke.</summary>
+        public bool Shares(MetaRequest request, MetaRequest other)
+        {
+            if (request.Stroke == null || other.Stroke == null)
+            {
+                return false;
+            }
+            return request.Action == null
+                && other.Action == null
+                && request.Kind == other.Kind
+                && (other.Hold == null || other.Hold.Value == request.Hold)
+                && Math.Abs(request.Stroke.Value - other.Stroke.Value) <= SamplingRules.Shared;
+        }
+
+        /// <summary>Whether an action is what a request for any asks for.</summary>
+        public bool Meets(GraphAction action, MetaRequest request)
+        {
+            return request.Tags.All(tag => action.Tags.Contains(tag))
+                && (request.Limb == null || action.Limb == request.Limb)
+                && (request.Among.Count == 0 || request.Among.Contains(action.Id));
+        }
+
+        /// <summary>
+        /// Return when something that is asked for has to begin at the latest, to be on time; never in the past, where nothing
+        /// meets it.
+        /// </summary>
+        public double Latest(MetaRequest request)
+        {
+            if (request.Stroke == null)
+            {
+                return request.Start;
+            }
+            var least = double.PositiveInfinity;
+            foreach (GraphAction action in Graph.Of(Stance, request.Kind))
+            {
+                var fits = Meets(action, request);
+                if (request.Action != null)
+                {
+                    fits = action.Id == request.Action;
+                }
+                if (fits && Usable(action))
+                {
+                    var found = PhasesRules.Phases(Project, action);
+                    least = Math.Min(least, found.Stroke - found.Skip(action.Timing.BlendIn));
+                }
+            }
+            return request.Stroke.Value - least;
+        }
+
+        public double Slack(MetaRequest request)
+        {
+            return request.Late == null ? 0.0 : request.Late.Value;
+        }
+
+        /// <summary>Return when what follows an action could begin at the earliest.</summary>
+        public double Over(GraphAction action, MetaRequest request, double now)
+        {
+            var shape = Shape(action, request, now);
+            return shape.Start + Hurried(action, shape) + Project.Settings.Rest - SamplingRules.Fits;
+        }
+
+        /// <summary>
+        /// Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless it was asked for.
+        /// </summary>
+        public double Hurried(GraphAction action, CueShape shape)
+        {
+            if (action.Kind != "gesture" || action.Timing.EarliestExit != null)
+            {
+                return shape.Shortest;
+            }
+            var found = PhasesRules.Phases(Project, action);
+            var left = found.Relax - shape.Entry + shape.Hold - (shape.HoldTo - shape.HoldFrom);
+            if (shape.Hold <= 0)
+            {
+                left = found.StrokeEnd - shape.Entry;
+            }
+            return Math.Min(shape.Length, left + Math.Max(action.Timing.BlendOut, SamplingRules.Retraction));
+        }
+
+        /// <summary>
+        /// Return when an action that is to be played through is left nevertheless: early enough for the first of what follows
+        /// that can be in time then, late enough for its own stroke; infinity for never.
+        /// </summary>
+        public double Until(GraphAction action, CueShape shape, Bound bound)
+        {
+            var rest = Project.Settings.Rest;
+            var soonest = shape.Start + Hurried(action, shape);
+            foreach (MetaAction other in bound.After)
+            {
+                var inTime = Latest(other.Request) + Slack(other.Request);
+                if (!Served.Contains(other.Key) && soonest + rest <= inTime + SamplingRules.Fits)
+                {
+                    return Math.Max(soonest, BoundsRules.Begins(other) - rest);
+                }
+            }
+            return double.PositiveInfinity;
+        }
+
+        /// <summary>
+        /// Leave the running action early for the first of what is asked for that can be in time then. What a model wrote is left
+        /// at once, what was asked for where its retraction begins.
+        /// </summary>
+        public void MakeWay(MetaAction running, List<MetaAction> asked, double now)
+        {
+            var cue = Cues[Cues.Count - 1];
+            if (running == null || cue.Action.Kind == "transition" || cue.End - cue.BlendOut <= now)
+            {
+                return;
+            }
+            var soonest = now + Math.Max(cue.BlendOut, SamplingRules.Retraction);
+            if (!running.Written)
+            {
+                var shape = new CueShape(
+                    cue.Start,
+                    cue.Entry,
+                    cue.End - cue.Start,
+                    cue.End - cue.Start,
+                    cue.HoldFrom,
+                    cue.HoldTo,
+                    cue.Hold
+                );
+                soonest = Math.Max(soonest, cue.Start + Hurried(cue.Action, shape));
+            }
+            var rest = Project.Settings.Rest;
+            foreach (MetaAction meta in asked)
+            {
+                var request = meta.Request;
+                var inTime = Latest(request) + Slack(request);
+                if (request.Late == null || meta.Rank < running.Rank || inTime < soonest + rest - SamplingRules.Fits)
+                {
+                    continue;
+                }
+                var end = Math.Max(soonest, BoundsRules.Begins(meta) - rest);
+                if (end < cue.End)
+                {
+                    var out_ = Math.Max(cue.BlendOut, SamplingRules.Retraction);
+                    var into = Math.Min(cue.BlendIn, Math.Max(0.0, end - out_ - cue.Start));
+                    Cues[Cues.Count - 1] = new Cue(
+                        cue.Action,
+                        cue.Start,
+                        end,
+                        cue.Entry,
+                        into,
+                        out_,
+                        cue.Stance,
+                        cue.Then,
+                        cue.Meta,
+                        cue.HoldFrom,
+                        cue.HoldTo,
+                        cue.Hold
+                    );
+                    Free = end;
+                    Ended[cue.Action.Id] = end;
+                }
+                return;
             }
         }
 
@@ -543,15 +823,25 @@ namespace Metagraph
             return alpha * used;
         }
 
-        public Cue Cue(GraphAction action, CueShape shape, double limit, double wish, string stance, string meta)
+        /// <summary>hops: whether it is a transition on the way to what is asked for.</summary>
+        public Cue Cue(GraphAction action, CueShape shape, Bound bound, bool hops, string stance)
         {
             var length = shape.Length;
-            if (action.Timing.EarliestExit != null)
-            {
-                length = Math.Min(length, Math.Max(shape.Shortest, Math.Min(limit, wish) - shape.Start));
-            }
             var into = Math.Max(0.0, action.Timing.BlendIn);
             var out_ = Math.Max(0.0, action.Timing.BlendOut);
+            if (action.Timing.EarliestExit != null)
+            {
+                var wish = hops ? double.PositiveInfinity : bound.Wish;
+                length = Math.Min(length, Math.Max(shape.Shortest, Math.Min(bound.Limit, wish) - shape.Start));
+            }
+            else if (!hops)
+            {
+                length = Math.Min(length, Until(action, shape, bound) - shape.Start);
+                if (length < shape.Length)
+                {
+                    out_ = Math.Max(out_, SamplingRules.Retraction);
+                }
+            }
             if (shape.Entry > Project.Span(action).Item1)
             {
                 into = Math.Max(into, PhaseTimesRules.LeastBlend);
@@ -572,7 +862,7 @@ namespace Metagraph
                 out_ * squeeze,
                 stance,
                 then,
-                meta,
+                bound.Meta.Key,
                 shape.HoldFrom,
                 shape.HoldTo,
                 shape.Hold
@@ -652,10 +942,10 @@ namespace Metagraph
             Rests = out_;
         }
 
-        public void Tell(MetaAction meta, string outcome, string message, bool played = false)
+        public void Tell(MetaAction meta, string outcome, string message, bool played = false, double late = 0.0, string by = "")
         {
             var layer = Graph.Layer;
-            Reports.Add(new Report(meta.Request.Id, outcome, message, layer, meta.Start, played, meta.Written));
+            Reports.Add(new Report(meta.Request.Id, outcome, message, layer, meta.Start, played, meta.Written, late, by));
         }
     }
 
@@ -663,6 +953,9 @@ namespace Metagraph
     {
         public const double Fits = 1e-06; // seconds by which sums of times may be off
         public const double Hurry = 2.0; // a hold is played at most this many times as fast as it was made
+        // seconds in which an action whose retraction is cut goes back to its stance, at the least
+        public const double Retraction = 0.4;
+        public const double Shared = 0.25; // seconds within which two strokes may be one
         // seconds of crossfade when a long rest changes from one loop of its stance to another
         public const double LoopFade = 0.6;
 

@@ -51,27 +51,27 @@ namespace Metagraph
                     double start = ask.Stroke == null ? at : Math.Max(0.0, ask.Stroke.Value - LongestLead(graph, ask));
                     Requests.Add(new MetaRequest(
                         ask.Id, ask.Layer, "gesture", start, duration: ask.Duration, tags: ask.Tags.ToList(), limb: ask.Limb,
-                        priority: ask.Priority, resume: ask.Resume, stroke: ask.Stroke, hold: ask.Hold, prepare: ask.Prepare));
+                        priority: ask.Priority, resume: ask.Resume, stroke: ask.Stroke, hold: ask.Hold, prepare: ask.Prepare, late: ask.Late));
                     break;
                 case "fidget":
                     Requests.Add(new MetaRequest(
                         ask.Id, ask.Layer, "fidget", at, duration: ask.Duration, tags: ask.Tags.ToList(), limb: ask.Limb,
-                        priority: ask.Priority, resume: ask.Resume));
+                        priority: ask.Priority, resume: ask.Resume, late: ask.Late));
                     break;
                 case "action":
                     GraphAction action = FindAction(graph, ask.Action, ask.Layer);
                     double begin = ask.Stroke == null ? at : Math.Max(0.0, ask.Stroke.Value - Lead(action));
                     Requests.Add(new MetaRequest(
                         ask.Id, action.Layer, action.Kind, begin, action: action.Id, priority: ask.Priority,
-                        stroke: ask.Stroke, hold: ask.Hold, prepare: ask.Prepare));
+                        stroke: ask.Stroke, hold: ask.Hold, prepare: ask.Prepare, late: ask.Late));
                     break;
                 case "stance":
                     string stance, layer = FindStance(graph, ask.Stance, ask.Layer, out stance);
-                    Requests.Add(new MetaRequest(ask.Id, layer, "transition", at, stance: stance, priority: ask.Priority));
+                    Requests.Add(new MetaRequest(ask.Id, layer, "transition", at, stance: stance, priority: ask.Priority, late: ask.Late));
                     Items.Add(new StayFrom(ask.Id, at, layer, ask.Stay));
                     break;
                 case "change": // whichever arm was seen to move: stances are joined by few transitions, and mostly of both
-                    Requests.Add(new MetaRequest(ask.Id, ask.Layer, "transition", at, priority: ask.Priority));
+                    Requests.Add(new MetaRequest(ask.Id, ask.Layer, "transition", at, priority: ask.Priority, late: ask.Late));
                     break;
                 case "nod":
                 case "shake":
@@ -152,7 +152,7 @@ namespace Metagraph
             if (gestures.Exists(x => x.Tags.Contains(word)))
             {
                 List<string> tagged = new[] { word }.Concat(ask.Tags).ToList();
-                return new MetaRequest(ask.Id, "head", "gesture", at, tags: tagged, priority: ask.Priority);
+                return new MetaRequest(ask.Id, "head", "gesture", at, tags: tagged, priority: ask.Priority, late: ask.Late);
             }
             List<string> among = gestures.Where(x => x.Name.ToLowerInvariant().Contains(word)).Select(x => x.Id).ToList();
             if (among.Count == 0)
@@ -160,7 +160,7 @@ namespace Metagraph
                 string tags = ask.Tags.Length > 0 ? " with the tags " + string.Join(", ", ask.Tags) : "";
                 throw new AskException("the head layer has no gesture tagged or called '" + word + "'" + tags);
             }
-            return new MetaRequest(ask.Id, "head", "gesture", at, priority: ask.Priority, among: among);
+            return new MetaRequest(ask.Id, "head", "gesture", at, priority: ask.Priority, among: among, late: ask.Late);
         }
 
         /// <summary>How long before its stroke any gesture with an ask's tags begins.</summary>

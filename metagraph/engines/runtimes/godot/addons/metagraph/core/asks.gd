@@ -7,14 +7,14 @@ const COMMON = {id = "text200", at = "seconds?", told = "seconds?", priority = "
 const FIELDS = {
 	gesture = {
 		layer = "layer", tags = "tags", limb = "limb?", duration = "seconds?", stroke = "seconds?", hold = "hold?", prepare = "switch",
-		resume = "switch"
+		resume = "switch", late = "hold?"
 	},
-	fidget = {layer = "layer", tags = "tags", limb = "limb?", duration = "seconds?", resume = "switch"},
-	action = {action = "name", layer = "layer?", stroke = "seconds?", hold = "hold?", prepare = "switch"},
-	stance = {stance = "name", layer = "layer?", stay = "switch"},
-	change = {layer = "layer", limb = "limb?", duration = "seconds?"},
-	nod = {tags = "tags"},
-	shake = {tags = "tags"},
+	fidget = {layer = "layer", tags = "tags", limb = "limb?", duration = "seconds?", resume = "switch", late = "hold?"},
+	action = {action = "name", layer = "layer?", stroke = "seconds?", hold = "hold?", prepare = "switch", late = "hold?"},
+	stance = {stance = "name", layer = "layer?", stay = "switch", late = "hold?"},
+	change = {layer = "layer", limb = "limb?", duration = "seconds?", late = "hold?"},
+	nod = {tags = "tags", late = "hold?"},
+	shake = {tags = "tags", late = "hold?"},
 	look = {to = "spot", duration = "seconds?", amount = "share", strict = "switch"},
 	blink = {},
 	say = {

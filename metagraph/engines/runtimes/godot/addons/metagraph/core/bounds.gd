@@ -3,19 +3,22 @@
 # Translated from metagraph/playback/bounds.py; change that, and translate anew.
 
 const Util = preload("util.gd")
+const LOOKED_AT = 6  # how many that follow a meta action are told
 
 
 # A meta action with when the next more important one begins (limit), and the next as important that was asked for (wish);
-# infinity where there is none.
+# infinity where there is none. after: those as important that were asked for and say how late they may be, the next first.
 class Bound:
 	var meta
 	var limit
 	var wish
+	var after
 
-	func _init(meta_, limit_, wish_):
+	func _init(meta_, limit_, wish_, after_ = null):
 		self.meta = meta_
 		self.limit = limit_
 		self.wish = wish_
+		self.after = after_ if after_ != null else []
 
 
 # The first of some meta actions of a rank, written or asked for, and when it starts.
@@ -34,10 +37,12 @@ class _First:
 static func bounds(metas):
 	var out = []
 	var first = []
+	var pressing = []  # what says how late it may be, the last first
 	for meta in Util.backwards(metas):
 		var limit = INF
 		var wish = INF
 		var own = null
+		var start = begins(meta)
 		for one in first:
 			if one.rank > meta.rank:
 				limit = Util.least(limit, one.start)
@@ -45,9 +50,22 @@ static func bounds(metas):
 				wish = Util.least(wish, one.start)
 			if one.rank == meta.rank and one.written == meta.written:
 				own = one
-		out.append(Bound.new(meta, limit, wish))
+		var after = []
+		for one2 in Util.backwards(Util.part(pressing, -LOOKED_AT, pressing.size())):
+			if one2.rank >= meta.rank:
+				after.append(one2)
+		out.append(Bound.new(meta, limit, wish, after))
+		if meta.request.late != null:
+			pressing.append(meta)
 		if own == null:
-			first.append(_First.new(meta.rank, meta.written, meta.start))
+			first.append(_First.new(meta.rank, meta.written, start))
 		else:
-			own.start = meta.start
+			own.start = start
 	return Util.list(Util.backwards(out))
+
+
+# Return when a meta action may begin at the earliest. One whose stroke is judged is placed where that comes.
+static func begins(meta):
+	if meta.request.late != null and meta.request.stroke != null:
+		return Util.least(meta.start, meta.request.start)
+	return meta.start

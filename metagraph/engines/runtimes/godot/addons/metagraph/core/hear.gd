@@ -93,10 +93,15 @@ static func answers(plan, idents):
 	var found = {}
 	for ident in idents:
 		found[ident] = {starts = [], ends = [], what = [], waiting = [], why = [], late = false, there = false, all_played = true}
+	var served = {}  # by the key of what serves them
+	for report in plan.reports:
+		if report.by != "":
+			served[report.by] = served.get(report.by, []) + [report.request]
 	for layer in plan.layers:
 		for cue in plan.layers[layer].cues:
-			for each in _of(found, cue.meta.split("+")[0]):
-				_plays(each, cue.start, cue.end, cue.action.name)
+			for made in [cue.meta.split("+")[0]] + served.get(cue.meta, []):
+				for each in _of(found, made):
+					_plays(each, cue.start, cue.end, cue.action.name)
 		for meta in plan.layers[layer].metas:
 			if meta.start >= plan.end:
 				for each in _of(found, meta.request.id):

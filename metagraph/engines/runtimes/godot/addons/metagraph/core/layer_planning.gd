@@ -81,6 +81,11 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 		Util.add_to(waiting, cue.meta)
 	var written = []
 	var cursor = old.cursor
+	# What another's action has served since it began is played as that is.
+	var served = {}
+	for report in told:
+		if report.outcome == "shared" and played.has(report.by):
+			Util.add_to(served, report.request)
 	var again = Util.set_of(replaced)
 	if chain != null:
 		var more
@@ -93,24 +98,28 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 				Util.add_to(again, meta.request.id)
 	var future = []
 	var planned = {}  # again: when those of a request start
+	var judged = {}  # those whose lateness is told by what is performed
 	for meta in old.metas:
-		if again.has(meta.request.id):
+		if again.has(meta.request.id) or served.has(meta.request.id):
 			continue
 		if waiting.has(meta.key) or (meta.start >= now and not played.has(meta.key)):
 			future.append(meta)
+			if meta.request.late != null:
+				Util.add_to(judged, meta.request.id)
 			planned[meta.request.id] = planned.get(meta.request.id, []) + [meta.start]
 	# What was told about time still holds; the rest will be told again by those that are planned again.
 	var done = []
 	for meta2 in old.metas:
 		if (not again.has(meta2.request.id)
 			and not planned.get(meta2.request.id, []).has(meta2.start)
-			and (played.has(meta2.key) or meta2.start < now)):
+			and (played.has(meta2.key) or meta2.start < now or served.has(meta2.request.id))):
 			done.append(meta2)
 	var reports = []
 	for report in told:
 		if (report.layer == layer
 			and not again.has(report.request)
-			and (MetaPlan.TEMPORAL.has(report.outcome) or not planned.get(report.request, []).has(report.at))):
+			and ((MetaPlan.TEMPORAL.has(report.outcome) and not judged.has(report.request))
+				or not planned.get(report.request, []).has(report.at))):
 			reports.append(report)
 	var begin = _begin(graph, old, stance)
 	var performer = Sampling.performer_after(project, graph, seed_, begin, old.past, kept)
@@ -135,6 +144,14 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 		if waiting.has(cue.meta):
 			Util.add_to(found2, cue.meta)
 	performer.begun = found2
+	if kept.size() > 0 and kept[-1].end > now:
+		var first = null
+		for meta3 in old.metas:
+			if meta3.key == kept[-1].meta:
+				first = meta3
+				break
+		var running = first
+		performer.make_way(running, asked, now)
 	performer.free_ = Util.most(now - (performer.ready() - performer.free_), performer.free_)
 	var delayed
 	var both2 = Replan.delay(asked, performer.ready(), project.settings)
@@ -151,8 +168,10 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 	return LayerDraft.new(layer, performer, true, done, placed, every, old.past, cursor, written)
 
 
-# Return a request with the window it may use.
+# Return a request with the window it may use; where its stroke is judged, the moment it is wanted at.
 static func meta_of(request):
+	if request.late != null and request.stroke != null:
+		return MetaPlan.MetaAction.new(request, request.stroke, request.stroke + Replan.LEAST)
 	var length = WINDOW if request.duration == null else Util.most(0.0, request.duration)
 	if request.stroke != null:
 		length = Util.most(length, request.stroke - request.start + Sampling.FITS)

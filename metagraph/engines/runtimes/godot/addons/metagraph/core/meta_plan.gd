@@ -13,6 +13,8 @@ const WRITTEN = 0  # priority of what the Markov model writes
 # "transition"). priority: higher wins. resume: whether, when something more important cuts it, its remainder goes on afterwards.
 # stroke: when a gesture's stroke should come; `start` is then the earliest it may begin. hold: seconds its hold should last, None
 # for as long as it was made. prepare: whether its preparation plays. among: ids of the only actions it may be, any where empty.
+# late: by how many seconds its stroke, or where none is asked for its start, may come late, 0 for on time or not at all; None for
+# as late as the settings allow.
 class MetaRequest:
 	var id
 	var layer
@@ -29,6 +31,7 @@ class MetaRequest:
 	var hold
 	var prepare
 	var among
+	var late
 
 	func _init(
 		id_,
@@ -45,7 +48,8 @@ class MetaRequest:
 		stroke_ = null,
 		hold_ = null,
 		prepare_ = true,
-		among_ = null
+		among_ = null,
+		late_ = null
 	):
 		self.id = id_
 		self.layer = layer_
@@ -62,6 +66,7 @@ class MetaRequest:
 		self.hold = hold_
 		self.prepare = prepare_
 		self.among = among_ if among_ != null else []
+		self.late = late_
 
 
 # Where writing stands: before meta action `number`, in state number `state` (-1: none yet), which ended at `time` seconds.
@@ -163,7 +168,9 @@ class Rest:
 const TEMPORAL = {"late": true, "cut": true, "resumed": true, "past": true}  # told by temporal replanning, once
 
 
-# What became of a meta action that was not simply played as asked. played: whether something of it still plays.
+# What became of a meta action that was not simply played as asked. played: whether something of it still plays. late: by how many
+# seconds it comes late, or would have come, where it said how late it may. by: key of the meta action whose action serves it,
+# too.
 class Report:
 	var request
 	var outcome
@@ -172,8 +179,10 @@ class Report:
 	var at
 	var played
 	var written
+	var late
+	var by
 
-	func _init(request_, outcome_, message_, layer_, at_, played_ = false, written_ = false):
+	func _init(request_, outcome_, message_, layer_, at_, played_ = false, written_ = false, late_ = 0.0, by_ = ""):
 		self.request = request_
 		self.outcome = outcome_
 		self.message = message_
@@ -181,6 +190,8 @@ class Report:
 		self.at = at_
 		self.played = played_
 		self.written = written_
+		self.late = late_
+		self.by = by_
 
 
 # What planning on needs of cues that were forgotten. free: when the last ended; stance: in which. uses: how often each action was

@@ -7,9 +7,11 @@
 
 const MetaPlan = preload("meta_plan.gd")
 const Util = preload("util.gd")
+const LEAST = 1e-06  # seconds of the window of what is placed at its stroke
 
 
-# Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past.
+# Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past. Those that say how
+# late they may be are judged where it shows how late they are.
 static func delay(asked, free_, settings):
 	var metas = []
 	var reports = []
@@ -17,6 +19,8 @@ static func delay(asked, free_, settings):
 		var late = free_ - meta.start
 		if late <= 0:
 			metas.append(meta)
+		elif meta.request.late != null:
+			metas.append(_after(meta, free_))
 		elif late > settings.wait:
 			reports.append(_told(meta, "past", "asked for at %.2f s, %.1f s before anything could start" % [meta.start, late]))
 		else:
@@ -143,6 +147,12 @@ static func _placed(metas, settings):
 			while place2 < queue.size() and not Util.less(own2, _order(queue[place2])):
 				place2 += 1
 			queue.insert(place2, meta)
+		elif meta.request.late != null:
+			var own3 = _order(_after(meta, last.end))
+			var place3 = at
+			while place3 < queue.size() and not Util.less(own3, _order(queue[place3])):
+				place3 += 1
+			queue.insert(place3, _after(meta, last.end))
 		elif last.end - meta.request.start > settings.wait:
 			reports.append(_told(meta, "covered", _no_time(last)))
 		else:
@@ -153,13 +163,20 @@ static func _placed(metas, settings):
 				meta.part,
 				meta.written
 			)
-			var own3 = _order(later)
-			var place3 = at
-			while place3 < queue.size() and not Util.less(own3, _order(queue[place3])):
-				place3 += 1
-			queue.insert(place3, later)
+			var own4 = _order(later)
+			var place4 = at
+			while place4 < queue.size() and not Util.less(own4, _order(queue[place4])):
+				place4 += 1
+			queue.insert(place4, later)
 			reports.append(_told(meta, "late", "waits %.2f s for '%s'" % [last.end - meta.request.start, last.request.id], true))
 	return [placed, reports]
+
+
+# Return a meta action from `free` on; where its stroke is judged, that is placed there.
+static func _after(meta, free_):
+	if meta.request.stroke != null:
+		return MetaPlan.MetaAction.new(meta.request, free_, free_ + LEAST, meta.part, meta.written)
+	return MetaPlan.MetaAction.new(meta.request, free_, free_ + (meta.end - meta.start), meta.part, meta.written)
 
 
 static func _no_time(other):

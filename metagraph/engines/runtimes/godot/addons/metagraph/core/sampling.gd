@@ -11,6 +11,8 @@ const Remembering = preload("remembering.gd")
 const Util = preload("util.gd")
 const FITS = 1e-06  # seconds by which sums of times may be off
 const HURRY = 2.0  # a hold is played at most this many times as fast as it was made
+const RETRACTION = 0.4  # seconds in which an action whose retraction is cut goes back to its stance, at the least
+const SHARED = 0.25  # seconds within which two strokes may be one
 const LOOP_FADE = 0.6  # seconds of crossfade when a long rest changes from one loop of its stance to another
 
 
@@ -47,7 +49,7 @@ class CueShape:
 # One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
 #
 # uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of meta
-# actions whose chain of transitions plays already.
+# actions whose chain of transitions plays already. served: keys of those that another's action serves, too.
 class Performer:
 	var project
 	var graph
@@ -61,6 +63,7 @@ class Performer:
 	var rests
 	var reports
 	var begun
+	var served
 
 	func _init(
 		project_,
@@ -74,7 +77,8 @@ class Performer:
 		cues_ = null,
 		rests_ = null,
 		reports_ = null,
-		begun_ = null
+		begun_ = null,
+		served_ = null
 	):
 		self.project = project_
 		self.graph = graph_
@@ -88,6 +92,7 @@ class Performer:
 		self.rests = rests_ if rests_ != null else []
 		self.reports = reports_ if reports_ != null else []
 		self.begun = begun_ if begun_ != null else {}
+		self.served = served_ if served_ != null else {}
 
 	# Take a cue as played.
 	func note(cue, then):
@@ -112,8 +117,13 @@ class Performer:
 	func perform(metas, end):
 		for bound in Bounds.bounds(metas):
 			var meta = bound.meta
-			if meta.start >= end:
-				return
+			if Bounds.begins(meta) >= end:
+				continue
+			if self.served.has(meta.key):
+				continue
+			if meta.request.late != null:
+				self._realise(bound, Util.most(self.ready(), Bounds.begins(meta)))
+				continue
 			if meta.end <= self.ready() + FITS and meta.start < self.ready() and not self.begun.has(meta.key):
 				var running = "the running action"
 				if self.cues.size() > 0:
@@ -124,9 +134,11 @@ class Performer:
 					self._tell(meta, "covered", "wholly covered by %s, which plays until %.2f s" % [running, self.free_])
 					continue
 				self._tell(meta, "queued", "waits %.2f s for %s" % [waits, running], true)
-			self._realise(meta, Util.most(self.ready(), meta.start), bound.limit, bound.wish)
+			self._realise(bound, Util.most(self.ready(), meta.start))
 
-	func _realise(meta, now, limit, wish):
+	func _realise(bound, now):
+		var meta = bound.meta
+		var limit = bound.limit
 		var steps = self._steps(meta)
 		if steps == null:
 			return
@@ -159,14 +171,207 @@ class Performer:
 					self._tell(meta, "cooling", "all that fit are cooling down; the first may play again at %.2f s" % [soonest])
 					return
 				fitting = warm
+			# On the way to a stance it counts when that begins.
+			if meta.request.late != null and (not hops or (cues.size() == 0 and steps[steps.size() - 1].hop != "")):
+				fitting = self._timely(bound, fitting, now)
+				if fitting.size() == 0:
+					return
 			var action = self._draw(fitting, "%s/%s" % [meta.key, step.hop] if hops else meta.key, now)
 			var shape = self._shape(action, asked, now)
-			var cue = self._cue(action, shape, limit, INF if hops else wish, stance, meta.key)
+			var cue = self._cue(action, shape, bound, hops, stance)
 			cues.append(cue)
 			now = cue.end
 			stance = cue.then
 		for one in cues:
 			self._keep(one)
+
+	# Return those that come least late, if that is not too late; of them those that leave most of what follows its time, and
+	# serve most of it.
+	func _timely(bound, fitting, now):
+		var meta = bound.meta
+		var request = meta.request
+		var allowed = 0.0 if request.late == null else request.late
+		var late = {}
+		for a in fitting:
+			late[a.id] = self._lateness(a, request, self._shape(a, request, now))
+		var found = []
+		for a in fitting:
+			found.append(late[a.id])
+		var least = Util.least_of(found)
+		var waits
+		if least > allowed + FITS:
+			waits = self._cause(request, now)
+			self._tell(
+				meta,
+				"too-late",
+				"would come %.2f s late, %.2f s are allowed; it waits for %s" % [least, allowed, waits],
+				false,
+				least
+			)
+			return []
+		if least > FITS:
+			waits = self._cause(request, now)
+			self._tell(meta, "late", "comes %.2f s late; it waits for %s" % [least, waits], true, least)
+		var timely = []
+		for a in fitting:
+			if late[a.id] <= Util.most(least, 0.0) + FITS:
+				timely.append(a)
+		for other in bound.after:
+			if not self._shares(request, other.request):
+				continue
+			var both = []
+			for a in timely:
+				if self._meets(a, other.request):
+					both.append(a)
+			var behind = 0.0
+			if request.stroke != null and other.request.stroke != null:
+				behind = Util.most(0.0, request.stroke + Util.most(least, 0.0) - other.request.stroke)
+			if both.size() > 0 and other.request.late != null and behind <= other.request.late + FITS:
+				timely = both
+				Util.add_to(self.served, other.key)
+				var message = "shares the stroke of '%s'" % [request.id]
+				self._tell(other, "shared", message, true, behind, meta.key)
+		var following = []
+		for other2 in bound.after:
+			if not self.served.has(other2.key):
+				following.append(other2)
+		for other in following:
+			for slack in [0.0, self._slack(other.request)]:
+				var by = self._latest(other.request) + slack
+				var over = []
+				for a in timely:
+					if self._over(a, request, now) <= by:
+						over.append(a)
+				if over.size() > 0:
+					return over
+		return timely
+
+	# Return by how many seconds an action that plays so comes late, at its stroke where one is asked for; less than 0 before its
+	# time.
+	func _lateness(action, request, shape):
+		if request.stroke != null and action.kind == "gesture":
+			var found = Phases.phases(self.project, action)
+			return shape.start + found.stroke - shape.entry - request.stroke
+		return shape.start - request.start
+
+	# Return what a request that comes late waits for.
+	func _cause(request, now):
+		if now <= request.start + FITS:
+			return "its own preparation"
+		if self.cues.size() > 0 and self.ready() >= now - FITS and self.cues[-1].end >= self.free_ - FITS:
+			return "'%s', which plays until %.2f s" % [self.cues[-1].action.name, self.free_]
+		return "what comes before it" if self.cues.size() > 0 else "the time it became known at"
+
+	# Whether two requests may be met by one stroke.
+	func _shares(request, other):
+		if request.stroke == null or other.stroke == null:
+			return false
+		return (request.action == null
+			and other.action == null
+			and request.kind == other.kind
+			and (other.hold == null or other.hold == request.hold)
+			and Util.absolute(request.stroke - other.stroke) <= SHARED)
+
+	# Whether an action is what a request for any asks for.
+	func _meets(action, request):
+		var are_all = true
+		for tag in request.tags:
+			if not action.tags.has(tag):
+				are_all = false
+				break
+		return (are_all
+			and (request.limb == null or action.limb == request.limb)
+			and (request.among.size() == 0 or request.among.has(action.id)))
+
+	# Return when something that is asked for has to begin at the latest, to be on time; never in the past, where nothing meets
+	# it.
+	func _latest(request):
+		if request.stroke == null:
+			return request.start
+		var least = INF
+		for action in self.graph.of(self.stance, request.kind):
+			var fits = self._meets(action, request)
+			if request.action != null:
+				fits = action.id == request.action
+			if fits and self._usable(action):
+				var found = Phases.phases(self.project, action)
+				least = Util.least(least, found.stroke - found.skip(action.timing.blend_in))
+		return request.stroke - least
+
+	func _slack(request):
+		return 0.0 if request.late == null else request.late
+
+	# Return when what follows an action could begin at the earliest.
+	func _over(action, request, now):
+		var shape = self._shape(action, request, now)
+		return shape.start + self._hurried(action, shape) + self.project.settings.rest - FITS
+
+	# Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless it was asked for.
+	func _hurried(action, shape):
+		if action.kind != "gesture" or action.timing.earliest_exit != null:
+			return shape.shortest
+		var found = Phases.phases(self.project, action)
+		var left = found.relax - shape.entry + shape.hold - (shape.hold_to - shape.hold_from)
+		if shape.hold <= 0:
+			left = found.stroke_end - shape.entry
+		return Util.least(shape.length, left + Util.most(action.timing.blend_out, RETRACTION))
+
+	# Return when an action that is to be played through is left nevertheless: early enough for the first of what follows that can
+	# be in time then, late enough for its own stroke; infinity for never.
+	func _until(action, shape, bound):
+		var rest = self.project.settings.rest
+		var soonest = shape.start + self._hurried(action, shape)
+		for other in bound.after:
+			var in_time = self._latest(other.request) + self._slack(other.request)
+			if not self.served.has(other.key) and soonest + rest <= in_time + FITS:
+				return Util.most(soonest, Bounds.begins(other) - rest)
+		return INF
+
+	# Leave the running action early for the first of what is asked for that can be in time then. What a model wrote is left at
+	# once, what was asked for where its retraction begins.
+	func make_way(running, asked, now):
+		var cue = self.cues[-1]
+		if running == null or cue.action.kind == "transition" or cue.end - cue.blend_out <= now:
+			return
+		var soonest = now + Util.most(cue.blend_out, RETRACTION)
+		if not running.written:
+			var shape = CueShape.new(
+				cue.start,
+				cue.entry,
+				cue.end - cue.start,
+				cue.end - cue.start,
+				cue.hold_from,
+				cue.hold_to,
+				cue.hold
+			)
+			soonest = Util.most(soonest, cue.start + self._hurried(cue.action, shape))
+		var rest = self.project.settings.rest
+		for meta in asked:
+			var request = meta.request
+			var in_time = self._latest(request) + self._slack(request)
+			if request.late == null or meta.rank < running.rank or in_time < soonest + rest - FITS:
+				continue
+			var end = Util.most(soonest, Bounds.begins(meta) - rest)
+			if end < cue.end:
+				var out = Util.most(cue.blend_out, RETRACTION)
+				var into = Util.least(cue.blend_in, Util.most(0.0, end - out - cue.start))
+				self.cues[-1] = MetaPlan.Cue.new(
+					cue.action,
+					cue.start,
+					end,
+					cue.entry,
+					into,
+					out,
+					cue.stance,
+					cue.then,
+					cue.meta,
+					cue.hold_from,
+					cue.hold_to,
+					cue.hold
+				)
+				self.free_ = end
+				self.ended[cue.action.id] = end
+			return
 
 	# Whether something that plays so is over by a limit.
 	func _fits(shape, limit):
@@ -436,12 +641,18 @@ class Performer:
 				used += 1
 		return alpha * used
 
-	func _cue(action, shape, limit, wish, stance, meta):
+	# hops: whether it is a transition on the way to what is asked for.
+	func _cue(action, shape, bound, hops, stance):
 		var length = shape.length
-		if action.timing.earliest_exit != null:
-			length = Util.least(length, Util.most(shape.shortest, Util.least(limit, wish) - shape.start))
 		var into = Util.most(0.0, action.timing.blend_in)
 		var out = Util.most(0.0, action.timing.blend_out)
+		if action.timing.earliest_exit != null:
+			var wish = INF if hops else bound.wish
+			length = Util.least(length, Util.most(shape.shortest, Util.least(bound.limit, wish) - shape.start))
+		elif not hops:
+			length = Util.least(length, self._until(action, shape, bound) - shape.start)
+			if length < shape.length:
+				out = Util.most(out, RETRACTION)
 		if shape.entry > self.project.span(action)[0]:
 			into = Util.most(into, PhaseTimes.LEAST_BLEND)
 		var squeeze = Util.least(1.0, length / (into + out)) if into + out > 0 else 1.0
@@ -458,7 +669,7 @@ class Performer:
 			out * squeeze,
 			stance,
 			then,
-			meta,
+			bound.meta.key,
 			shape.hold_from,
 			shape.hold_to,
 			shape.hold
@@ -522,9 +733,19 @@ class Performer:
 					out.append(current)
 		self.rests = out
 
-	func _tell(meta, outcome, message, played = false):
+	func _tell(meta, outcome, message, played = false, late = 0.0, by = ""):
 		var layer = self.graph.layer
-		self.reports.append(MetaPlan.Report.new(meta.request.id, outcome, message, layer, meta.start, played, meta.written))
+		self.reports.append(MetaPlan.Report.new(
+			meta.request.id,
+			outcome,
+			message,
+			layer,
+			meta.start,
+			played,
+			meta.written,
+			late,
+			by
+		))
 
 
 # Return the performer that stands where cues have been played after a past.

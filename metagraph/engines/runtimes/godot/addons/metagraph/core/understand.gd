@@ -83,6 +83,7 @@ static func _mean(graph, ask, at, out):
 
 static func _want(out, ask, layer, kind, start, more):
 	more.priority = ask.priority
+	more.late = ask.late
 	out.requests.append(Request.make(ask.id, layer, kind, start, more))
 
 
