@@ -22,7 +22,7 @@ from metagraph.playback.plan import (
     Report,
     Rest,
 )
-from metagraph.playback.replan import LEAST, delay, replan
+from metagraph.playback.replan import delay, replan
 from metagraph.playback.sampling import FITS, Performer, performer_after
 
 WINDOW = 1.0  # seconds a request may use when it does not say how long
@@ -160,7 +160,7 @@ def draft(
 def meta_of(request: MetaRequest) -> MetaAction:
     """Return a request with the window it may use; where its stroke is judged, the moment it is wanted at."""
     if request.late is not None and request.stroke is not None:
-        return MetaAction(request, request.stroke, request.stroke + LEAST)
+        return MetaAction(request, request.stroke, request.stroke + FITS)
     length = WINDOW if request.duration is None else max(0.0, request.duration)
     if request.stroke is not None:
         length = max(length, request.stroke - request.start + FITS)

@@ -15,8 +15,6 @@ from dataclasses import replace
 from metagraph.graph.model import Settings
 from metagraph.playback.plan import MetaAction, Outcome, Report
 
-LEAST = 1e-6  # seconds of the window of what is placed at its stroke
-
 
 def delay(
     asked: Iterable[MetaAction], free: float, settings: Settings
@@ -39,7 +37,7 @@ def delay(
                 )
             )
         else:
-            metas.append(replace(meta, start=free, end=free + (meta.end - meta.start)))
+            metas.append(_after(meta, free))
             reports.append(_told(meta, "late", f"waits {late:.2f} s for the running action", True))
     return metas, reports
 
@@ -137,8 +135,7 @@ def _placed(metas: Sequence[MetaAction], settings: Settings) -> tuple[list[MetaA
         elif last.end - meta.request.start > settings.wait:
             reports.append(_told(meta, "covered", _no_time(last)))
         else:
-            later = replace(meta, start=last.end, end=last.end + (meta.end - meta.start))
-            insort(queue, later, lo=at, key=_order)
+            insort(queue, _after(meta, last.end), lo=at, key=_order)
             reports.append(
                 _told(
                     meta, "late", f"waits {last.end - meta.request.start:.2f} s for '{last.request.id}'", True
@@ -148,9 +145,7 @@ def _placed(metas: Sequence[MetaAction], settings: Settings) -> tuple[list[MetaA
 
 
 def _after(meta: MetaAction, free: float) -> MetaAction:
-    """Return a meta action from `free` on; where its stroke is judged, that is placed there."""
-    if meta.request.stroke is not None:
-        return replace(meta, start=free, end=free + LEAST)
+    """Return a meta action from `free` on."""
     return replace(meta, start=free, end=free + (meta.end - meta.start))
 
 

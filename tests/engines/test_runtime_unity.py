@@ -923,7 +923,7 @@ MUTATIONS = [
         "what is too late",
     ),
     ("Sampling.cs", "if (over.Count > 0)", "if (over.Count > 99)", "room for what follows"),
-    ("Replan.cs", "meta.Request.Stroke != null", "meta.Start < -1", "the window of a stroke that is judged"),
+    ("Bounds.cs", "Math.Min(meta.Start, meta.Request.Start)", "meta.Start", "when what is judged begins"),
     (
         "Asks.cs",
         'case "late": Late = Seconds(name, value, 600);',

@@ -256,7 +256,7 @@ inline Ref<LayerDraft> draft(
 /// Return a request with the window it may use; where its stroke is judged, the moment it is wanted at.
 inline Ref<MetaAction> meta_of(const Ref<MetaRequest>& request) {
     if (request->late.has_value() && request->stroke.has_value()) {
-        return lang::made<MetaAction>(request, *request->stroke, *request->stroke + replan::LEAST);
+        return lang::made<MetaAction>(request, *request->stroke, *request->stroke + sampling::FITS);
     }
     double length = !request->duration.has_value() ? layer_planning::WINDOW : std::max(0.0, *request->duration);
     if (request->stroke.has_value()) {

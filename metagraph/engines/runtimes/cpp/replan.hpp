@@ -16,7 +16,6 @@ namespace metagraph {
 
 namespace replan {
 
-inline constexpr double LEAST = 1e-06; // seconds of the window of what is placed at its stroke
 inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> delay(
     const List<Ref<MetaAction>>& asked,
     double free,
@@ -79,13 +78,7 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> delay(
                 )
             ));
         } else {
-            metas.push_back(lang::made<MetaAction>(
-                meta->request,
-                free,
-                free + (meta->end - meta->start),
-                meta->part,
-                meta->written
-            ));
+            metas.push_back(replan::_after(meta, free));
             reports.push_back(replan::_told(
                 meta,
                 "late",
@@ -285,19 +278,12 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> _placed(
         } else if (last->end - meta->request->start > settings->wait) {
             reports.push_back(replan::_told(meta, "covered", replan::_no_time(last)));
         } else {
-            Ref<MetaAction> later = lang::made<MetaAction>(
-                meta->request,
-                last->end,
-                last->end + (meta->end - meta->start),
-                meta->part,
-                meta->written
-            );
-            std::tuple<double, int, std::string, int> own4 = replan::_order(later);
+            std::tuple<double, int, std::string, int> own4 = replan::_order(replan::_after(meta, last->end));
             int place4 = at;
             while (place4 < lang::len(queue) && !(own4 < replan::_order(lang::at(queue, place4)))) {
                 place4 += 1;
             }
-            lang::insert(queue, place4, later);
+            lang::insert(queue, place4, replan::_after(meta, last->end));
             reports.push_back(replan::_told(
                 meta,
                 "late",
@@ -315,11 +301,8 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> _placed(
     return std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>>{placed, reports};
 }
 
-/// Return a meta action from `free` on; where its stroke is judged, that is placed there.
+/// Return a meta action from `free` on.
 inline Ref<MetaAction> _after(const Ref<MetaAction>& meta, double free) {
-    if (meta->request->stroke.has_value()) {
-        return lang::made<MetaAction>(meta->request, free, free + replan::LEAST, meta->part, meta->written);
-    }
     return lang::made<MetaAction>(meta->request, free, free + (meta->end - meta->start), meta->part, meta->written);
 }
 

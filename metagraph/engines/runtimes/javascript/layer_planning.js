@@ -7,7 +7,7 @@
 
 import { write } from "./markov.js";
 import { LayerPlan, MetaAction, Report, TEMPORAL } from "./meta_plan.js";
-import { LEAST, delay, replan } from "./replan.js";
+import { delay, replan } from "./replan.js";
 import { FITS, performerAfter } from "./sampling.js";
 
 export const WINDOW = 1; // seconds a request may use when it does not say how long
@@ -160,7 +160,7 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
  */
 export function metaOf(request) {
   if (request.late !== null && request.stroke !== null) {
-    return new MetaAction(request, request.stroke, request.stroke + LEAST);
+    return new MetaAction(request, request.stroke, request.stroke + FITS);
   }
   let length = request.duration === null ? WINDOW : Math.max(0, request.duration);
   if (request.stroke !== null) {

@@ -10,8 +10,6 @@
 import { Report } from "./meta_plan.js";
 import { bisectRight, but, insort, sortedBy } from "./basics.js";
 
-export const LEAST = 1e-06; // seconds of the window of what is placed at its stroke
-
 /**
  * Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past. Those that
  * say how late they may be are judged where it shows how late they are.
@@ -36,7 +34,7 @@ export function delay(asked, free, settings) {
         `asked for at ${meta.start.toFixed(2)} s, ${late.toFixed(1)} s before anything could start`,
       ));
     } else {
-      metas.push(but(meta, { start: free, end: free + (meta.end - meta.start) }));
+      metas.push(_after(meta, free));
       reports.push(_told(meta, "late", `waits ${late.toFixed(2)} s for the running action`, true));
     }
   }
@@ -161,8 +159,7 @@ function _placed(metas, settings) {
     } else if (last.end - meta.request.start > settings.wait) {
       reports.push(_told(meta, "covered", _noTime(last)));
     } else {
-      const later = but(meta, { start: last.end, end: last.end + (meta.end - meta.start) });
-      insort(queue, later, at, _order);
+      insort(queue, _after(meta, last.end), at, _order);
       reports.push(_told(
         meta,
         "late",
@@ -175,15 +172,12 @@ function _placed(metas, settings) {
 }
 
 /**
- * Return a meta action from `free` on; where its stroke is judged, that is placed there.
+ * Return a meta action from `free` on.
  * @param {MetaAction} meta
  * @param {number} free
  * @returns {MetaAction}
  */
 function _after(meta, free) {
-  if (meta.request.stroke !== null) {
-    return but(meta, { start: free, end: free + LEAST });
-  }
   return but(meta, { start: free, end: free + (meta.end - meta.start) });
 }
 

@@ -4,6 +4,7 @@ import { ALPHABET } from "./alphabet.js";
 import { readAsk } from "./asks.js";
 import { readAloud } from "./graphemes.js";
 import { timedSeconds, toldText } from "./line_timing.js";
+import { Report } from "./meta_plan.js";
 import { makeRequest } from "./plan.js";
 import { toldTiming } from "./told_timing.js";
 import { LAYERS } from "./words.js";
@@ -27,7 +28,7 @@ export function understand(graph, asks, now) {
     const refuse = (id, message) => {
       const at = ask?.at ?? now;
       const layer = ask?.layer ?? "arms";
-      out.refused.push({ request: id, outcome: "not-understood", message, layer, at, played: false, written: false });
+      out.refused.push(new Report(id, "not-understood", message, layer, at));
     };
     if (!ask) {
       refuse(typeof data?.id === "string" ? data.id : "", why);

@@ -199,7 +199,7 @@ namespace Metagraph
         {
             if (request.Late != null && request.Stroke != null)
             {
-                return new MetaAction(request, request.Stroke.Value, request.Stroke.Value + ReplanRules.Least);
+                return new MetaAction(request, request.Stroke.Value, request.Stroke.Value + SamplingRules.Fits);
             }
             var length = request.Duration == null ? Window : Math.Max(0.0, request.Duration.Value);
             if (request.Stroke != null)

@@ -13,8 +13,6 @@ namespace Metagraph
     /// </summary>
     public static class ReplanRules
     {
-        public const double Least = 1e-06; // seconds of the window of what is placed at its stroke
-
         /// <summary>
         /// Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past. Those
         /// that say how late they may be are judged where it shows how late they are.
@@ -48,7 +46,7 @@ namespace Metagraph
                 }
                 else
                 {
-                    metas.Add(new MetaAction(meta.Request, free, free + (meta.End - meta.Start), meta.Part, meta.Written));
+                    metas.Add(After(meta, free));
                     reports.Add(Told(meta, "late", "waits " + PlainText.Fixed(late, 2) + " s for the running action", true));
                 }
             }
@@ -204,14 +202,7 @@ namespace Metagraph
                 }
                 else
                 {
-                    var later = new MetaAction(
-                        meta.Request,
-                        last.End,
-                        last.End + (meta.End - meta.Start),
-                        meta.Part,
-                        meta.Written
-                    );
-                    PlainLists.Insert(queue, later, at, item => Order(item));
+                    PlainLists.Insert(queue, After(meta, last.End), at, item => Order(item));
                     reports.Add(Told(
                         meta,
                         "late",
@@ -223,13 +214,9 @@ namespace Metagraph
             return (placed, reports);
         }
 
-        /// <summary>Return a meta action from `free` on; where its stroke is judged, that is placed there.</summary>
+        /// <summary>Return a meta action from `free` on.</summary>
         private static MetaAction After(MetaAction meta, double free)
         {
-            if (meta.Request.Stroke != null)
-            {
-                return new MetaAction(meta.Request, free, free + Least, meta.Part, meta.Written);
-            }
             return new MetaAction(meta.Request, free, free + (meta.End - meta.Start), meta.Part, meta.Written);
         }
 

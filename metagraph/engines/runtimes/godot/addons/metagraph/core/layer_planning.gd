@@ -171,7 +171,7 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 # Return a request with the window it may use; where its stroke is judged, the moment it is wanted at.
 static func meta_of(request):
 	if request.late != null and request.stroke != null:
-		return MetaPlan.MetaAction.new(request, request.stroke, request.stroke + Replan.LEAST)
+		return MetaPlan.MetaAction.new(request, request.stroke, request.stroke + Sampling.FITS)
 	var length = WINDOW if request.duration == null else Util.most(0.0, request.duration)
 	if request.stroke != null:
 		length = Util.most(length, request.stroke - request.start + Sampling.FITS)

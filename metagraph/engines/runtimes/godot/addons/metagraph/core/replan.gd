@@ -7,7 +7,6 @@
 
 const MetaPlan = preload("meta_plan.gd")
 const Util = preload("util.gd")
-const LEAST = 1e-06  # seconds of the window of what is placed at its stroke
 
 
 # Let new requests wait until `free` seconds, the end of the running action; what would wait too long is past. Those that say how
@@ -24,7 +23,7 @@ static func delay(asked, free_, settings):
 		elif late > settings.wait:
 			reports.append(_told(meta, "past", "asked for at %.2f s, %.1f s before anything could start" % [meta.start, late]))
 		else:
-			metas.append(MetaPlan.MetaAction.new(meta.request, free_, free_ + (meta.end - meta.start), meta.part, meta.written))
+			metas.append(_after(meta, free_))
 			reports.append(_told(meta, "late", "waits %.2f s for the running action" % [late], true))
 	return [metas, reports]
 
@@ -156,26 +155,17 @@ static func _placed(metas, settings):
 		elif last.end - meta.request.start > settings.wait:
 			reports.append(_told(meta, "covered", _no_time(last)))
 		else:
-			var later = MetaPlan.MetaAction.new(
-				meta.request,
-				last.end,
-				last.end + (meta.end - meta.start),
-				meta.part,
-				meta.written
-			)
-			var own4 = _order(later)
+			var own4 = _order(_after(meta, last.end))
 			var place4 = at
 			while place4 < queue.size() and not Util.less(own4, _order(queue[place4])):
 				place4 += 1
-			queue.insert(place4, later)
+			queue.insert(place4, _after(meta, last.end))
 			reports.append(_told(meta, "late", "waits %.2f s for '%s'" % [last.end - meta.request.start, last.request.id], true))
 	return [placed, reports]
 
 
-# Return a meta action from `free` on; where its stroke is judged, that is placed there.
+# Return a meta action from `free` on.
 static func _after(meta, free_):
-	if meta.request.stroke != null:
-		return MetaPlan.MetaAction.new(meta.request, free_, free_ + LEAST, meta.part, meta.written)
 	return MetaPlan.MetaAction.new(meta.request, free_, free_ + (meta.end - meta.start), meta.part, meta.written)
 
 

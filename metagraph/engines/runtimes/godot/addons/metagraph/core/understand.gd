@@ -1,5 +1,6 @@
 # From asks at any level of abstraction to what the planner and the life layers work with.
 
+const MetaPlan = preload("meta_plan.gd")
 const Util = preload("util.gd")
 const Asks = preload("asks.gd")
 const Graphemes = preload("graphemes.gd")
@@ -20,10 +21,7 @@ static func understand(graph, asks, now):
 		var why = _mean(graph, ask, at, meant)
 		if why != "":
 			var layer = ask.get("layer")
-			out.refused.append({
-				request = ask.id, outcome = "not-understood", message = why, layer = "arms" if layer == null else layer, at = at,
-				played = false, written = false
-			})
+			out.refused.append(MetaPlan.Report.new(ask.id, "not-understood", why, "arms" if layer == null else layer, at))
 			continue
 		out.requests += meant.requests
 		out.items += meant.items
