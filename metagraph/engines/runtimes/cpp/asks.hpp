@@ -77,6 +77,7 @@ inline std::string name(const Json& value) { return sized(value, 1, 200); }
 inline std::string words(const Json& value) { return sized(value, 0, 20000); }
 inline std::string block(const Json& value) { return sized(value, 0, 200000); }
 inline std::string seconds(const Json& value) { return ranged(value, 0, 1e6); }
+inline std::string late(const Json& value) { return ranged(value, 0, 600); }
 inline std::string hold(const Json& value) { return ranged(value, 0, 600); }
 inline std::string share(const Json& value) { return ranged(value, 0, 1); }
 inline std::string priority(const Json& value) { return whole(value, -1000, 1000); }
@@ -112,14 +113,15 @@ inline const Map<std::string, List<Field>>& fields() {
     static const Field layer_{"layer", "arms", layer}, any_layer{"layer", Json(), layer}, tags_{"tags", Json::list(), tags};
     static const Field limb_{"limb", Json(), limb}, duration{"duration", Json(), seconds}, stroke{"stroke", Json(), seconds};
     static const Field hold_{"hold", Json(), hold}, prepare{"prepare", true, flag}, resume{"resume", false, flag};
+    static const Field late_{"late", Json(), late};
     static const Map<std::string, List<Field>> out = {
-        {"gesture", {layer_, tags_, limb_, duration, stroke, hold_, prepare, resume}},
-        {"fidget", {layer_, tags_, limb_, duration, resume}},
-        {"action", {{"action", Json(), name, true}, any_layer, stroke, hold_, prepare}},
-        {"stance", {{"stance", Json(), name, true}, any_layer, {"stay", false, flag}}},
-        {"change", {layer_, limb_, duration}},
-        {"nod", {tags_}},
-        {"shake", {tags_}},
+        {"gesture", {layer_, tags_, limb_, duration, stroke, hold_, prepare, resume, late_}},
+        {"fidget", {layer_, tags_, limb_, duration, resume, late_}},
+        {"action", {{"action", Json(), name, true}, any_layer, stroke, hold_, prepare, late_}},
+        {"stance", {{"stance", Json(), name, true}, any_layer, {"stay", false, flag}, late_}},
+        {"change", {layer_, limb_, duration, late_}},
+        {"nod", {tags_, late_}},
+        {"shake", {tags_, late_}},
         {"look", {{"to", "user", place}, duration, {"amount", 1.0, share}, {"strict", false, flag}}},
         {"blink", {}},
         {"say",

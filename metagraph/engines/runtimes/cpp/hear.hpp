@@ -40,9 +40,14 @@ inline Answer answer(const std::string& id, const Plan& plan) {
         out.what.push_back(what);
     };
     List<double> waiting;
+    List<std::string> served; // keys of those whose action serves this request, too
+    for (const auto& report : plan.reports) {
+        if (!report->by.empty() && of(report->request)) served.push_back(report->by);
+    }
     for (const auto& [_, layer] : plan.layers) {
         for (const auto& cue : layer->cues) {
             if (of(cue->meta.substr(0, cue->meta.find('+')))) plays(cue->start, cue->end, cue->action->name);
+            if (lang::contains(served, cue->meta)) plays(cue->start, cue->end, cue->action->name);
         }
         for (const auto& meta : layer->metas) {
             if (meta->start >= plan.end && of(meta->request->id)) waiting.push_back(meta->start);

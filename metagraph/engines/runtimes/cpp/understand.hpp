@@ -66,6 +66,7 @@ private:
         made->limb = ask.maybe_text("limb");
         made->stroke = ask.maybe_number("stroke");
         made->hold = ask.maybe_number("hold");
+        made->late = ask.maybe_number("late");
         made->prepare = ask.at("prepare").empty() || ask.at("prepare").flag;
         made->resume = ask.at("resume").flag;
         return made;

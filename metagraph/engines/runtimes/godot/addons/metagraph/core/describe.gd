@@ -7,8 +7,10 @@ const Asks = preload("asks.gd")
 # Returns {project, words: what `do` may be, modes, joints [{name, parent, part}], layers {layer: {start, stances [{id, name}], actions but
 # loops of stances, tags {tag: number of actions}}}, lines [{id, text}], points {name: [x, y, z] metres}}.
 static func describe(graph):
-	var words = Asks.FIELDS.keys()
-	words.erase("bml")  # read by the desktop alone
+	var words = []
+	for word in Asks.FIELDS:
+		if word != "bml":  # read by the desktop alone
+			words.append(str(word))  # Godot 4 has names for keys, which are no texts
 	var joints = []
 	for n in range(graph.names.size()):
 		var parent = null if graph.parents[n] < 0 else graph.names[graph.parents[n]]
