@@ -211,6 +211,30 @@ def test_a_stroke_lands_when_it_was_asked_for_and_a_missed_one_is_told(session: 
 # --- the session's own requests
 
 
+def test_what_may_not_be_late_counts_from_when_it_was_wanted(session: LiveSession) -> None:
+    session.tick(10.0)
+    found = one(session, {"do": "gesture", "at": 9.5, "late": 0.3})
+    assert found["state"] == "refused" and "may come 0.3 s late" in found["why"]
+    found = one(session, {"do": "gesture", "stroke": 9.9, "late": 0})
+    assert found["state"] == "refused" and "ago" in found["why"]
+    assert one(session, {"do": "gesture", "at": 9.5, "late": 2.0, "id": "a"})["state"] == "late"
+    wanted = [{"do": "gesture", "id": f"g{n}", "stroke": 14.0 + 0.4 * n, "late": 0} for n in range(2)]
+    first, second = ask(session, *wanted)
+    assert first["state"] == "planned"
+    assert second["state"] == "refused" and "s late" in second["why"]
+
+
+def test_two_strokes_that_nearly_coincide_are_answered_with_one_gesture(session: LiveSession) -> None:
+    session.tick(10.0)
+    first, second = ask(
+        session,
+        {"do": "gesture", "id": "a", "tags": ["beat"], "stroke": 13.0, "late": 0},
+        {"do": "gesture", "id": "b", "tags": ["emphasis"], "stroke": 13.2, "late": 0},
+    )
+    assert first["state"] == second["state"] == "planned"
+    assert first["actions"] == second["actions"] and first["at"] == second["at"]
+
+
 def test_hello_says_what_is_spoken_here(session: LiveSession) -> None:
     reply = one(session, {"do": "hello", "id": "h", "poses": {"rate": 10, "joints": ["Head", "Hips"]}})
     assert (
