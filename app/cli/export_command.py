@@ -12,7 +12,6 @@ from app.cli.command_output import opened, say, until_told_to_stop
 from metagraph.engines.export import ExportError
 from metagraph.errors import FileError
 from metagraph.files import is_inside
-from metagraph.graph.model import Project
 
 LOOK = 0.3  # seconds between two looks at the project file
 SHOWN = 8  # files named on the screen
@@ -143,7 +142,9 @@ def _once(options: Namespace) -> None:
                           chosen_by_hand=lambda p: any(is_inside(p, x) for x in options.sounds))  # fmt: skip
     files = list(made.files)
     if options.tools:
-        files.append(_tools(project, options.out))
+        from metagraph.engines.tools_file import write_tools
+
+        files.append(write_tools(project, options.out))
     if options.vectors:
         from metagraph.engines.vectors import write_vectors
 
@@ -182,16 +183,3 @@ def _once(options: Namespace) -> None:
     )
     say(options, "\n".join(shown), data)
     sys.stdout.flush()
-
-
-def _tools(project: Project, folder: Path) -> Path:
-    """Write what may be asked of a project's character as tools, beside its export; return the file."""
-    import msgspec
-
-    from metagraph.engines.export import stem_of
-    from metagraph.formats.atomic import write_atomically
-    from metagraph.graph.offered import tools
-
-    path = folder / f"{stem_of(project)}.tools.json"
-    write_atomically(path, msgspec.json.format(msgspec.json.encode(tools(project)), indent=1))
-    return path

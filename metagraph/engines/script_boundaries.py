@@ -5,6 +5,7 @@ plan of the project itself gives.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from math import floor
 from typing import Any
 
 from metagraph.engines.script_parts import Ask, Case, ScriptStep, ask, some
@@ -33,6 +34,7 @@ def boundary_cases(project: Project) -> Iterator[Case]:
         yield from _cooldowns(project, layer)
     yield from _remembered(project)
     yield from _faces(project)
+    yield from _forgotten(project)
     yield from _read(project)
 
 
@@ -94,7 +96,7 @@ def _waits(project: Project, layer: Layer) -> Iterator[Case]:
         start = 0.5 * (1.0 + ready)
         asks = [first, ask("b", "gesture", start, layer=layer, duration=ready - start + more)]
         yield once(f"{layer}: a window over with the action before {place}", "it is covered, or not", asks)
-        asks = [first, ask("b", "gesture", ready + more, layer=layer, duration=0.5)]
+        asks = [first, ask("b", "gesture", ready + more, layer=layer, duration=0.5 if more else 0.0)]
         yield once(f"{layer}: asked for when it can begin {place}", "at that very moment", asks)
     late = ask("b", "gesture", max(0.0, ready - wait), layer=layer)
     later = ask("c", "gesture", max(0.0, ready - wait - 1 / 64), layer=layer)
@@ -137,6 +139,11 @@ def _written(project: Project, layer: Layer) -> Iterator[Case]:
         for word, more in (("less", -near), ("more", near)):
             asks = [ask("r", "fidget", meta.start + shortest + more, layer=layer, duration=0.5)]
             yield once(f"{layer}: {about}, {word} {place}", "and no more", asks, meta.end + 4.0, idle=True)
+        first = (floor(meta.start * 64) + 8) / 64  # a gap between requests of just the shortest, and less
+        for word, less in (("just", 0.0), ("hardly", 1 / 64)):
+            asks = [ask("r", "fidget", first - 0.5, layer=layer, duration=0.5)]
+            asks += [ask("s", "fidget", first + shortest - less, layer=layer, duration=4.0)]
+            yield once(f"{layer}: a gap {word} long enough {place}", about, asks, meta.end + 4.0, idle=True)
         asks = [ask("r", "fidget", meta.end + near, layer=layer, duration=0.5)]
         start = max(0.0, meta.start - 0.5)
         asks += [ask("s", "fidget", start, layer=layer, duration=meta.start - start - near)]
@@ -244,6 +251,28 @@ def _faces(project: Project) -> Iterator[Case]:
     yield _with_poses(
         "looks as far as can be", "limits of head, eyes and lids", asks, times=times, alive=(True,)
     )
+
+
+def _forgotten(project: Project) -> Iterator[Case]:
+    """Looks, words and modes that are over, just over, or not yet when the past is forgotten."""
+    if not project.life.on:
+        return
+    asks: list[Ask] = []
+    for n in range(12):
+        to = [0.5 * (-1) ** n, 1.2 + 0.05 * n, 1.0]
+        asks.append(ask(f"k{n}", "look", 1.0 + 1.5 * n, to=to, duration=0.75, strict=n % 3 == 0))
+        asks.append(ask(f"t{n}", "say", 1.25 + 1.5 * n, text="So it is, then.", duration=1.5))
+    asks += [ask("m1", "mode", 4.0, mode="talking"), ask("m2", "mode", 9.0, mode="listening")]
+    for place, seconds in enumerate((4.0, 5.5, 9.25, 14.0)):
+        steps = (
+            ScriptStep(0.0, 12.0, tuple(asks)),
+            ScriptStep(seconds, 20.0, forget=seconds),
+            ScriptStep(seconds + 0.5, 24.0, forget=seconds + 0.5),
+        )
+        times = (seconds + 0.55, seconds + 1.3)
+        about = "what still shows is kept"
+        yield Case(f"looks and words that are forgotten {place}", about, steps, times=times, alive=(True,))
+        yield Case(f"looks and words, just forgotten {place}", about, steps[:2], alive=(), idle=True)
 
 
 def _read(project: Project) -> Iterator[Case]:

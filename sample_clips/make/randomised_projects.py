@@ -74,8 +74,12 @@ def _fields(chance: random.Random, project: Project, action: Action) -> dict[str
     if action.kind == "gesture" and chance.random() < 0.6:
         marks = sorted(_of(chance, 0.9 * start + 0.1 * end, 0.1 * start + 0.9 * end) for _ in range(4))
         timing = replace(timing, ready=marks[0], stroke=marks[1], stroke_end=marks[2], relax=marks[3])
+        if chance.random() < 0.5:
+            timing = replace(timing, earliest_exit=_of(chance, marks[3], end))
+    tags = tuple(chance.choice(TAGS).split()) if action.kind == "fidget" else action.tags
     return {
         "timing": timing,
+        "tags": tags,
         "likelihood": _of(chance, 0.2, 3.0),
         "cooldown": chance.choice((0.0, 0.0, _of(chance, 0.2, 1.0), _of(chance, 1.0, 9.0))),
         "spacing": chance.choice((None, 0, 1, 2, 3, 5)),

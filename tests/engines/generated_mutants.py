@@ -1,7 +1,9 @@
 """Generated mutants: one operator, number or word of a runtime changed at a time, and whether the conformance
 vectors notice: `python -m tests.engines.generated_mutants javascript --count 400`.
 
-What a vector cannot see is not changed: texts, messages, files that read files, an engine's own scenes.
+What a vector cannot see is not changed: texts, messages, files that read files, an engine's own scenes; and
+what changes nothing: sizes of buffers, how far they are filled or copied (what is behind is overwritten or
+never read), usual values of parameters that are always given, numbers too small to divide by.
 """
 
 from __future__ import annotations
@@ -41,7 +43,11 @@ class Language:
     left_out: tuple[str, ...]
     comments: str = r"//[^\n]*|/\*.*?\*/"
     texts: str = r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|`(?:\\.|[^`\\])*`'
-    silent: str = r"\b(import|export \{|using|throw|describe|#include|#pragma|push_error|assert)\b"
+    silent: str = (
+        r"\b(import|export \{|using|throw|describe|#include|#pragma|push_error|assert|constructor)\b"
+        r"|new (Float(32|64)Array|double|float)\b|\.fill\(|\.resize\("
+        r"|for \((let|int) k = 0; k < [34];"
+    )
 
 
 LANGUAGES = {
@@ -74,7 +80,10 @@ LANGUAGES = {
     "cpp": Language(
         "cpp",
         ".hpp",
-        ("language.hpp", "json.hpp", "glb.hpp", "graph.hpp", "loading", "describe", "character.hpp", "clip"),
+        (
+            "language.hpp", "json.hpp", "glb.hpp", "graph.hpp", "loading", "describe", "character.hpp",
+            "clip", "conformance", "table",
+        ),
     ),
 }  # fmt: skip
 
@@ -138,9 +147,9 @@ def _instead(token: re.Match[str], line: str) -> str | None:
         if "." not in old and "e" not in old:
             return str(int(number) + 1)
         end = "f" if old.endswith("f") else ""
-        if number == 0:
-            return f"0.1{end}"
-        return f"{0.0 if number < 1e-3 else number * 1.1:.6g}{end}"
+        if 0 < number < 1e-3:
+            return None
+        return f"{number * 1.1 if number else 0.1:.6g}{end}"
     if old not in SWAPS:
         return None
     if old in SPACED:

@@ -19,14 +19,8 @@ def _made(tmp_path: Path, source: str) -> list[tuple[str, str]]:
 
 
 def test_operators_numbers_and_words_are_changed_and_texts_and_comments_are_not(tmp_path: Path) -> None:
-    source = 'const a = b <= 0.5 && c; // 3 < 4\nif (!d) return "x < 1" + min(e, 1e-6);\n'
-    assert _made(tmp_path, source) == [
-        ("<=", "<"),
-        ("0.5", "0.55"),
-        ("&&", "||"),
-        ("min", "max"),
-        ("1e-6", "0"),
-    ]
+    source = 'const small = new Float64Array(3);\nconst a = b <= 0.5 && c; // 3 < 4\nif (!d) return "x < 1" + min(e, 1e-6);\n'
+    assert _made(tmp_path, source) == [("<=", "<"), ("0.5", "0.55"), ("&&", "||"), ("min", "max")]
 
 
 def test_what_only_tells_of_errors_is_left_alone(tmp_path: Path) -> None:

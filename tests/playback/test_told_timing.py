@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -45,6 +47,15 @@ def test_the_mouth_is_shut_in_a_pause_between_words(sample: Project) -> None:
     assert without > 0.7 and timed < 0.02
     spoken = shown(said(sample, words=WORDS), 1.0 + np.linspace(0.1, 0.5, 50)).sum(1).max()
     assert spoken > 0.7
+
+
+def test_the_page_on_the_format_tells_when_the_mouth_is_shut(sample: Project) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "format.md").read_text(encoding="utf-8")
+    found = re.search(r"`(\{\"do\": \"say\".*\})` has the mouth shut from (\S+) to (\S+) s", page)
+    assert found is not None
+    plan = perform(sample, [a.read_request(found[1])], 10.0, idle=False)
+    assert shown(plan, np.linspace(float(found[2]), float(found[3]), 50)).max() < 0.05
+    assert shown(plan, [1.3, 2.7]).sum(1).min() > 0.4
 
 
 def test_words_alone_are_what_is_said(sample: Project) -> None:

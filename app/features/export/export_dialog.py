@@ -41,6 +41,7 @@ from app.widgets.tree_items import items_below, top_items
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.placing import ForeignFilesError
 from metagraph.engines.targets.target import ExportTarget, Report
+from metagraph.engines.tools_file import write_tools
 from metagraph.engines.vectors import write_vectors
 from metagraph.graph.check import check
 from metagraph.graph.expand import size
@@ -58,6 +59,7 @@ class Choice:
     mesh: bool = True
     expanded: bool = False
     vectors: bool = False
+    tools: bool = False
 
 
 @dataclass(frozen=True)
@@ -164,7 +166,10 @@ class ExportDialog(QDialog):
         self.expanded.setChecked(chosen.expanded)
         self.vectors = QCheckBox("conformance vectors, which prove that a runtime plays the same", self)
         self.vectors.setChecked(chosen.vectors)
-        for words, box in zip(("Include", "", ""), (self.mesh, self.expanded, self.vectors), strict=True):
+        self.tools = QCheckBox("what may be asked, as tools for a language model", self)
+        self.tools.setChecked(chosen.tools)
+        boxes = (self.mesh, self.expanded, self.vectors, self.tools)
+        for words, box in zip(("Include", "", "", ""), boxes, strict=True):
             form.addRow(words, box)
         return form
 
@@ -231,7 +236,7 @@ class ExportDialog(QDialog):
         self.words.setText(
             f"Writes {target.files}. {whole.states} actions, {whole.clips} clips on {joints} joints."
         )
-        for box in (self.expanded, self.vectors):
+        for box in (self.expanded, self.vectors, self.tools):
             box.setVisible(played)
         rows = [f"<li>{escape(words)}</li>" for words in registry.losses(project, target.name)]
         note = f"<p><b>Experimental</b>: {escape(target.untried)}.</p>" if target.untried else ""
@@ -278,14 +283,14 @@ class ExportDialog(QDialog):
     def _export(self, overwrite: bool = False) -> None:
         project, folder, name = self.project, Path(self.folder.text()), self.target.name
         base = self.document.folder
-        expanded, vectors = (
-            self.expanded.isChecked(),
-            self.vectors.isChecked() and not self.vectors.isHidden(),
-        )
+        boxes = (self.expanded, self.vectors, self.tools)
+        expanded, vectors, tools = (box.isChecked() and not box.isHidden() for box in boxes)
         character = (
             (base or Path()) / project.character if project.character and self.mesh.isChecked() else None
         )
-        self.chosen = Choice(name, self.chosen.folders, self.mesh.isChecked(), expanded, vectors)
+        self.chosen = Choice(
+            name, self.chosen.folders, self.mesh.isChecked(), *(b.isChecked() for b in boxes)
+        )
         QSettings().setValue(self._key(), json.dumps(asdict(self.chosen)))
         self.go.setEnabled(False)
         self.trouble.clear()
@@ -298,6 +303,8 @@ class ExportDialog(QDialog):
             )
             if vectors:
                 write_vectors(next(path for path in made.files if path.suffix == ".json"))
+            if tools:
+                write_tools(project, folder)
             return made
 
         def failed(error: Exception) -> None:

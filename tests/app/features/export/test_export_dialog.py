@@ -86,17 +86,21 @@ def test_a_target_is_written_and_remembered_with_its_options(toys, tmp_path):
     again.reject()
 
 
-def test_vectors_are_written_where_they_are_asked_for(toys, tmp_path):
+def test_vectors_and_tools_are_written_where_they_are_asked_for(toys, tmp_path):
     drive = toys
     dialog = opened(drive)
     pick(drive, dialog, "metagraph")
     put(dialog, str(tmp_path / "game"))
     QTest.mouseClick(dialog.vectors, Qt.MouseButton.LeftButton, pos=QPoint(8, dialog.vectors.height() // 2))
-    assert dialog.vectors.isChecked()
+    QTest.mouseClick(dialog.tools, Qt.MouseButton.LeftButton, pos=QPoint(8, dialog.tools.height() // 2))
+    assert dialog.vectors.isChecked() and dialog.tools.isChecked()
     QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
     drive.wait(lambda: dialog.open_button.isEnabled(), 60)
     assert (tmp_path / "game" / "vectors.json").is_file()
+    (tools,) = (tmp_path / "game").glob("*.tools.json")
+    assert "gesture" in tools.read_text()
     dialog.reject()
+    assert opened(drive).tools.isChecked()
 
 
 @pytest.mark.parametrize(

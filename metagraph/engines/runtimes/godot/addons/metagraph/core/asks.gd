@@ -18,8 +18,8 @@ const FIELDS = {
 	look = {to = "spot", duration = "seconds?", amount = "share", strict = "switch"},
 	blink = {},
 	say = {
-		line = "line?", text = "text20000", duration = "seconds?", gestures = "switch", words = "entries4000", visemes = "entries20000",
-		set = "set?"
+		"line": "line?", "text": "text20000", "duration": "seconds?", "gestures": "switch", "words": "entries4000",
+		"visemes": "entries20000", "set": "set?"
 	},
 	mode = {mode = "mode?"},
 	place = {name = "name", point = "point"},
@@ -32,7 +32,8 @@ const USUAL = {
 	strict = false, text = "", gestures = true, what = "", words = [], visemes = []
 }
 const WORDS = {
-	set = ["oculus", "azure", "sapi", "polly", "arkit"], layer = ["body", "arms", "head"], limb = ["left", "right", "both"], mode = ["idle", "listening", "talking"]
+	"set": ["oculus", "azure", "sapi", "polly", "arkit"], "layer": ["body", "arms", "head"], "limb": ["left", "right", "both"],
+	"mode": ["idle", "listening", "talking"]
 }
 
 

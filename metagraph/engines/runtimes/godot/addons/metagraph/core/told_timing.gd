@@ -11,10 +11,10 @@ static func told_timing(alphabet, ask):
 	var words = []
 	var marks = []
 	for n in range(ask.words.size()):
-		if not _add_word(ask.words[n], words, false):
+		if not _add_spoken(ask.words[n], words, false):
 			return [null, "words[%d]: should be [word, start, end], seconds from the line's start" % n]
 	for n in range(ask.visemes.size()):
-		if not _add_mark(ask.visemes[n], marks) and not _add_word(ask.visemes[n], words, true):
+		if not _add_mark(ask.visemes[n], marks) and not _add_spoken(ask.visemes[n], words, true):
 			return [null, "visemes[%d]: should be [seconds, viseme], or with its weight from 0 to 1" % n]
 	if words.size() == 0 and marks.size() == 0:
 		return [null, ""]
@@ -30,7 +30,7 @@ static func _seconds(value, of):
 
 
 # Adds the word an entry tells; returns whether it is one. named: only where it says so itself.
-static func _add_word(entry, out, named):
+static func _add_spoken(entry, out, named):
 	var told = entry
 	if typeof(entry) == TYPE_DICTIONARY:
 		var kind = entry.get("type", "")

@@ -1,0 +1,21 @@
+"""What may be asked of a character as tools for a language model, in a file beside its export."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+
+from metagraph.engines.export import stem_of
+from metagraph.formats.atomic import write_atomically
+from metagraph.graph.model import Project
+from metagraph.graph.offered import tools
+
+
+def write_tools(project: Project, folder: Path) -> Path:
+    """Write `offered.tools` as JSON into a folder; return the file. Raises FileError where it cannot be
+    written.
+    """
+    path = folder / f"{stem_of(project)}.tools.json"
+    write_atomically(path, msgspec.json.format(msgspec.json.encode(tools(project)), indent=1))
+    return path
