@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "json.hpp"
+#include "node.hpp"
 #include "rotation.hpp"
 
 namespace metagraph {

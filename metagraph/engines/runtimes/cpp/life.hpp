@@ -1,7 +1,7 @@
 // The life layers' settings, and the words of faces.
 #pragma once
 
-#include "json.hpp"
+#include "node.hpp"
 #include "words.hpp"
 
 namespace metagraph {
