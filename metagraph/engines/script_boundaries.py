@@ -27,7 +27,7 @@ def _just(seconds: float) -> tuple[float, ...]:
 
 def boundary_cases(project: Project) -> Iterator[Case]:
     """Yield the cases that suit a project."""
-    for layer in LAYERS:
+    for layer in LAYERS if _exact(project) else ():
         if some(project, layer, "gesture"):
             for part in (_windows, _waits, _limits, _written, _extensions):
                 yield from part(project, layer)
@@ -35,7 +35,13 @@ def boundary_cases(project: Project) -> Iterator[Case]:
     yield from _remembered(project)
     yield from _faces(project)
     yield from _forgotten(project)
+    yield from _talked_over(project)
     yield from _read(project)
+
+
+def _exact(project: Project) -> bool:
+    """Whether frames have times that every language holds exactly: a boundary of others cannot be met."""
+    return all((4096 / clip.fps).is_integer() for clip in project.clips.values())
 
 
 def once(name: str, about: str, asks: Sequence[Ask], end: float = 14.0, idle: bool = False) -> Case:
@@ -273,6 +279,33 @@ def _forgotten(project: Project) -> Iterator[Case]:
         about = "what still shows is kept"
         yield Case(f"looks and words that are forgotten {place}", about, steps, times=times, alive=(True,))
         yield Case(f"looks and words, just forgotten {place}", about, steps[:2], alive=(), idle=True)
+
+
+def _talked_over(project: Project) -> Iterator[Case]:
+    """Lines that begin together or interrupt others, and what is taken back at the moment it begins."""
+    if not project.life.on:
+        return
+
+    def t(ident: str, at: float, length: float, priority: int) -> Ask:
+        text = "Oh, how so? Mamma mia."
+        return ask(ident, "say", at, text=text, duration=length, priority=priority)
+
+    asks = [t("a", 1.0, 3.0, 2), t("b", 2.0, 4.0, 1), t("c", 3.0, 1.5, 3), t("d", 6.0, 2.0, 1)]
+    asks += [t("e", 6.0, 1.0, 1), t("f", 9.0, 2.0, 2), t("g", 9.0, 3.0, 1), t("h", 10.5, 1.0, 2)]
+    times = tuple(round(1.13 + 0.37 * n, 3) for n in range(30))
+    yield _with_poses("lines that interrupt lines", "who is heard", asks, times=times, alive=(True,))
+    now = 4.0 - project.settings.lookahead
+    asks = [
+        ask("k", "look", 4.0, to=[0.8, 1.2, 0.9]),
+        t("a", 4.0, 2.0, 1),
+        ask("m", "mode", 4.0, mode="talking"),
+    ]
+    steps = (
+        ScriptStep(0.0, 12.0, (*asks, t("b", 3.5, 4.0, 0), ask("n", "look", 3.5, to="ahead", duration=4.0))),
+        ScriptStep(now, 12.0, tuple(ask(f"w{x}", "withdraw", what=x) for x in "kambn")),
+    )
+    times = (3.7, 3.95, 4.05, 4.3, 5.1, 6.2)
+    yield Case("taken back as it begins", "it never was", steps, times=times, alive=(True,))
 
 
 def _read(project: Project) -> Iterator[Case]:

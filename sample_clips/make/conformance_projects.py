@@ -383,7 +383,7 @@ def stick(name: str = "stick", morphs: tuple[str, ...] = (), size: float = 1.0) 
     greeting = (Gesture(tags=("greeting",), at=0.2, stroke=0.9, priority=2), Nod(at=0.5))
     lines = {
         "hello": Line(text="Hello. I am a stick.", asks=greeting),
-        "7": Line(text="Seven!", duration=0.8),
+        "7": Line(text="Seven!", duration=0.8, asks=(Nod(),)),
     }
     voices = {"hello": voice_from_text(lines["hello"].text, 1.7)}
     return replace(b.project, lines=lines, voices=voices, points={"door": (1.5, 1.2, 0.5)})
@@ -475,4 +475,5 @@ def still() -> tuple[Project, ...]:
         "quiet": Life(aversion_length=0.0, saccade_rate=0.0, blinks=0.0, breath_rate=0.0),
         "steady": Life(aversion_angle=0.0, saccades=0.0, accent_blinks=0.0, head_share=0.0, lids=0.0),
     }
+    lives["slow"] = Life(breath_rate=0.9, aversion_rate=0.9, saccade_rate=0.9, blinks=0.9)
     return tuple(replace(sparse(), name=name, life=life) for name, life in lives.items())
