@@ -168,7 +168,7 @@ class Performer:
         """
         meta = bound.meta
         request = meta.request
-        allowed = 0.0 if request.late is None else request.late
+        allowed = self._slack(request)
         late = {a.id: self._lateness(a, request, self._shape(a, request, now)) for a in fitting}
         least = min([late[a.id] for a in fitting])
         if least > allowed + FITS:
@@ -260,6 +260,7 @@ class Performer:
         return request.stroke - least
 
     def _slack(self, request: MetaRequest) -> float:
+        """Return by how many seconds a request may come late, 0 where it does not say."""
         return 0.0 if request.late is None else request.late
 
     def _over(self, action: Action, request: MetaRequest, now: float) -> float:

@@ -12,6 +12,7 @@ from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.line_timing import LineTiming, SpokenWord, VisemeMark, timing_of, wrong_in
 
 THOUSAND, TICKS = 1e3, 1e7  # of a second, in which Polly and Azure count
+LARGEST = 1e15
 
 
 def told_timing(ask: Say) -> LineTiming | None:
@@ -38,7 +39,8 @@ def told_timing(ask: Say) -> LineTiming | None:
 
 
 def _number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    """Whether a value is a number that times and names can be; JSON may have whole ones of any length."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= LARGEST
 
 
 def _word(entry: Any, out: list[SpokenWord], named: bool = False) -> bool:
@@ -85,7 +87,7 @@ def _mark(entry: Any, out: list[VisemeMark]) -> bool:
     if not isinstance(entry, Sequence) or not 2 <= len(entry) <= 3 or not _number(entry[0]):
         return False
     name, weight = entry[1], entry[2] if len(entry) == 3 else 1.0
-    if isinstance(name, int | float) and not isinstance(name, bool) and name == int(name):
+    if _number(name) and name == int(name):
         name = str(int(name))
     if not isinstance(name, str) or not _number(weight):
         return False

@@ -152,6 +152,12 @@ def test_lips_meet_where_a_viseme_says_so(sample: Project, marks: list[Any]) -> 
         ({"words": [["a", -1.0, 1.2]]}, ("words[0] 'a'", "times are from 0")),
         ({"words": [["a", 0.0, 5.0]], "duration": 2.0}, ("words[0] 'a'", "past the end at 2.000 s")),
         ({"words": [[0.0, "a", 5.0]]}, ("words[0]", "[word, start, end]")),
+        ({"words": [["a", 10**400, 1.0]]}, ("words[0]", "[word, start, end]")),
+        ({"visemes": [[10**400, "aa"]]}, ("visemes[0]", "[seconds, viseme]")),
+        ({"visemes": [[0.1, "aa", float("nan")]]}, ("visemes[0]", "[seconds, viseme]")),
+        ({"visemes": [[0.1, float("inf")]]}, ("visemes[0]", "[seconds, viseme]")),
+        ({"visemes": [{"time": 10**400, "type": "viseme", "value": "p"}]}, ("visemes[0]", "[seconds")),
+        ({"visemes": [{"audioOffset": 10**400, "visemeId": 1}]}, ("visemes[0]", "[seconds, viseme]")),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_told_with_its_place_and_a_remedy(

@@ -160,6 +160,7 @@ struct Performer {
     /// nothing meets it.
     double _latest(const Ref<MetaRequest>& request);
 
+    /// Return by how many seconds a request may come late, 0 where it does not say.
     double _slack(const Ref<MetaRequest>& request);
 
     /// Return when what follows an action could begin at the earliest.
@@ -377,7 +378,7 @@ inline void Performer::_realise(const Ref<Bound>& bound, double now) {
 inline List<Ref<Action>> Performer::_timely(const Ref<Bound>& bound, const List<Ref<Action>>& fitting, double now) {
     Ref<MetaAction> meta = bound->meta;
     Ref<MetaRequest> request = meta->request;
-    double allowed = !request->late.has_value() ? 0.0 : *request->late;
+    double allowed = this->_slack(request);
     Map<std::string, double> late;
     for (const auto& a : fitting) {
         late[a->id] = this->_lateness(a, request, this->_shape(a, request, now));

@@ -198,7 +198,7 @@ export class Performer {
   timely(bound, fitting, now) {
     const meta = bound.meta;
     const request = meta.request;
-    const allowed = request.late === null ? 0 : request.late;
+    const allowed = this.slack(request);
     const late = new Map(fitting.map((a) => [a.id, this.lateness(a, request, this.shape(a, request, now))]));
     const least = minOf(fitting.map((a) => late.get(a.id)));
     let waits;
@@ -311,6 +311,7 @@ export class Performer {
     return request.stroke - least;
   }
 
+  /** Return by how many seconds a request may come late, 0 where it does not say. */
   slack(request) {
     return request.late === null ? 0 : request.late;
   }

@@ -253,7 +253,7 @@ namespace Metagraph
         {
             var meta = bound.Meta;
             var request = meta.Request;
-            var allowed = request.Late == null ? 0.0 : request.Late.Value;
+            var allowed = Slack(request);
             var late = fitting.Select(a => (a.Id, Lateness(a, request, Shape(a, request, now)))).ToMap();
             var least = PlainNumbers.MinOf(fitting.Select(a => late[a.Id]).ToList());
             string waits = default(string);
@@ -393,6 +393,7 @@ namespace Metagraph
             return request.Stroke.Value - least;
         }
 
+        /// <summary>Return by how many seconds a request may come late, 0 where it does not say.</summary>
         public double Slack(MetaRequest request)
         {
             return request.Late == null ? 0.0 : request.Late.Value;

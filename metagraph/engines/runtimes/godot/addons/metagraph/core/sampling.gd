@@ -190,7 +190,7 @@ class Performer:
 	func _timely(bound, fitting, now):
 		var meta = bound.meta
 		var request = meta.request
-		var allowed = 0.0 if request.late == null else request.late
+		var allowed = self._slack(request)
 		var late = {}
 		for a in fitting:
 			late[a.id] = self._lateness(a, request, self._shape(a, request, now))
@@ -298,6 +298,7 @@ class Performer:
 				least = Util.least(least, found.stroke - found.skip(action.timing.blend_in))
 		return request.stroke - least
 
+	# Return by how many seconds a request may come late, 0 where it does not say.
 	func _slack(request):
 		return 0.0 if request.late == null else request.late
 
