@@ -41,7 +41,8 @@ def boundary_cases(project: Project) -> Iterator[Case]:
 
 def _exact(project: Project) -> bool:
     """Whether frames have times that every language holds exactly: a boundary of others cannot be met."""
-    return all((4096 / clip.fps).is_integer() for clip in project.clips.values())
+    played = {action.clip for layer in LAYERS for action in project.graphs[layer].actions.values()}
+    return all((4096 / project.clips[clip].fps).is_integer() for clip in played)
 
 
 def once(name: str, about: str, asks: Sequence[Ask], end: float = 14.0, idle: bool = False) -> Case:

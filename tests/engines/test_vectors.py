@@ -89,6 +89,24 @@ def test_the_vectors_look_at_every_combination_of_layers_and_at_empty_ones() -> 
     assert json.loads((sparse / "sparse.json").read_bytes())["layers"]["head"]["stances"] == []
 
 
+def test_characters_whose_times_are_exact_are_looked_at_on_boundaries_and_others_are_not() -> None:
+    names = {
+        f.name: [case["name"] for case in json.loads((f / vectors.NAME).read_bytes())["cases"]]
+        for f in FOLDERS
+    }
+    for folder in ("random1", "random2"):
+        for about in (
+            "body: waits as long as it may 4",  # the boundary itself, after four places beside it
+            "arms: as short as may be left",
+            "has cooled down",
+            "held and left",
+            "a gap just long enough",
+            "heard at a moment that tells",
+        ):
+            assert any(about in name for name in names[folder]), (folder, about)
+    assert not any("waits as long as it may" in name for name in names["stick"])
+
+
 def test_an_export_plays_what_the_preview_plays(sample: Project, tmp_path: Path) -> None:
     back = read_export(export(sample, tmp_path).json, resolved=True)
     assert sample.skeleton is not None
