@@ -170,7 +170,7 @@ class Compatibility(QObject):
         self.judged: Judged | None = None
         self.flags: dict[Problem, Fix | None] = {}
         self.on = False  # until the window has come up
-        self._judging = self._looking = False
+        self._judging = self._again = self._looking = False  # again: more changed while it was judged
         self._wanted: Action | None = None
         self._curves: dict[str, tuple[Action, Measured, Curves | None]] = {}
         self._matrices: dict[Layer, tuple[Measured, Matrix]] = {}
@@ -204,9 +204,9 @@ class Compatibility(QObject):
 
     def _judge(self) -> None:
         if self._judging:
-            self._timer.start()
+            self._again = True
             return
-        self._judging = True
+        self._judging, self._again = True, False
         project, before = self.document.project, self.judged
 
         def work(job: Job) -> tuple[Judged, dict[Problem, Fix | None]]:
@@ -215,12 +215,17 @@ class Compatibility(QObject):
 
         self.jobs.start("jumps", work, self._done, self._gave_up, quick=True)
 
-    def _gave_up(self, error: Exception) -> None:
+    def _over(self) -> None:
         self._judging = False
+        if self._again and self.on:
+            self._timer.start()
+
+    def _gave_up(self, error: Exception) -> None:
+        self._over()
         self.failed.emit(f"Jumps could not be looked for: {error}")
 
     def _done(self, result: tuple[Judged, dict[Problem, Fix | None]]) -> None:
-        self._judging = False
+        self._over()
         before, (self.judged, self.flags) = self.judged, result
         self._curves = {
             i: (a, m, c) for i, (a, m, c) in self._curves.items() if self.judged.measured[a.layer] is m
