@@ -93,8 +93,8 @@ class Store:
         for loaded in self._meshes.values():
             loaded.idle += 1
         rows, row = [], 0
-        for i, mesh in enumerate(meshes):
-            self._load(mesh, actors[i].morphs if i < len(actors) else None)
+        for mesh in meshes:
+            self._load(mesh)
         for actor in actors:
             rows.append(row)
             row += actor.count
@@ -139,7 +139,7 @@ class Store:
         self.marks = self._ctx.texture((width, len(actors)), 4, marks.tobytes())
         self.marks.filter = moderngl.NEAREST, moderngl.NEAREST
 
-    def _load(self, mesh: Mesh, weights: Array | None) -> None:
+    def _load(self, mesh: Mesh) -> None:
         loaded = self._meshes.get(mesh)
         if loaded is None:
             buffer = self._ctx.buffer
@@ -150,10 +150,17 @@ class Store:
                 {b.image: self._image(b.image) for b in mesh.batches if b.image is not None},
             )
         loaded.idle = 0
-        if mesh.morphs is None or weights is None or len(weights) != len(mesh.morphs):
+
+    def shape(self, mesh: Mesh, weights: Array | None) -> None:
+        """Give a loaded mesh the face of who is drawn next, at rest where it has none; two may share a mesh.
+        weights: `[K]` of its morph targets.
+        """
+        if mesh.morphs is None:
             return
-        wanted = np.asarray(weights, np.float32)
-        if wanted.tobytes() != loaded.morphs:  # on change only; the card then draws it as any mesh
+        fits = weights is not None and len(weights) == len(mesh.morphs)
+        wanted = np.asarray(weights, np.float32) if fits else np.zeros(len(mesh.morphs), np.float32)
+        loaded = self._meshes[mesh]
+        if wanted.tobytes() != (loaded.morphs or bytes(wanted.nbytes)):  # on change only
             active = np.flatnonzero(np.abs(wanted) > 1e-5)
             moved = mesh.vertices["position"] + np.tensordot(wanted[active], mesh.morphs[active], 1)
             loaded.positions.write(np.ascontiguousarray(moved, "<f4").tobytes())

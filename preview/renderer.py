@@ -380,6 +380,7 @@ class Renderer:
         ones.
         """
         loaded = self.store[mesh]
+        self.store.shape(mesh, actor.morphs)
         array = loaded.array(self.ctx, program, kind)
         flags = moderngl.DEPTH_TEST | (
             moderngl.BLEND if actor.opacity < 1 and kind != "depth" else moderngl.NOTHING

@@ -387,7 +387,7 @@ def few_of_the_sample(folder: Path) -> Path:
     source = Path(__file__).resolve().parents[1] / "sample_clips"
     for name in ("lines", "clips"):
         (folder / name).mkdir(parents=True)
-    for path in (source / "mannequin.glb", *(source / "lines").iterdir()):
+    for path in (*source.glob("*.glb"), *(source / "lines").iterdir()):
         shutil.copy(path, folder / path.relative_to(source))
     for name in FEW:
         shutil.copy(source / "clips" / f"{name}.glb", folder / "clips")

@@ -55,7 +55,7 @@ def with_motion_of(project: Project, other: Project) -> Project:
     return replace(project, clips={**project.clips, **found}) if found else project
 
 
-def _faced(project: Project, folder: Path) -> Project:
+def faced(project: Project, folder: Path) -> Project:
     """Return the project knowing its character's morph targets; what is wrong with the file, whoever draws it
     says.
     """
@@ -70,7 +70,7 @@ def _faced(project: Project, folder: Path) -> Project:
 
 
 def _voiced(opened: Opened, folder: Path) -> Opened:
-    opened = replace(opened, project=_faced(opened.project, folder))
+    opened = replace(opened, project=faced(opened.project, folder))
     if not any(line.audio or line.phones for line in opened.project.lines.values()):
         return opened
     from metagraph.speech.lines import load_voices

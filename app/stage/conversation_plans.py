@@ -8,7 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from app.project.opening import open_whole
+import msgspec
+
+from app.project.opening import faced, open_whole
 from app.stage.playback_source import Shown
 from metagraph.errors import FileError
 from metagraph.graph import performance_edits
@@ -27,6 +29,7 @@ class ConversationPlans:
     def __init__(self) -> None:
         self._voices: dict[Key, Any] = {}
         self._projects: dict[Key, Project] = {}
+        self._bodies: dict[Key, tuple[str, ...]] = {}  # morph targets of characters
 
     def show(self, project: Project, ident: str, folder: Path, side: int = 0) -> Shown:
         """Return what all play, a side first, the others with it. folder: what paths begin at."""
@@ -40,7 +43,13 @@ class ConversationPlans:
             if s.project is not None
         }
         self._projects = {key: found for key, found in self._projects.items() if key in wanted}
-        projects = [self._project(project, s.project, folder, notes) for s in conversation.sides]
+        moving = [self._project(project, s.project, folder, notes) for s in conversation.sides]
+        drawn = {str(folder / s.character) for s in conversation.sides if s.character is not None}
+        self._bodies = {key: found for key, found in self._bodies.items() if key[0] in drawn}
+        projects = [
+            self._drawn(p, s.character, folder, notes)
+            for p, s in zip(moving, conversation.sides, strict=True)
+        ]
         key = tuple(
             (s.audio, s.channel, s.words, _written(folder / s.audio) if s.audio else None)
             for s in conversation.sides
@@ -88,6 +97,22 @@ class ConversationPlans:
                 return project
             self._projects[key] = found.project
         return self._projects[key]
+
+    def _drawn(self, project: Project, path: str | None, folder: Path, notes: list[str]) -> Project:
+        """Return the project with the character a side is drawn with, and what that one's face can do; with
+        its own where there is no such file.
+        """
+        if path is None:
+            return project
+        whole = folder / path
+        if not whole.is_file():
+            notes.append(f"There is no character at {whole}. This side is drawn with its project's.")
+            return project
+        drawn = replace(project, character=str(whole), hidden=())
+        key = (str(whole), _written(whole))
+        if key not in self._bodies:
+            self._bodies[key] = faced(drawn, folder).face.morphs
+        return replace(drawn, face=msgspec.structs.replace(project.face, morphs=self._bodies[key]))
 
 
 def _motion(project: Project, side: Side, notes: list[str]) -> str | None:

@@ -83,6 +83,35 @@ class BinaryChunk:
         self._known[key] = len(self.accessors) - 1
         return self._known[key]
 
+    def sparse(self, offsets: Array) -> int:
+        """Add offsets `[count, 3]` of a morph target and return the accessor's index: only those that are not
+        zero, where that takes less room.
+        """
+        moved = np.flatnonzero(np.abs(offsets).max(1))
+        if not len(moved) or 2 * len(moved) > len(offsets):
+            return self.array(offsets, _FLOAT, target=_ARRAY_BUFFER, bounds=True)
+        kind = (_USHORT, "<u2") if moved[-1] < 65535 else (_UINT, "<u4")
+        kept = np.ascontiguousarray(offsets[moved], "<f4")
+        low, high = np.minimum(kept.min(0), 0).astype(float), np.maximum(kept.max(0), 0).astype(float)
+        self.accessors.append(
+            {
+                "componentType": _FLOAT,
+                "count": len(offsets),
+                "type": "VEC3",
+                "min": low.tolist(),
+                "max": high.tolist(),
+                "sparse": {
+                    "count": len(moved),
+                    "indices": {
+                        "bufferView": self.view(moved.astype(kind[1]).tobytes()),
+                        "componentType": kind[0],
+                    },
+                    "values": {"bufferView": self.view(kept.tobytes())},
+                },
+            }
+        )
+        return len(self.accessors) - 1
+
 
 SCENE = "Character"  # what the scene of a GLB that stands in a pose is called
 
@@ -208,7 +237,7 @@ def _add_character(document: dict[str, Any], body: BinaryChunk, character: Chara
     targets = []
     if character.morph_positions is not None:
         targets = [
-            {"POSITION": body.array(offsets, _FLOAT, target=_ARRAY_BUFFER, bounds=True)}
+            {"POSITION": body.sparse(np.asarray(offsets, np.float32))}
             for offsets in character.morph_positions
         ]
     primitives = []

@@ -66,10 +66,11 @@ class Rates(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknow
 class Side(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
     """One who talks. audio: path of its sound, relative to the project file; channel: which of that file's
     channels is its own, from 0; None for all of them mixed. project: path of another project whose graph
-    moves this side, None for this one. take: id of the clip that was recorded along with it, from the same
-    moment. motion: id of the clip it moves with from the beginning on, instead of a graph: new motion of a
-    motion graph. language: the code of what it was read in ("de"); "und" where nobody knows, "" where it was
-    never said. responses, hesitations: its own lists, where the two speak different languages; None for the
+    moves this side, None for this one. character: path of the GLB it is drawn with, None for the character of
+    the project that moves it. take: id of the clip that was recorded along with it, from the same moment.
+    motion: id of the clip it moves with from the beginning on, instead of a graph: new motion of a motion
+    graph. language: the code of what it was read in ("de"); "und" where nobody knows, "" where it was never
+    said. responses, hesitations: its own lists, where the two speak different languages; None for the
     conversation's. place: where it stands, metres to the right and towards the viewer; None for its place in
     the circle. words: as transcribed, by start. segments: of its own speech, by start, never overlapping,
     none idle.
@@ -79,6 +80,7 @@ class Side(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
     audio: str | None = None
     channel: Annotated[int, Meta(ge=0, le=63)] | None = None
     project: str | None = None
+    character: str | None = None
     take: str | None = None
     motion: str | None = None
     language: Annotated[str, Meta(max_length=40)] = ""

@@ -68,8 +68,8 @@ def change_conversation(project: Project, ident: str, **changes: Any) -> Project
 
 
 def change_side(project: Project, ident: str, side: int, /, **changes: Any) -> Project:
-    """Set fields of one who talks: name, audio, channel, project, take, motion, place, rates. Raises
-    EditError, also for values out of range.
+    """Set fields of one who talks: name, audio, channel, project, character, take, motion, place, rates.
+    Raises EditError, also for values out of range.
     """
     of = _conversation(project, ident)
     if "name" in changes:

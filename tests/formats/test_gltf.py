@@ -8,6 +8,7 @@ import os
 import shutil
 import struct
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -184,6 +185,23 @@ def test_sparse_accessors_replace_what_they_name_even_without_a_base(tmp_path: P
     )
     clip = read_one(scene, tmp_path)
     np.testing.assert_allclose(clip.root[[0, 15, 30, 60], 1], [0, 1, 2, 0], atol=1e-6)
+
+
+def test_targets_that_move_little_of_a_mesh_are_written_sparsely_and_read_back_whole(tmp_path: Path) -> None:
+    body = read_character(Path(__file__).parents[2] / "sample_clips" / "ada.glb")
+    count = len(body.positions)
+    offsets = np.zeros((4, count, 3), np.float32)
+    offsets[0, 3] = [0.01, -0.02, 0.03]
+    offsets[1, [0, count - 1]] = [[1, 0, 0], [0, 0, -1]]
+    offsets[2] = np.random.default_rng(2).normal(size=(count, 3))
+    made = replace(body, morphs=("one", "ends", "all", "none"), morph_positions=offsets)
+    write_glb(tmp_path / "made.glb", (), made)
+    found = read_character(tmp_path / "made.glb")
+    assert found.morphs == made.morphs
+    np.testing.assert_array_equal(found.morph_positions, offsets)
+    write_glb(tmp_path / "bare.glb", (), replace(body, morphs=(), morph_positions=None))
+    more = (tmp_path / "made.glb").stat().st_size - (tmp_path / "bare.glb").stat().st_size
+    assert 12 * count < more < 2.2 * 12 * count, "that which moves all, and the zeros, take a mesh each"
 
 
 def test_strides_and_offsets_within_a_view_are_followed(tmp_path: Path) -> None:

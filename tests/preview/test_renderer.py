@@ -148,6 +148,25 @@ def test_a_morph_moves_the_mesh_and_back(offscreen):
     assert np.array_equal(offscreen.render(back, camera, DARK, SIZE), first)
 
 
+def test_two_of_one_mesh_have_faces_of_their_own_and_none_is_kept(offscreen):
+    skeleton = chain("a", "b", "c")
+    positions = np.array([[-0.3, 0.0, 0], [0.3, 0.0, 0], [0, 0.6, 0]])
+    figure = SkinnedFigure(
+        character(
+            skeleton, positions=positions, morphs=("far",), morph_positions=np.full((1, 3, 3), [5.0, 0, 0])
+        )
+    )
+    camera = Camera(yaw=0, pitch=0).frame((np.array([-0.4, 0, -0.1]), np.array([0.4, 0.7, 0.1])), 4 / 3)
+
+    def drawn(*weights):
+        faces = [None if w is None else np.array([w]) for w in weights]
+        actors = tuple(resting(figure, morphs=face) for face in faces)
+        return offscreen.render(Scene(actors, background=(0, 0, 0, 1)), camera, DARK, SIZE)[..., :3].max()
+
+    assert drawn(1.0) == 0 and drawn(None) > 100, "who has no face says nothing of the one before"
+    assert drawn(0.0, 1.0) > 100 and drawn(1.0, 0.0) > 100 and drawn(1.0, 1.0) == 0
+
+
 def test_the_ground_hides_what_is_below_it(offscreen):
     figure = StickFigure(chain("only"))
     rotations, positions = figure.skeleton.globals(figure.skeleton.rest)

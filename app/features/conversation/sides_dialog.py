@@ -28,7 +28,7 @@ from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
 from metagraph.speech.duet import stands
 
-ROWS = 7  # of the grid for each who talks
+ROWS = 8  # of the grid for each who talks
 
 
 class SidesDialog(SettingDialog):
@@ -42,6 +42,7 @@ class SidesDialog(SettingDialog):
         self.sounds: list[QLineEdit] = []
         self.channels: list[QComboBox] = []
         self.movers: list[QLineEdit] = []
+        self.bodies: list[QLineEdit] = []
         self.places: list[tuple[QCheckBox, QDoubleSpinBox, QDoubleSpinBox]] = []
         count = len(self.conversation.sides)
         inside = QWidget(self)
@@ -53,21 +54,26 @@ class SidesDialog(SettingDialog):
         for side, of in enumerate(self.conversation.sides):
             top, ordinal = ROWS * side, ORDINALS[side]
             grid.addWidget(caption(f"{ordinal.capitalize()} speaker", inside), top, 0, 1, 3)
-            name, sound, channel, mover = (
+            name, sound, channel, mover, body = (
                 QLineEdit(of.name, inside),
                 QLineEdit(of.audio or "", inside),
                 ComboBox(inside),
-                QLineEdit(inside),
+                QLineEdit(of.project or "", inside),
+                QLineEdit(of.character or "", inside),
             )
-            mover.setText(of.project or "")
             mover.setToolTip("The project whose graph and character move this one")
+            body.setToolTip(
+                "The GLB this one is drawn with; any whose joints have the names of the skeleton's"
+            )
             mover.setClearButtonEnabled(True)
+            body.setClearButtonEnabled(True)
             for row, (words, widget, empty) in enumerate(
                 (
                     ("Name", name, f"Speaker {side + 1}"),
                     ("Sound", sound, "No sound"),
                     ("Channel", channel, ""),
                     ("Moved by", mover, "This project"),
+                    ("Character", body, "That project's"),
                 ),
                 top + 1,
             ):
@@ -79,17 +85,19 @@ class SidesDialog(SettingDialog):
             for row, tip, choose in (
                 (top + 2, "Choose a sound file", self.choose),
                 (top + 4, "Choose a project", self.choose_project),
+                (top + 5, "Choose a character", self.choose_character),
             ):
                 button = make_widget(QToolButton, inside, text="Choose…", toolTip=tip)
                 button.clicked.connect(lambda _=False, side=side, choose=choose: choose(side))
                 grid.addWidget(button, row, 2)
-            grid.addWidget(QLabel("Stands", inside), top + 5, 0)
-            grid.addLayout(self._place_row(inside, side), top + 5, 1)
-            grid.setRowMinimumHeight(top + 6, 6)
+            grid.addWidget(QLabel("Stands", inside), top + 6, 0)
+            grid.addLayout(self._place_row(inside, side), top + 6, 1)
+            grid.setRowMinimumHeight(top + 7, 6)
             self.names.append(name)
             self.sounds.append(sound)
             self.channels.append(channel)
             self.movers.append(mover)
+            self.bodies.append(body)
             self._show_channels(side, of.channel)
             sound.editingFinished.connect(
                 lambda side=side: self._show_channels(side, self.channels[side].currentData())
@@ -164,6 +172,10 @@ class SidesDialog(SettingDialog):
         """Ask for the project whose graph moves a side."""
         self._ask(self.movers[side], "Choose a project", f"Projects (*{SUFFIX})")
 
+    def choose_character(self, side: int) -> None:
+        """Ask for the character a side is drawn with."""
+        self._ask(self.bodies[side], "Choose a character", "Characters (*.glb *.gltf)")
+
     def _ask(self, field: QLineEdit, title: str, kinds: str) -> bool:
         folder = self.document.folder
         name, _ = QFileDialog.getOpenFileName(self, title, str(folder or Path.home()), kinds)
@@ -187,6 +199,20 @@ class SidesDialog(SettingDialog):
         own = self.document.path
         return None if own is not None and own.exists() and whole.samefile(own) else text
 
+    def _body(self, side: int) -> str | None:
+        """Return the path of the character a side is drawn with, None for its project's. Raises EditError
+        where there is no file.
+        """
+        text = self.bodies[side].text().strip()
+        if text and text != self.conversation.sides[side].character:
+            whole = (self.document.folder or Path()) / text
+            if not whole.is_file():
+                raise EditError(
+                    f"there is no character at {whole}: choose another, or clear the field, so that the "
+                    "speaker is drawn with the character of the project that moves it"
+                )
+        return text or None
+
     def change(self, project: Project) -> Project:
         for side in range(len(self.names)):
             sound = self.sounds[side].text().strip() or None
@@ -199,6 +225,7 @@ class SidesDialog(SettingDialog):
                 audio=sound,
                 channel=channel,
                 project=self._mover(side),
+                character=self._body(side),
                 place=self._place(side),
             )
         distance = round(self.distance.value(), 3)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -16,8 +17,10 @@ from PySide6.QtTest import QTest
 from app.cli.parser import main
 from app.stage.conversation_plans import ConversationPlans, keep
 from metagraph.formats.store import absolute, open_project, save_project
+from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import Conversation, Segment, Side
 from metagraph.graph.requests import Gesture, Look, Place
+from preview.figure import SkinnedFigure
 
 ROOT = Path(__file__).parents[3]
 RATE = 16000
@@ -160,6 +163,43 @@ def test_a_side_moved_by_another_project_uses_that_ones_clips_and_one_that_canno
         )
         assert shown.everyone[1].project.settings.alpha == alpha
         assert any("missing" in note for note in shown.notes) == told
+
+
+def test_a_side_is_drawn_with_a_character_of_its_own_whose_face_it_has(talking):
+    folder = talking.parent
+    project = open_project(talking).project
+    talk = project.conversations["v9000"]
+    shutil.copy(ROOT / "sample_clips" / "ben.glb", folder / "guest.glb")
+    shutil.copy(ROOT / "sample_clips" / "mannequin.glb", folder / "plain.glb")
+    plans = ConversationPlans()
+    for path, targets in (("guest.glb", True), ("plain.glb", False)):
+        sides = (talk.sides[0], msgspec.structs.replace(talk.sides[1], character=path))
+        own = replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)})
+        first, second = plans.show(own, "v9000", folder).everyone
+        assert first.project.character == project.character
+        assert Path(second.project.character).name == path
+        assert ("jawOpen" in second.project.face.morphs) == targets
+        spoken = [second.morphs(t).get("jawOpen", 0.0) for t in np.arange(4.2, 6.0, 0.1)]
+        assert (max(spoken) > 0.1) == targets, "its mouth moves as its own face can"
+    sides = (talk.sides[0], msgspec.structs.replace(talk.sides[1], character="missing.glb"))
+    own = replace(project, conversations={"v9000": msgspec.structs.replace(talk, sides=sides)})
+    shown = plans.show(own, "v9000", folder)
+    assert shown.everyone[1].project.character == project.character
+    assert any("missing.glb" in note for note in shown.notes)
+
+
+def test_the_characters_of_both_are_drawn(staged):
+    plain = str(ROOT / "sample_clips" / "mannequin.glb")
+    staged.document.edit(
+        "Give a side a character",
+        lambda project: conversation_edits.change_side(project, "v9000", 1, character=plain),
+    )
+
+    def drawn() -> set[str]:
+        figures = [a.figure for a in staged.preview._scene().actors]
+        return {f.character.name for f in figures if isinstance(f, SkinnedFigure)}
+
+    staged.wait(lambda: drawn() == {"ada", "mannequin"})
 
 
 def test_two_other_projects_are_each_read_once(talking, monkeypatch):

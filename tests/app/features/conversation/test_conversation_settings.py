@@ -4,6 +4,7 @@ names.
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -48,6 +49,27 @@ def test_another_project_is_chosen_for_a_side_and_taken_away_again(
     dialog.movers[1].clear()
     QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
     assert [s.project for s in talk.conversation.sides] == [None, None]
+
+
+def test_a_character_of_its_own_is_chosen_for_a_side_and_taken_away_again(
+    talk: Any, tmp_path: Path, monkeypatch: Any
+) -> None:
+    body = tmp_path / "guest.glb"
+    shutil.copy(Path(__file__).parents[4] / "sample_clips" / "ben.glb", body)
+    talk.drive.document.save(tmp_path / "this.metagraph.yaml")
+    dialog = opened(talk)
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_, **__: (str(body), ""))
+    choose = [b for b in dialog.findChildren(QToolButton) if b.toolTip() == "Choose a character"]
+    QTest.mouseClick(choose[1], Qt.MouseButton.LeftButton)
+    QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    assert [s.character for s in talk.conversation.sides] == [None, "guest.glb"]
+    dialog = opened(talk)
+    dialog.bodies[1].setText("gone.glb")
+    QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    assert dialog.isVisible() and "gone.glb" in dialog.said.text() and "clear the field" in dialog.said.text()
+    dialog.bodies[1].clear()
+    QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    assert [s.character for s in talk.conversation.sides] == [None, None]
 
 
 def test_a_project_that_is_not_there_is_told_and_the_dialog_stays(talk: Any, tmp_path: Path) -> None:
