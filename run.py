@@ -242,6 +242,7 @@ def node_packages():
             "--no-fund",
             "--silent",
             "--fetch-retries=1",
+            "--ignore-scripts",  # one would copy an engine beside the tests
         ]
         if (
             subprocess.call([npm, "install", *options], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -351,7 +351,7 @@ def page() -> None:
         folder = Path(place)
         web.three_js = lambda folder: ROOT / "tests" / "node_modules" / "three"  # type: ignore[assignment]
         project = open_project(samples / "sample.metagraph.yaml").project
-        registry.write(project, "web", folder, samples / "mannequin.glb", base=samples)
+        registry.write(project, "web", folder, samples / "ada.glb", base=samples)
         steps = [
             {"url": "?seed=7&paused", "until": "window.metagraph"},
             {"click": "#panel button:text-is('greeting') >> nth=0"},

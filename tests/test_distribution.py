@@ -98,6 +98,8 @@ def test_every_file_of_the_packages_is_in_the_wheel(wheel: Path) -> None:
         "metagraph/engines/runtimes/unreal/Metagraph.uplugin",
         "metagraph/engines/runtimes/unreal/Source/Metagraph/Private/MetagraphCore.h",
         "sample_clips/sample.metagraph.yaml",
+        "sample_clips/ada.glb",
+        "sample_clips/ben.glb",
         "sample_clips/mannequin.glb",
     ):
         assert needed in held

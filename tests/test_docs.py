@@ -59,6 +59,8 @@ def samples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         "sample.metagraph.yaml",
         "practice.metagraph.yaml",
         "mannequin.glb",
+        "ada.glb",
+        "ben.glb",
         "clips",
         "lines",
         "conversation",

@@ -16,7 +16,7 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Performance
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.running_plan import perform
+from metagraph.playback.running_plan import asks_of, perform
 
 LONGEST = 36000  # seconds of one performance, ten hours
 
@@ -57,7 +57,7 @@ def staged(project: Project, options: Namespace) -> Plan:
     if kept is None:
         return make_plan(project, options.seconds, seed=options.seed)
     seed = kept.seed if options.seed is None else options.seed
-    return perform(project, kept.asks, options.seconds, seed, dict(kept.stances), kept.idle)
+    return perform(project, asks_of(kept), options.seconds, seed, dict(kept.stances), kept.idle)
 
 
 def _kept(project: Project, name: str) -> Performance:

@@ -143,9 +143,9 @@ def _take(options: Namespace, project: Project, seen: Keypoints) -> Path | None:
 
 
 def _planned(project: Project, kept: Performance) -> Plan:
-    from metagraph.playback.running_plan import perform
+    from metagraph.playback.running_plan import asks_of, perform
 
-    return perform(project, kept.asks, kept.length, kept.seed, dict(kept.stances), kept.idle)
+    return perform(project, asks_of(kept), kept.length, kept.seed, dict(kept.stances), kept.idle)
 
 
 def _keep(options: Namespace, project: Project, kept: Performance) -> Path | None:

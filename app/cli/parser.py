@@ -46,6 +46,11 @@ COMMANDS: dict[str, tuple[str, bool, str]] = {
     "import": ("import_command", True, "add clips to a project, made if it is not there"),
     "label": ("label_command", False, "label the clips of a folder by their names and motion, and say why"),
     "check": ("check_command", True, "list the problems of a project"),
+    "contacts": (
+        "contacts_command",
+        True,
+        "find where hands touch the body, and keep them there: write it into the project",
+    ),
     "plan": ("plan_command", True, "plan a performance and print its actions"),
     "render": (
         "render_command",
@@ -66,6 +71,7 @@ COMMANDS: dict[str, tuple[str, bool, str]] = {
         "tell what stances a person's keypoints show, and let the character do as they do",
     ),
     "speech": ("speech_command", False, "read a conversation into clauses, responses and hesitations"),
+    "moods": ("moods_command", True, "tell or set the moods of a character and its lines"),
     "study": (
         "study_command",
         False,

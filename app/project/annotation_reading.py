@@ -14,7 +14,7 @@ from metagraph.playback.annotation import SPEECH, Annotation, Label, guess_roles
 from metagraph.playback.learn import Act, learn, performance, sequences
 from metagraph.playback.markov import DEFAULTS
 from metagraph.playback.mode_shares import with_modes
-from metagraph.playback.running_plan import perform
+from metagraph.playback.running_plan import asks_of, perform
 
 FEW = 30  # acts below which a model is a rough one
 
@@ -119,7 +119,7 @@ def replayed(project: Project, ident: str) -> dict[Layer, dict[str, int]]:
     with another limb than was seen.
     """
     kept = project.performances[ident]
-    plan = perform(project, kept.asks, kept.length, kept.seed, dict(kept.stances), kept.idle)
+    plan = perform(project, asks_of(kept), kept.length, kept.seed, dict(kept.stances), kept.idle)
     out: dict[Layer, dict[str, int]] = {}
     for layer in LAYERS:
         asked = {ask.id for ask in kept.asks if getattr(ask, "layer", None) == layer}

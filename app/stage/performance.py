@@ -24,7 +24,7 @@ from metagraph.playback.extend_performance import Answer, answers
 from metagraph.playback.manual_playback import Fire
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.running_plan import perform
+from metagraph.playback.running_plan import asks_of, perform
 
 LENGTH = 60.0  # seconds planned ahead, and how much more whenever the playhead comes near the end
 AHEAD = 15.0  # seconds before the end at which more is planned
@@ -198,7 +198,9 @@ class Performance(QObject):
             if kept is None:
                 return Shown(project, make_plan(project, length), length)
             return Shown(
-                project, perform(project, kept.asks, length, kept.seed, dict(kept.stances), kept.idle), length
+                project,
+                perform(project, asks_of(kept), length, kept.seed, dict(kept.stances), kept.idle),
+                length,
             )
 
         self.jobs.start("plan", work, self._planned, self._failed, quick=True)

@@ -171,7 +171,14 @@ def mark_at(found: Sequence[Mark], at: QPointF) -> Mark | None:
     return next((m for m in reversed(found) if m.rect.contains(at) and at.x() >= LEFT), None)
 
 
-VERBS = {"say": "Said", "look": "Looks", "mode": "Changes", "place": "Moves", "blink": "Blinks"}
+VERBS = {
+    "say": "Said",
+    "look": "Looks",
+    "mode": "Changes",
+    "mood": "Changes",
+    "place": "Moves",
+    "blink": "Blinks",
+}
 
 
 def outcome(ask: AnyRequest, answer: Answer | None) -> str:
@@ -184,7 +191,7 @@ def outcome(ask: AnyRequest, answer: Answer | None) -> str:
     if answer.at is None:
         return f"{why[:1].upper()}{why[1:]}." if why else ""
     until = f" to {answer.until:.2f}" if answer.until is not None and answer.at < answer.until < 1e5 else ""
-    what = ", ".join(w for w in answer.what if w not in ("look", "speech", "mode", "place", "blink"))
+    what = ", ".join(w for w in answer.what if w not in ("look", "speech", "mode", "mood", "place", "blink"))
     verb = f"Plays {what}" if what else VERBS.get(str(ask.__struct_config__.tag), "Plays")
     return f"{verb} {'from' if until else 'at'} {answer.at:.2f}{until} s{f': {why}' if why else ''}."
 

@@ -14,6 +14,7 @@ from app.project.document import Document
 from app.stage.performance import Performance
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, MODES, Layer, Project
+from metagraph.graph.words import FEELINGS
 
 STAGE = "stage"  # the lane of what no layer plays: speech, gaze, modes
 DIRECTIONS = {
@@ -22,6 +23,7 @@ DIRECTIONS = {
     "Up": (0.0, 2.4, 1.0),
     "Down": (0.0, 0.6, 1.0),
 }
+MOOD_WORDS = {name: name.capitalize() for name in FEELINGS}
 MODE_WORDS = {"idle": "Idle", "listening": "Listen", "talking": "Talk"}
 
 
@@ -77,6 +79,8 @@ def request_words(ask: a.AnyRequest, project: Project) -> str:
             return f"{ask.line}: {text}" if ask.line is not None and text else text or f"line {ask.line}"
         case a.Behave():
             return MODE_WORDS[ask.mode].lower() if ask.mode else "as it comes"
+        case a.Feel():
+            return mood_words(ask.mood, ask.intensity)
         case a.Place():
             return f"{ask.name} moves"
         case a.Blink():
@@ -84,6 +88,12 @@ def request_words(ask: a.AnyRequest, project: Project) -> str:
         case a.Bml():
             return "BML"
     return "withdraw"
+
+
+def mood_words(mood: a.MoodPoint, intensity: float | None) -> str:
+    """Return a mood in a few words: "sad", "sad × 1.5", "mood 0.3, -0.5"."""
+    named = mood if isinstance(mood, str) else "mood " + ", ".join(f"{x:g}" for x in mood) if mood else "mood"
+    return named if intensity is None else f"{named} × {intensity:g}"
 
 
 Ask = Callable[[a.AnyRequest, str], object]
@@ -181,6 +191,9 @@ def _stage_items(menu: QMenu, parent: QWidget, document: Document, at: float | N
     for mode in MODES:
         modes.addAction(MODE_WORDS[mode], partial(ask, a.Behave(mode=mode, at=at), "Ask for a mode"))
     modes.addAction("As it comes", lambda: ask(a.Behave(mode=None, at=at), "Ask for a mode"))
+    moods = menu.addMenu("Be in a mood")
+    for feeling in FEELINGS:
+        moods.addAction(MOOD_WORDS[feeling], partial(ask, a.Feel(mood=feeling, at=at), "Ask for a mood"))
 
 
 def _point(parent: QWidget, document: Document, at: float | None, ask: Ask) -> None:

@@ -14,6 +14,7 @@ from msgspec import Meta, Struct
 
 from metagraph.graph.life import Face, Life
 from metagraph.graph.requests import Line, Performance, Point
+from metagraph.graph.touch import Touch
 
 FORMAT = 1
 
@@ -35,7 +36,10 @@ PartName = Literal["legs", "spine", "arms", "head", "face"]
 
 
 class Joint(Struct, omit_defaults=True, forbid_unknown_fields=True):
-    """A joint; parents come before their children. translation, rotation: local, of the rest pose."""
+    """A joint; parents come before their children. translation, rotation: local, of the rest pose. scales:
+    how it takes part where a cue is played larger or smaller than made: in both, only in smaller ones
+    (elbows, which bend one way), or in neither (fingers).
+    """
 
     name: str
     parent: str | None
@@ -43,6 +47,7 @@ class Joint(Struct, omit_defaults=True, forbid_unknown_fields=True):
     side: Literal["left", "right", "centre"]
     translation: Vector
     rotation: Quaternion
+    scales: Literal["both", "smaller", "neither"] = "both"
 
 
 class ExportedClip(Struct, omit_defaults=True, forbid_unknown_fields=True):
@@ -69,13 +74,34 @@ class ExportedStance(Struct, forbid_unknown_fields=True):
     name: str
 
 
+class ExportedContact(Struct, forbid_unknown_fields=True):
+    """A hand kept where it is on the body. place: what of it touches. to: the name of a joint. start, end:
+    clip seconds. ease_in, ease_out: seconds inside of which it comes and goes. keys: rows of clip seconds,
+    where the wrist is in that joint's own space, metres (3), how the hand is turned there, xyzw (4).
+    """
+
+    hand: Literal["left", "right"]
+    place: Literal["palm", "fingertips", "back", "wrist"]
+    to: str
+    start: Seconds
+    end: Seconds
+    ease_in: Seconds
+    ease_out: Seconds
+    keys: Annotated[
+        list[Annotated[list[Number], Meta(min_length=8, max_length=8)]],
+        Meta(min_length=1),
+    ]
+
+
 class ExportedAction(Struct, forbid_unknown_fields=True):
     """One use of a clip. start, end: the part of the clip that plays (whole_end: the end is the clip's own).
     blend_in and blend_out lie inside it; a stance's blend_in is the overlap at its loop's seam.
     earliest_exit: clip time from which it may be left, or null. joints: the only ones it moves, all when
     empty. phases: of a gesture, clip seconds of ready, stroke, stroke end and relax; own_phases: ready,
     stroke_end, relax as the user set them, null where found. cooldown: seconds in which it is not drawn
-    again; spacing: how many others come between, null as never_twice says.
+    again; spacing: how many others come between, null as never_twice says. vigour: how fast its hands, head
+    or trunk move beside the median of the layer's actions of its kind, -1 half as fast .. 1 twice as fast.
+    contacts: where its hands stay.
     """
 
     id: Id
@@ -100,6 +126,8 @@ class ExportedAction(Struct, forbid_unknown_fields=True):
     own_phases: Annotated[list[Number | None], Meta(max_length=3)] = []
     cooldown: Seconds = 0.0
     spacing: Annotated[int, Meta(ge=0, le=1000)] | None = None
+    contacts: list[ExportedContact] = []
+    vigour: Annotated[float, Meta(ge=-1, le=1)] = 0.0
 
 
 class Transition(Struct, rename={"source": "from", "target": "to"}, forbid_unknown_fields=True):
@@ -275,7 +303,8 @@ class Rig(Struct, forbid_unknown_fields=True):
     from the root to the head. breath: for each of them the axis it turns about in its own space, and the
     radians at the top of a breath. trunk: its place in the chain; trunk_ahead, head_ahead: ahead in their own
     space. eyes: left, right. partner: where "user" is unless a point of that name says otherwise, metres;
-    eyes_at_rest: between the eyes in the base pose.
+    eyes_at_rest: between the eyes in the base pose. bowed: for each joint of the chain the radians of a bowed
+    posture, about the axis of its breath; none where empty.
     """
 
     left: Direction
@@ -292,6 +321,38 @@ class Rig(Struct, forbid_unknown_fields=True):
     partner: Vector
     eyes_at_rest: Vector
     face: RigFace
+    bowed: list[Number] = []
+
+
+class ExportedCapsule(Struct, forbid_unknown_fields=True):
+    """A part of the body. joint, to: places in the contact rig's joints that the ends of its line are fixed
+    to; a, b: where, in their own spaces, metres. arm: 0 left, 1 right, -1 of neither. kind: 0 for what hands
+    are pushed out of, 1 for a forearm, from elbow to wrist, 2 for a part of a hand.
+    """
+
+    joint: Count
+    a: Vector
+    to: Count
+    b: Vector
+    radius: Annotated[float, Meta(gt=0, le=1e3)]
+    arm: Annotated[int, Meta(ge=-1, le=1)]
+    kind: Annotated[int, Meta(ge=0, le=2)]
+
+
+class ExportedContactRig(Struct, forbid_unknown_fields=True):
+    """What keeps hands on the body, and out of it. contacts, guard: which of the two is on. joints: those
+    that matter, parents first; parents: of each, the place of its parent among them, -1 for a root. arms:
+    left, right: places of upper arm, lower arm, hand.
+    """
+
+    contacts: bool
+    guard: bool
+    joints: list[Count]
+    parents: list[Place]
+    arms: Annotated[
+        list[Annotated[list[Count], Meta(min_length=3, max_length=3)]], Meta(min_length=2, max_length=2)
+    ]
+    capsules: list[ExportedCapsule]
 
 
 class ExportedVoice(Struct, forbid_unknown_fields=True):
@@ -335,6 +396,8 @@ class Export(Struct, omit_defaults=True, forbid_unknown_fields=True):
     performances: dict[str, Performance] = {}
     rig: Rig | None = None
     voices: dict[str, ExportedVoice] = {}
+    touch: Touch = Touch()
+    contact_rig: ExportedContactRig | None = None
 
 
 def schema() -> dict[str, Any]:

@@ -6,11 +6,13 @@ import re
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Literal
 
 import msgspec
 
 from metagraph.budgets import SOUND_FILE
 from metagraph.engines import contract as c
+from metagraph.engines.export_contacts import contact_rig_of, contacts_of
 from metagraph.engines.export_rig import rig_of, voices_of
 from metagraph.errors import FileError
 from metagraph.file_names import file_stem, file_stems
@@ -34,10 +36,12 @@ from metagraph.motion.character_mesh import Character, bound, no_character
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton, unique_names
 from metagraph.playback import choice, hashing, markov
+from metagraph.playback.cue_shapes import HURRY
 from metagraph.playback.layer_planning import WINDOW
 from metagraph.playback.phase_times import LEAST_BLEND
 from metagraph.playback.phases import phases
-from metagraph.playback.sampling import HURRY, LOOP_FADE
+from metagraph.playback.sampling import LOOP_FADE
+from metagraph.playback.vigour import vigour
 from metagraph.speech.sound import sound_ending
 
 Chosen = Callable[[Path], bool]
@@ -257,7 +261,7 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
     """Return the JSON's content; `names`: of the used clips' animations in the GLB."""
     skeleton = project.skeleton
     assert skeleton is not None
-    parts, sides = anatomy.parts(project), anatomy.sides(project)
+    parts, sides, scales = anatomy.parts(project), anatomy.sides(project), anatomy.scales(project)
     joints = [
         c.Joint(
             name,
@@ -266,6 +270,7 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
             sides[i],  # type: ignore[arg-type]
             [float(x) for x in skeleton.rest_translations[i]],
             [float(x) for x in skeleton.rest_rotations[i]],
+            _SCALES[int(scales[:, i].sum())],
         )
         for i, name in enumerate(skeleton.names)
     ]
@@ -305,6 +310,8 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
         performances=dict(project.performances),
         rig=rig_of(project),
         voices=voices_of(project),
+        touch=project.touch,
+        contact_rig=contact_rig_of(project),
     )
 
 
@@ -348,6 +355,9 @@ def _layer(project: Project, graph: MetaGraph) -> c.ExportedLayer:
     )
 
 
+_SCALES: tuple[Literal["neither", "smaller", "both"], ...] = ("neither", "smaller", "both")
+
+
 def _action(project: Project, action: Action) -> c.ExportedAction:
     start, end = project.span(action)
     t = action.timing
@@ -373,6 +383,8 @@ def _action(project: Project, action: Action) -> c.ExportedAction:
         *_phases(project, action),
         max(0.0, action.cooldown),
         action.spacing,
+        contacts_of(action),
+        vigour(project, action),
     )
 
 

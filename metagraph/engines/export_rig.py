@@ -51,6 +51,7 @@ def rig_of(project: Project) -> c.Rig | None:
             shut_by=face.shut_by.tolist(),
             morphs={channel: dict(targets) for channel, targets in face.morphs.items()},
         ),
+        bowed=list(body.bowed),
     )
 
 
@@ -103,6 +104,7 @@ def read_rig(rig: c.Rig) -> Body:
         ahead=_three(rig.ahead),
         chain=np.array(rig.chain, int),
         breath=tuple((_three(row[:3]), row[3]) for row in rig.breath),
+        bowed=tuple(rig.bowed) or (0.0,) * len(rig.chain),
         joints=np.array(joints, int),
         read=np.array(read, int),
         shoulders=tuple(_three(s.turn) for s in rig.shoulders),
@@ -126,7 +128,21 @@ def _lifeless() -> Body:
     face = FaceRig((), np.zeros(0, int), shapes, shapes, np.zeros(4), np.full(4, -1), np.zeros((4, 4)), {})
     breath = ((axes[0], 0.0),)
     return Body(
-        *axes, first, breath, first, first, (), (), 0, axes[2], axes[2], (eye, eye), axes[2], none, face
+        *axes,
+        first,
+        breath,
+        (0.0,),
+        first,
+        first,
+        (),
+        (),
+        0,
+        axes[2],
+        axes[2],
+        (eye, eye),
+        axes[2],
+        none,
+        face,
     )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from metagraph.budgets import TEXT_FILE
 from metagraph.engines import contract as c
+from metagraph.engines.export_contacts import read_contact_rig, read_contacts
 from metagraph.engines.export_rig import LIFELESS, read_rig, read_voices
 from metagraph.errors import FileError
 from metagraph.files import guarded, read_file
@@ -33,6 +34,7 @@ from metagraph.graph.model import (
     Stance,
     Timing,
 )
+from metagraph.graph.touch import Touch
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.life.body import Body
@@ -107,11 +109,15 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         )
     p = document.planner
     base = BasePose(document.base.clip, document.base.frame)
-    body = None
+    body, contact_rig, touch = None, None, document.touch
     if resolved:
         clips[BASE] = _base(document, skeleton)
         base = BasePose(BASE)
         body = _body(document.rig, skeleton) if document.rig is not None else LIFELESS
+        touch = Touch(False, False)
+        if document.contact_rig is not None:
+            contact_rig = read_contact_rig(document.contact_rig, skeleton)
+            touch = Touch(contact_rig.contacts, contact_rig.guard)
     graphs: dict[Layer, MetaGraph] = {
         layer: _graph(layer, document.layers[layer], resolved) for layer in LAYERS
     }
@@ -132,6 +138,8 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         settings=Settings(p.alpha, p.seed, p.never_twice, p.shortest, p.wait, p.memory, p.rest, p.lookahead),
         life=document.life,
         body=body,
+        touch=touch,
+        contact_rig=contact_rig,
         face=document.face,
         points=dict(document.points),
         lines=dict(document.lines),
@@ -170,6 +178,7 @@ def _body(rig: c.Rig, skeleton: Skeleton) -> Body:
     fits = (
         rig.chain
         and len(rig.breath) == len(rig.chain)
+        and len(rig.bowed) in (0, len(rig.chain))
         and max(joints) < len(skeleton)
         and max(places) < len(rig.chain)
     )
@@ -252,6 +261,7 @@ def _graph(layer: Layer, data: c.ExportedLayer, resolved: bool) -> MetaGraph:
             a.likelihood,
             a.cooldown,
             a.spacing,
+            read_contacts(a.contacts),
         )
     if unknown := [part for part in data.own_weights if part not in data.weights]:
         raise DataError(f"{where}.own_weights", f"weights say nothing of '{unknown[0]}'")

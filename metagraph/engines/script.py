@@ -10,10 +10,12 @@ from typing import Any
 
 from metagraph.engines.script_chatter import chatter_cases
 from metagraph.engines.script_life import life_cases
+from metagraph.engines.script_moods import mood_cases
 from metagraph.engines.script_parts import Ask, Case, ScriptStep
 from metagraph.engines.script_parts import ask as _ask
 from metagraph.engines.script_parts import once as _once
 from metagraph.engines.script_parts import some as _some
+from metagraph.engines.script_replaced import replaced_cases
 from metagraph.engines.script_timely import timely_cases
 from metagraph.graph.expand import chain
 from metagraph.graph.model import LAYERS, Layer, Project
@@ -31,6 +33,8 @@ def cases(project: Project) -> Iterator[Case]:
         _refused,
         _over_time,
         life_cases,
+        mood_cases,
+        replaced_cases,
         chatter_cases,
     ):
         yield from part(project)

@@ -15,7 +15,7 @@ from metagraph.graph.requests import request_from
 from metagraph.playback.extend_performance import hear
 from metagraph.playback.plan import Cue, Plan
 
-FITS = (-2e-6, -5e-7, 5e-7, 2e-6)  # seconds: either side of `sampling.FITS`
+FITS = (-2e-6, -5e-7, 5e-7, 2e-6)  # seconds: either side of `cue_shapes.FITS`
 
 
 def _just(seconds: float) -> tuple[float, ...]:

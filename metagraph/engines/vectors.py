@@ -140,6 +140,8 @@ def _layer(plan: LayerPlan) -> dict[str, Any]:
                 "hold_from": _time(c.hold_from),
                 "hold_to": _time(c.hold_to),
                 "hold": _time(c.hold),
+                **({"extent": _time(c.extent)} if c.extent != 1 else {}),
+                **({"tempo": _time(c.tempo)} if c.tempo != 1 else {}),
             }
             for c in plan.cues
         ],
@@ -166,11 +168,13 @@ def life_data(plan: Plan) -> dict[str, Any]:
     lanes = {
         name: _lane(getattr(life, name)) for name in ("modes", "breaths", "aversions", "saccades", "blinks")
     }
+    if any(list(row) != [0, 0, 1] for row in life.moods.rows):
+        lanes["moods"] = _lane(life.moods)
     return {**lanes, "targets": targets}
 
 
 def _lane(lane: Lane) -> list[list[float]]:
-    return [[_time(start), *map(_time, values)] for start, values in zip(*lane.plain, strict=True)]
+    return [[_time(start), *map(_time, values)] for start, values in zip(lane.times, lane.rows, strict=True)]
 
 
 def _time(seconds: float) -> float:
@@ -235,14 +239,14 @@ def _living(plan: Plan) -> tuple[float, ...]:
         (life.blinks, (0.03, 0.11)),
         (life.breaths, (0.4, 1.1)),
     ):
-        starts = [float(start) for start in lane.plain[0]]
+        starts = [float(start) for start in lane.times]
         last = len(starts) - 1
         found += [
             starts[place] + delay
             for delay, place in zip(delays, (last // 3, 2 * last // 3), strict=True)
             if starts
         ]
-    found += [float(values[0]) + 0.06 for values in life.aversions.plain[1][1:3]]
+    found += [float(values[0]) + 0.06 for values in life.aversions.rows[1:3]]
     return tuple(round(x, 4) for x in sorted(found) if x >= 0)
 
 

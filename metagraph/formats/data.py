@@ -15,6 +15,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from metagraph.formats.contact_data import contacts_data, contacts_from
 from metagraph.formats.fields import (
     Data,
     DataError,
@@ -55,6 +56,7 @@ from metagraph.graph.model import (
     Timing,
 )
 from metagraph.graph.requests import words_of
+from metagraph.graph.touch import Touch
 from metagraph.graph.words import MODES
 from metagraph.motion.contact_hold import Contact
 from metagraph.motion.joint_map import JointMap
@@ -66,7 +68,10 @@ FORMAT = 1  # of the project file; older ones are upgraded when read
 
 def action_data(action: Action) -> Data:
     """Return an action; its timing's fields stand beside its own. The layer is said by where it is."""
-    return {**sparse(action, ("timing", "layer")), **sparse(action.timing)}
+    out = {**sparse(action, ("timing", "layer", "contacts")), **sparse(action.timing)}
+    if action.contacts:
+        out["contacts"] = contacts_data(action.contacts)
+    return out
 
 
 _CONTACT = ("upper", "lower", "hand", "to", "first", "last")
@@ -176,6 +181,7 @@ STRUCTS: dict[str, Any] = {
     "labels": dict[str, str],
     "notes": dict[str, str],
     "joint_maps": dict[str, JointMap],
+    "touch": Touch,
 }
 
 
@@ -230,18 +236,23 @@ _CLIP_FIELDS = ({f.name for f in fields(ClipEntry)} | {"sha256", "speed", "holds
     "digest",
     "retime",
 }
-_PROJECT_FIELDS = ({f.name for f in fields(Project)} | {"metagraph", "layers"}) - {"graphs", "voices"}
+_PROJECT_FIELDS = ({f.name for f in fields(Project)} | {"metagraph", "layers"}) - {
+    "graphs",
+    "voices",
+    "contact_rig",
+}
 
 
 def action_from(data: Data, layer: Layer, where: str) -> Action:
     known(data, _ACTION_FIELDS, where)
-    values = fill(Action, data, where, ("timing", "layer"))
+    values = fill(Action, data, where, ("timing", "layer", "contacts"))
     for key in ("id", "clip", "kind", "stance", "name"):
         if key not in values:
             raise DataError(f"{where}.{key}", "is missing")
     one_of(values["kind"], KINDS, f"{where}.kind")
     one_of(values.get("limb", "both"), LIMBS, f"{where}.limb")
-    return Action(layer=layer, timing=Timing(**fill(Timing, data, where)), **values)
+    contacts = contacts_from(data, where)
+    return Action(layer=layer, timing=Timing(**fill(Timing, data, where)), contacts=contacts, **values)
 
 
 def _clip_from(data: Data, where: str) -> ClipEntry:

@@ -198,14 +198,13 @@ def _with_paths(project: Project, renew: Callable[[str], str]) -> Project:
 
 
 def _conversations(project: Project, renew: Callable[[str], str]) -> Mapping[str, Conversation]:
-    """Return the project's conversations with other paths to their sounds and to the projects that move their
-    sides.
+    """Return the project's conversations with other paths to their sounds, their characters and the projects
+    that move them.
     """
 
     def moved(side: Side) -> Side:
-        return msgspec.structs.replace(
-            side, audio=side.audio and renew(side.audio), project=side.project and renew(side.project)
-        )
+        files = {name: getattr(side, name) for name in ("audio", "project", "character")}
+        return msgspec.structs.replace(side, **{name: path and renew(path) for name, path in files.items()})
 
     return {
         i: msgspec.structs.replace(c, sides=tuple(map(moved, c.sides)))

@@ -90,6 +90,31 @@ def _mask(
     return out
 
 
+def scales(project: Project) -> Array:
+    """Return `[2, J]` float32: which joints turn farther from the stance, and which less far, where an
+    action is played larger or smaller than made (`Cue.extent`), 1 or 0. Hands keep their shape, and elbows,
+    which bend one way, are not bent on.
+    """
+    if project.skeleton is None:
+        return np.ones((2, 0), np.float32)
+    return _scales(project.skeleton, tuple(sorted(project.roles.items())))
+
+
+@lru_cache(maxsize=32)
+def _scales(skeleton: Skeleton, corrections: tuple[tuple[str, str], ...]) -> Array:
+    found = _roles(skeleton, corrections)
+    out = np.ones((2, len(skeleton)), np.float32)
+    hands = {found[r] for r in ("left_hand", "right_hand") if r in found}
+    inside = set(hands)
+    for joint, parent in enumerate(skeleton.parents.tolist()):
+        if parent in inside:
+            inside.add(joint)
+    out[:, sorted(inside - hands)] = 0
+    out[0, [found[r] for r in ("left_lower_arm", "right_lower_arm") if r in found]] = 0
+    out.setflags(write=False)
+    return out
+
+
 def base_pose(project: Project) -> Pose:
     """Return the base pose `[J, ...]`, float32; the rest pose while its clip is missing. Raises ValueError
     without a skeleton.

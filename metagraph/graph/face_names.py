@@ -29,6 +29,15 @@ VISEMES: tuple[str, ...] = (
     "U",
 )
 Weights = tuple[tuple[str, float], ...]
+MOOD_FACE = ("smile", "frown", "brow_down", "brow_up")  # what a mood shows, on morph targets alone
+# ARKit's targets for these, else the expressions of VRM and its kin.
+_MOODS: dict[str, tuple[Weights, tuple[str, ...]]] = {
+    "smile": ((("mouthsmile#", 0.5), ("cheeksquint#", 0.3)), ("happy", "joy", "fun", "smile")),
+    "frown": ((("mouthfrown#", 0.6),), ("sad", "sorrow", "frown")),
+    "brow_down": ((("browdown#", 0.8), ("eyesquint#", 0.25)), ("angry", "browdown", "browsdown")),
+    "brow_up": ((("browinnerup", 0.7),), ("browinnerup", "browsup", "browup")),
+}
+_WHOLE = 0.5  # of an expression of the whole face
 
 _SIDES = {"left": ("left", "l"), "right": ("right", "r")}
 _PREFIX = re.compile(
@@ -165,6 +174,12 @@ def find_morphs(names: Iterable[str], bound: Mapping[str, str] | None = None) ->
                 take(f"look_{way}_{side}", have.one(f"look{way}", f"eyelook{way}", f"eyeslook{way}"))
     if "blink_left" not in out and "blink_right" not in out:
         take("blink", have.one(*shut))
+    for channel, (recipe, words) in _MOODS.items():
+        mix = have.mixed(recipe)
+        if not mix and (name := have.one(*words)) is not None:
+            mix = ((name, _WHOLE),)
+        if mix:
+            out[channel] = mix
     known = set(all_names)
     own = bound.get("jaw_open")
     out |= _mouth(have, own if own in known else None)

@@ -49,7 +49,8 @@ class Life(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
 
     on: whether they play at all. stillness: multiplies every amount by 1 - stillness and stretches the time
     between events; at 1 nothing moves of itself, only lips and what is asked for. modes: changes to
-    `MANNERS`, by mode.
+    `MANNERS`, by mode. valence, arousal, intensity: the mood where no request tells another
+    (`playback.mood`).
     """
 
     on: bool = True
@@ -70,6 +71,9 @@ class Life(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
     blink_open: Annotated[float, Meta(ge=0.02, le=1)] = 0.10
     lips: Annotated[float, Meta(ge=0, le=2)] = 1.0
     lip_smoothing: Annotated[float, Meta(ge=0, le=0.2)] = 0.03
+    valence: Annotated[float, Meta(ge=-1, le=1)] = 0.0
+    arousal: Annotated[float, Meta(ge=-1, le=1)] = 0.0
+    intensity: Annotated[float, Meta(ge=0, le=2)] = 1.0
     modes: dict[Mode, Manner] = {}
 
 
@@ -102,6 +106,19 @@ DIALS: tuple[Dial, ...] = (
         0.01,
         0,
         "Calms everything at once; at 1 only lips and what is asked for move.",
+    ),
+    Dial("valence", "Mood", "Valence", "", -1, 1, 0.01, None, "From unpleasant to pleasant; 0 as made."),
+    Dial("arousal", "Mood", "Arousal", "", -1, 1, 0.01, None, "From tired to excited; 0 as made."),
+    Dial(
+        "intensity",
+        "Mood",
+        "Intensity",
+        "×",
+        0,
+        2,
+        0.01,
+        None,
+        "How large gestures are played; 1 as made.",
     ),
     Dial("breathing", "Breathing", "Depth", "×", 0, 2, 0.05, 0, "How far chest and shoulders rise."),
     Dial("breath_rate", "Breathing", "Breaths", "/ min", 0, 40, 0.5, 0, "People at rest: 12 to 20."),
@@ -209,6 +226,30 @@ MANNER_DIALS: tuple[Dial, ...] = (
 def manner(life: Life, mode: Mode) -> Manner:
     """Return what a mode makes of the amounts: the project's own, else the default."""
     return life.modes.get(mode, MANNERS[mode])
+
+
+def scaled(
+    ways: Manner,
+    breathing: float,
+    breath_rate: float,
+    aversion_rate: float,
+    saccade_rate: float,
+    blinks: float,
+) -> Manner:
+    """Return what a mode makes of the amounts, each that a mood changes times a factor."""
+    return msgspec.structs.replace(
+        ways,
+        breathing=ways.breathing * breathing,
+        breath_rate=ways.breath_rate * breath_rate,
+        aversion_rate=ways.aversion_rate * aversion_rate,
+        saccade_rate=ways.saccade_rate * saccade_rate,
+        blinks=ways.blinks * blinks,
+    )
+
+
+def same_life(one: Life | None, other: Life) -> bool:
+    """Whether two are the same settings."""
+    return one is other or one == other
 
 
 def limits(kind: type[Struct]) -> dict[str, tuple[float, float]]:

@@ -83,7 +83,8 @@ def _mirrored(project: Project, wanted: Mapping[str, tuple[str, tuple[str, ...]]
 def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
     """Place twins of actions (id -> id of the mirrored clip) beside them.
 
-    They keep kind, timing and likelihood; limb, tags, joints and name change sides. A stance or end stance
+    They keep kind, timing and likelihood; limb, tags, joints and name change sides; contacts are to be found
+    anew. A stance or end stance
     that has a twin by name on its layer ("weight left", "weight right") is exchanged for that; a loop keeps
     to its own stance only when it has none. Raises EditError.
     """
@@ -113,6 +114,7 @@ def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
             limb=_OTHER[action.limb],
             tags=tuple(dict.fromkeys(swap_sides(tag) for tag in action.tags)),
             joints=_joints_twin(project, action.joints),
+            contacts=(),
         )
         project = project.with_graph(graph.with_actions({twin.id: twin}), next_id=project.next_id + 1)
     return project

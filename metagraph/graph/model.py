@@ -15,8 +15,10 @@ from metagraph.graph.conversation import AUTO, Conversation
 from metagraph.graph.life import Face, Life
 from metagraph.graph.manual import Alias, Link, Manual, State
 from metagraph.graph.requests import Line, Performance, Point
+from metagraph.graph.touch import Touch
 from metagraph.graph.words import KINDS, LAYERS, LIMBS, MODES, PARTS, Kind, Layer, Limb, Mode, Part
 from metagraph.motion.clip import Clip
+from metagraph.motion.contact_spans import ContactSpan
 from metagraph.motion.joint_map import JointMap
 from metagraph.motion.retime import Retime
 from metagraph.motion.skeleton import Skeleton
@@ -92,6 +94,7 @@ class Action:
     it moves; empty means all. tags: free words, "positive" and "negative" among them. likelihood: relative, >
     0. cooldown: seconds after it has ended in which it is not drawn again. spacing: how many other actions of
     its kind and stance are drawn before it may be drawn again; None as the settings' never_twice says.
+    contacts: where its hands stay on the body.
     """
 
     id: str
@@ -108,6 +111,7 @@ class Action:
     likelihood: float = 1.0
     cooldown: float = 0.0
     spacing: int | None = None
+    contacts: tuple[ContactSpan, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -364,7 +368,9 @@ class Project:
     a code ("de"), or "auto" for what their words tell. manual: state machines drawn by hand, of
     the layers that have one. voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as
     read; never saved. body: what of it breathes and looks (`playback.life.body.Body`) as an export says; None
-    to find it. Never saved.
+    to find it. Never saved. touch: whether contacts hold and hands
+    are kept out of the body. contact_rig: what contacts need of it (`motion.contact_solve.ContactRig`) as an
+    export says; None to find it. Never saved.
     """
 
     name: str = "untitled"
@@ -392,6 +398,8 @@ class Project:
     manual: Mapping[Layer, Manual] = field(default_factory=dict)
     voices: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
     body: Any = field(default=None, compare=False, repr=False)
+    touch: Touch = field(default_factory=Touch)
+    contact_rig: Any = field(default=None, compare=False, repr=False)
     next_id: int = 1
 
     def actions(self) -> Iterable[Action]:
@@ -428,6 +436,11 @@ class Project:
     def uses(self) -> Mapping[str, tuple[Action, ...]]:
         """Clip id -> the actions that use it."""
         return Uses(self.graphs[layer] for layer in LAYERS)
+
+    @cached_property
+    def touched(self) -> frozenset[str]:
+        """The names of the joints that contacts of actions are with."""
+        return frozenset(span.to for action in self.actions() for span in action.contacts)
 
     def state(self, ident: str | None) -> State | None:
         """Return the state of a manual machine of that id, whatever its layer."""

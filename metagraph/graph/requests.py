@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal, Union, get_args
 import msgspec
 from msgspec import Meta, Struct
 
-from metagraph.graph.words import Layer, Limb, Mode
+from metagraph.graph.words import Feeling, Layer, Limb, Mode
 
 LONGEST_NAME = 200  # letters of a performance's name
 LONGEST_PERFORMANCE = 36000  # seconds; whole, since schemas show it
@@ -28,6 +28,16 @@ Point = Annotated[
 ]
 Timed = tuple[Any, ...] | dict[str, Any]  # read where lines are understood: synthesisers have many ways
 Late = Annotated[float, Meta(ge=0, le=600, description="seconds")] | None
+# A named mood, or valence and arousal, -1..1.
+MoodPoint = (
+    Feeling
+    | Annotated[
+        tuple[Annotated[float, Meta(ge=-1, le=1)], ...],
+        Meta(min_length=2, max_length=2, description="valence, arousal; -1 to 1"),
+    ]
+    | None
+)
+Intensity = Annotated[float, Meta(ge=0, le=2, description="1 as made")] | None
 Tags = tuple[Annotated[str, Meta(max_length=200)], ...]
 
 
@@ -52,7 +62,8 @@ class Gesture(Request, frozen=True, tag="gesture"):
     wanted. stroke: when its most telling moment should come, instead of `at`. hold: seconds its hold should
     last. prepare: whether the preparation plays. resume: whether its rest goes on after something more
     important has cut it. late: by how much its stroke, or where none is asked for its start, may come late:
-    0 for on time or not at all, null for as late as the planner's settings allow.
+    0 for on time or not at all, null for as late as the planner's settings allow. mood, intensity: in which
+    it is played, null for as the character is then.
     """
 
     layer: Layer = "arms"
@@ -64,10 +75,12 @@ class Gesture(Request, frozen=True, tag="gesture"):
     prepare: bool = True
     resume: bool = False
     late: Late = None
+    mood: MoodPoint = None
+    intensity: Intensity = None
 
 
 class Fidget(Request, frozen=True, tag="fidget"):
-    """A fidget of the stance the layer is in. late: as for a gesture."""
+    """A fidget of the stance the layer is in. late, mood, intensity: as for a gesture."""
 
     layer: Layer = "arms"
     tags: Tags = ()
@@ -75,11 +88,13 @@ class Fidget(Request, frozen=True, tag="fidget"):
     duration: Seconds | None = None
     resume: bool = False
     late: Late = None
+    mood: MoodPoint = None
+    intensity: Intensity = None
 
 
 class Play(Request, frozen=True, tag="action"):
-    """One action, by id or name; the layer goes to its stance first. stroke, hold, prepare, late: as for a
-    gesture.
+    """One action, by id or name; the layer goes to its stance first. stroke, hold, prepare, late, mood,
+    intensity: as for a gesture.
     """
 
     action: Id
@@ -88,6 +103,8 @@ class Play(Request, frozen=True, tag="action"):
     hold: Annotated[float, Meta(ge=0, le=600)] | None = None
     prepare: bool = True
     late: Late = None
+    mood: MoodPoint = None
+    intensity: Intensity = None
 
 
 class Go(Request, frozen=True, tag="stance"):
@@ -115,17 +132,21 @@ class Change(Request, frozen=True, tag="change"):
 
 
 class Nod(Request, frozen=True, tag="nod"):
-    """Nod: a gesture of the head that is tagged or called so. late: as for a gesture."""
+    """Nod: a gesture of the head that is tagged or called so. late, mood, intensity: as for a gesture."""
 
     tags: Tags = ()
     late: Late = None
+    mood: MoodPoint = None
+    intensity: Intensity = None
 
 
 class Shake(Request, frozen=True, tag="shake"):
-    """Shake the head. late: as for a gesture."""
+    """Shake the head. late, mood, intensity: as for a gesture."""
 
     tags: Tags = ()
     late: Late = None
+    mood: MoodPoint = None
+    intensity: Intensity = None
 
 
 class Look(Request, frozen=True, tag="look"):
@@ -152,7 +173,8 @@ class Say(Request, frozen=True, tag="say"):
     marks and Azure's events are. set: of the visemes' names; null for what they tell. While a line is said, a
     later ask of its id adds to it what comes after now. audio: of a live session alone, the next samples of
     the line's sound, 16-bit little-endian numbers in base64, one channel, `rate` a second: lips are as loud
-    where neither words nor visemes are told.
+    where neither words nor visemes are told. mood, intensity: while it is said, null for the line's own, else
+    as the character is then.
     """
 
     line: Annotated[str, Meta(min_length=1, max_length=200)] | int | None = None
@@ -164,6 +186,8 @@ class Say(Request, frozen=True, tag="say"):
     set: Literal["oculus", "azure", "sapi", "polly", "arkit"] | None = None
     audio: Annotated[str, Meta(max_length=60000)] | None = None
     rate: Annotated[int, Meta(ge=8000, le=48000)] = 16000
+    mood: MoodPoint = None
+    intensity: Intensity = None
 
 
 class Behave(Request, frozen=True, tag="mode"):
@@ -172,6 +196,18 @@ class Behave(Request, frozen=True, tag="mode"):
     """
 
     mode: Mode | None = None
+
+
+class Feel(Request, frozen=True, tag="mood"):
+    """Be in a mood from now on: which actions are likely, how large and fast they are played, breath, blinks,
+    gaze, posture and face. mood: a name, or valence and arousal; null leaves it. intensity: how large
+    gestures are played and how much posture and face show; null leaves it. duration: null until the next;
+    what was asked for before comes back then.
+    """
+
+    mood: MoodPoint = None
+    intensity: Intensity = None
+    duration: Seconds | None = None
 
 
 class Place(Request, frozen=True, tag="place"):
@@ -194,7 +230,7 @@ class Bml(Request, frozen=True, tag="bml"):
 
 
 AnyRequest = Union[  # noqa: UP007 - msgspec reads it at run time
-    Gesture, Fidget, Play, Go, Change, Nod, Shake, Look, Blink, Say, Behave, Place, Withdraw, Bml
+    Gesture, Fidget, Play, Go, Change, Nod, Shake, Look, Blink, Say, Behave, Feel, Place, Withdraw, Bml
 ]
 
 
@@ -202,7 +238,7 @@ class Line(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
     """A line of dialogue, which an agent calls by its id. audio, phones: paths relative to the project file
     of a sound file and of a Praat TextGrid with phones or words. channel: which of the sound's channels is
     the line's, from 0; null for all mixed. duration: seconds, where there is no audio. asks: times from the
-    line's start.
+    line's start. mood, intensity: in which it is said, null for as the character is then.
     """
 
     text: Annotated[str, Meta(max_length=20000)] = ""
@@ -211,12 +247,14 @@ class Line(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
     phones: str | None = None
     duration: Seconds | None = None
     asks: tuple[AnyRequest, ...] = ()
+    mood: MoodPoint = None
+    intensity: Intensity = None
 
 
 class Performance(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
     """A performance that is kept: what was asked for and what chance it was played with. seed: null for the
     project's. length: seconds. idle: whether the models fill the time nobody asks for. stances: layer -> the
-    stance it begins in.
+    stance it begins in. mood, intensity: that of all of it, null for the character's own.
     """
 
     name: Annotated[str, Meta(max_length=LONGEST_NAME)]
@@ -225,6 +263,8 @@ class Performance(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_
     length: Annotated[float, Meta(gt=0, le=LONGEST_PERFORMANCE)] = 60.0
     idle: bool = True
     stances: dict[Layer, str] = {}
+    mood: MoodPoint = None
+    intensity: Intensity = None
 
 
 class RequestError(ValueError):

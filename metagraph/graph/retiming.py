@@ -15,6 +15,7 @@ from metagraph.graph.manual import Manual
 from metagraph.graph.model import Action, BasePose, Project, Timing
 from metagraph.motion.clip import Clip
 from metagraph.motion.contact_hold import Contact, nearest_joint
+from metagraph.motion.contact_spans import ContactSpan
 from metagraph.motion.retime import SHORTEST, Hold, Retime
 
 MOMENTS = ("start", "end", "earliest_exit", "stroke", "ready", "stroke_end", "relax")
@@ -53,7 +54,8 @@ def set_retime(project: Project, clip: str, retime: Retime) -> Project:
     out = replace(project, clips={**project.clips, clip: after})
     for graph in project.graphs.values():
         changes: dict[str, Action | None] = {
-            a.id: replace(a, timing=_timing(a.timing, moved)) for a in graph.uses.get(clip, ())
+            a.id: replace(a, timing=_timing(a.timing, moved), contacts=_contacts(a.contacts, moved))
+            for a in graph.uses.get(clip, ())
         }
         if changes:
             out = out.with_graph(graph.with_actions(changes))
@@ -149,6 +151,25 @@ def _meet(one: Contact, other: Contact) -> bool:
 def _timing(timing: Timing, moved: Callable[..., float | None]) -> Timing:
     changes: dict[str, Any] = {n: moved(getattr(timing, n), n in LATE) for n in MOMENTS}
     return replace(timing, **changes)
+
+
+def _contacts(
+    contacts: tuple[ContactSpan, ...], moved: Callable[..., float | None]
+) -> tuple[ContactSpan, ...]:
+    """Return contacts at the moments they have come to."""
+
+    def at(seconds: float, late: bool = False) -> float:
+        return moved(seconds, late) or 0.0
+
+    return tuple(
+        replace(
+            span,
+            start=at(span.start),
+            end=at(span.end, True),
+            keys=tuple(replace(key, time=at(key.time)) for key in span.keys),
+        )
+        for span in contacts
+    )
 
 
 def _manual(machine: Manual, clip: str, moved: Callable[..., float | None]) -> Manual:

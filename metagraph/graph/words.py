@@ -15,3 +15,19 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 LIMBS: tuple[Limb, ...] = get_args(Limb)
 PARTS: tuple[Part, ...] = get_args(Part)
 MODES: tuple[Mode, ...] = get_args(Mode)
+
+Feeling = Literal[
+    "neutral",
+    "calm",
+    "content",
+    "warm",
+    "happy",
+    "excited",
+    "tense",
+    "angry",
+    "afraid",
+    "sad",
+    "bored",
+    "tired",
+]  # moods that have names; where they lie says `playback.mood`
+FEELINGS: tuple[Feeling, ...] = get_args(Feeling)

@@ -4,7 +4,7 @@ in one pass over what is near.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from math import inf
 
@@ -128,7 +128,7 @@ def _far(metas: Iterable[MetaAction], end: float) -> Iterator[MetaAction]:
 def _near(plan: Plan, since: float) -> Iterator[Item]:
     """Yield what was asked of the life layers and matters from `since` on."""
     track = plan.track
-    several: tuple[tuple[Item, ...], ...] = (track.modes, track.places, track.blinks)
+    several: tuple[Sequence[Item], ...] = (track.modes, track.places, track.blinks)
     for items in several:
         for item in reversed(items):
             if item.start < since:

@@ -110,6 +110,10 @@ class _Reader:
 
     def _behaviour(self, kind: str, element: Element) -> None:
         asks, offsets = self._read(kind, element)
+        asks = self._no_later(element, asks)
+        felt = self._felt(element)
+        if felt:
+            asks = [msgspec.structs.replace(x, **felt) if hasattr(x, "mood") else x for x in asks]
         times = {
             sync: value
             for name, value in element.attributes.items()
@@ -190,6 +194,9 @@ class _Reader:
                 return [a.Change(layer=layer or "arms", limb=limb, **common)], {"end": 1.0}
             case "metagraph:mode":
                 return [a.Behave(mode=e.get("mode") or None, **common)], {"end": 0.0}  # type: ignore[arg-type]
+            case "metagraph:mood":
+                length = self._number(e, "duration", -1.0)
+                return [a.Feel(duration=None if length < 0 else length, **common)], {"end": max(0.0, length)}
             case "metagraph:place":
                 return [a.Place(name=e.get("name"), point=self._point(e, e.get("point")), **common)], {
                     "end": 0.0
@@ -202,6 +209,16 @@ class _Reader:
                     f"is left out; {NOT_READ.get(kind, 'it is none of the behaviours that are understood')}",
                 )
         return [], {}
+
+    def _no_later(self, e: Element, asks: list[Any]) -> list[Any]:
+        """Return asks with how late they may come."""
+        late = self._number(e, "metagraph:late", -1.0)
+        if not e.get("metagraph:late"):
+            return asks
+        if not all("late" in ask.__struct_fields__ for ask in asks):
+            self._note(e, "comes when it comes; metagraph:late means something for actions and stances")
+            return asks
+        return [msgspec.structs.replace(ask, late=late) for ask in asks]
 
     def _head(
         self, e: Element, tags: tuple[str, ...] | None, common: dict[str, Any]
@@ -280,6 +297,21 @@ class _Reader:
 
     def _integer(self, e: Element, name: str, default: int) -> int:
         return int(self._number(e, name, default))
+
+    def _felt(self, e: Element) -> dict[str, Any]:
+        """Return the mood and intensity of an element that tells any."""
+        word = e.get("metagraph:mood") or (e.get("mood") if e.name.lower() == "metagraph:mood" else "")
+        own: dict[str, Any] = {}
+        if word:
+            values = [seconds_of(x) for x in word.replace(",", " ").split()]
+            own["mood"] = word if None in values else values
+        if e.get("metagraph:intensity"):
+            own["intensity"] = self._number(e, "metagraph:intensity", 1.0)
+        try:
+            read = msgspec.convert(own, a.Feel)
+        except msgspec.ValidationError as error:
+            raise a.RequestError(f"{e.place}: {a.words_of(error)}") from None
+        return {name: getattr(read, name) for name in own}
 
     def _tags(self, e: Element) -> tuple[str, ...] | None:
         text = e.get("metagraph:tags")

@@ -38,6 +38,12 @@ def _element(ask: a.AnyRequest) -> str:
     own: dict[str, Any] = {
         "id": ask.id or None,
         "metagraph:priority": str(ask.priority) if ask.priority != 1 else None,
+        "metagraph:late": _number(getattr(ask, "late", None)),
+    }
+    mood = getattr(ask, "mood", None)
+    own |= {
+        "metagraph:mood": mood if isinstance(mood, str) or mood is None else " ".join(map(str, mood)),
+        "metagraph:intensity": _number(getattr(ask, "intensity", None)),
     }
     times: dict[str, Any] = {"start": _number(ask.at)}
     match ask:
@@ -102,6 +108,8 @@ def _element(ask: a.AnyRequest) -> str:
             )
         case a.Behave():
             return _tag("metagraph:mode", own | {"mode": ask.mode} | times)
+        case a.Feel():
+            return _tag("metagraph:mood", own | {"duration": _number(ask.duration)} | times)
         case a.Place():
             return _tag(
                 "metagraph:place",

@@ -30,7 +30,7 @@ REST = np.dtype(
     [(n, "f8") for n in ("start", "fade_start", "fade", "first", "length", "seam", "period")]
     + [("clip", "i8")]
 )
-_TIMES = ("start", "end", "entry", "blend_in", "blend_out", "held", "hold", "rate")
+_TIMES = ("start", "end", "entry", "blend_in", "blend_out", "extent", "tempo", "held", "hold", "rate")
 CUE = np.dtype([(n, "f8") for n in _TIMES] + [("clip", "i8"), ("mask", "i8")])
 
 LANES = 16  # joints in a block; crowd_kernels.LANES, which is not imported before it is needed
@@ -41,9 +41,9 @@ class Crowd:
     """The characters of one project, one plan each; plans may be shared. Everything is laid out once, when it
     is made.
 
-    Poses agree with `pose_at` without life layers to 1e-5. The first call in a process imports numba, the
-    first ever compiles (seconds). A crowd is for one thread at a time. Raises ValueError when the project has
-    no skeleton.
+    Poses agree with `pose_at` without life layers, contacts and the guard to 1e-5. The first call in a
+    process imports numba, the first ever compiles (seconds). A crowd is for one thread at a time. Raises
+    ValueError when the project has no skeleton.
     """
 
     def __init__(self, project: Project, plans: Sequence[Plan]) -> None:
@@ -165,7 +165,7 @@ class _Blocks:
 
 
 def _held(cue: Cue) -> tuple[float, float, float]:
-    """Return seconds before the hold, seconds of it, and clip seconds a second in it."""
+    """Return clip seconds before the hold, seconds of it, and clip seconds a second in it."""
     return (
         (cue.hold_from - cue.entry, cue.hold, (cue.hold_to - cue.hold_from) / cue.hold)
         if cue.hold > 0
@@ -201,9 +201,8 @@ class _Tables:
             rests += [self._rest(rest) for rest in lane.rests]
             for cue in lane.cues:
                 clip, mask = self._clip(cue.action), self._mask(cue.action)
-                cues.append(
-                    (cue.start, cue.end, cue.entry, cue.blend_in, cue.blend_out, *_held(cue), clip, mask)
-                )
+                times = (cue.start, cue.end, cue.entry, cue.blend_in, cue.blend_out, cue.extent, cue.tempo)
+                cues.append((*times, *_held(cue), clip, mask))
             rest_at.append(len(rests))
             cue_at.append(len(cues))
         rest_table, cue_table = np.array(rests, REST), np.array(cues, CUE)
@@ -234,7 +233,17 @@ class _Tables:
                 self.reach.weights is not None,
             ),
             *(masks, np.array(self.masks, np.float32).reshape(-1, len(joints))[:, moved]),
+            *self._scales(moved),
         )
+
+    def _scales(self, moved: Array) -> tuple[Array, Array]:
+        """Return which joints turn farther and less far where a cue is larger or smaller, and which
+        movers.
+        """
+        joints, own = self.reach.joints, self.blocks.of(self.layer)
+        scales = anatomy.scales(self.project)[:, joints]
+        lanes = np.array([self.blocks.lanes(row, joints, 0)[own] for row in scales])
+        return lanes, np.ascontiguousarray(scales[:, moved])
 
     def _rest(self, rest: Rest) -> tuple[float, ...]:
         first, end = self.project.span(rest.action)

@@ -116,6 +116,26 @@ def _power(q: Array, weights: Array) -> None:
         )
 
 
+@_compiled
+def _extend(shown: Array, stance: Array, extent: Number, scales: Array, scratch: Array) -> None:
+    """Play `shown` larger or smaller round the stance, in place; the same as the player's. scales `[16]`: 0
+    for joints that stay as they are.
+    """
+    _unit(stance)
+    for i in range(3 * LANES):
+        scratch[i] = -stance[i]
+    for i in range(3 * LANES, 4 * LANES):
+        scratch[i] = stance[i]
+    _append(scratch, shown)
+    _unit(scratch)
+    for i in range(LANES):
+        part = _ease((abs(scratch[3 * LANES + i]) - 0.1) / 0.4)
+        scales[i] = np.float32(1 + (extent - 1) * scales[i] * part)
+    _power(scratch, scales)
+    shown[:] = stance
+    _append(shown, scratch)
+
+
 # --- where samples lie
 
 
@@ -130,9 +150,9 @@ def _clip_seconds(cue: Any, time: Number) -> Number:
     """Return the clip seconds a cue shows, its hold stretched."""
     elapsed = time - cue.start
     if cue.hold <= 0:
-        return cue.entry + elapsed
-    held = min(max(elapsed - cue.held, 0.0), cue.hold)
-    return cue.entry + elapsed - held + held * cue.rate
+        return cue.entry + elapsed * cue.tempo
+    held = min(max(elapsed - cue.held / cue.tempo, 0.0), cue.hold)
+    return cue.entry + (elapsed - held) * cue.tempo + held * cue.rate
 
 
 @_compiled
@@ -227,6 +247,8 @@ def add_layer(
     weighed: bool,
     masks: Array,
     mover_masks: Array,
+    scales: Array,
+    mover_scales: Array,
     out: Array,
     out_t: Array,
 ) -> None:
@@ -235,7 +257,8 @@ def add_layer(
 
     turns `[rows, b, 64]`: every clip's frames; blocks `[b]`: which of the B blocks they are. ways `[rows, m,
     3]` of joints `movers [m]`. weights `[b, 16]`. masks `[K, b, 16]`, mover_masks `[K, m]`: 0 where a masked
-    action leaves a joint to its stance.
+    action leaves a joint to its stance. scales `[2, b, 16]`, mover_scales `[2, m]`: which turn farther, and
+    which less far, where a cue is larger or smaller than made.
     """
     shown, stance, other = (
         np.empty(4 * LANES, np.float32),
@@ -243,6 +266,7 @@ def add_layer(
         np.empty(4 * LANES, np.float32),
     )
     scratch = np.empty(4 * LANES, np.float32)
+    turned = np.empty(LANES, np.float32)
     for c in range(first, last):
         time, plan = seconds[c], plan_of[c]
         if rest_at[plan] == rest_at[plan + 1]:
@@ -250,10 +274,12 @@ def add_layer(
         place = _last_from(cue_starts, cue_at[plan], cue_at[plan + 1], time)
         playing = place >= cue_at[plan] and time < cues[place].end and cues[place].clip >= 0
         mask, lead, blending = -1, np.float32(0), False
+        extent, way = 1.0, 0
         spot = edge = (0, 0, np.float32(0))
         if playing:
             cue = cues[place]
             clip, mask = clips[cue.clip], cue.mask
+            extent, way = cue.extent, 0 if cue.extent > 1 else 1
             spot = _spot(clip, _clip_seconds(cue, time))
             rising = time < cue.start + cue.blend_in
             blending = rising or time >= cue.end - cue.blend_out
@@ -262,7 +288,7 @@ def add_layer(
                 up = _ease((time - cue.start) / cue.blend_in) if cue.blend_in > 0 else 1.0
                 down = _ease((cue.end - time) / cue.blend_out) if cue.blend_out > 0 else 1.0
                 lead = np.float32(1 - up * down)
-        resting = not playing or blending or mask >= 0
+        resting = not playing or blending or mask >= 0 or extent != 1
         loop = before = (spot, spot, np.float32(-1))
         fade = np.float32(1)
         if resting:
@@ -286,6 +312,9 @@ def add_layer(
                 if blending:
                     _lerp(turns[edge[0], b], turns[edge[1], b], edge[2], other)
                     _lead(shown, stance, other, lead)
+                if extent != 1:
+                    turned[:] = scales[way, b]
+                    _extend(shown, stance, extent, turned, scratch)
                 if mask >= 0:
                     moves = masks[mask, b]
                     for k in range(4):
@@ -305,9 +334,12 @@ def add_layer(
                     t = _loop_way(ways, loop, m, axis)
                     if fade < 1:
                         t = t * fade + _loop_way(ways, before, m, axis) * (np.float32(1) - fade)
+                under = t
                 if moves_m:
                     away = _way(ways, spot, m, axis)
                     t = away + (t - _way(ways, edge, m, axis)) * lead if blending else away
+                    if extent != 1:
+                        t = under + (t - under) * np.float32(1 + (extent - 1) * mover_scales[way, m])
                 out_t[c, movers[m], axis] += t * mover_weights[m]
 
 

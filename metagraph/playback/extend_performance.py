@@ -8,7 +8,8 @@ from typing import Any, Literal
 
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
-from metagraph.playback.life.track import Item, ModeFrom, Speech, StayFrom
+from metagraph.playback.hearing import heard, owners
+from metagraph.playback.life.items import StayFrom
 from metagraph.playback.markov import model
 from metagraph.playback.plan import Cue, LayerPlan, Past, Plan, Report
 from metagraph.playback.planner import extend
@@ -34,52 +35,22 @@ def hear(
     """
     fixed = now + project.settings.lookahead if now > 0 else 0.0
     meant = understand(project, asks, fixed)
-    every = "" in meant.withdrawn
-    gone = (
-        meant.withdrawn
-        | {r.id for r in meant.requests}
-        | {i.id for i in meant.items}
-        | {r.request for r in meant.refused}
+    turning = [layer for layer in LAYERS if model(project, layer).modes]
+    refused = [r.request for r in meant.refused]
+    found = heard(
+        plan.requests, plan.track, meant.requests, meant.track(), meant.withdrawn, refused, fixed, turning
     )
-    asked_before = {r.id for r in plan.requests} | {i.id for i in plan.track.items}
-    belonging = {
-        i for i in asked_before if i in gone or ("." in i and any(owner in gone for owner in owners(i)))
-    }
-    withdrawn = asked_before if every else belonging
-    staying = {s.layer for s in (*plan.track.stays, *meant.items) if isinstance(s, StayFrom) and s.on}
-    items = [i for i in meant.items if not isinstance(i, StayFrom) or i.layer in staying]
-    touched = {r.layer for r in meant.requests} | {r.layer for r in plan.requests if r.id in withdrawn}
-    touched |= {
-        s.layer
-        for s in (*plan.track.stays, *items)
-        if isinstance(s, StayFrom) and (s.id in gone or s.id in withdrawn)
-    }
-    told: tuple[Item, ...] = (*plan.track.modes, *plan.track.speeches)
-    if any(isinstance(i, ModeFrom | Speech) for i in items) or any(t.id in withdrawn for t in told):
-        touched |= {layer for layer in LAYERS if model(project, layer).modes}  # who talks moves otherwise
     # Without any asks everything is planned again, so that an edited project shows; with some, what they have
     # to do with.
     leave = (
-        [layer for layer in LAYERS if layer not in touched] if asks and now > 0 and end == plan.end else []
+        [layer for layer in LAYERS if layer not in found.touched]
+        if asks and now > 0 and end == plan.end
+        else []
     )
-    going_on = plan.track.going_on(items, fixed)
-    begun = {new.id for new, asked in zip(going_on, items, strict=True) if new is not asked}
-    track = plan.track.without(withdrawn - begun, fixed).without(begun).plus(going_on)
-    plan = replace(plan, track=track)
-    after = extend(project, plan, fixed, meant.requests, end, stances, idle, frozenset(withdrawn), leave)
+    plan = replace(plan, track=found.track)
+    withdrawn = frozenset(found.withdrawn)
+    after = extend(project, plan, fixed, meant.requests, end, stances, idle, withdrawn, leave)
     return replace(after, reports=(*after.reports, *meant.refused)) if meant.refused else after
-
-
-def owners(ident: str) -> Iterator[str]:
-    """Yield the asks a request may have been made by: that of its own id, and those of which it would be a
-    part.
-    """
-    yield ident
-    while True:
-        ident, dot, number = ident.rpartition(".")
-        if not dot or not number.isdigit():
-            return
-        yield ident
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,6 +149,7 @@ def _words(item: object) -> str:
         "ModeFrom": "mode",
         "PlaceFrom": "place",
         "BlinkAt": "blink",
+        "MoodFrom": "mood",
     }[name]
 
 

@@ -6,11 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from metagraph.graph.model import Kind, Layer, Markov, MetaGraph, Project
 from metagraph.playback import markov
+from metagraph.playback.cue_shapes import FITS
 from metagraph.playback.hashing import Bits
+from metagraph.playback.mood import Moods, changed, mood_at, tempo
 from metagraph.playback.plan import (
     TEMPORAL,
     Cue,
@@ -23,7 +25,7 @@ from metagraph.playback.plan import (
     Rest,
 )
 from metagraph.playback.replan import delay, replan
-from metagraph.playback.sampling import FITS, Performer, performer_after
+from metagraph.playback.sampling import Performer, performer_after
 
 WINDOW = 1.0  # seconds a request may use when it does not say how long
 
@@ -78,15 +80,16 @@ def draft(
     replaced: AbstractSet[str],
     end: float,
     stance: str | None,
+    moods: Moods,
 ) -> LayerDraft:
     """Return a layer's plan taken back to `now`, with what is asked for placed anew.
 
     chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of
     the plan so far. fresh: requests, of all layers. replaced: ids of those that are asked for anew or
-    withdrawn. stance: which the layer would begin in.
+    withdrawn. stance: which the layer would begin in. moods: what it is in the mood for, and when.
     """
     layer = graph.layer
-    asked = [meta_of(request) for request in fresh if request.layer == layer]
+    asked = [meta_of(in_time(request, moods)) for request in fresh if request.layer == layer]
     kept = [cue for cue in old.cues if cue.start < now]
     played = {cue.meta for cue in kept}
     waiting = {cue.meta for cue in old.cues[len(kept) :]}  # also those whose chain of transitions has begun
@@ -131,7 +134,7 @@ def draft(
         )
     ]
     begin = _begin(graph, old, stance)
-    performer = performer_after(project, graph, seed, begin, old.past, kept)
+    performer = performer_after(project, graph, seed, begin, old.past, kept, moods)
     if begin == "" or not performer.begin(begin):
         why = f"the {layer} layer has no stance with a loop to begin in"
         waits = [*future, *asked]
@@ -155,6 +158,17 @@ def draft(
     placed, moved = replan([*future, *written, *asked], project.settings, busy)
     every = [*reports, *delayed, *moved]
     return LayerDraft(layer, performer, True, done, placed, every, old.past, cursor, written)
+
+
+def in_time(request: MetaRequest, moods: Moods) -> MetaRequest:
+    """Return a request that may begin as much earlier as its preparation takes longer in its mood."""
+    if request.stroke is None:
+        return request
+    mood = mood_at(moods, request.stroke)
+    speed = tempo(changed(mood, request.valence, request.arousal, request.intensity))
+    if speed >= 1:
+        return request
+    return replace(request, start=max(0.0, request.stroke - (request.stroke - request.start) / speed))
 
 
 def meta_of(request: MetaRequest) -> MetaAction:

@@ -20,6 +20,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.composer import Reach, rig
+from metagraph.playback.contacts import touched
 from metagraph.playback.life.evaluate import enliven
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import ease, layers_at, sample
@@ -59,6 +60,8 @@ def overlaid(plan: Plan, project: Project, seconds: Any, overlay: Overlay | None
         pose = _over(frame.compose(body, len(times)), project, layers, overlay)
     if alive and project.life.on and plan.life.end > 0 and len(times):
         pose = enliven(pose, project, plan.life, plan.track, times)
+    shown = None if overlay is None else 1 - overlay.weight * (1 - overlay.arms)
+    pose = touched(pose, plan, project, times, shown)
     shape = (*at.shape, len(frame.ground.skeleton))
     return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.model import Action, Layer, Project
+from metagraph.graph.model import Action, Layer, MetaGraph, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.phase_times import Phases
 
@@ -42,8 +42,8 @@ def phases(project: Project, action: Action) -> Phases:
         middle = (start + end) / 2
         found = Phases(start, middle, middle, middle, middle, end)
     else:
-        movers, seen_from = _movers(project, motion, action.layer, action.limb)
-        found = _found(ref(motion), movers, seen_from, start, end)
+        joints, seen_from = movers(project, motion, action.layer, action.limb)
+        found = _found(ref(motion), joints, seen_from, start, end)
     ready = _within(timing.ready, found.ready, start, end)
     stroke = _within(timing.stroke, max(ready, found.stroke), start, end)
     stroke_end = _within(timing.stroke_end, max(stroke, found.stroke_end), start, end)
@@ -52,11 +52,36 @@ def phases(project: Project, action: Action) -> Phases:
     return Phases(start, ready, stroke, stroke_end, max(relax, stroke_end), end)
 
 
+def lead(project: Project, action: Action) -> float:
+    """Return the seconds from an action's start to its stroke; what is no gesture has it where it was set, or
+    halfway.
+    """
+    if action.kind != "gesture":
+        start, end = project.span(action)
+        stroke = action.timing.stroke
+        return min(max((start + end) / 2 if stroke is None else stroke, start), end) - start
+    found = phases(project, action)
+    return found.stroke - found.start
+
+
+def longest_lead(project: Project, graph: MetaGraph, tags: tuple[str, ...]) -> float:
+    """Return how long before its stroke any gesture with these tags begins; remembered as long as graph and
+    clips stay as they are.
+    """
+    known = graph.__dict__.get("_leads")
+    leads: dict[tuple[str, ...], float] = known[1] if known is not None and known[0] is project.clips else {}
+    graph.__dict__["_leads"] = (project.clips, leads)
+    if tags not in leads:
+        gestures = (x for x in graph.actions.values() if x.kind == "gesture" and set(tags) <= set(x.tags))
+        leads[tags] = max((lead(project, x) for x in gestures), default=0.0)
+    return leads[tags]
+
+
 def _within(own: float | None, found: float, start: float, end: float) -> float:
     return min(max(found if own is None else own, start), end)
 
 
-def _movers(project: Project, motion: Clip, layer: Layer, limb: str) -> tuple[tuple[int, ...], int]:
+def movers(project: Project, motion: Clip, layer: Layer, limb: str) -> tuple[tuple[int, ...], int]:
     """Return the joints that make the gesture and the joint they are seen from."""
     roles = anatomy.roles(project) if motion.skeleton == project.skeleton else {}
     if layer == "arms":
@@ -66,20 +91,20 @@ def _movers(project: Project, motion: Clip, layer: Layer, limb: str) -> tuple[tu
         names, ground = ("head",), ("upper_chest", "chest", "spine", "hips")
     else:
         names, ground = ("upper_chest", "chest", "hips", "left_foot", "right_foot"), ()
-    movers = tuple(roles[n] for n in names if n in roles)
+    found = tuple(roles[n] for n in names if n in roles)
     seen_from = next((roles[g] for g in ground if g in roles), -1)
-    return movers or tuple(range(len(motion.skeleton))), seen_from
+    return found or tuple(range(len(motion.skeleton))), seen_from
 
 
 @lru_cache(maxsize=4096)
-def _found(whose: ref[Clip], movers: tuple[int, ...], seen_from: int, start: float, end: float) -> Phases:
+def _found(whose: ref[Clip], joints: tuple[int, ...], seen_from: int, start: float, end: float) -> Phases:
     # What is remembered must not keep a clip whose project was closed; a `ref` is equal while its clip lives.
     motion = whose()
     assert motion is not None
     first, last = int(np.ceil(start * motion.fps)), int(np.floor(end * motion.fps + 1e-6))
-    track = _track(whose, movers, seen_from)[first : last + 1]
-    speed, away = _speed(track, motion.fps), np.linalg.norm(track - track[0], axis=-1).max(-1)
-    times = start + np.arange(len(track)) / motion.fps
+    path = track(whose, joints, seen_from)[first : last + 1]
+    speed, away = _speed(path, motion.fps), np.linalg.norm(path - path[0], axis=-1).max(-1)
+    times = start + np.arange(len(path)) / motion.fps
     bouts = _bouts(speed, motion.fps)
     peak = int(np.argmax(speed))
     if len(bouts) == 0 or away.max() < 1e-4:
@@ -107,7 +132,7 @@ def _of(times: Array, start: float, end: float, ready: int, stroke: int, gone: i
 
 
 @lru_cache(maxsize=512)
-def _track(whose: ref[Clip], movers: tuple[int, ...], seen_from: int) -> Array:
+def track(whose: ref[Clip], joints: tuple[int, ...], seen_from: int) -> Array:
     """Return where the joints are `[F, n, 3]`, metres, in the frame of the joint they are seen from, or of
     the clip.
     """
@@ -116,7 +141,7 @@ def _track(whose: ref[Clip], movers: tuple[int, ...], seen_from: int) -> Array:
     motion = whose()
     assert motion is not None
     turns, places = motion.skeleton.globals(motion.poses())
-    chosen = places[:, list(movers)]
+    chosen = places[:, list(joints)]
     if seen_from >= 0:
         chosen = rotation.rotate(
             rotation.conjugate(turns[:, seen_from])[:, None], chosen - places[:, seen_from, None]
@@ -124,9 +149,9 @@ def _track(whose: ref[Clip], movers: tuple[int, ...], seen_from: int) -> Array:
     return np.asarray(chosen, np.float64)
 
 
-def _speed(track: Array, fps: float) -> Array:
+def _speed(path: Array, fps: float) -> Array:
     """Return `[F]` the fastest joint's speed, metres a second, smoothed."""
-    speed = np.linalg.norm(np.gradient(track, 1 / fps, axis=0), axis=-1).max(-1)
+    speed = np.linalg.norm(np.gradient(path, 1 / fps, axis=0), axis=-1).max(-1)
     reach = max(1, round(3 * SMOOTH * fps))
     kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) / (SMOOTH * fps)) ** 2)
     padded = np.pad(speed, reach, mode="edge")

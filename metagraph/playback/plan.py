@@ -32,7 +32,8 @@ class MetaRequest:
     come; `start` is then the earliest it may begin. hold: seconds its hold should last, None for as long as
     it was made. prepare: whether its preparation plays. among: ids of the only actions it may be, any where
     empty. late: by how many seconds its stroke, or where none is asked for its start, may come late, 0 for on
-    time or not at all; None for as late as the settings allow.
+    time or not at all; None for as late as the settings allow. valence, arousal, intensity: of the mood it is
+    played in, as in `mood.Mood`; None for as it is then.
     """
 
     id: str
@@ -51,6 +52,9 @@ class MetaRequest:
     prepare: bool = True
     among: tuple[str, ...] = ()
     late: float | None = None
+    valence: float | None = None
+    arousal: float | None = None
+    intensity: float | None = None
 
     def __post_init__(self) -> None:
         times = (self.start, self.duration, self.stroke, self.hold, self.late)
@@ -96,12 +100,13 @@ class MetaAction:
 
 @dataclass(frozen=True, slots=True)
 class Cue:
-    """One action in the plan. It plays its clip from `entry` on during `start`..`end`, at its own speed but
-    for its hold.
+    """One action in the plan. It plays its clip from `entry` on during `start`..`end`, at `tempo` times its
+    own speed but for its hold.
 
     hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not
     stretched. blend_in, blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it
-    leaves the layer in. meta: key of the meta action it realises.
+    leaves the layer in. meta: key of the meta action it realises. extent: how large it is played, a factor of
+    its turns away from the stance.
     """
 
     action: Action
@@ -116,15 +121,18 @@ class Cue:
     hold_from: float = 0.0
     hold_to: float = 0.0
     hold: float = 0.0
+    extent: float = 1.0
+    tempo: float = 1.0
 
     def clip_seconds(self, times: Any) -> Any:
         """Return the clip seconds shown at `times`, a number or an array `[...]` within the cue."""
         elapsed = times - self.start
         if self.hold <= 0:
-            return self.entry + elapsed
-        before, natural = self.hold_from - self.entry, self.hold_to - self.hold_from
+            return self.entry + elapsed * self.tempo
+        before, natural = (self.hold_from - self.entry) / self.tempo, self.hold_to - self.hold_from
         held = np.clip(elapsed - before, 0.0, self.hold)
-        return self.entry + elapsed - held + held * (natural / self.hold)
+        more = (elapsed - held) * (self.tempo - 1)  # none at its own speed, to the last digit
+        return self.entry + elapsed - held + more + held * (natural / self.hold)
 
     @property
     def last(self) -> float:

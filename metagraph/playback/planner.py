@@ -12,6 +12,8 @@ from metagraph.graph.model import LAYERS, Layer, Markov, Project
 from metagraph.playback import markov
 from metagraph.playback.layer_planning import draft
 from metagraph.playback.life.schedule import schedule
+from metagraph.playback.life.wanted import moods_of
+from metagraph.playback.mood import Moods, mood_at, stirs
 from metagraph.playback.plan import LayerPlan, MetaAction, MetaRequest, Plan, Report
 
 
@@ -55,6 +57,7 @@ def extend(
     again = {r.id for r in fresh} | withdrawn
     layers: dict[Layer, LayerPlan] = {}
     reports: list[Report] = []
+    moods = moods_of(project.life, plan.track)
     for layer in LAYERS:
         if layer in leave:
             layers[layer] = plan.layers[layer]
@@ -64,9 +67,9 @@ def extend(
         stance = (stances or {}).get(layer)
         drafted = draft(
             project, graph, chain if idle else None, {kind for _, kind in graph.index}, plan.layers[layer],
-            plan.reports, plan.seed, now, fresh, again, end, stance,
+            plan.reports, plan.seed, now, fresh, again, end, stance, moods,
         )  # fmt: skip
-        metas = [m for m in drafted.placed if not m.written or _performed(chain, plan, layer, m)]
+        metas = [m for m in drafted.placed if not m.written or _performed(chain, plan, layer, m, moods)]
         layers[layer] = drafted.performed(metas, end)
         reports += drafted.reports
     kept = tuple(r for r in plan.requests if r.id not in again)
@@ -76,10 +79,12 @@ def extend(
     )
 
 
-def _performed(chain: Markov, plan: Plan, layer: Layer, meta: MetaAction) -> bool:
+def _performed(chain: Markov, plan: Plan, layer: Layer, meta: MetaAction, moods: Moods) -> bool:
     """Whether what a model wrote is performed: not where it would leave a stance that was asked for, to stay
-    in, and as often as its mode says.
+    in, and as often as its mode and mood say.
     """
+    if not stirs(mood_at(moods, meta.start), plan.seed, meta.request.id):
+        return False
     if meta.request.kind == "transition" and plan.track.stays_at(layer, meta.start):
         return False
     return markov.performs(chain, plan.seed, meta, plan.track.told_mode(meta.start))

@@ -16,6 +16,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.composer import Ground, Reach, rig
+from metagraph.playback.contacts import touched
 from metagraph.playback.life.body import body_of
 from metagraph.playback.life.evaluate import enliven, face_weights
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Rest
@@ -43,6 +44,7 @@ def pose_at(plan: Plan, project: Project, seconds: Any, alive: bool = True) -> P
     pose = frame.compose(layers_at(plan, project, times), len(times))
     if alive and project.life.on and plan.life.end > 0 and len(times):
         pose = enliven(pose, project, plan.life, plan.track, times)
+    pose = touched(pose, plan, project, times)
     shape = (*at.shape, len(frame.ground.skeleton))
     return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
 
@@ -166,7 +168,7 @@ def _together(
     shown = sample(ground, reach, motion, cue.clip_seconds(times))
     mask = anatomy.mask(project, cue.action)
     still = np.flatnonzero(mask[reach.joints] == 0) if mask is not None else ()
-    if phase == _FULL and len(still) == 0:
+    if phase == _FULL and len(still) == 0 and cue.extent == 1:
         return shown
     stance = _stance(plan, project, ground, reach, times, current, fading)
     if phase != _FULL:
@@ -174,9 +176,20 @@ def _together(
         shown = _lead(
             shown, stance, sample(ground, reach, motion, np.array([edge])), 1 - cue_weight(cue, times)
         )
+    if cue.extent != 1:
+        shown = _extended(shown, stance, cue.extent, anatomy.scales(project)[:, reach.joints])
     for part, rest in zip(shown, stance, strict=True):
         part[:, still] = rest[:, still]
     return shown
+
+
+def _extended(shown: Sample, stance: Sample, extent: float, scales: Array) -> Sample:
+    """Play a sample larger or smaller round its stance. scales `[2, n]`: as `anatomy.scales`."""
+    share = (extent - 1) * scales[0 if extent > 1 else 1]
+    apart = rotation.multiply(rotation.conjugate(stance[0]), shown[0])
+    factor = 1 + share * ease((np.abs(apart[..., 3]) - 0.1) / 0.4)  # mood.turn_extent
+    moved = stance[1] + (shown[1] - stance[1]) * (1 + share[:, None])
+    return rotation.multiply(stance[0], rotation.power(apart, factor)).astype(np.float32), moved
 
 
 def _lead(shown: Sample, stance: Sample, edge: Sample, weight: Array) -> Sample:

@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import msgspec
-import numpy as np
 
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Layer, Project
-from metagraph.playback.extend_performance import hear, owners, since
+from metagraph.playback.extend_performance import hear, since
+from metagraph.playback.hearing import owners
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.track import Item, track_of
 from metagraph.playback.plan import Cue, LayerPlan, MetaAction, MetaRequest, Plan, Report, Rest
@@ -29,7 +29,7 @@ REPLAYED = (
 )
 RECENT = 30.0  # seconds of past that are planned on from; what lies before costs nothing
 CUT = 15.0  # seconds between two cuts
-LANES = ("modes", "breaths", "aversions", "saccades", "blinks")
+LANES = ("modes", "moods", "breaths", "aversions", "saccades", "blinks")
 
 
 class RunningPlan:
@@ -124,6 +124,13 @@ def _on(running: RunningPlan, last: float, now: float, end: float) -> None:
         running.extend(then, min(end, then + running.ahead))
 
 
+def asks_of(kept: a.Performance) -> tuple[a.AnyRequest, ...]:
+    """Return what a kept performance asks for, its own mood first, which lasts under all others."""
+    if kept.mood is None and kept.intensity is None:
+        return kept.asks
+    return a.Feel(id="performance-mood", at=0.0, mood=kept.mood, intensity=kept.intensity), *kept.asks
+
+
 @dataclass(frozen=True, slots=True)
 class CutPiece:
     """A cut of a running plan: before it, after it, and how many asks there had been."""
@@ -202,10 +209,9 @@ def _again(ident: str, again: Collection[str]) -> bool:
 
 def _gone(before: Lane, after: Lane) -> Lane:
     count = after.first - before.first
-    return Lane(before.starts[:count], before.values[:count], before.first)
+    return Lane(before.times[:count], before.rows[:count], before.first, before.width)
 
 
 def _joined(lanes: Sequence[Lane]) -> Lane:
-    return Lane(
-        np.concatenate([x.starts for x in lanes]), np.concatenate([x.values for x in lanes]), lanes[0].first
-    )
+    times = [time for x in lanes for time in x.times]
+    return Lane(times, [row for x in lanes for row in x.rows], lanes[0].first, lanes[0].width)

@@ -11,16 +11,26 @@ from dataclasses import dataclass, field, replace
 from metagraph.graph.model import Action, MetaGraph, Project
 from metagraph.playback.bounds import Bound, begins, bounds
 from metagraph.playback.choice import pick
+from metagraph.playback.cue_shapes import (
+    FITS,
+    RETRACTION,
+    CueShape,
+    fits_before,
+    hurried,
+    lateness,
+    may_share,
+    meets,
+    shape_of,
+    slack_of,
+)
 from metagraph.playback.hashing import Bits
+from metagraph.playback.mood import HELD, Mood, Moods, changed, drag, extent, favour, made_for, mood_at, tempo
 from metagraph.playback.phase_times import LEAST_BLEND
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Cue, MetaAction, MetaRequest, Outcome, Past, Report, Rest
 from metagraph.playback.remembering import REMEMBERED, node, remember
+from metagraph.playback.vigour import vigour
 
-FITS = 1e-6  # seconds by which sums of times may be off
-HURRY = 2.0  # a hold is played at most this many times as fast as it was made
-RETRACTION = 0.4  # seconds in which an action whose retraction is cut goes back to its stance, at the least
-SHARED = 0.25  # seconds within which two strokes may be one
 LOOP_FADE = 0.6  # seconds of crossfade when a long rest changes from one loop of its stance to another
 
 
@@ -32,34 +42,20 @@ class SamplingStep:
     hop: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class CueShape:
-    """How an action would play: from `start` on, `length` seconds, at least `shortest`; the rest as in a
-    cue.
-    """
-
-    start: float
-    entry: float
-    length: float
-    shortest: float
-    hold_from: float = 0.0
-    hold_to: float = 0.0
-    hold: float = 0.0
-
-
 @dataclass
 class Performer:
     """One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
 
     uses: how often each action was used. recent: the last draws of each `node`. ended: when each action
     ended. begun: keys of meta actions whose chain of transitions plays already. served: keys of those that
-    another's action serves, too.
+    another's action serves, too. moods: what it is in the mood for, and when.
     """
 
     project: Project
     graph: MetaGraph
     seed: Bits
     stance: str
+    moods: Moods
     free: float = 0.0
     uses: dict[str, int] = field(default_factory=dict)
     recent: dict[str, tuple[str, ...]] = field(default_factory=dict)
@@ -127,7 +123,7 @@ class Performer:
             asked = None if hops else meta.request
             fitting = list(step.candidates)
             if limit < float("inf"):  # else all fit
-                fitting = [a for a in step.candidates if self._fits(self._shape(a, asked, now), limit)]
+                fitting = [a for a in step.candidates if fits_before(self._shape(a, asked, now), limit)]
             if len(fitting) == 0:
                 before = "" if meta.written else " before something more important"
                 self._tell(meta, "no-room", f"nothing fits into the {max(0.0, limit - now):.2f} s{before}")
@@ -154,9 +150,10 @@ class Performer:
                 fitting = self._timely(bound, fitting, now)
                 if len(fitting) == 0:
                     return
-            action = self._draw(fitting, f"{meta.key}/{step.hop}" if hops else meta.key, now)
+            mood = self._mood(asked, now)
+            action = self._draw(fitting, f"{meta.key}/{step.hop}" if hops else meta.key, now, mood)
             shape = self._shape(action, asked, now)
-            cue = self._cue(action, shape, bound, hops, stance)
+            cue = self._cue(action, shape, bound, hops, stance, mood)
             cues.append(cue)
             now, stance = cue.end, cue.then
         for one in cues:
@@ -168,8 +165,8 @@ class Performer:
         """
         meta = bound.meta
         request = meta.request
-        allowed = self._slack(request)
-        late = {a.id: self._lateness(a, request, self._shape(a, request, now)) for a in fitting}
+        allowed = slack_of(request)
+        late = {a.id: lateness(self.project, a, request, self._shape(a, request, now)) for a in fitting}
         least = min([late[a.id] for a in fitting])
         if least > allowed + FITS:
             waits = self._cause(request, now)
@@ -186,9 +183,9 @@ class Performer:
             self._tell(meta, "late", f"comes {least:.2f} s late; it waits for {waits}", True, least)
         timely = [a for a in fitting if late[a.id] <= max(least, 0.0) + FITS]
         for other in bound.after:
-            if not self._shares(request, other.request):
+            if not may_share(request, other.request):
                 continue
-            both = [a for a in timely if self._meets(a, other.request)]
+            both = [a for a in timely if meets(a, other.request)]
             behind = 0.0
             if request.stroke is not None and other.request.stroke is not None:
                 behind = max(0.0, request.stroke + max(least, 0.0) - other.request.stroke)
@@ -199,21 +196,12 @@ class Performer:
                 self._tell(other, "shared", message, True, behind, meta.key)
         following = [other for other in bound.after if other.key not in self.served]
         for other in following:
-            for slack in (0.0, self._slack(other.request)):
+            for slack in (0.0, slack_of(other.request)):
                 by = self._latest(other.request) + slack
                 over = [a for a in timely if self._over(a, request, now) <= by]
                 if len(over) > 0:
                     return over
         return timely
-
-    def _lateness(self, action: Action, request: MetaRequest, shape: CueShape) -> float:
-        """Return by how many seconds an action that plays so comes late, at its stroke where one is asked
-        for; less than 0 before its time.
-        """
-        if request.stroke is not None and action.kind == "gesture":
-            found = phases(self.project, action)
-            return shape.start + found.stroke - shape.entry - request.stroke
-        return shape.start - request.start
 
     def _cause(self, request: MetaRequest, now: float) -> str:
         """Return what a request that comes late waits for."""
@@ -223,26 +211,6 @@ class Performer:
             return f"'{self.cues[-1].action.name}', which plays until {self.free:.2f} s"
         return "what comes before it" if len(self.cues) > 0 else "the time it became known at"
 
-    def _shares(self, request: MetaRequest, other: MetaRequest) -> bool:
-        """Whether two requests may be met by one stroke."""
-        if request.stroke is None or other.stroke is None:
-            return False
-        return (
-            request.action is None
-            and other.action is None
-            and request.kind == other.kind
-            and (other.hold is None or other.hold == request.hold)
-            and abs(request.stroke - other.stroke) <= SHARED
-        )
-
-    def _meets(self, action: Action, request: MetaRequest) -> bool:
-        """Whether an action is what a request for any asks for."""
-        return (
-            all(tag in action.tags for tag in request.tags)
-            and (request.limb is None or action.limb == request.limb)
-            and (len(request.among) == 0 or action.id in request.among)
-        )
-
     def _latest(self, request: MetaRequest) -> float:
         """Return when something that is asked for has to begin at the latest, to be on time; never in the
         past, where nothing meets it.
@@ -251,43 +219,28 @@ class Performer:
             return request.start
         least = float("inf")
         for action in self.graph.of(self.stance, request.kind):
-            fits = self._meets(action, request)
+            fits = meets(action, request)
             if request.action is not None:
                 fits = action.id == request.action
             if fits and self._usable(action):
                 found = phases(self.project, action)
-                least = min(least, found.stroke - found.skip(action.timing.blend_in))
+                lead = found.stroke - found.skip(action.timing.blend_in)
+                least = min(least, lead + drag(lead, self._tempo(action, request, request.stroke)))
         return request.stroke - least
-
-    def _slack(self, request: MetaRequest) -> float:
-        """Return by how many seconds a request may come late, 0 where it does not say."""
-        return 0.0 if request.late is None else request.late
 
     def _over(self, action: Action, request: MetaRequest, now: float) -> float:
         """Return when what follows an action could begin at the earliest."""
         shape = self._shape(action, request, now)
-        return shape.start + self._hurried(action, shape) + self.project.settings.rest - FITS
-
-    def _hurried(self, action: Action, shape: CueShape) -> float:
-        """Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless
-        it was asked for.
-        """
-        if action.kind != "gesture" or action.timing.earliest_exit is not None:
-            return shape.shortest
-        found = phases(self.project, action)
-        left = found.relax - shape.entry + shape.hold - (shape.hold_to - shape.hold_from)
-        if shape.hold <= 0:
-            left = found.stroke_end - shape.entry
-        return min(shape.length, left + max(action.timing.blend_out, RETRACTION))
+        return shape.start + hurried(self.project, action, shape) + self.project.settings.rest - FITS
 
     def _until(self, action: Action, shape: CueShape, bound: Bound) -> float:
         """Return when an action that is to be played through is left nevertheless: early enough for the first
         of what follows that can be in time then, late enough for its own stroke; infinity for never.
         """
         rest = self.project.settings.rest
-        soonest = shape.start + self._hurried(action, shape)
+        soonest = shape.start + hurried(self.project, action, shape)
         for other in bound.after:
-            in_time = self._latest(other.request) + self._slack(other.request)
+            in_time = self._latest(other.request) + slack_of(other.request)
             if other.key not in self.served and soonest + rest <= in_time + FITS:
                 return max(soonest, begins(other) - rest)
         return float("inf")
@@ -303,13 +256,13 @@ class Performer:
         if not running.written:
             shape = CueShape(
                 cue.start, cue.entry, cue.end - cue.start, cue.end - cue.start,
-                cue.hold_from, cue.hold_to, cue.hold,
+                cue.hold_from, cue.hold_to, cue.hold, cue.tempo,
             )  # fmt: skip
-            soonest = max(soonest, cue.start + self._hurried(cue.action, shape))
+            soonest = max(soonest, cue.start + hurried(self.project, cue.action, shape))
         rest = self.project.settings.rest
         for meta in asked:
             request = meta.request
-            in_time = self._latest(request) + self._slack(request)
+            in_time = self._latest(request) + slack_of(request)
             if request.late is None or meta.rank < running.rank or in_time < soonest + rest - FITS:
                 continue
             end = max(soonest, begins(meta) - rest)
@@ -320,10 +273,6 @@ class Performer:
                 self.free = end
                 self.ended[cue.action.id] = end
             return
-
-    def _fits(self, shape: CueShape, limit: float) -> bool:
-        """Whether something that plays so is over by a limit."""
-        return shape.start + shape.shortest <= limit + FITS
 
     def _cooled(self, action: Action) -> float:
         """Return when an action may be drawn again."""
@@ -459,42 +408,50 @@ class Performer:
 
     def _shape(self, action: Action, request: MetaRequest | None, now: float) -> CueShape:
         """Return how an action would play for a request from `now` on, or as a step on the way to it."""
-        start, end = self.project.span(action)
-        begin, entry, hold_from, hold_to, hold = now, start, 0.0, 0.0, 0.0
-        if (
-            request is not None
-            and action.kind == "gesture"
-            and (request.hold is not None or request.stroke is not None or not request.prepare)
-        ):
-            found = phases(self.project, action)
-            latest = found.skip(action.timing.blend_in)
-            entry = start if request.prepare else latest
-            # Wait for the stroke, or catch up with it by cutting the preparation.
-            if request.stroke is not None:
-                begin = max(now, request.stroke - (found.stroke - entry))
-                entry = min(max(entry, found.stroke - max(0.0, request.stroke - begin)), max(entry, latest))
-            if request.hold is not None:
-                hold_from, hold_to = found.stroke_end, found.relax
-                hold = max(request.hold, (hold_to - hold_from) / HURRY)
-                if hold <= 0:
-                    hold_from, hold_to = 0.0, 0.0
-        length = end - entry + hold - (hold_to - hold_from)
-        shortest, exit_at = length, action.timing.earliest_exit
-        if exit_at is not None:
-            left = exit_at - entry + (hold - (hold_to - hold_from) if exit_at >= hold_to else 0.0)
-            shortest = min(length, max(0.0, left) + action.timing.blend_out)
-        return CueShape(begin, entry, length, shortest, hold_from, hold_to, hold)
+        return shape_of(self.project, action, request, now, self._tempo(action, request, now))
 
-    def _draw(self, candidates: list[Action], key: str, now: float) -> Action:
-        """Draw with p_k ~ likelihood_k / max(c_k, 1), leaving out those used too recently as long as any
-        others are left.
+    def _mood(self, request: MetaRequest | None, at: float) -> Mood:
+        """Return the mood that something asked for is played in from `at` on, or at its stroke."""
+        if request is None:
+            return mood_at(self.moods, at)
+        mood = mood_at(self.moods, at if request.stroke is None else request.stroke)
+        if request.valence is None and request.arousal is None and request.intensity is None:
+            return mood
+        return changed(mood, request.valence, request.arousal, request.intensity)
+
+    def _tempo(self, action: Action, request: MetaRequest | None, at: float) -> float:
+        """Return how fast an action is played, 1 where it was made for the mood."""
+        mood = self._mood(request, at)
+        return 1.0 if mood.neutral or made_for(mood, action.tags) else tempo(mood)
+
+    def _extent(self, action: Action, mood: Mood) -> float:
+        """Return how large an action is played. Those that move feet or leave for another stance, touch
+        something or were made for the mood are played as they were made.
+        """
+        if self.graph.layer == "body" or action.kind == "transition" or mood.neutral:
+            return 1.0
+        return (
+            1.0
+            if len(action.contacts) > 0 or HELD in action.tags or made_for(mood, action.tags)
+            else extent(mood)
+        )
+
+    def _draw(self, candidates: list[Action], key: str, now: float, mood: Mood) -> Action:
+        """Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood favours, leaving out those used too
+        recently as long as any others are left.
         """
         left = self._spaced(candidates)
-        weights = {a.id: a.likelihood / max(self._count(a.id, now), 1.0) for a in left}
+        weights = {
+            a.id: a.likelihood / max(self._count(a.id, now), 1.0) * self._favour(a, mood) for a in left
+        }
         if not any(w > 0 for w in weights.values()):
             return left[0]
         chosen = pick(self.seed, key, "action", weights)
         return next(a for a in left if a.id == chosen)
+
+    def _favour(self, action: Action, mood: Mood) -> float:
+        """Return how much likelier a mood makes an action, 1 in none."""
+        return 1.0 if mood.neutral else favour(mood, action.tags, vigour(self.project, action))
 
     def _spaced(self, candidates: list[Action]) -> list[Action]:
         """Leave out what needs more other actions before it plays again; where that leaves nothing, all need
@@ -528,7 +485,7 @@ class Performer:
                 used += 1
         return alpha * used
 
-    def _cue(self, action: Action, shape: CueShape, bound: Bound, hops: bool, stance: str) -> Cue:
+    def _cue(self, action: Action, shape: CueShape, bound: Bound, hops: bool, stance: str, mood: Mood) -> Cue:
         """hops: whether it is a transition on the way to what is asked for."""
         length = shape.length
         into = max(0.0, action.timing.blend_in)
@@ -550,7 +507,7 @@ class Performer:
         return Cue(
             action, shape.start, end, shape.entry, into * squeeze, out * squeeze, stance, then,
             bound.meta.key,
-            shape.hold_from, shape.hold_to, shape.hold,
+            shape.hold_from, shape.hold_to, shape.hold, self._extent(action, mood), shape.tempo,
         )  # fmt: skip
 
     def _keep(self, cue: Cue) -> None:
@@ -615,12 +572,12 @@ class Performer:
 
 
 def performer_after(
-    project: Project, graph: MetaGraph, seed: Bits, begin: str, past: Past, cues: Sequence[Cue]
+    project: Project, graph: MetaGraph, seed: Bits, begin: str, past: Past, cues: Sequence[Cue], moods: Moods
 ) -> Performer:
     """Return the performer that stands where cues have been played after a past."""
     stance = past.stance if past.stance in graph.stances else begin
     out = Performer(
-        project, graph, seed, stance, past.free, dict(past.uses), dict(past.recent), dict(past.ended)
+        project, graph, seed, stance, moods, past.free, dict(past.uses), dict(past.recent), dict(past.ended)
     )
     for cue in cues:
         out.note(cue, cue.then if cue.then in graph.stances else begin)

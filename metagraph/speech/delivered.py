@@ -69,9 +69,9 @@ def delivered(conversation: Conversation, side: int, project: Project, plan: Pla
 def _told(cue: Cue, project: Project) -> tuple[float, float]:
     """Return when a gesture's stroke is, and when its hold ends."""
     found = phases(project, cue.action)
-    stroke = cue.start + found.stroke - cue.entry
+    stroke = cue.start + (found.stroke - cue.entry) / cue.tempo
     longer = cue.hold - (cue.hold_to - cue.hold_from) if cue.hold > 0 else 0.0
-    return stroke, min(cue.end, stroke + found.relax - found.stroke + longer)
+    return stroke, min(cue.end, stroke + (found.relax - found.stroke) / cue.tempo + longer)
 
 
 def _strikes(segment: Segment, told: Sequence[tuple[float, float]]) -> bool:

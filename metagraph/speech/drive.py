@@ -240,7 +240,9 @@ def strokes(project: Project, plan: Plan) -> dict[str, float]:
     out: dict[str, float] = {}
     for cue in plan.layers["arms"].cues:
         if cue.action.kind == "gesture":
-            out[cue.meta.partition("+")[0]] = cue.start + phases(project, cue.action).stroke - cue.entry
+            out[cue.meta.partition("+")[0]] = (
+                cue.start + (phases(project, cue.action).stroke - cue.entry) / cue.tempo
+            )
     return out
 
 

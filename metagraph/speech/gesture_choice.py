@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from metagraph.graph.model import Action, Project
 from metagraph.playback.choice import uniform
+from metagraph.playback.cue_shapes import HURRY
 from metagraph.playback.phases import phases
-from metagraph.playback.sampling import HURRY
 
 Array = NDArray[Any]
 

@@ -14,7 +14,7 @@ from metagraph.engines.export import write
 from metagraph.engines.vectors import every_case, write_vectors
 from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import Character, Material, Surface
-from sample_clips.make.conformance_projects import BOTH_EYES, sparse, stick, still, varied
+from sample_clips.make.conformance_projects import BOTH_EYES, sparse, stick, still, touching, varied
 from sample_clips.make.randomised_projects import randomised
 
 LIVING = (
@@ -23,6 +23,8 @@ LIVING = (
     "a thing that moves",
     "words that are said",
     "stressed syllables",
+    "the models in four moods",
+    "moods over moods",
 )
 FOLDER = Path(engines.__file__).with_name("conformance")
 
@@ -65,7 +67,8 @@ def without_authors(path: Path) -> None:
 
 
 def main() -> None:
-    for project in (stick(), varied(), sparse(), randomised(1), randomised(2, BOTH_EYES), *still()):
+    touched = touching(randomised(1)), touching(randomised(2, BOTH_EYES))
+    for project in (stick(), varied(), sparse(), *touched, *still()):
         folder = FOLDER / project.name
         shutil.rmtree(folder, ignore_errors=True)
         made = write(

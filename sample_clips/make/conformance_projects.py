@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 from metagraph.graph import edits
 from metagraph.graph.face import with_morphs
 from metagraph.graph.life import Life, Manner
-from metagraph.graph.model import Kind, Layer, Limb, Markov, Project
+from metagraph.graph.model import Action, Kind, Layer, Limb, Markov, Project
 from metagraph.graph.requests import Gesture, Line, Nod
+from metagraph.graph.touch import Touch
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
+from metagraph.motion.contact_spans import ContactKey, ContactSpan
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.life.voice import voice_from_text
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
@@ -387,6 +389,44 @@ def stick(name: str = "stick", morphs: tuple[str, ...] = (), size: float = 1.0) 
     }
     voices = {"hello": voice_from_text(lines["hello"].text, 1.7)}
     return replace(b.project, lines=lines, voices=voices, points={"door": (1.5, 1.2, 0.5)})
+
+
+def touching(project: Project) -> Project:
+    """Return a project whose hands are kept on its body, on each other and out of both: in loops with and
+    without a seam, for all of an action or a part of it, at one place or along some.
+    """
+    chance, changes = np.random.default_rng(11), {}
+    targets = ("Chest", "Head", "Hips", "RightLowerArm", "LeftLowerArm", "RightHand", "LeftHand")
+    for n, action in enumerate(project.graphs["arms"].actions.values()):
+        start, end = project.span(action)
+        spans = []
+        for hand, other in (("left", "Right"), ("right", "Left")):
+            to = targets[(n + len(spans)) % len(targets)]
+            if (n + len(spans)) % 4 == 3 or not (to.startswith(other) or to in targets[:3]):
+                continue
+            times = np.linspace(start, end, 1 + n % 3)
+            keys = tuple(_near(project, action, hand, to, float(t), chance) for t in times)
+            part = (end - start) * (0.0, 0.2, 0.3)[n % 3]
+            first, last = start + part, end - part / 2
+            spans.append(ContactSpan(hand, "palm", to, first, last, keys, 0.2, 0.1 * (n % 2)))
+        changes[action.id] = {"contacts": tuple(spans)}
+    return replace(edits.update_each(project, changes), touch=Touch(True, True))
+
+
+def _near(
+    project: Project, action: Action, hand: str, to: str, seconds: float, chance: np.random.Generator
+) -> ContactKey:
+    """Return a key not far from where a clip has a hand on a joint."""
+    clip = project.clips[action.clip].motion
+    assert clip is not None and project.skeleton is not None
+    turned, at = project.skeleton.globals(clip.pose_at(seconds))
+    joint, wrist = project.skeleton.index(to), project.skeleton.index(f"{hand.capitalize()}Hand")
+    back = rotation.conjugate(turned[joint])
+    place = rotation.rotate(back, at[wrist] - at[joint]) + chance.uniform(-0.08, 0.08, 3)
+    turn = rotation.multiply(rotation.multiply(back, turned[wrist]), rotation.exp(chance.normal(0.0, 0.3, 3)))
+    return ContactKey(
+        round(seconds, 3), tuple(place.round(4).tolist()), tuple(rotation.normalize(turn).tolist())
+    )
 
 
 def varied() -> Project:

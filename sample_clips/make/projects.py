@@ -11,6 +11,7 @@ from typing import cast
 import msgspec
 
 from metagraph.formats.conversations import read_conversation
+from metagraph.formats.gltf import read_character
 from metagraph.formats.imports import import_files
 from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph import edits, performance_edits
@@ -18,6 +19,7 @@ from metagraph.graph import requests as a
 from metagraph.graph.conversation import Conversation
 from metagraph.graph.conversation_edits import add_conversation
 from metagraph.graph.model import LAYERS, Kind, Layer, Limb, Project, Timing
+from metagraph.suggest.find_contacts import measured, with_contacts
 from sample_clips.make.babble import sample_lines
 from sample_clips.make.catalogue import BASE, Entry, catalogue
 
@@ -69,7 +71,7 @@ def sample() -> Project:
     """Return the finished project: every clip of the catalogue placed with its timing, tags and likelihood,
     and a few lines to say.
     """
-    project = edits.rename_project(practice(), "sample")
+    project = edits.set_character(edits.rename_project(practice(), "sample"), "ada.glb")
     clips = {c.name: c.id for c in project.clips.values()}
     entries = catalogue()
     ids: dict[tuple[str, str], str] = {}
@@ -81,6 +83,10 @@ def sample() -> Project:
             ids[(layer, name)] = list(project.graphs[layer].stances)[-1]
     for entry in sorted(entries, key=lambda e: ("stance", "gesture", "fidget", "transition").index(e.kind)):
         project = _place(project, entry, clips[entry.name], ids)
+    project = with_contacts(
+        measured(project, read_character(HERE / "mannequin.glb")), list(project.graphs["arms"].actions)
+    )
+    project = replace(project, touch=msgspec.structs.replace(project.touch, guard=True))
     lines = {
         name: msgspec.structs.replace(line, asks=WITH_LINES.get(name, ()))
         for name, line in sample_lines().items()
@@ -94,8 +100,8 @@ def conversation() -> Conversation:
     folder = HERE / "conversation"
     read = read_conversation([folder / "talk.ogg"], [folder / "talk.json"], HERE, "Office").conversation
     sides = tuple(
-        msgspec.structs.replace(side, name=name)
-        for side, name in zip(read.sides, ("Ada", "Ben"), strict=True)
+        msgspec.structs.replace(side, name=name, character=body)
+        for side, name, body in zip(read.sides, ("Ada", "Ben"), (None, "ben.glb"), strict=True)
     )
     return msgspec.structs.replace(read, sides=sides)
 

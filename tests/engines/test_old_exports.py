@@ -16,7 +16,8 @@ import pytest
 
 from metagraph import Character, engines
 from metagraph.engines.reading import read_export
-from metagraph.engines.vectors import check_vectors, write_vectors
+from metagraph.engines.script_moods import mood_cases
+from metagraph.engines.vectors import check_vectors, every_case, write_vectors
 from metagraph.graph.check import check
 
 OLD = Path(__file__).parent / "old"
@@ -45,7 +46,12 @@ def test_an_old_export_loads_and_performs(export: Path) -> None:
 
 @pytest.mark.parametrize("export", EXPORTS, ids=lambda path: f"{path.parent.name}-{path.stem}")
 def test_the_runtimes_agree_on_an_old_export(export: Path, tmp_path: Path) -> None:
-    write_vectors(copied(export, tmp_path))
+    old = copied(export, tmp_path)
+    # Of moods an old export does not tell how energetic actions are, nor which joints take part.
+    moods = {case.name for case in mood_cases(read_export(old, resolved=True))}
+    write_vectors(
+        old, [case for case in every_case(read_export(old, resolved=True)) if case.name not in moods]
+    )
     assert check_vectors(tmp_path).failures == []
     if shutil.which("node") is None:
         pytest.skip("needs Node")

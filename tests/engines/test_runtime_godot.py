@@ -117,7 +117,7 @@ def test_vectors_that_are_broken_fail(game: Path, tmp_path: Path) -> None:
 MUTATIONS = {
     "the curve of blends": ("util.gd", "x * x * (3.0 - 2.0 * x)", "x"),
     "what synthesisers count seconds in": ("told_timing.gd", "const TICKS = 1e7", "const TICKS = 1e6"),
-    "what has been said of a line stands": ("track.gd", "Util.most(now - old.start, 0.0)", "0.0"),
+    "what has been said of a line stands": ("items.gd", "Util.most(now - old.start, 0.0)", "0.0"),
     "uses are counted": ("remembering.gd", "uses.get(ident, 0) + 1", "1"),
     "ties go by id": (
         "replan.gd",
@@ -131,9 +131,9 @@ MUTATIONS = {
     ),
     "the hash": ("hashing.gd", "value ^= value >> 13", "value ^= value >> 12"),
     "a remainder has a key of its own": ("replan.gd", "last.part + 1 if kept else last.part", "last.part"),
-    "holds hurry": ("sampling.gd", "(hold_to - hold_from) / HURRY", "(hold_to - hold_from)"),
-    "what is too late": ("sampling.gd", "if least > allowed + FITS:", "if least > allowed + 9.0:"),
-    "a stroke may be shared": ("sampling.gd", "<= SHARED", "<= 0.0"),
+    "holds hurry": ("cue_shapes.gd", "(hold_to - hold_from) / HURRY", "(hold_to - hold_from)"),
+    "what is too late": ("sampling.gd", "if least > allowed + CueShapes.FITS:", "if least > allowed + 9.0:"),
+    "a stroke may be shared": ("cue_shapes.gd", "<= SHARED", "<= 0.0"),
     "the head sets off after the eyes": (
         "gaze.gd",
         "settle((gone - HEAD_LAG) / aim.head)",
@@ -147,7 +147,7 @@ MUTATIONS = {
     ),
     "what is forgotten of life": (
         "planner.gd",
-        "changes.life = Schedule.since(plan.life, seconds)",
+        "changes.life = plan.life.since(seconds)",
         "changes.life = plan.life",
     ),
 }

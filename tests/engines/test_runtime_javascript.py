@@ -196,7 +196,7 @@ TEXTS = [
 def test_letters_become_the_same_mouth_shapes() -> None:
     found = run(
         """
-        const { voiceFromText } = await of("life/voice.js");
+        const { voiceFromText } = await of("voice.js");
         const asked = JSON.parse(rest[0]).flatMap((words) => [null, 1.3].map((duration) => voiceFromText(words, duration)));
         say(asked.map(({ duration, accents, weights }) => ({ duration, accents, weights: [...weights] })));
         """,
@@ -742,7 +742,7 @@ MUTATIONS = [
         "the earliest exit",
     ),
     (
-        "sampling.js",
+        "cue_shapes.js",
         "Math.max(0, left) + action.timing.blendOut",
         "Math.max(0, left)",
         "blending out of an exit",
@@ -753,8 +753,8 @@ MUTATIONS = [
         "this.ready",
         "where a gesture without preparation begins",
     ),
-    ("sampling.js", "request.stroke - (found.stroke - entry)", "request.stroke", "a stroke in time"),
-    ("sampling.js", "(holdTo - holdFrom) / HURRY", "holdTo - holdFrom", "how short a hold can be"),
+    ("cue_shapes.js", "request.stroke - (found.stroke - entry)", "request.stroke", "a stroke in time"),
+    ("cue_shapes.js", "(holdTo - holdFrom) / HURRY", "holdTo - holdFrom", "how short a hold can be"),
     (
         "sampling.js",
         "into = Math.max(into, LEAST_BLEND);",
@@ -785,7 +785,7 @@ MUTATIONS = [
     ("sampling.js", "const both = timely.filter", "const both = [].filter", "strokes that are shared"),
     ("sampling.js", "if (over.length > 0) {", "if (over.length > 99) {", "room for what follows"),
     ("sampling.js", "let soonest = now + Math", "let soonest = now + 99 + Math", "leaving what runs"),
-    ("sampling.js", "left = found.strokeEnd - shape.entry;", "", "leaving out a hold"),
+    ("cue_shapes.js", "left = found.strokeEnd - shape.entry;", "", "leaving out a hold"),
     ("bounds.js", "Math.min(meta.start, meta.request.start)", "meta.start", "when what is judged begins"),
     (
         "layer_planning.js",
@@ -844,9 +844,9 @@ MUTATIONS = [
         "modes of the models",
     ),
     (
-        "hear.js",
-        "if (items.some(speaks) ||",
-        "if (false && items.some(speaks) ||",
+        "hearing.js",
+        "if (turns) {",
+        "if (false) {",
         "planning again where the mode changes",
     ),
     (
@@ -862,20 +862,20 @@ MUTATIONS = [
         "the lookahead",
     ),
     (
-        "hear.js",
-        "owners(id).some((owner) => gone.has(owner))",
-        "gone.has(id)",
+        "hearing.js",
+        "owners(ident).some((o) => gone.has(o))",
+        "false",
         "parts that are withdrawn with their owner",
     ),
     (
-        "understand.js",
-        "Math.max(0, stroke - longestLead(graph, layer, tags))",
+        "meaning.js",
+        "Math.max(0, stroke - longestLead(this.project, this.graphOf(layer), ask.tags))",
         "at",
         "how early a gesture with a stroke may begin",
     ),
-    ("understand.js", "tags: [word, ...tags]", "tags", "the tag of a nod"),
-    ("words.js", "aversion_rate: 1.1,", "aversion_rate: 1,", "the idle manner"),
-    ("words.js", "breath_rate: [14,", "breath_rate: [15,", "the usual rate of breath"),
+    ("meaning.js", "tags = [ask.do, ...ask.tags];", "tags = ask.tags;", "the tag of a nod"),
+    ("life.js", "aversion_rate: 1.1,", "aversion_rate: 1,", "the idle manner"),
+    ("life.js", "breath_rate: [14,", "breath_rate: [15,", "the usual rate of breath"),
     (
         "pose.js",
         "rotations, 4 * joint, added.rotations, 4 * i)",
@@ -921,7 +921,7 @@ MUTATIONS = [
         "the other arm of a one-armed action",
     ),
     ("life/evaluate.js", "const INHALE = 0.4;", "const INHALE = 0.5;", "the shape of a breath"),
-    ("life/evaluate.js", "(whole - gone) / life.blink_open", "1", "the shape of a blink"),
+    ("life/evaluate.js", "(whole - gone) / life.blinkOpen", "1", "the shape of a blink"),
     (
         "life/evaluate.js",
         "channels[n] = shut[n] - already;",
@@ -946,36 +946,31 @@ MUTATIONS = [
     ("life/solve.js", "const NEAREST = 0.25;", "const NEAREST = 0;", "things nearer than the nose"),
     ("life/gaze.js", "const HEAD_LAG = 0.04;", "const HEAD_LAG = 0;", "the head that follows the eyes"),
     ("life/gaze.js", "const SPRING = 8;", "const SPRING = 6;", "how the head settles"),
-    ("life/gaze.js", "if (since > starts[n]) scale", "if (false) scale", "a look that ends an aversion"),
+    ("life/gaze.js", "if (since > times[n]) scale", "if (false) scale", "a look that ends an aversion"),
     (
         "life/gaze.js",
         "EYE_TIME_PER_DEGREE] = [0.021, 0.0022]",
         "EYE_TIME_PER_DEGREE] = [0.021, 0.003]",
         "how fast eyes jump",
     ),
-    ("life/schedule.js", "const FIXATION = 0.2;", "const FIXATION = 0.3;", "the shortest fixation"),
-    ("life/schedule.js", "const AFTER_BLINK = 1;", "const AFTER_BLINK = 3;", "blinks on stressed syllables"),
+    ("schedule.js", "const FIXATION = 0.2;", "const FIXATION = 0.3;", "the shortest fixation"),
+    ("schedule.js", "const AFTER_BLINK = 1;", "const AFTER_BLINK = 3;", "blinks on stressed syllables"),
     (
-        "life/schedule.js",
-        "(first ? shut + 0.1 : AFTER_BLINK / calm)",
-        "AFTER_BLINK / calm",
+        "schedule.js",
+        "(first ? shut + 0.1 : AFTER_BLINK / this.calm)",
+        "AFTER_BLINK / this.calm",
         "the blink that opens a speech",
     ),
-    ("life/schedule.js", "if (strict || rate <= 0) return 0;", "if (rate <= 0) return 0;", "strict looks"),
+    ("schedule.js", "if (strict === 1 || rate <= 0) {", "if (rate <= 0) {", "strict looks"),
+    ("schedule.js", "AVERSION_GAP = 0.6;", "AVERSION_GAP = 0.5;", "the time between aversions"),
+    ("schedule.js", "UPRIGHT = 0.6;", "UPRIGHT = 0.5;", "jumps up and down"),
     (
-        "life/schedule.js",
-        "AVERSION_GAPS = [0.6, 0.8]",
-        "AVERSION_GAPS = [0.5, 1]",
-        "the time between aversions",
-    ),
-    ("life/schedule.js", "UPRIGHT] = [1.2, 4, 0.6]", "UPRIGHT] = [1.2, 4, 0.5]", "jumps up and down"),
-    (
-        "life/wanted.js",
-        "look.priority > what.priority",
+        "wanted.js",
+        "track.looks[x].priority > look.priority",
         "false",
         "looks that wait beneath a more important one",
     ),
-    ("life/track.js", "if (speech.priority < last.priority) continue;", "", "a lesser speech"),
+    ("items.js", "if (speech.priority < last.priority) {", "if (false) {", "a lesser speech"),
     (
         "mouth.js",
         "export const EARLY = 0.075;",
@@ -995,7 +990,7 @@ MUTATIONS = [
         "export const SHAPE = 0.4;",
         "how long a last shape stays",
     ),
-    ("life/track.js", "Math.max(now - old.start, 0)", "0", "what has been said of a line stands"),
+    ("items.js", "Math.max(now - old.start, 0)", "0", "what has been said of a line stands"),
     ("graphemes.js", '["th", ["TH"]]', '["th", ["DD"]]', "spelling"),
     ("graphemes.js", "const finalE = ", "const finalE = false && ", "the silent e"),
     (

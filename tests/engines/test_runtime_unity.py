@@ -894,8 +894,8 @@ MUTATIONS = [
         "the earliest exit",
     ),
     (
-        "Sampling.cs",
-        "(holdTo - holdFrom) / SamplingRules.Hurry",
+        "CueShapes.cs",
+        "(holdTo - holdFrom) / Hurry",
         "(holdTo - holdFrom)",
         "how short a hold can be",
     ),
@@ -918,7 +918,7 @@ MUTATIONS = [
     ("Markov.cs", "return share >= 1 ||", "return share >= 0 ||", "modes of the models"),
     (
         "Sampling.cs",
-        "if (least > allowed + SamplingRules.Fits)",
+        "if (least > allowed + CueShapesRules.Fits)",
         "if (least > allowed + 9)",
         "what is too late",
     ),
@@ -970,17 +970,17 @@ MUTATIONS = [
         "a head that sets off later",
     ),
     (
-        "Life/Schedule.cs",
-        "first ? shut + 0.1 : AfterBlink / calm",
-        "AfterBlink / calm",
+        "Schedule.cs",
+        "first ? shut + 0.1 : ScheduleRules.AfterBlink / Calm",
+        "ScheduleRules.AfterBlink / Calm",
         "a blink at the first stressed syllable",
     ),
     ("Life/Solve.cs", "shut + blink * (1 - shut)", "shut + blink", "lids that meet and go no farther"),
     ("ToldTiming.cs", "Ticks = 1e7", "Ticks = 1e6", "what synthesisers count seconds in"),
     (
-        "Life/Track.cs",
-        "LineTimingRules.Extended(old.Timing, Timing, Math.Max(now - old.Start, 0.0))",
-        "LineTimingRules.Extended(old.Timing, Timing, 0.0)",
+        "Items.cs",
+        "LineTimingRules.Extended(old.Timing, new_.Timing, Math.Max(now - old.Start, 0.0))",
+        "LineTimingRules.Extended(old.Timing, new_.Timing, 0.0)",
         "what has been said of a line stands",
     ),
     (

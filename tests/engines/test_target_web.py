@@ -62,7 +62,7 @@ def page(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("web")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(web, "three_js", lambda place: MODULES / "three")
-        report = registry.write(sample, "web", folder, SAMPLES / "mannequin.glb", base=SAMPLES)
+        report = registry.write(sample, "web", folder, SAMPLES / "ada.glb", base=SAMPLES)
     assert report.files[0] == folder / "index.html"
     return folder
 

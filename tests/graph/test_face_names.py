@@ -51,7 +51,18 @@ def test_a_mesh_without_morph_targets_has_no_channels() -> None:
 
 
 def test_targets_that_mean_nothing_to_a_face_are_left_alone() -> None:
-    assert find_morphs(["Angry", "Surprised", "Sad", "muscle_01", ""]) == {}
+    assert find_morphs(["Surprised", "muscle_01", ""]) == {}
+
+
+def test_a_mood_shows_on_arkits_targets_or_on_expressions_of_the_whole_face() -> None:
+    assert find_morphs(["Angry", "Sad", "Joy"]) == {
+        "smile": (("Joy", 0.5),),
+        "frown": (("Sad", 0.5),),
+        "brow_down": (("Angry", 0.5),),
+    }
+    found = find_morphs(["mouthSmileLeft", "mouthSmileRight", "browInnerUp", "Joy"])
+    assert found["smile"] == (("mouthSmileLeft", 0.5), ("mouthSmileRight", 0.5))
+    assert found["brow_up"] == (("browInnerUp", 0.7),)
 
 
 def spellings(name: str) -> list[str]:

@@ -57,9 +57,13 @@ def test_what_turns_a_dial_off_lies_in_its_range_and_is_not_its_default(
         if dial.off is not None:
             assert dial.low <= dial.off <= dial.high
             assert dial.off != getattr(kind(), dial.name) or dial.name == "stillness"
-    assert {d.name for d in dials if d.off is None} <= {"blink_close", "blink_open"}, (
-        "all others are amounts and can be turned off"
-    )
+    assert {d.name for d in dials if d.off is None} <= {
+        "blink_close",
+        "blink_open",
+        "valence",
+        "arousal",
+        "intensity",
+    }, "all others are amounts and can be turned off"
 
 
 def test_a_blink_lasts_as_long_as_the_paper_says() -> None:

@@ -308,6 +308,21 @@ def test_lengths_come_from_the_projects_clips(sample: Project) -> None:
     assert nod.at == pytest.approx(end - start)
 
 
+def test_how_late_is_too_late_is_read_and_means_nothing_for_a_look() -> None:
+    assert one('<gesture lexeme="beat" stroke="2" metagraph:late="0"/>') == a.Gesture(
+        tags=("beat",), stroke=2.0, late=0.0
+    )
+    found = block('<gaze target="user" metagraph:late="0.3"/>')
+    assert found.asks == (a.Look(to="user"),)
+    assert "metagraph:late" in found.notes[0]
+
+
+@pytest.mark.parametrize("text", ["soon", "-1", "1e9"])
+def test_a_lateness_that_is_no_time_is_refused_with_its_place(text: str) -> None:
+    with pytest.raises(a.RequestError, match=r"line 2, <gesture>.*late"):
+        block(f'<gesture lexeme="beat" metagraph:late="{text}"/>')
+
+
 # --- out, and in again
 
 words = (
@@ -320,18 +335,19 @@ tags = st.lists(
     st.text(st.characters(codec="utf-8", exclude_categories=("Cs", "Cc", "Cn")), max_size=8), max_size=3
 ).map(tuple)
 common = {"at": seconds, "priority": st.integers(-1000, 1000)}
+late = {"late": st.none() | st.floats(0, 600)}
 phased = {"stroke": seconds, "hold": st.none() | st.floats(0, 600), "prepare": st.booleans()}
 timed = {"duration": seconds, "resume": st.booleans()}
 layers, limbs = st.sampled_from(LAYERS), st.none() | st.sampled_from(LIMBS)
 points = st.tuples(*[st.floats(-1e6, 1e6)] * 3)
 plain = st.one_of(
-    st.builds(a.Gesture, layer=layers, tags=tags, limb=limbs, **phased, **timed, **common),
-    st.builds(a.Fidget, layer=layers, tags=tags, limb=limbs, **timed, **common),
-    st.builds(a.Play, action=words, layer=st.none() | layers, **phased, **common),
-    st.builds(a.Go, stance=words, layer=st.none() | layers, stay=st.booleans(), **common),
-    st.builds(a.Change, layer=layers, limb=limbs, duration=seconds, **common),
-    st.builds(a.Nod, tags=tags, **common),
-    st.builds(a.Shake, tags=tags, **common),
+    st.builds(a.Gesture, layer=layers, tags=tags, limb=limbs, **phased, **timed, **late, **common),
+    st.builds(a.Fidget, layer=layers, tags=tags, limb=limbs, **timed, **late, **common),
+    st.builds(a.Play, action=words, layer=st.none() | layers, **phased, **late, **common),
+    st.builds(a.Go, stance=words, layer=st.none() | layers, stay=st.booleans(), **late, **common),
+    st.builds(a.Change, layer=layers, limb=limbs, duration=seconds, **late, **common),
+    st.builds(a.Nod, tags=tags, **late, **common),
+    st.builds(a.Shake, tags=tags, **late, **common),
     st.builds(
         a.Look, to=words | points, duration=seconds, amount=st.floats(0, 1), strict=st.booleans(), **common
     ),
@@ -361,3 +377,17 @@ def test_what_no_block_can_hold_is_refused_in_words() -> None:
 
 def test_a_lines_number_comes_back_as_text() -> None:
     assert read_bml(write_bml([a.Say(line=279)])) == (a.Say(line="279"),)
+
+
+def test_moods_are_read_from_attributes_and_written_as_such() -> None:
+    block = (
+        '<bml><gesture id="g" lexeme="beat" metagraph:mood="sad" metagraph:intensity="0.5"/>'
+        '<metagraph:mood id="m" metagraph:mood="0.25 -0.5" duration="3"/></bml>'
+    )
+    gesture, mood = read_bml(block, 0.0)
+    assert isinstance(gesture, a.Gesture) and (gesture.mood, gesture.intensity) == ("sad", 0.5)
+    assert isinstance(mood, a.Feel) and (mood.mood, mood.duration) == ((0.25, -0.5), 3.0)
+    again = read_bml(write_bml([gesture, mood]), 0.0)
+    assert [(x.mood, x.intensity) for x in again] == [("sad", 0.5), ((0.25, -0.5), None)]
+    with pytest.raises(a.RequestError, match="mood"):
+        read_bml('<bml><gesture lexeme="beat" metagraph:mood="blue"/></bml>', 0.0)

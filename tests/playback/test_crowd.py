@@ -13,6 +13,7 @@ import pytest
 
 from metagraph.graph import edits
 from metagraph.graph.model import Project
+from metagraph.graph.touch import Touch
 from metagraph.playback.crowd import Crowd
 from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import make_plan
@@ -43,6 +44,7 @@ def test_a_project_without_a_skeleton_has_no_crowd() -> None:
 
 
 def test_a_crowd_on_the_sample_agrees_with_the_player(sample: Project) -> None:
+    sample = replace(sample, touch=Touch(False, False))
     plans = [make_plan(sample, 20, seed=seed) for seed in range(8)] * 40  # enough for several threads
     assert_agrees(sample, plans, np.random.default_rng(1).uniform(-1, 22, len(plans)))
 

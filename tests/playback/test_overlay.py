@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from metagraph.graph import anatomy
 from metagraph.graph.model import Project
+from metagraph.graph.touch import Touch
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.playback.overlay import BLEND, Overlay, clip_overlay, overlaid, reached
@@ -62,6 +65,7 @@ def test_it_comes_and_goes_without_a_jump_and_ends_in_the_plan(sample, plan, cli
     assert over.weight[0] == 0 and over.weight[TIMES > 4.0].max() == 0
     inside = (TIMES > BLEND) & (TIMES < 4.0 - BLEND)
     assert over.weight[inside].min() == 1.0
+    sample = replace(sample, touch=Touch(guard=False))  # which brings hands out of what they pass through
     made = overlaid(plan, sample, TIMES, over, alive=False).rotations
     steps = np.abs(np.diff(made, axis=0)).max((1, 2))
     assert steps.max() < 0.12

@@ -5,6 +5,7 @@ last, preparations skipped.
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -15,6 +16,7 @@ from hypothesis import strategies as st
 
 from metagraph.graph import edits
 from metagraph.graph.model import Project
+from metagraph.graph.touch import Touch
 from metagraph.playback.crowd import Crowd
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Cue, LayerPlan, MetaRequest, Plan
@@ -260,6 +262,7 @@ def test_whatever_is_asked_of_the_phases_cues_stay_apart_and_within_their_clips(
 
 
 def test_a_crowd_holds_as_the_player_does(sample: Project) -> None:
+    sample = replace(sample, touch=Touch(False, False))  # crowds have no contacts
     action = next(x for x in sample.actions() if x.name == "open_palms_bt_01")
     plan = make_plan(sample, 20, [MetaRequest("x", "arms", "gesture", 1.0, action=action.id, hold=3.0)])
     times = np.linspace(0.5, 8.0, 40)

@@ -201,7 +201,7 @@ def test_a_task_begins_with_its_clips_and_the_references_base_and_character(tmp_
     assert [c.name for c in project.clips.values()] == ["hands_at_sides__stance", "on_hips__stance"]
     assert project.clips[project.base.clip].name == "hands_at_sides__stance"
     saved = write(project, tmp_path / "data" / "P01" / "a.metagraph.yaml")
-    assert saved.character.endswith("mannequin.glb") and saved.character.startswith("..")
+    assert saved.character.endswith("ada.glb") and saved.character.startswith("..")
     opened, count = reopen(tmp_path / "data" / "P01" / "a.metagraph.yaml")
     assert count == 0 and not opened.notes
     assert all(c.motion is not None for c in opened.project.clips.values())

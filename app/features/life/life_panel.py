@@ -23,12 +23,14 @@ from app.project.document import Document
 from app.stage.session import Session
 from app.widgets.choice_row import ChoiceRow
 from app.widgets.making import make_widget
-from app.widgets.quiet_fields import DoubleSpinBox, Slider
-from app.widgets.request_menu import MODE_WORDS
+from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, Slider
+from app.widgets.request_menu import MODE_WORDS, MOOD_WORDS
 from metagraph.graph import performance_edits
 from metagraph.graph.edits import EditError
 from metagraph.graph.life import DIALS, MANNER_DIALS, MANNERS, Dial, Life, manner, with_life
 from metagraph.graph.model import MODES, Mode, Project
+from metagraph.graph.words import FEELINGS
+from metagraph.playback.mood import MOODS
 
 
 class DialSlider(Slider):
@@ -170,6 +172,9 @@ class LifePanel(QWidget):
                 title.setContentsMargins(0, 8 if group else 0, 0, 0)
                 grid.addWidget(title, n, 0, 1, 3)
                 group, n = dial.group, n + 1
+                if group == "Mood":
+                    self._add_moods(page, grid, n)
+                    n += 1
             rows[dial.name] = self._row(dial, grid, n, mode)
             n += 1
         if mode is not None:
@@ -183,6 +188,24 @@ class LifePanel(QWidget):
             self.rows |= rows
         else:
             self.manner_rows[mode] = rows
+
+    def _add_moods(self, page: QWidget, grid: QGridLayout, row: int) -> None:
+        """Add the choice of a named mood above its dials."""
+        self.moods = ComboBox(page)
+        self.moods.setAccessibleName("Mood")
+        self.moods.setToolTip("The mood it is in where no request tells another")
+        for feeling in FEELINGS:
+            self.moods.addItem(MOOD_WORDS[feeling], feeling)
+        self.moods.addItem("Its own", None)
+        self.moods.activated.connect(self._take_mood)
+        grid.addWidget(QLabel("In a mood", page), row, 0)
+        grid.addWidget(self.moods, row, 1, 1, 2)
+
+    def _take_mood(self, place: int) -> None:
+        feeling = self.moods.itemData(place)
+        if feeling is not None:
+            valence, arousal = MOODS[feeling]
+            self._change("Change the mood", None, None, valence=valence, arousal=arousal)
 
     def show_mode(self, mode: Mode | None) -> None:
         """Show the amounts, or what one mode makes of them."""
@@ -199,6 +222,8 @@ class LifePanel(QWidget):
             self.pages[self.mode].setAutoFillBackground(False)  # which the area turns on
             self.pages[self.mode].show()
         self.on.setChecked(life.on)
+        named = next((f for f, point in MOODS.items() if point == (life.valence, life.arousal)), None)
+        self.moods.setCurrentIndex(self.moods.findData(named))
         for name, row in self.rows.items():
             row.show_value(getattr(life, name))
         for mode, rows in self.manner_rows.items():

@@ -23,9 +23,10 @@ from PySide6.QtWidgets import (
 from app.stage.performance import Performance
 from app.widgets.lane_geometry import outcome
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
-from app.widgets.request_menu import MODE_WORDS, lane_of, request_words
+from app.widgets.request_menu import MODE_WORDS, MOOD_WORDS, lane_of, mood_words, request_words
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import LAYERS, LIMBS, MODES, Project
+from metagraph.graph.words import FEELINGS
 
 UNSET = "as it comes"
 LABELS = {
@@ -48,6 +49,8 @@ LABELS = {
     "text": "Words",
     "gestures": "With its gestures",
     "mode": "Mode",
+    "mood": "Mood",
+    "intensity": "Intensity",
     "name": "Point",
     "stay": "Stay there",
 }
@@ -62,6 +65,8 @@ TIPS = {
     "tags": "Words apart by commas; all must be among the action's tags",
     "resume": "When something more important cuts it, its rest plays afterwards",
     "strict": "The gaze stays there without looking away now and then",
+    "mood": "Which actions are likely, how large and fast they are played, posture and face",
+    "intensity": "How large it is played; 1 as it was made",
     "stay": "The models do not leave the stance, until another one is asked for",
 }
 ORDER = tuple(LABELS)
@@ -145,6 +150,8 @@ class RequestEditor(QDialog):
             amount.setKeyboardTracking(False)
             amount.valueChanged.connect(lambda v: self._set(name, round(v, 3)))
             return amount
+        if name == "intensity":
+            return self._intensity(value)
         if isinstance(value, bool):
             box = QCheckBox(LABELS[name], self)
             box.setChecked(value)
@@ -170,6 +177,15 @@ class RequestEditor(QDialog):
         spin.valueChanged.connect(lambda v: self._set(name, None if v < 0 else round(v, 3)))
         return spin
 
+    def _intensity(self, value: float | None) -> QDoubleSpinBox:
+        """Return a number from 0 to 2; at its lowest it is left open."""
+        spin = DoubleSpinBox(self, decimals=2, singleStep=0.1, minimum=-0.01, maximum=2.0, prefix="× ")
+        spin.setSpecialValueText(UNSET)
+        spin.setValue(-0.01 if value is None else value)
+        spin.setKeyboardTracking(False)
+        spin.valueChanged.connect(lambda v: self._set("intensity", None if v < 0 else round(v, 3)))
+        return spin
+
     def _text(self, value: str, read: Callable[[str], Any], name: str) -> QLineEdit:
         edit = QLineEdit(value, self)
 
@@ -188,6 +204,8 @@ class RequestEditor(QDialog):
             items = [("any", None), *((x, x) for x in LIMBS)]
         elif name == "mode":
             items = [("as it comes", None), *((MODE_WORDS[m], m) for m in MODES)]
+        elif name == "mood":
+            items = [(UNSET, None), *((MOOD_WORDS[m], m) for m in FEELINGS)]
         elif name == "line":
             items = [("none", None), *((i, i) for i in project.lines)]
             value = None if value is None else str(value)
@@ -208,7 +226,8 @@ class RequestEditor(QDialog):
             return None
         box = ComboBox(self)
         if value not in [v for _, v in items]:
-            items.append((value if isinstance(value, str) else "a point", value))
+            point = mood_words(value, None) if name == "mood" else "a point"
+            items.append((value if isinstance(value, str) else point, value))
         for words, data in items:
             box.addItem(words, data)
         box.setCurrentIndex([v for _, v in items].index(value))

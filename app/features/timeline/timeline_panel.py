@@ -4,11 +4,14 @@ and what plays.
 
 from __future__ import annotations
 
+from functools import partial
+
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import (
     QHBoxLayout,
     QInputDialog,
     QLabel,
+    QMenu,
     QMessageBox,
     QToolButton,
     QVBoxLayout,
@@ -24,7 +27,7 @@ from app.widgets.lane_geometry import outcome, wanted
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
-from app.widgets.request_menu import request_menu
+from app.widgets.request_menu import MOOD_WORDS, request_menu
 from app.widgets.sentence import Sentence
 from metagraph.graph import edits, performance_edits
 from metagraph.graph.conversation import side_name
@@ -32,6 +35,7 @@ from metagraph.graph.conversation_edits import change_conversation
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.requests import Performance as KeptPerformance
+from metagraph.graph.words import FEELINGS
 
 IMPROVISED = "Improvised"
 
@@ -162,11 +166,34 @@ class TimelinePanel(QWidget):
         )
         fill.setCheckable(True)
         fill.setChecked(kept.idle)
+        self._fill_moods(menu.addMenu("Mood"), kept)
         own = menu.addAction("A seed of its own", self._own_seed)
         own.setCheckable(True)
         own.setChecked(kept.seed is not None)
         menu.addSeparator()
         menu.addAction("Remove…", self.remove)
+
+    def _fill_moods(self, menu: QMenu, kept: KeptPerformance) -> None:
+        """Fill a menu with the moods a whole performance may be in, and how strongly."""
+        moods: list[tuple[str, str | None]] = [("The character's own", None)]
+        moods += [(MOOD_WORDS[feeling], feeling) for feeling in FEELINGS]
+        for words, mood in moods:
+            choice = menu.addAction(
+                words, partial(self._change, "Change the mood of a performance", mood=mood)
+            )
+            choice.setCheckable(True)
+            choice.setChecked(kept.mood == mood)
+        menu.addSeparator()
+        menu.addAction("Intensity…", self.set_intensity)
+
+    def set_intensity(self) -> None:
+        kept = self.performance.requests.kept
+        if kept is not None:
+            now = 1.0 if kept.intensity is None else kept.intensity
+            words = "How large gestures are played; 1 as they were made"
+            value, ok = QInputDialog.getDouble(self, "Intensity", words, now, 0.0, 2.0, 2)
+            if ok:
+                self._change("Change the intensity of a performance", intensity=value)
 
     def _keep(self, text: str, performance: KeptPerformance) -> None:
         made = ""

@@ -31,7 +31,10 @@ SMALL = ("int", "bits", "float", "bool")
 CHANGING = ("list_append", "list_extend", "list_insert", "list_pop", "set_add")
 
 
-NATIVE = {"Project": "project", "MetaGraph": "project"}  # records that are not translated: their headers
+NATIVE = {  # records that are not translated: their headers
+    "Project": "project", "MetaGraph": "project", "Life": "life", "Manner": "life", "Spot": "spots",
+    "Voices": "voice",
+}  # fmt: skip
 
 
 class Cpp(Braces):
@@ -109,7 +112,8 @@ class Cpp(Braces):
     def record(self, node: x.Record) -> None:
         self.out.append("")
         self.documented(node.about)
-        self.line(f"struct {node.name} {{")
+        base = f" : std::enable_shared_from_this<{node.name}>" if self.tells_itself(node) else ""
+        self.line(f"struct {node.name}{base} {{")
         self.depth += 1
         for f in node.fields:
             self.line(f"{self.type(f.type)} {self.word(f.name)};")
@@ -127,6 +131,15 @@ class Cpp(Braces):
             self.line((*self.signature(method, node), ";"))
         self.depth -= 1
         self.line("};")
+
+    def tells_itself(self, node: x.Record) -> bool:
+        """Whether a record gives itself to others, and not only its parts."""
+        every = [one for method in node.methods for one in x.walk(method.body)]
+        own = [one for one in every if isinstance(one, x.This)]
+        parts = [
+            one for one in every if isinstance(one, x.Member | x.Replaced) and isinstance(one.of, x.This)
+        ]
+        return len(own) > len(parts)
 
     def moved(self, node: x.Parameter) -> str:
         return f"{node.name}_" if node.type.bare.kind in SMALL else f"std::move({node.name}_)"
@@ -270,7 +283,7 @@ class Cpp(Braces):
             case x.Global():
                 return self.reached(node.module, node.name), ALONE
             case x.This():
-                return "this", ALONE
+                return "lang::self(this)", ALONE
             case x.Known():
                 if node.type.kind == "record":
                     return self.expression(node.of)
@@ -350,6 +363,9 @@ class Cpp(Braces):
         left, right = node.left, node.right
         kind = left.type.bare.kind
         if node.operator in ("is", "is not"):
+            if not isinstance(right, x.Value):  # the same record, not one alike
+                word = "==" if node.operator == "is" else "!="
+                return (self.strong(left, PLUS), f" {word} ", self.strong(right, PLUS)), COMPARE
             if left.type.bare.kind == "record":
                 return (
                     self.strong(left, PLUS),
@@ -376,7 +392,7 @@ class Cpp(Braces):
     def replaced(self, node: x.Replaced) -> Document:
         """The record made anew, with all its fields."""
         changes = dict(node.changes)
-        of = self.strong(node.of, ALONE)
+        of: Document = "this" if isinstance(node.of, x.This) else self.strong(node.of, ALONE)
         given: list[Document] = [
             self.plain(changes[f.name]) if f.name in changes else (of, f"->{self.word(f.name)}")
             for f in self.record_of(node.type).fields

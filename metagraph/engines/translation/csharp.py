@@ -28,7 +28,8 @@ PLAIN = {"int": "int", "bits": "uint", "float": "double", "bool": "bool", "str":
 
 
 EXTERNAL = {  # records that are not translated, as they are called here
-    "Settings": "PlannerSettings", "Project": "Graph", "MetaGraph": "LayerGraph", "Action": "GraphAction",
+    "Settings": "PlannerSettings", "Life": "LifeSettings", "Project": "Graph",
+    "MetaGraph": "LayerGraph", "Action": "GraphAction",
 }  # fmt: skip
 
 
@@ -253,7 +254,7 @@ class CSharp(Braces):
             case x.Builtin(name="map_items"):
                 return (self.strong(given[0], ALONE), ".Select(entry => (entry.Key, entry.Value))")
             case x.Builtin(name="zip"):
-                return (self.strong(given[0], ALONE), ".Zip(", self.plain(given[1]), ", (a, b) => (a, b))")
+                return ("PlainLists.Pairs(", self.plain(given[0]), ", ", self.plain(given[1]), ")")
             case _ if over.type.kind == "map" and keys:
                 return (self.strong(over, ALONE), ".Keys")
         return self.plain(over)

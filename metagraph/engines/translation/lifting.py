@@ -215,14 +215,14 @@ class _Lifting:
 
         place = self.fresh("place", x.INT)
         own = self.fresh("own", made.type)
-        here = x.Item(item.type, of, place)
-        inside = x.Compared(x.BOOL, "<", place, x.Builtin(x.INT, "len", (of,)))
-        behind = x.Negated(x.BOOL, "not", x.Builtin(x.BOOL, "less", (own, of_item(here))))
-        step = x.Assign(place, x.Value(x.INT, 1), "+")
-        return [
+        last = x.Item(item.type, of, x.Binary(x.INT, "-", place, x.Value(x.INT, 1)))
+        inside = x.Compared(x.BOOL, ">", place, low)
+        before = x.Builtin(x.BOOL, "less", (own, of_item(last)))
+        step = x.Assign(place, x.Value(x.INT, 1), "-")
+        return [  # from the end on: most are the latest
             x.Declare(own, of_item(item)),
-            x.Declare(place, low),
-            x.While(x.Logic(x.BOOL, "and", (inside, behind)), (step,)),
+            x.Declare(place, x.Builtin(x.INT, "len", (of,))),
+            x.While(x.Logic(x.BOOL, "and", (inside, before)), (step,)),
             x.Do(x.Builtin(x.NONE, "list_insert", (of, place, item))),
         ]
 

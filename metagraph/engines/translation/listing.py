@@ -26,6 +26,9 @@ class Translated:
 
 LISTING = (
     Translated("metagraph.graph.model", "model", ("Timing", "Stance", "Markov", "Settings"), ("Action",)),
+    Translated("metagraph.motion.contact_spans", "contact_spans"),
+    Translated("metagraph.motion.contact_solve", "contact_solve"),
+    Translated("metagraph.playback.contact_goals", "contact_goals"),
     Translated("metagraph.playback.choice", "choice"),
     Translated(
         "metagraph.playback.plan",
@@ -59,22 +62,36 @@ LISTING = (
     Translated(
         "metagraph.playback.markov", "markov", ("write", "_row", "performs", "length", "KINDS", "BEGIN")
     ),
+    Translated("metagraph.playback.mood", "mood"),
     Translated("metagraph.playback.replan", "replan"),
     Translated("metagraph.playback.phase_times", "phase_times"),
     Translated("metagraph.playback.bounds", "bounds"),
     Translated("metagraph.playback.remembering", "remembering"),
+    Translated("metagraph.playback.cue_shapes", "cue_shapes"),
     Translated("metagraph.playback.sampling", "sampling"),
     Translated("metagraph.playback.layer_planning", "layer_planning"),
     Translated("metagraph.playback.life.mouth", "mouth"),
     Translated("metagraph.playback.life.graphemes", "graphemes"),
     Translated("metagraph.playback.life.line_timing", "line_timing"),
+    Translated("metagraph.playback.life.lane", "lane", ("Lane",), without=("Lane.starts", "Lane.values")),
+    Translated("metagraph.playback.life.items", "items"),
+    Translated("metagraph.playback.life.track", "track", ("Track",), without=("Track.items", "Track.plus")),
+    Translated("metagraph.playback.life.wanted", "wanted"),
+    Translated("metagraph.playback.life.schedule", "schedule"),
+    Translated("metagraph.playback.hearing", "hearing"),
+    Translated("metagraph.playback.finding", "finding"),
+    Translated("metagraph.playback.meaning", "meaning"),
 )
 
 # Modules that each runtime has of its own, with what translated ones take from them.
 NATIVE = {
     "metagraph.playback.phases": "phases",  # found from motion; exports tell them
+    "metagraph.playback.vigour": "vigour",  # as are phases
     "metagraph.playback.hashing": "hashing",  # integers of 32 bits, which languages have differently
     "metagraph.graph.words": "words",  # the words layers, kinds and modes are told apart by
     "metagraph.graph.face_names": "words",  # and mouth shapes
+    "metagraph.graph.life": "life",  # the life layers' settings
+    "metagraph.playback.life.spots": "spots",  # names or points
+    "metagraph.playback.life.voice": "voice",  # how lines sound
     "metagraph.playback.life.alphabet": "alphabet",  # what Unicode says of letters
 }

@@ -177,6 +177,9 @@ class _Body:
             case m.AssignmentStmt():
                 return self._assignment(node)
             case m.OperatorAssignmentStmt():
+                entry = node.lvalue
+                if isinstance(entry, m.IndexExpr) and low.expression(entry.base).type.kind == "map":
+                    raise low.refuse(node, "a change of a map's entry in place", "assign the entry anew")
                 target, value = low.expression(node.lvalue), low.expression(node.rvalue)
                 if target.type.kind == "list":
                     return [x.Do(x.Builtin(x.NONE, "list_extend", (target, value)))]

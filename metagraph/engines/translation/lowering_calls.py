@@ -19,14 +19,15 @@ PLAIN = {
     "builtins.zip": "zip", "builtins.range": "range", "builtins.reversed": "reversed",
     "builtins.list": "list", "builtins.tuple": "list", "builtins.dict": "map", "builtins.set": "set",
     "builtins.frozenset": "set", "math.log": "log", "math.log1p": "log1p", "math.exp": "exp",
-    "math.sqrt": "sqrt", "math.cos": "cos", "math.floor": "floor", "math.isfinite": "is_finite",
-    "math.ceil": "ceil",
-    "bisect.bisect_right": "bisect_right", "bisect.bisect_left": "bisect_left", "builtins.round": "round",
+    "math.sqrt": "sqrt", "math.cos": "cos", "math.sin": "sin", "math.floor": "floor",
+    "math.isfinite": "is_finite", "math.ceil": "ceil", "bisect.bisect_right": "bisect_right",
+    "bisect.bisect_left": "bisect_left", "builtins.round": "round",
 }  # fmt: skip
 METHODS = {
     ("list", "append"), ("list", "extend"), ("list", "pop"), ("list", "index"), ("map", "keys"),
     ("map", "values"), ("map", "items"), ("str", "split"), ("str", "strip"), ("str", "join"),
-    ("str", "startswith"), ("str", "casefold"), ("set", "add"),
+    ("str", "startswith"), ("str", "rpartition"), ("str", "lower"), ("str", "isdigit"),
+    ("str", "casefold"), ("set", "add"),
 }  # fmt: skip
 
 
@@ -51,8 +52,12 @@ class Calls(Typed):
                 a for a, n in zip(node.args, node.arg_names, strict=True) if n is None
             ]  # strict=True is told by zip
             given = self.expressions(plain)
+            if "key" in node.arg_names:
+                given = (self._keys(node, given[0]), given[1])
             if PLAIN[full] == "text" and given[0].type == x.STR:
                 return given[0]
+            if PLAIN[full] == "list" and given and isinstance(given[0], x.Comprehension | x.Slice):
+                return given[0]  # a list already, and nobody else's
             if PLAIN[full] in ("list", "map", "set") and not given:
                 return x.Mapped(kind, ()) if kind.kind == "map" else x.Gathered(kind, ())
             if PLAIN[full] == "set" and isinstance(given[0], x.Gathered) and not given[0].spread:
@@ -78,6 +83,14 @@ class Calls(Typed):
         if isinstance(callee, m.NameExpr) and isinstance(callee.node, m.Var):
             return x.Call(kind, self.expression(callee), self.expressions(node.args))
         raise self.refuse(node, f"a call of '{full or type(callee).__name__}'", "use what the subset has")
+
+    def _keys(self, node: m.CallExpr, of: x.Expression) -> x.Expression:
+        """Return what a key gives for each item: a place among items is found among these."""
+        key = self.expression(node.args[node.arg_names.index("key")])
+        if not isinstance(key, x.Lambda):
+            raise self.refuse(node, "a key that is no lambda", "write a lambda")
+        clause = x.Clause(key.names, of, ())
+        return x.Comprehension(x.Type("list", (key.body.type,)), key.body, (clause,))
 
     def _formatted(self, node: m.CallExpr) -> x.Expression | None:
         """Return an f-string: mypy has it as `"".join([..., "{:{}}".format(value, how), ...])`."""
@@ -243,6 +256,8 @@ class Calls(Typed):
 
     def default(self, node: m.Expression, kind: x.Type) -> x.Expression:
         if isinstance(node, m.CallExpr) and full_name(node.callee) == "dataclasses.field":
+            if "default" in node.arg_names:
+                return self.default(node.args[node.arg_names.index("default")], kind)
             (factory,) = node.args
             none = x.Gathered(kind, ())
             empty = {"builtins.dict": x.Mapped(kind, ()), "builtins.list": none, "builtins.set": none}

@@ -21,6 +21,11 @@ MAPS = ("builtins.dict", "typing.Mapping", "typing.MutableMapping")
 SETS = ("builtins.set", "builtins.frozenset", "typing.AbstractSet")
 
 
+# Values of several types, and maps, that each runtime has a record of its own for.
+SPOT = x.Type("record", (), "Spot", "metagraph.playback.life.spots")  # a name or a point
+VOICES = x.Type("record", (), "Voices", "metagraph.playback.life.voice")  # of lines, by their ids
+
+
 class Typed:
     """One module being translated: its types."""
 
@@ -48,6 +53,8 @@ class Typed:
                 same = list(dict.fromkeys(rest))
                 if set(same) == {x.INT, x.FLOAT}:
                     same = [x.FLOAT]
+                if set(same) == {x.STR, x.Type("list", (x.FLOAT,))}:
+                    same = [SPOT]
                 if len(same) > 1 and all(s.kind == "list" for s in same):
                     same = [s for s in same if s.of != (x.ANY,)][:1]
                 if len(same) != 1:
@@ -77,7 +84,7 @@ class Typed:
             pairs = ("enumerate", "items", "ItemsView")
             return x.Type("list", of[:1] if not full.endswith(pairs) else (x.Type("tuple", (x.INT, *of)),))
         if full in MAPS:
-            return x.Type("map", of[:2])
+            return VOICES if of[1].name == "Voice" else x.Type("map", of[:2])
         if full in SETS:
             return x.Type("set", of[:1])
         if full.startswith(("builtins.", "typing.")):

@@ -22,6 +22,8 @@ Array = NDArray[Any]
 # neck and head undo it, so that the face stays level. Collar bones lift about the axis ahead.
 BREATH = {"spine": -0.2, "chest": -0.9, "upper_chest": -0.7, "neck": 0.75, "head": 0.85}
 SHOULDERS = 1.3
+# Degrees a bowed posture bends each forwards (`mood.Bearing.droop` of 1): the head most; ours.
+BOWED = {"spine": 2.0, "chest": 3.0, "upper_chest": 3.0, "neck": 3.0, "head": 8.0}
 # Who takes how much of a turn of the head; what a skeleton lacks, the others take.
 SHARES = {"chest": 0.04, "upper_chest": 0.06, "neck": 0.35, "head": 0.55}
 PARTNER_AWAY = 1.2  # metres ahead, at the height of the eyes: where "user" is unless somebody says otherwise
@@ -66,7 +68,8 @@ class Body:
     """What lives in a body. Directions `left`, `up`, `ahead` are the character's; metres.
 
     chain: the joints from the root to the head, or to the chest where there is none. breath: for each of them
-    the axis it turns about in its own space and by how many radians at the top of a breath. joints: all that
+    the axis it turns about in its own space and by how many radians at the top of a breath. bowed: by how
+    many in a bowed posture. joints: all that
     life may turn: the chain, then shoulders, eyes that are joints, the face's. read: whose rotations it must
     know: the chain, eyes that are joints, lids. shoulders: their rotation vectors at the top of a breath.
     lookers: empty where there is no head, from the root upwards. trunk: its place in the chain; trunk_ahead,
@@ -79,6 +82,7 @@ class Body:
     ahead: Vector
     chain: Array
     breath: tuple[tuple[Vector, float], ...]
+    bowed: tuple[float, ...]
     joints: Array
     read: Array
     shoulders: tuple[Vector, ...]
@@ -137,6 +141,10 @@ def _find(project: Project) -> Body:
     for role, degrees in BREATH.items():
         if roles.get(role) in chain:
             breath[chain.index(roles[role])] = (_vector(local(roles[role], left)), float(np.radians(degrees)))
+    bowed = [0.0] * len(chain)
+    for role, degrees in BOWED.items():
+        if roles.get(role) in chain:
+            bowed[chain.index(roles[role])] = float(np.radians(degrees))
     collars = [
         (roles[f"{s}_shoulder"], sign)
         for s, sign in zip(SIDES, (1, -1), strict=True)
@@ -160,6 +168,7 @@ def _find(project: Project) -> Body:
         _vector(ahead),
         np.array(chain),
         tuple(breath),
+        tuple(bowed),
         np.array(joints),
         np.array(read),
         lifts,

@@ -11,6 +11,7 @@ translation.
     eyes        = the turn that aims each eye at the target from where head and body have it, so they hold
     while the head nods
     lid         = follow x pitch of the eye + blink x (1 - how far it is shut already)
+    posture     = the mood's droop x bowed, its lift of the shoulders, on top of the breath: `mood.bearing`
     mouth       = sum over mouth shapes of weight x shape: `lips`
 """
 
@@ -25,6 +26,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph.anatomy import base_pose
 from metagraph.graph.face import CHANNELS, LIDS, MOUTH, UPPER_FOLLOWS, UPPER_LID_SHUT, FaceRig
+from metagraph.graph.face_names import MOOD_FACE
 from metagraph.graph.life import Life
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
@@ -35,10 +37,13 @@ from metagraph.playback.life.lips import mouth
 from metagraph.playback.life.schedule import Schedule
 from metagraph.playback.life.solve import breathe, lid, look, part_along
 from metagraph.playback.life.track import Track
+from metagraph.playback.mood import Bearing, bearing
+from metagraph.playback.mood import shown as mood_shown
 
 Array = NDArray[Any]
 
 INHALE = 0.4  # of a breath
+UNMOVED = Bearing()
 MORPH_LOOK = np.radians(30.0)  # the turn of an eye that a morph target of a look stands for
 MORPH_FOLLOWS = UPPER_FOLLOWS / np.radians(
     UPPER_LID_SHUT
@@ -94,12 +99,13 @@ def face_weights(
 @dataclass(frozen=True, slots=True)
 class _Look:
     """A face at a time. blink: 0..1. shut: how far each of LIDS is. eyes: their turns to the left and up,
-    radians.
+    radians. bears: the mood's part in it.
     """
 
     blink: float
     shut: tuple[float, ...]
     eyes: tuple[tuple[float, float], ...]
+    bears: Bearing = UNMOVED
 
 
 class _Found:
@@ -129,15 +135,18 @@ class _Found:
             rotations = read[n]
             chain = rotations[:long]
             full = breath_at(schedule.breaths, life, time)
-            if full:
-                breathe(body, chain, full)
+            mood = mood_shown(schedule.moods.times, schedule.moods.rows, time)
+            bears = UNMOVED if mood.neutral else bearing(mood)
+            if full or bears.droop:
+                breathe(body, chain, full, bears.droop)
             turn: list[Any] = [_NONE] * long
             eyes = [(0.0, 0.0), (0.0, 0.0)]
             if moving and gaze is not None:
                 towards, eyes = look(body, chain, places[n], gaze.at(time), life.gaze, calm, life.head_share)
                 for looker, vector in zip(body.lookers, towards, strict=True):
                     turn[looker.place] = vector
-            turn += [(full * x, full * y, full * z) for x, y, z in body.shoulders]
+            lifted = full + bears.lift
+            turn += [(lifted * x, lifted * y, lifted * z) for x, y, z in body.shoulders]
             down = [-eyes[0][1], -eyes[1][1]]
             place = long
             for side, eye in enumerate(body.eyes):
@@ -146,7 +155,7 @@ class _Found:
                     turn.append((left * a[0] + up * b[0], left * a[1] + up * b[1], left * a[2] + up * b[2]))
                     down[side] += part_along(rotations[place], eye.down)
                     place += 1
-            blink = blink_at(schedule.blinks, life, time)
+            blink = max(blink_at(schedule.blinks, life, time), bears.lids)
             shut, own = [], []
             for k in range(4):
                 already = 0.0
@@ -157,7 +166,7 @@ class _Found:
                 own.append(shut[k] - already)
             chains.append(chain)
             turns.append(turn)
-            self.faces.append(_Look(blink, tuple(shut), tuple(eyes)))
+            self.faces.append(_Look(blink, tuple(shut), tuple(eyes), bears))
             self.channels[n, : len(LIDS) + 1] = (*own, blink)
         self.chain = np.array(chains).reshape(len(times), long, 4)
         self.turns = np.array(turns).reshape(len(times), -1, 3)
@@ -179,9 +188,14 @@ class _Found:
 _NONE = (0.0, 0.0, 0.0)
 
 
+def mood_weights(bears: Bearing) -> tuple[float, ...]:
+    """Return how much of each of `face_names.MOOD_FACE` a mood shows, 0..1."""
+    return bears.smile, bears.frown, bears.brow_down, bears.brow_up
+
+
 def breath_at(lane: Lane, life: Life, time: float) -> float:
     """Return how full the chest is, 0 at rest, about 1 at the top of a breath."""
-    starts, values = lane.plain
+    starts, values = lane.times, lane.rows
     n = bisect_right(starts, time) - 1
     if n < 0:
         return 0.0
@@ -192,7 +206,7 @@ def breath_at(lane: Lane, life: Life, time: float) -> float:
 
 def blink_at(lane: Lane, life: Life, time: float) -> float:
     """Return how far a blink has shut the eyes, 0..1."""
-    starts, _ = lane.plain
+    starts = lane.times
     whole, out = life.blink_close + life.blink_open, 0.0
     n = bisect_right(starts, time) - 1
     while n >= 0 and time - starts[n] < whole:  # a slow one may still be opening when the next begins
@@ -214,6 +228,8 @@ def _morphs(face: FaceRig, look: _Look, channels: Array) -> dict[str, float]:
             f"look_up_{side}": up,
             f"look_down_{side}": -up,
         }
+    for mood, how in zip(MOOD_FACE, mood_weights(look.bears), strict=True):
+        values[mood] = how
     values |= dict(zip(MOUTH, channels[len(LIDS) + 1 :].tolist(), strict=True))
     out: dict[str, float] = {}
     for channel, targets in face.morphs.items():

@@ -162,7 +162,7 @@ class _Events:
     """A lane as plain numbers, and what its values are multiplied with."""
 
     def __init__(self, lane: Lane, scale: float) -> None:
-        self.starts, self.values = lane.plain
+        self.starts, self.values = lane.times, lane.rows
         self.scale = scale
 
 

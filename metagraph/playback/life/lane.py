@@ -1,9 +1,10 @@
-"""A lane of events in time, drawn one after another: arrays that are never changed, extended at the end,
-forgotten at the front.
+"""A lane of events in time, drawn one after another: never changed, extended at the end, forgotten at the
+front.
 """
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,16 +18,17 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True, eq=False)
 class Lane:
-    """starts `[n]` ascending, seconds; values `[n, k]`, what each event is. first: number of the first event
-    that is still kept.
+    """times: when events begin, ascending, seconds. rows: what each event is. first: number of the first
+    event that is still kept. width: how many numbers a row has.
     """
 
-    starts: Array
-    values: Array
+    times: Sequence[float] = ()
+    rows: Sequence[Sequence[float]] = ()
     first: int = 0
+    width: int = 1
 
     def __len__(self) -> int:
-        return len(self.starts)
+        return len(self.times)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Lane):
@@ -38,44 +40,46 @@ class Lane:
         )
 
     def __hash__(self) -> int:
-        return hash((self.first, self.starts.tobytes()))
+        return hash((self.first, tuple(self.times)))
 
     @cached_property
-    def plain(self) -> tuple[list[float], list[list[float]]]:
-        """Starts and values as plain numbers."""
-        return self.starts.tolist(), self.values.tolist()
+    def starts(self) -> Array:
+        """The times as an array `[n]`."""
+        return np.array(self.times, float)
+
+    @cached_property
+    def values(self) -> Array:
+        """The rows as an array `[n, width]`."""
+        return np.array(self.rows, float).reshape(len(self.times), self.width)
 
     @property
     def next(self) -> int:
         """The number of the event to be drawn next."""
-        return self.first + len(self.starts)
+        return self.first + len(self.times)
 
     def until(self, seconds: float) -> Lane:
         """Return the lane with only what begins before a time."""
-        count = int(np.searchsorted(self.starts, seconds, "left"))
-        return (
-            self if count == len(self.starts) else Lane(self.starts[:count], self.values[:count], self.first)
-        )
-
-    def plus(self, starts: Sequence[float], values: Sequence[Sequence[float]]) -> Lane:
-        """Return the lane with later events."""
-        if not starts:
+        count = bisect_left(self.times, seconds)
+        if count == len(self.times):
             return self
-        more = np.asarray(values, float).reshape(len(starts), self.values.shape[1])
-        return Lane(
-            np.concatenate([self.starts, np.asarray(starts, float)]),
-            np.concatenate([self.values, more]),
-            self.first,
-        )
+        return Lane(self.times[:count], self.rows[:count], self.first, self.width)
+
+    def plus(self, times: Sequence[float], rows: Sequence[Sequence[float]]) -> Lane:
+        """Return the lane with later events."""
+        if len(times) == 0:
+            return self
+        return Lane([*self.times, *times], [*self.rows, *rows], self.first, self.width)
 
     def since(self, seconds: float, before: int = 1) -> Lane:
         """Return the lane without what neither goes on at `seconds` nor comes later; `before`: how many more
         are kept.
         """
-        gone = max(0, int(np.searchsorted(self.starts, seconds, "right")) - 1 - before)
-        return Lane(self.starts[gone:].copy(), self.values[gone:].copy(), self.first + gone) if gone else self
+        gone = max(0, bisect_right(self.times, seconds) - 1 - before)
+        if gone == 0:
+            return self
+        return Lane(self.times[gone:], self.rows[gone:], self.first + gone, self.width)
 
 
 def lane(width: int) -> Lane:
     """Return an empty lane whose events have `width` values."""
-    return Lane(np.zeros(0), np.zeros((0, width)))
+    return Lane(width=width)

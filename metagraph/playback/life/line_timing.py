@@ -74,6 +74,22 @@ class LineTiming:
     marks: tuple[VisemeMark, ...] = ()
 
 
+def alike_timings(one: LineTiming | None, other: LineTiming | None) -> bool:
+    """Whether two lines' words and shapes come alike."""
+    if one is None or other is None:
+        return one is None and other is None
+    if len(one.words) != len(other.words) or len(one.marks) != len(other.marks):
+        return False
+    words = all(
+        a.text == b.text and a.start == b.start and a.end == b.end
+        for a, b in zip(one.words, other.words, strict=True)
+    )
+    return words and all(
+        a.at == b.at and a.viseme == b.viseme and a.weight == b.weight
+        for a, b in zip(one.marks, other.marks, strict=True)
+    )
+
+
 def _table(name: str) -> dict[str, str]:
     if name == "oculus":
         return OCULUS

@@ -7,21 +7,27 @@ behind can be forgotten.
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import ceil, inf, log, pi, sin
-from typing import Any
 
-import numpy as np
-
-from metagraph.graph.life import Life, manner
-from metagraph.graph.words import MODES, Mode
+from metagraph.graph.life import Life, Manner, manner, same_life
+from metagraph.graph.words import MODES
 from metagraph.playback.choice import uniform
-from metagraph.playback.life.lane import Lane, lane
+from metagraph.playback.hashing import Bits
+from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.track import Track
-from metagraph.playback.life.voice import Voice, voice_of
-from metagraph.playback.life.wanted import GazeTarget, modes_between, targets_between
+from metagraph.playback.life.voice import Voice, same_voices, stressed
+from metagraph.playback.life.wanted import (
+    GazeTarget,
+    modes_between,
+    moods_between,
+    moods_of,
+    targets_between,
+    ways_in,
+)
+from metagraph.playback.mood import Mood
 
 BLOCK = 8.0  # seconds drawn at a time, so that a running plan need not draw at every tick
 RECALL = 4.0  # seconds of looks kept when the past is forgotten: longer than any turn of the head takes
@@ -29,76 +35,88 @@ RECALL = 4.0  # seconds of looks kept when the past is forgotten: longer than an
 # Blinks (Yang et al., section 7.3): on stressed syllables at least so many seconds after the last; of
 # themselves 2 to 5 s after it at 17 a minute: the factors are of the mean gap.
 AFTER_BLINK = 1.0
-BLINK_GAPS = (0.57, 0.845)  # the shortest gap, and what chance adds to it
+BLINK_GAP = 0.57  # the shortest gap
+BLINK_CHANCE = 0.845  # and what chance adds to it
 # Saccades: fixations last 0.2 s and more; sizes fall off as in "Eyes Alive", small ones only: the eyes stay
 # with what they look at.
 FIXATION = 0.2
-SACCADE, LARGEST_SACCADE, UPRIGHT = 1.2, 4.0, 0.6  # degrees on average, at most; of that, up and down
+SACCADE = 1.2  # degrees on average
+LARGEST_SACCADE = 4.0  # degrees
+UPRIGHT = 0.6  # how much of an offset goes up and down
 # Aversions: at somewhat regular intervals, in a random direction, more often to the sides.
-AVERSION_GAPS = (0.6, 0.8)
+AVERSION_GAP = 0.6
+AVERSION_CHANCE = 0.8
 BETWEEN_AVERSIONS = 0.6  # seconds at least
 SHORTEST_AVERSION = 0.25
-BREATHS = (0.85, 0.3)  # of the mean length and depth: the least, and what chance adds
+BREATH = 0.85  # of the mean length and depth: the least
+BREATH_CHANCE = 0.3  # and what chance adds
 
 
 @dataclass(frozen=True)
 class Schedule:
-    """Everything that happens of itself from 0 to `end` seconds, in lanes; a lane's values stand in the order
+    """Everything that happens of itself from 0 to `end` seconds, in lanes; a lane's rows stand in the order
     given here.
 
-    modes: place among MODES. targets: what is looked at. breaths: length s, depth. aversions: end s,
-    right-to-left and upward part of the offset (of life's angle). saccades: offset to the left and up,
-    degrees. blinks: 0 of itself, 1 on a stressed syllable, 2 asked for. drawn: seconds up to which the lanes
-    are filled; the rest is what they were drawn from.
+    modes: place among MODES. moods: valence, arousal, intensity. targets: what is looked at. breaths: length
+    s, depth. aversions: end s, right-to-left and upward part of the offset (of life's angle). saccades:
+    offset to the left and up, degrees. blinks: 0 of itself, 1 on a stressed syllable, 2 asked for. drawn:
+    seconds up to which the lanes are filled; the rest is what they were drawn from.
     """
 
     end: float = 0.0
     drawn: float = 0.0
-    modes: Lane = field(default_factory=lambda: lane(1))
-    targets: tuple[GazeTarget, ...] = ()
-    breaths: Lane = field(default_factory=lambda: lane(2))
-    aversions: Lane = field(default_factory=lambda: lane(3))
-    saccades: Lane = field(default_factory=lambda: lane(2))
-    blinks: Lane = field(default_factory=lambda: lane(1))
+    modes: Lane = Lane(width=1)
+    moods: Lane = Lane(width=3)
+    targets: Sequence[GazeTarget] = ()
+    breaths: Lane = Lane(width=2)
+    aversions: Lane = Lane(width=3)
+    saccades: Lane = Lane(width=2)
+    blinks: Lane = Lane(width=1)
     life: Life | None = field(default=None, compare=False, repr=False)
     track: Track | None = field(default=None, compare=False, repr=False)
     voices: Mapping[str, Voice] | None = field(default=None, compare=False, repr=False)
-    seed: int = field(default=0, compare=False)
+    seed: Bits = field(default=0, compare=False)
 
     def since(self, seconds: float) -> Schedule:
         """Return the schedule without what ended before `seconds`; what is drawn on from it stays as it would
         have been.
         """
-        lanes = {name: getattr(self, name).since(seconds) for name in _RANDOM}
+        breaths = self.breaths.since(seconds)
+        aversions = self.aversions.since(seconds)
+        saccades = self.saccades.since(seconds)
+        blinks = self.blinks.since(seconds)
+        rates = [1.0, 1.0, 1.0, 1.0]
+        if self.life is not None:
+            rates = [
+                self.life.breath_rate, self.life.aversion_rate, self.life.saccade_rate, self.life.blinks
+            ]  # fmt: skip
         # Gaps run in modes' time from the event before, so the modes since then are needed.
-        idle = [
-            name
-            for name, kept in lanes.items()
-            if not len(kept) and (self.life is None or getattr(self.life, _RANDOM[name]) > 0)
-        ]
-        needed = (
-            0.0
-            if idle
-            else min([float(kept.starts[0]) for kept in lanes.values() if len(kept)], default=seconds)
+        lanes = [breaths, aversions, saccades, blinks]
+        firsts = [kept.times[0] for kept in lanes if len(kept.times) > 0]
+        needed = min(firsts) if len(firsts) > 0 else seconds
+        if any(len(kept.times) == 0 and rate > 0 for kept, rate in zip(lanes, rates, strict=True)):
+            needed = 0.0
+        looked = bisect_right(self.targets, min(needed, seconds - RECALL), key=lambda t: t.start) - 1
+        return replace(
+            self,
+            modes=self.modes.since(needed, 0),
+            moods=self.moods.since(min(needed, seconds - RECALL), 0),
+            targets=self.targets[max(0, looked) :],
+            breaths=breaths,
+            aversions=aversions,
+            saccades=saccades,
+            blinks=blinks,
         )
-        kept = max(0, bisect_right(self.targets, min(needed, seconds - RECALL), key=_start) - 1)
-        return replace(self, modes=self.modes.since(needed, 0), targets=self.targets[kept:], **lanes)
-
-
-def _start(target: GazeTarget) -> float:
-    return target.start
-
-
-_RANDOM = {
-    "breaths": "breath_rate",
-    "aversions": "aversion_rate",
-    "saccades": "saccade_rate",
-    "blinks": "blinks",
-}
 
 
 def schedule(
-    life: Life, track: Track, voices: Mapping[str, Voice], seed: int, end: float, before: Schedule, now: float
+    life: Life,
+    track: Track,
+    voices: Mapping[str, Voice],
+    seed: Bits,
+    end: float,
+    before: Schedule,
+    now: float,
 ) -> Schedule:
     """Return the schedule to `end` seconds. What `before` holds that begins before `now` stays exactly as it
     was.
@@ -107,265 +125,302 @@ def schedule(
     """
     if not life.on:
         return replace(before, end=end, life=life, track=track, voices=voices, seed=seed)
-    drawn = max(BLOCK, ceil(end / BLOCK) * BLOCK)
+    drawn = max(BLOCK, math.ceil(end / BLOCK) * BLOCK)
     change = _change(before, life, track, voices, seed)
-    if change is None and drawn == before.drawn:
+    if change == "" and drawn == before.drawn:
         return replace(before, end=end)
-    cut = max(0.0, min(before.drawn, drawn if change is None else now))
-    chance = cut if change != "places" else min(before.drawn, drawn)
-    draw = _Draw(life, track, voices, seed, cut, drawn, before)
-    kept = {name: getattr(before, name).until(chance) for name in _RANDOM}
+    cut = max(0.0, min(before.drawn, drawn if change == "" else now))
+    chance = min(before.drawn, drawn) if change == "places" else cut
+    draw = _draw(life, track, voices, seed, cut, drawn, before)
+    breaths = before.breaths.until(chance)
+    aversions = before.aversions.until(chance)
+    saccades = before.saccades.until(chance)
+    blinks = before.blinks.until(chance)
     if chance < drawn:
         draw.begin(chance)
-        kept = {name: getattr(draw, name)(kept[name]) for name in _RANDOM}
+        breaths = draw.breaths(breaths)
+        aversions = draw.aversions(aversions)
+        saccades = draw.saccades(saccades)
+        blinks = draw.blinks(blinks)
     return Schedule(
-        end, drawn, draw.modes, draw.targets, **kept, life=life, track=track, voices=voices, seed=seed
-    )
+        end, drawn, draw.modes, draw.moods, draw.targets, breaths, aversions, saccades, blinks,
+        life, track, voices, seed,
+    )  # fmt: skip
 
 
-def _change(before: Schedule, life: Life, track: Track, voices: Mapping[str, Voice], seed: int) -> str | None:
-    """Return None where nothing a schedule was drawn from has changed, "places" where only those have, else
+def _change(before: Schedule, life: Life, track: Track, voices: Mapping[str, Voice], seed: Bits) -> str:
+    """Return "" where nothing a schedule was drawn from has changed, "places" where only those have, else
     "all".
     """
-    old = before.track
-    if (
-        before.life != life
-        or before.seed != seed
-        or (before.voices is not voices and before.voices != voices)
-        or old is None
-    ):
+    if before.track is None or before.seed != seed or not same_life(before.life, life):
         return "all"
-    if old is track or old == track:
-        return None
-    same = (
-        old.looks == track.looks
-        and old.speeches == track.speeches
-        and old.modes == track.modes
-        and old.blinks == track.blinks
-    )
-    return "places" if same else "all"
+    if not same_voices(before.voices, voices):
+        return "all"
+    if before.track is track or before.track.like(track):
+        return ""
+    return "places" if before.track.draws_like(track) else "all"
 
 
-class _Draw:
-    """One extension: lanes filled from `cut` to `drawn`."""
+@dataclass
+class LifeDraw:
+    """One extension: lanes filled from `cut` to `drawn` seconds. edges: where modes, moods and strict looks
+    change; manners: what mode and mood make of the amounts from each on;
+    strict: 1 where the look then is, else 0.
+    """
 
-    def __init__(
-        self,
-        life: Life,
-        track: Track,
-        voices: Mapping[str, Voice],
-        seed: int,
-        cut: float,
-        drawn: float,
-        before: Schedule,
-    ) -> None:
-        self.life, self.track, self.voices, self.seed, self.drawn = life, track, voices, seed, drawn
-        self.cut = cut
-        modes = before.modes.until(cut)
-        last = int(modes.values[-1, 0]) if len(modes) else -1
-        new = [(at, m) for at, m in modes_between(track, cut, drawn)]
-        if new and new[0][1] == last:
-            new = new[1:]
-        self.modes = modes.plus([at for at, _ in new], [(m,) for _, m in new])
-        targets = before.targets[: bisect_left(before.targets, cut, key=_start)]
-        for target in targets_between(track, cut, drawn):
-            if not targets or not target.like(targets[-1]):
-                targets = (*targets, target)
-        self.targets = targets
-        self.calm = 1.0 - life.stillness
-        self._edges: list[float] = []
-        self._modes: list[Mode] = []
-        self._strict: list[bool] = []
+    life: Life
+    track: Track
+    voices: Mapping[str, Voice]
+    seed: Bits
+    cut: float
+    drawn: float
+    calm: float
+    modes: Lane
+    moods: Lane
+    targets: Sequence[GazeTarget]
+    edges: list[float] = field(default_factory=list)
+    manners: list[Manner] = field(default_factory=list)
+    strict: list[int] = field(default_factory=list)
 
     def begin(self, cut: float) -> None:
-        """Lay modes and strict looks out in one row of segments."""
+        """Lay modes, moods and strict looks out in one row of segments."""
         self.cut = cut
-        starts, kinds = self.modes.starts.tolist(), self.modes.values[:, 0].astype(int).tolist()
-        for edge in sorted(
-            {
-                *starts,
-                *(
-                    t.start
-                    for n, t in enumerate(self.targets)
-                    if n == 0 or t.strict != self.targets[n - 1].strict
-                ),
-            }
-        ):
-            self._edges.append(edge)
-            self._modes.append(MODES[kinds[max(0, bisect_right(starts, edge) - 1)]])
-            self._strict.append(self.targets[max(0, bisect_right(self.targets, edge, key=_start) - 1)].strict)
+        edges = list(self.modes.times)
+        edges += self.moods.times
+        for n, target in enumerate(self.targets):
+            if n == 0 or target.strict != self.targets[n - 1].strict:
+                edges.append(target.start)
+        begun = [t.start for t in self.targets]
+        for edge in sorted(edges):
+            if len(self.edges) > 0 and self.edges[-1] == edge:
+                continue
+            mode = max(0, bisect_right(self.modes.times, edge) - 1)
+            look = max(0, bisect_right(begun, edge) - 1)
+            self.edges.append(edge)
+            felt = self.moods.rows[max(0, bisect_right(self.moods.times, edge) - 1)]
+            ways = manner(self.life, MODES[int(self.modes.rows[mode][0])])
+            self.manners.append(ways_in(ways, Mood(felt[0], felt[1], felt[2])))
+            self.strict.append(1 if self.targets[look].strict else 0)
 
-    def chance(self, *words: str) -> float:
-        return uniform(self.seed, *words)
+    def chance(self, what: str, number: int, purpose: str) -> float:
+        """Return the chance of something about an event: 0..1, without the ends."""
+        return uniform(self.seed, what, str(number), purpose)
 
-    def mode(self, seconds: float) -> Mode:
-        return self._modes[max(0, bisect_right(self._edges, seconds) - 1)]
+    def place_at(self, seconds: float) -> int:
+        """Return the place of the segment that a time is in."""
+        return max(0, bisect_right(self.edges, seconds) - 1)
 
-    def after(self, seconds: float, need: float, speed: Callable[[Mode, bool], float]) -> float:
-        """Return when `need` has passed since `seconds`, for a clock that runs at `speed(mode, strict)`; inf
-        where it is not before the end.
+    def after(self, seconds: float, need: float, rates: Sequence[float]) -> float:
+        """Return when `need` has passed since `seconds`, for a clock that runs at these rates, one for each
+        segment; infinity where it is not before the end.
         """
-        place = max(0, bisect_right(self._edges, seconds) - 1)
-        while seconds < self.drawn:
-            end = self._edges[place + 1] if place + 1 < len(self._edges) else self.drawn
-            rate = speed(self._modes[place], self._strict[place])
-            if rate > 0 and seconds + need / rate < end:
-                return seconds + need / rate
-            need -= rate * max(0.0, end - seconds)
-            seconds, place = end, place + 1
-        return inf
-
-    # --- the lanes
+        at = seconds
+        left = need
+        place = self.place_at(at)
+        while at < self.drawn:
+            end = self.edges[place + 1] if place + 1 < len(self.edges) else self.drawn
+            rate = rates[place]
+            if rate > 0 and at + left / rate < end:
+                return at + left / rate
+            left -= rate * max(0.0, end - at)
+            at = end
+            place += 1
+        return math.inf
 
     def breaths(self, lane: Lane) -> Lane:
         """Each breath follows the one before; the first began before time 0, so that not everybody breathes
         alike.
         """
-        starts: list[float] = []
-        values: list[tuple[float, float]] = []
-        n = lane.next
-        at = float(lane.starts[-1] + lane.values[-1, 0]) if len(lane) else None
+        times: list[float] = []
+        rows: list[list[float]] = []
+        number = lane.next
+        begun = len(lane.times) > 0
+        at = lane.times[-1] + lane.rows[-1][0] if begun else 0.0
         while True:
-            if at is not None:
+            if begun:
                 at = max(at, self.cut)
-            ways = manner(self.life, self.mode(at or 0.0))
-            rate = self.life.breath_rate * ways.breath_rate / 60
+            ways = self.manners[self.place_at(at)]
+            rate = self.life.breath_rate * ways.breath_rate / 60.0
             if rate <= 0:  # no breath until another mode begins
-                later = bisect_right(self._edges, at or 0.0)
-                if self.life.breath_rate <= 0 or later == len(self._edges):
+                later = bisect_right(self.edges, at)
+                if self.life.breath_rate <= 0 or later == len(self.edges):
                     break
-                at = self._edges[later]
+                at = self.edges[later]
+                begun = True
                 continue
-            length = (BREATHS[0] + BREATHS[1] * self.chance("breath", str(n), "length")) / rate
-            length *= 1 + 2 * self.life.stillness  # slower, too, but never halting
-            depth = ways.breathing * (BREATHS[0] + BREATHS[1] * self.chance("breath", str(n), "depth"))
-            if at is None:
-                at = -length * self.chance("breath", "first")
+            length = (BREATH + BREATH_CHANCE * self.chance("breath", number, "length")) / rate
+            length *= 1.0 + 2.0 * self.life.stillness  # slower, too, but never halting
+            depth = ways.breathing * (BREATH + BREATH_CHANCE * self.chance("breath", number, "depth"))
+            if not begun:
+                at = -length * uniform(self.seed, "breath", "first")
+                begun = True
             if at >= self.drawn:
                 break
-            starts.append(at)
-            values.append((length, depth))
-            at, n = at + length, n + 1
-        return lane.plus(starts, values)
+            times.append(at)
+            rows.append([length, depth])
+            at += length
+            number += 1
+        return lane.plus(times, rows)
 
     def saccades(self, lane: Lane) -> Lane:
-        life = self.life
-        if life.saccade_rate <= 0 or self.calm <= 0:
+        """The eyes' small jumps."""
+        if self.life.saccade_rate <= 0 or self.calm <= 0:
             return lane
-        mean = max(60 / life.saccade_rate, FIXATION + 0.01)
-
-        def next_one(n: int, last: float) -> tuple[float, tuple[float, ...], float]:
-            need = FIXATION + (mean - FIXATION) * min(4.0, -log(self.chance("saccade", str(n), "gap")))
-            at = max(self.cut, self.after(last, need, lambda m, _: manner(life, m).saccade_rate * self.calm))
-            size = min(LARGEST_SACCADE, -SACCADE * log(self.chance("saccade", str(n), "size")))
-            size *= manner(life, self.mode(at)).saccades if at < inf else 0.0
-            turn = 2 * pi * self.chance("saccade", str(n), "way")
-            return at, (size * sin(turn + pi / 2), UPRIGHT * size * sin(turn)), at
-
-        return self._one_by_one(lane, float(lane.starts[-1]) if len(lane) else 0.0, next_one)
+        mean = max(60.0 / self.life.saccade_rate, FIXATION + 0.01)
+        rates = [ways.saccade_rate * self.calm for ways in self.manners]
+        times: list[float] = []
+        rows: list[list[float]] = []
+        number = lane.next
+        last = lane.times[-1] if len(lane.times) > 0 else 0.0
+        while True:
+            need = FIXATION + (mean - FIXATION) * min(4.0, -math.log(self.chance("saccade", number, "gap")))
+            last = max(self.cut, self.after(last, need, rates))
+            if not last < self.drawn:
+                return lane.plus(times, rows)
+            size = min(LARGEST_SACCADE, -SACCADE * math.log(self.chance("saccade", number, "size")))
+            size *= self.manners[self.place_at(last)].saccades
+            turn = 2.0 * math.pi * self.chance("saccade", number, "way")
+            times.append(last)
+            rows.append([size * math.sin(turn + math.pi / 2.0), UPRIGHT * size * math.sin(turn)])
+            number += 1
 
     def aversions(self, lane: Lane) -> Lane:
+        """Looks away for a moment."""
         life = self.life
         if life.aversion_rate <= 0 or life.aversion_length <= 0 or life.aversion_angle <= 0 or self.calm <= 0:
             return lane
-
-        def speed(mode: Mode, strict: bool) -> float:
-            ways = manner(life, mode)
+        rates: list[float] = []
+        for ways, strict in zip(self.manners, self.strict, strict=True):
             rate = life.aversion_rate * ways.aversion_rate
-            if strict or rate <= 0:
-                return 0.0
-            return self.calm / max(BETWEEN_AVERSIONS, 60 / rate - life.aversion_length * ways.aversion_length)
-
-        def next_one(n: int, last: float) -> tuple[float, tuple[float, ...], float]:
-            need = AVERSION_GAPS[0] + AVERSION_GAPS[1] * self.chance("aversion", str(n), "gap")
-            at = max(self.cut, last + BETWEEN_AVERSIONS, self.after(last, need, speed))
-            ways = manner(life, self.mode(at)) if at < inf else manner(life, "idle")
-            length = (
-                life.aversion_length
-                * ways.aversion_length
-                * (0.6 + 0.8 * self.chance("aversion", str(n), "length"))
-            )
-            end = at + max(SHORTEST_AVERSION, length)
-            size = ways.aversion_angle * (0.7 + 0.6 * self.chance("aversion", str(n), "size"))
-            turn = 2 * pi * self.chance("aversion", str(n), "way")
-            return at, (end, size * sin(turn + pi / 2), UPRIGHT * size * sin(turn)), end
-
-        return self._one_by_one(lane, float(lane.values[-1, 0]) if len(lane) else 0.0, next_one)
+            if strict == 1 or rate <= 0:
+                rates.append(0.0)
+            else:
+                mean = max(BETWEEN_AVERSIONS, 60.0 / rate - life.aversion_length * ways.aversion_length)
+                rates.append(self.calm / mean)
+        times: list[float] = []
+        rows: list[list[float]] = []
+        number = lane.next
+        last = lane.rows[-1][0] if len(lane.rows) > 0 else 0.0
+        while True:
+            need = AVERSION_GAP + AVERSION_CHANCE * self.chance("aversion", number, "gap")
+            at = max(self.cut, last + BETWEEN_AVERSIONS, self.after(last, need, rates))
+            if not at < self.drawn:
+                return lane.plus(times, rows)
+            own = self.manners[self.place_at(at)]
+            length = life.aversion_length * own.aversion_length
+            length *= 0.6 + 0.8 * self.chance("aversion", number, "length")
+            last = at + max(SHORTEST_AVERSION, length)
+            size = own.aversion_angle * (0.7 + 0.6 * self.chance("aversion", number, "size"))
+            turn = 2.0 * math.pi * self.chance("aversion", number, "way")
+            times.append(at)
+            rows.append([last, size * math.sin(turn + math.pi / 2.0), UPRIGHT * size * math.sin(turn)])
+            number += 1
 
     def blinks(self, lane: Lane) -> Lane:
+        """Blinks of themselves, on stressed syllables and asked for, whichever comes first."""
         life = self.life
         shut = life.blink_close + life.blink_open
-        mean = 60 / life.blinks if life.blinks > 0 and self.calm > 0 else inf
-        last = float(lane.starts[-1]) if len(lane) else -0.5 * min(mean, 10.0) * self.chance("blink", "first")
-        accents = (
-            list(self._accents(max(0.0, min(self.cut, last))))
-            if self.calm > 0 and life.accent_blinks > 0
-            else []
-        )
+        mean = 60.0 / life.blinks if life.blinks > 0 and self.calm > 0 else math.inf
+        rates = [ways.blinks * self.calm for ways in self.manners]
+        last = -0.5 * min(mean, 10.0) * uniform(self.seed, "blink", "first")
+        if len(lane.times) > 0:
+            last = lane.times[-1]
+        accents: list[tuple[float, bool]] = []
+        if self.calm > 0 and life.accent_blinks > 0:
+            accents = self.accents(max(0.0, min(self.cut, last)))
         asked = [b.start for b in self.track.blinks]
-        starts: list[float] = []
-        values: list[tuple[float]] = []
-        n, place = lane.next, 0
+        times: list[float] = []
+        rows: list[list[float]] = []
+        number = lane.next
+        place = 0
         while True:
-            need = mean * (BLINK_GAPS[0] + BLINK_GAPS[1] * self.chance("blink", str(n), "gap"))
-            own = (
-                max(self.cut, self.after(last, need, lambda m, _: manner(life, m).blinks * self.calm))
-                if need < inf
-                else inf
-            )
-            while place < len(accents) and not self._suits(accents[place], last, shut):
+            own = math.inf
+            if mean < math.inf:
+                need = mean * (BLINK_GAP + BLINK_CHANCE * self.chance("blink", number, "gap"))
+                own = max(self.cut, self.after(last, need, rates))
+            # A stressed syllable may bring a blink: the first of a speech always, the others some time after
+            # the last blink.
+            while place < len(accents):
+                accent, first = accents[place]
+                if accent >= self.cut and accent >= last + (shut + 0.1 if first else AFTER_BLINK / self.calm):
+                    break
                 place += 1
-            stressed = accents[place][0] if place < len(accents) else inf
+            heard = accents[place][0] if place < len(accents) else math.inf
             wish = bisect_left(asked, max(self.cut, last + shut))
-            wanted = asked[wish] if wish < len(asked) else inf
-            at = min(own, stressed, wanted)
+            wanted = asked[wish] if wish < len(asked) else math.inf
+            at = min(own, heard, wanted)
             if at >= self.drawn:
-                return lane.plus(starts, values)
-            starts.append(at)
-            values.append((2.0 if at == wanted else 1.0 if at == stressed else 0.0,))
-            last, n = at, n + 1
+                return lane.plus(times, rows)
+            times.append(at)
+            kind = 1.0 if at == heard else 0.0
+            rows.append([2.0 if at == wanted else kind])
+            last = at
+            number += 1
 
-    def _suits(self, accent: tuple[float, bool], last: float, shut: float) -> bool:
-        """Whether a stressed syllable may bring a blink: the first of a speech always, the others some time
-        after the last blink.
-        """
-        at, first = accent
-        return at >= self.cut and at >= last + (shut + 0.1 if first else AFTER_BLINK / self.calm)
-
-    def _accents(self, start: float) -> Iterator[tuple[float, bool]]:
-        """Yield the stressed syllables from `start` to the end that may bring blinks, and whether each is a
+    def accents(self, start: float) -> list[tuple[float, bool]]:
+        """Return the stressed syllables from `start` to the end that may bring blinks, and whether each is a
         speech's first.
         """
+        out: list[tuple[float, bool]] = []
         for speech in self.track.speeches:
             if speech.end <= start or speech.start >= self.drawn:
                 continue
-            for n, peak in enumerate(voice_of(self.voices, speech).accents.tolist()):
+            end = min(speech.end, self.drawn)
+            for n, peak in enumerate(stressed(self.voices, speech)):
                 at = speech.start + peak
-                if (
-                    start <= at < min(speech.end, self.drawn)
-                    and self.chance(speech.id, "accent", str(n)) < self.life.accent_blinks
-                ):
-                    yield at, n == 0
+                if at < start or at >= end:
+                    continue
+                if uniform(self.seed, speech.id, "accent", str(n)) < self.life.accent_blinks:
+                    out.append((at, n == 0))
+        return out
 
-    def _one_by_one(
-        self, lane: Lane, last: float, next_one: Callable[[int, float], tuple[float, Any, float]]
-    ) -> Lane:
-        """Draw events until the end: `next_one(number, last)` gives start, values and where the next gap
-        begins.
-        """
-        starts: list[float] = []
-        values: list[Any] = []
-        n = lane.next
-        while True:
-            at, value, last = next_one(n, last)
-            if not at < self.drawn:
-                return lane.plus(starts, values)
-            starts.append(at)
-            values.append(value)
-            n += 1
+
+def _draw(
+    life: Life,
+    track: Track,
+    voices: Mapping[str, Voice],
+    seed: Bits,
+    cut: float,
+    drawn: float,
+    before: Schedule,
+) -> LifeDraw:
+    """Return what extends a schedule from `cut` to `drawn` seconds, with modes and looks in place."""
+    modes = before.modes.until(cut)
+    last = int(modes.rows[-1][0]) if len(modes.rows) > 0 else -1
+    times: list[float] = []
+    rows: list[list[float]] = []
+    for at, mode in modes_between(track, cut, drawn):
+        if len(times) > 0 or mode != last:
+            times.append(at)
+            rows.append([float(mode)])
+    moods = before.moods.until(cut)
+    felt: list[float] = []
+    if len(moods.rows) > 0:
+        felt = list(moods.rows[-1])
+    changes: list[float] = []
+    wanted: list[list[float]] = []
+    for at, mood in moods_between(moods_of(life, track), cut, drawn):
+        same = (
+            len(felt) > 0
+            and felt[0] == mood.valence
+            and felt[1] == mood.arousal
+            and felt[2] == mood.intensity
+        )
+        if len(changes) > 0 or not same:
+            changes.append(at)
+            wanted.append([mood.valence, mood.arousal, mood.intensity])
+    begun = bisect_left(before.targets, cut, key=lambda t: t.start)
+    targets = list(before.targets[:begun])
+    for target in targets_between(track, cut, drawn):
+        if len(targets) == 0 or not target.like(targets[-1]):
+            targets.append(target)
+    return LifeDraw(
+        life, track, voices, seed, cut, drawn, 1.0 - life.stillness, modes.plus(times, rows),
+        moods.plus(changes, wanted), tuple(targets),
+    )  # fmt: skip
 
 
 def share(lane: Lane, start: float, end: float) -> float:
     """Return events a minute between two times."""
-    low, high = np.searchsorted(lane.starts, (start, end))
-    return float(high - low) / max(end - start, 1e-9) * 60
+    count = bisect_left(lane.times, end) - bisect_left(lane.times, start)
+    return count / max(end - start, 1e-9) * 60.0

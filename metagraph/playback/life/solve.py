@@ -28,11 +28,11 @@ NEAREST = 0.25  # metres; nearer things are looked at as if they were there
 WIDEST = -0.8  # how far lids open beyond rest, of their shutting turn
 
 
-def breathe(body: Body, chain: list[Quaternion], full: float) -> None:
-    """Turn the chain's joints as a breath does; full: how full the chest is."""
+def breathe(body: Body, chain: list[Quaternion], full: float, droop: float) -> None:
+    """Turn the chain's joints as a breath and a posture do; full: how full the chest is; droop: how bowed."""
     for n, (axis, angle) in enumerate(body.breath):
         if angle:
-            half = 0.5 * full * angle
+            half = 0.5 * (full * angle + droop * body.bowed[n])
             s = sin(half)
             chain[n] = times(chain[n], (axis[0] * s, axis[1] * s, axis[2] * s, cos(half)))
 

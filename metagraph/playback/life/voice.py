@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from metagraph.graph.face_names import VISEMES
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import read_aloud, spelled
+from metagraph.playback.life.items import Speech
 from metagraph.playback.life.line_timing import LineTiming, timed_sounds
 from metagraph.playback.life.mouth import MouthPiece, accents_of, mouth_track
-from metagraph.playback.life.track import Speech
 
 __all__ = ["VISEMES", "Voice", "silent", "voice_from_text", "voice_of"]
 
@@ -87,6 +87,17 @@ def voice_of(voices: Mapping[str, Voice], speech: Speech) -> Voice:
     return voice_from_text(
         speech.text, max(0.0, speech.length if speech.length is not None else speech.end - speech.start)
     )
+
+
+def stressed(voices: Mapping[str, Voice], speech: Speech) -> list[float]:
+    """Return the times of the stressed syllables of something said, ascending, seconds from its start."""
+    found: list[float] = voice_of(voices, speech).accents.tolist()
+    return found
+
+
+def same_voices(one: Mapping[str, Voice] | None, other: Mapping[str, Voice]) -> bool:
+    """Whether lines sound the same."""
+    return one is other or one == other
 
 
 def voiced(pieces: Sequence[MouthPiece], duration: float, peaks: Array, strengths: Array) -> Voice:

@@ -4,16 +4,24 @@ at.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
+from metagraph.graph.life import Life, Manner, scaled
 from metagraph.graph.requests import Point
 from metagraph.graph.words import MODES, Mode
-from metagraph.playback.life.track import LookAt, Track
+from metagraph.playback.life.items import LookAt
+from metagraph.playback.life.spots import Spot, named, placed, same_spot
+from metagraph.playback.life.track import Track
+from metagraph.playback.mood import Mood, Moods, life_of, mood_at, mood_edges
 
 PARTNER = "user"  # whom the character talks with, and looks at when nothing else is asked for
 AHEAD = "ahead"  # nothing in particular: eyes and head as the layers have them
+# What changes what is looked at; of one time in this order.
+OVER = 0
+LOOK = 1
+PLACE = 2
+BEGIN = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +31,7 @@ class GazeTarget:
     """
 
     start: float
-    to: str | Point
+    to: Spot
     since: float = 0.0
     amount: float = 1.0
     strict: bool = False
@@ -31,80 +39,100 @@ class GazeTarget:
 
     def like(self, other: GazeTarget) -> bool:
         """Whether it is the same but for its times."""
-        return (self.to, self.amount, self.strict, self.asked) == (
-            other.to,
-            other.amount,
-            other.strict,
-            other.asked,
-        )
+        if self.amount != other.amount or self.strict != other.strict or self.asked != other.asked:
+            return False
+        return same_spot(self.to, other.to)
 
 
 def mode_at(track: Track, seconds: float) -> Mode:
     """Return the mode asked for; where none is, talking while something is said and idle otherwise."""
-    return track.told_mode(seconds) or "idle"
+    told = track.told_mode(seconds)
+    return "idle" if told is None else told
 
 
-def modes_between(track: Track, start: float, end: float) -> Iterator[tuple[float, int]]:
-    """Yield (start, place among MODES) of each mode from `start` to before `end`; the first begins at
+def modes_between(track: Track, start: float, end: float) -> list[tuple[float, int]]:
+    """Return (start, place among MODES) of each mode from `start` to before `end`; the first begins at
     `start`.
     """
-    edges = {
-        start,
-        *(m.start for m in track.modes),
-        *(s.start for s in track.speeches),
-        *(s.end for s in track.speeches),
-    }
+    edges = [start]
+    edges += [m.start for m in track.modes]
+    edges += [s.start for s in track.speeches]
+    edges += [s.end for s in track.speeches]
+    out: list[tuple[float, int]] = []
     last = -1
-    for edge in sorted(e for e in edges if start <= e < end):
+    for edge in sorted([e for e in edges if start <= e < end]):
         mode = MODES.index(mode_at(track, edge))
         if mode != last:
-            yield edge, mode
+            out.append((edge, mode))
         last = mode
+    return out
 
 
-def targets_between(track: Track, start: float, end: float) -> Iterator[GazeTarget]:
-    """Yield what is looked at from `start` to before `end`; the first begins at `start`.
+def moods_of(life: Life, track: Track) -> Moods:
+    """Return what a character is in the mood for: what its life has set, and what is told over time."""
+    return Moods(Mood(life.valence, life.arousal, life.intensity), track.moods)
+
+
+def moods_between(moods: Moods, start: float, end: float) -> list[tuple[float, Mood]]:
+    """Return (start, mood) of each mood from `start` to before `end`; the first begins at `start`."""
+    out: list[tuple[float, Mood]] = []
+    for edge in mood_edges(moods, start, end):
+        mood = mood_at(moods, edge)
+        if len(out) == 0 or not mood.like(out[-1][1]):
+            out.append((edge, mood))
+    return out
+
+
+def ways_in(ways: Manner, mood: Mood) -> Manner:
+    """Return what a mode makes of the amounts, in a mood."""
+    if mood.neutral:
+        return ways
+    of = life_of(mood)
+    return scaled(ways, of.breathing, of.breath_rate, of.aversion_rate, of.saccade_rate, of.blinks)
+
+
+def targets_between(track: Track, start: float, end: float) -> list[GazeTarget]:
+    """Return what is looked at from `start` to before `end`; the first begins at `start`.
 
     The latest look holds until it ends or another of its importance or more begins; a lesser one waits
     beneath.
     """
-    changes: list[tuple[float, int, Any]] = [(x.start, 1, x) for x in track.looks]
-    changes += (
-        [(x.end, 0, x) for x in track.looks] + [(p.start, 2, p) for p in track.places] + [(start, 3, None)]
-    )
-    looks: list[LookAt] = []  # the most important first; those beneath are older or lesser
+    changes = [(x.start, LOOK, n) for n, x in enumerate(track.looks)]
+    changes += [(x.end, OVER, n) for n, x in enumerate(track.looks)]
+    changes += [(p.start, PLACE, n) for n, p in enumerate(track.places)]
+    changes.append((start, BEGIN, 0))
+    changes = sorted(changes, key=lambda c: (c[0], c[1]))
+    looks: list[int] = []  # places of looks, the most important first; those beneath are older or lesser
     places: dict[str, Point] = {}
-    last: GazeTarget | None = None
-    chosen: LookAt | None = None
+    chosen = -1
     since = 0.0
-    changes.sort(key=lambda c: (c[0], c[1]))
-    for n, (at, kind, what) in enumerate(changes):
+    out: list[GazeTarget] = []
+    for n in range(len(changes)):
+        at, kind, which = changes[n]
         if at >= end:
             break
-        if kind == 1:
-            looks = [x for x in looks if x.priority > what.priority]
-            if what.end > what.start:
-                looks.append(what)
-        elif kind == 0:
-            looks = [x for x in looks if x is not what]
-        elif kind == 2:
-            places[what.name] = what.point
-        if chosen is not (looks[0] if looks else None):
-            chosen, since = looks[0] if looks else None, at
+        if kind == LOOK:
+            look = track.looks[which]
+            looks = [x for x in looks if track.looks[x].priority > look.priority]
+            if look.end > look.start:
+                looks.append(which)
+        elif kind == OVER:
+            looks = [x for x in looks if x != which]
+        elif kind == PLACE:
+            places[track.places[which].name] = track.places[which].point
+        first = looks[0] if len(looks) > 0 else -1
+        if chosen != first:
+            chosen = first
+            since = at
         if at < start or (n + 1 < len(changes) and changes[n + 1][0] == at):
             continue
-        new = _target(at, since, chosen, places)
-        if last is None or not new.like(last):
-            yield new
-            last = new
+        target = _target(at, since, None if chosen < 0 else track.looks[chosen], places)
+        if len(out) == 0 or not target.like(out[-1]):
+            out.append(target)
+    return out
 
 
-def _target(at: float, since: float, look: LookAt | None, places: dict[str, Point]) -> GazeTarget:
+def _target(at: float, since: float, look: LookAt | None, places: Mapping[str, Point]) -> GazeTarget:
     if look is None:
-        return GazeTarget(at, places.get(PARTNER, PARTNER), since)
-    to = places.get(look.to, look.to) if isinstance(look.to, str) else look.to
-    return GazeTarget(at, to, since, look.amount, look.strict, True)
-
-
-def _start(item: Any) -> float:
-    return float(item.start)
+        return GazeTarget(at, placed(places, named(PARTNER)), since)
+    return GazeTarget(at, placed(places, look.to), since, look.amount, look.strict, True)

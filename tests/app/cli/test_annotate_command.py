@@ -22,7 +22,7 @@ def project(tmp_path: Path, toy: Any) -> Path:
     path = tmp_path / "talk.metagraph.yaml"
     shutil.copy(ROOT / "sample_clips" / "sample.metagraph.yaml", path)
     (tmp_path / "clips").symlink_to(ROOT / "sample_clips" / "clips")
-    shutil.copy(ROOT / "sample_clips" / "mannequin.glb", tmp_path)
+    shutil.copy(ROOT / "sample_clips" / "ada.glb", tmp_path)
     return path
 
 

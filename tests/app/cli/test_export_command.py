@@ -60,7 +60,7 @@ def test_what_is_missing_or_misspelt_is_told(arguments, code, words, capsys):
 @pytest.mark.skipif(os.name == "nt", reason="is stopped by a signal")
 def test_watching_writes_again_after_each_saving_and_survives_a_broken_project(few, tmp_path):
     project = tmp_path / "sample.metagraph.yaml"
-    for name in ("clips", "lines", "mannequin.glb"):
+    for name in ("clips", "lines", "ada.glb", "ben.glb"):
         (tmp_path / name).symlink_to(few.with_name(name))
     text = few.read_text()
     project.write_text(text)

@@ -25,7 +25,7 @@ def project(tmp_path: Path) -> Path:
     shutil.copy(ROOT / "sample_clips" / "sample.metagraph.yaml", path)
     for folder in ("clips", "lines"):
         (tmp_path / folder).symlink_to(ROOT / "sample_clips" / folder)
-    shutil.copy(ROOT / "sample_clips" / "mannequin.glb", tmp_path)
+    shutil.copy(ROOT / "sample_clips" / "ada.glb", tmp_path)
     return path
 
 

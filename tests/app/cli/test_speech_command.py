@@ -76,7 +76,7 @@ def test_it_keeps_a_conversation_in_a_project(
     shutil.copy(SAMPLE / "sample.metagraph.yaml", project)
     for folder in ("clips", "lines"):
         (tmp_path / folder).symlink_to(SAMPLE / folder)
-    shutil.copy(SAMPLE / "mannequin.glb", tmp_path)
+    shutil.copy(SAMPLE / "ada.glb", tmp_path)
     code, data, _ = run(capsys, files[0], "--words", files[1], "--project", project, "--name", "Dogs")
     kept = open_project(project).project.conversations
     assert code == 0 and list(kept)[-1] == data["kept"] and data["kept"].startswith("v")

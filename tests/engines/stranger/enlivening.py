@@ -17,6 +17,7 @@ USUAL = {
 }  # fmt: skip
 LIDS = ("upper_lid_left", "upper_lid_right", "lower_lid_left", "lower_lid_right")
 SHAPES = ("PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "I", "O", "U")
+MOOD = (("valence", 0.0), ("arousal", 0.0), ("intensity", 1.0))
 CHANNELS = (*LIDS, "blink", "jaw_open", *(f"viseme_{shape}" for shape in SHAPES))
 
 
@@ -71,6 +72,16 @@ class Life:
         start, length, depth = self.events["breaths"][n]
         x = (t - start) / length
         return float(self.dials["breathing"] * self.calm * depth * ease(min(x / 0.4, (1.0 - x) / 0.6)))
+
+    def mood(self, t: float) -> tuple[float, float, float]:
+        """ "Moods", life: the mood that shows."""
+        told = self.events.get("moods")
+        if not told:
+            return tuple(float(self.dials.get(*usual)) for usual in MOOD)  # type: ignore[return-value]
+        begun_by = [1.0 if n == 0 else ease((t - start) / 1.5) for n, (start, *_) in enumerate(told)] + [0.0]
+        shares = [begun_by[n] - begun_by[n + 1] for n in range(len(told))]
+        v, a, i = (sum(share * row[k] for share, row in zip(shares, told, strict=True)) for k in (1, 2, 3))
+        return v, a, i
 
     def met(self, place: int) -> tuple[Numbers, Numbers, float]:
         """Where a target is, its direction, its amount; "Where the gaze is"."""
@@ -220,8 +231,13 @@ class Life:
         """The pose with life, and what it adds to morph targets; "Breath", "The eyes", "Lids", "The face"."""
         rotations, translations = composed[0].copy(), composed[1].copy()
         chain, full = self.rig["chain"], self.breath(t)
-        for joint, (*axis, angle) in zip(chain, self.rig["breath"], strict=True):
-            rotations[joint] = times(rotations[joint], about(full * angle * np.array(axis)))
+        v, a, i = self.mood(t)
+        up, down_, well, ill = max(0.0, a), max(0.0, -a), max(0.0, v), max(0.0, -v)
+        droop = clamp(i * (-0.7 * v - 0.5 * a), -0.4, 1.0)
+        bowed = self.rig.get("bowed") or [0.0] * len(chain)
+        for joint, (*axis, angle), bow in zip(chain, self.rig["breath"], bowed, strict=True):
+            rotations[joint] = times(rotations[joint], about((full * angle + droop * bow) * np.array(axis)))
+        full += clamp(i * (2.0 * up * (1.0 - well) - down_), -1.0, 2.0)
         for shoulder in self.rig["shoulders"]:
             joint = shoulder["joint"]
             rotations[joint] = times(rotations[joint], about(full * np.array(shoulder["turn"])))
@@ -238,7 +254,7 @@ class Life:
                 down[side] += along(eye["down"], composed[0][joint])
                 turn = ij[side][0] * np.array(eye["turn_left"]) + ij[side][1] * np.array(eye["turn_up"])
                 rotations[joint] = times(rotations[joint], about(turn))
-        face, blink = self.rig["face"], self.blink(t)
+        face, blink = self.rig["face"], max(self.blink(t), clamp(0.3 * i * down_, 0.0, 0.5))
         any_lid = max(face["lid_joints"]) >= 0
         follows = face["follows"] if any_lid else [0.6 / radians(40.0)] * 2 + [0.0, 0.0]
         shut, own = [], []
@@ -254,12 +270,19 @@ class Life:
             turn = values @ np.array(face["turns"])[:, place]
             rotations[joint] = times(rotations[joint], about(turn))
             translations[joint] += values @ np.array(face["shifts"])[:, place]
-        named = dict(zip(CHANNELS, values, strict=True)) | {"blink": max(blink, (shut[0] + shut[1]) / 2.0)}
+        feels = {
+            "smile": i * well,
+            "frown": i * ill,
+            "brow_down": 1.4 * i * up * max(0.0, 0.4 - v),
+            "brow_up": i * ill * max(0.0, 0.6 - a),
+        }
+        named = {name: clamp(value, 0.0, 1.0) for name, value in feels.items()}
+        named |= dict(zip(CHANNELS, values, strict=True)) | {"blink": max(blink, (shut[0] + shut[1]) / 2.0)}
         for n, side in enumerate(("left", "right")):
-            i, j = ij[n] / radians(30.0)
+            left, high = ij[n] / radians(30.0)
             named |= {f"blink_{side}": shut[n], f"wide_{side}": -0.6 * shut[n]}
-            named |= {f"look_left_{side}": i, f"look_right_{side}": -i}
-            named |= {f"look_up_{side}": j, f"look_down_{side}": -j}
+            named |= {f"look_left_{side}": left, f"look_right_{side}": -left}
+            named |= {f"look_up_{side}": high, f"look_down_{side}": -high}
         morphs: dict[str, float] = {}
         for channel, targets in face["morphs"].items():
             value = float(named.get(channel, 0.0))

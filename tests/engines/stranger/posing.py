@@ -34,11 +34,11 @@ def sampled(clip: Clip, second: float) -> Pose:
 
 def cue_second(cue: dict[str, Any], t: float) -> float:
     """docs/format.md, "Time in a cue"."""
-    x = t - cue["start"]
+    x, tempo = t - cue["start"], cue.get("tempo", 1.0)
     if cue["hold"] <= 0.0:
-        return float(cue["entry"] + x)
-    h = min(max(x - (cue["hold_from"] - cue["entry"]), 0.0), cue["hold"])
-    return float(cue["entry"] + x - h + h * (cue["hold_to"] - cue["hold_from"]) / cue["hold"])
+        return float(cue["entry"] + x * tempo)
+    h = min(max(x - (cue["hold_from"] - cue["entry"]) / tempo, 0.0), cue["hold"])
+    return float(cue["entry"] + (x - h) * tempo + h * (cue["hold_to"] - cue["hold_from"]) / cue["hold"])
 
 
 def cue_weight(cue: dict[str, Any], t: float) -> float:
@@ -128,8 +128,21 @@ def layer(character: Character, plan: dict[str, Any], t: float) -> Pose:
         d_edge, e_edge = offset(character, action, edge)
         d = times(d, nlerp(np.broadcast_to(STILL, d.shape), times(inverse(d_edge), rest[0]), left))
         e = e + left * (rest[1] - e_edge)
+    d, e = sized(character, (d, e), rest, cue.get("extent", 1.0))
     moved = moves(character, action)[:, None]
     return np.where(moved, d, rest[0]), np.where(moved, e, rest[1])
+
+
+def sized(character: Character, shown: Pose, rest: Pose, extent: float) -> Pose:
+    """docs/format.md, "Moods", how large."""
+    takes_part = ("both",) if extent > 1.0 else ("both", "smaller")
+    part = np.array([joint.get("scales", "both") in takes_part for joint in character.data["joints"]])
+    away = times(inverse(rest[0]), shown[0])
+    f = [1.0 + (extent - 1.0) * ease((abs(w) - 0.1) / 0.4) * p for w, p in zip(away[:, 3], part, strict=True)]
+    d = times(rest[0], power(away, np.array(f)))
+    return np.where(part[:, None], d, shown[0]), rest[1] + (shown[1] - rest[1]) * np.where(
+        part[:, None], extent, 1.0
+    )
 
 
 def pose(character: Character, layers: dict[str, Any], t: float) -> Pose:

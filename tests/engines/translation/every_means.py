@@ -43,6 +43,10 @@ class Tally:
     count: int = 0
     seen: dict[str, int] = field(default_factory=dict)
 
+    def whole(self) -> Tally:
+        """Itself."""
+        return self
+
     def add(self, word: str) -> None:
         """Count a word."""
         self.count += 1
@@ -194,4 +198,25 @@ def chains(seen: Mapping[str, int] | None = None) -> str:
     return f"{_yes(inside)} {words} {_yes(limit > 1e9)} {root:.1f} {_yes(seen is None)} {n if inside else -n}"
 
 
-MEANS = (sums, texts, lists, queues, maps, missing, records, loops, searches, chains)
+def waves() -> str:
+    """Sines, and a text's last part."""
+    before, dot, number = "a.b.12".rpartition(".")
+    none, nothing, all_of_it = "ab".rpartition(".")
+    digits = f"{_yes(number.isdigit())}{_yes(before.isdigit())}{_yes(none.isdigit())}"
+    return f"{math.sin(math.pi / 6.0):.3f} {before} {dot} {number} {none}{nothing}{all_of_it} {digits}"
+
+
+def selves() -> str:
+    """The same, or only alike; lists of one's own; places by a key."""
+    one, alike, tally = Mark("a", 1.0), Mark("a", 1.0), Tally()
+    marks = [one, Mark("b", 2.0), Mark("c", 3.0)]
+    mine = list(marks)
+    mine.append(alike)
+    tally.whole().add("x")
+    places = bisect_right(marks, 2.0, key=lambda m: m.start) * 10 + bisect_left(
+        marks, 2.0, key=lambda m: m.start
+    )
+    return f"{_yes(marks[0] is one)}{_yes(one is alike)}{_yes(one is not alike)} {len(marks)} {tally.count} {places}"
+
+
+MEANS = (waves, selves, sums, texts, lists, queues, maps, missing, records, loops, searches, chains)

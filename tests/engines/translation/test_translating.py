@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,9 @@ from metagraph.playback.choice import key32
 from metagraph.playback.life.alphabet import ALPHABET
 from metagraph.playback.life.graphemes import read_aloud, spelled
 from metagraph.playback.life.mouth import accents_of, mouth_track
+from metagraph.playback.mood import Mood, MoodFrom, Moods
 from metagraph.playback.plan import LayerPlan, MetaAction, MetaRequest, Report
+from metagraph.playback.vigour import vigour
 from tests.engines.translation import every_means
 
 HERE = Path(__file__).parent
@@ -131,6 +134,9 @@ int main() {{
     assert _compiled(code, tmp_path) == said
 
 
+MOODS = Moods(Mood(), (MoodFrom("sad", 600.0, -0.7, -0.4), MoodFrom("loud", 2400.0, 0.5, 0.9, 1.5)))
+
+
 def test_in_cpp_a_layer_plays_what_it_plays_in_python(sample: Project, tmp_path: Path) -> None:
     """An hour of the sample's arms: what the model writes, with requests of every kind between, each action,
     rest and report.
@@ -138,6 +144,8 @@ def test_in_cpp_a_layer_plays_what_it_plays_in_python(sample: Project, tmp_path:
     if shutil.which("g++") is None:
         pytest.skip("needs g++")
     project = set_settings(sample, rest=0.2, memory=90.0)
+    bare = {i: replace(x, contacts=()) for i, x in project.graphs["arms"].actions.items()}
+    project = project.with_graph(replace(project.graphs["arms"], actions=bare))  # the table below has none
     graph, seed = project.graphs["arms"], 11
     kinds = {kind for _, kind in graph.index}
     plan, reports, every = LayerPlan("arms"), list[Report](), _requests(graph)
@@ -147,13 +155,13 @@ def test_in_cpp_a_layer_plays_what_it_plays_in_python(sample: Project, tmp_path:
         (3550.0, [], set[str](), 3660.0),
     ):
         drafted = layer_planning.draft(
-            project, graph, markov.ARMS, kinds, plan, reports, seed, now, fresh, gone, end, None
+            project, graph, markov.ARMS, kinds, plan, reports, seed, now, fresh, gone, end, None, MOODS
         )
         plan = drafted.performed(drafted.placed, end)
         reports = drafted.reports
     said = [
         f"{c.action.id} {c.stance} {c.then} {c.meta} "
-        + " ".join(f"{x:.9f}" for x in (c.start, c.end, c.entry, c.blend_in, c.blend_out, c.hold))
+        + " ".join(f"{x:.9f}" for x in (c.start, c.end, c.entry, c.blend_in, c.hold, c.extent, c.tempo))
         for c in plan.cues
     ]
     said += [f"{r.stance} {r.action.id} {r.start:.9f} {r.fade_start:.9f} {r.fade:.9f}" for r in plan.rests]
@@ -166,7 +174,7 @@ using namespace metagraph;
 using lang::made;
 {_graph_in_cpp(project, graph)}
 int main() {{
-    const auto project = made<Project>(settings(), phases_of());
+    const auto project = made<Project>(settings(), phases_of(), vigours());
     const auto graph = made<MetaGraph>("arms", stances(), actions(), {_text(graph.start or "")});
     const Set<std::string> kinds{{{", ".join(map(_text, sorted(kinds)))}}};
     auto plan = made<LayerPlan>("arms");
@@ -175,7 +183,8 @@ int main() {{
     const auto extend = [&](double now, int first, int last, Set<std::string> gone, double end) {{
         const auto drafted = layer_planning::draft(
             project, graph, chain(), kinds, plan, reports, {seed}, now, lang::part(every, first, last), gone,
-            end, std::nullopt);
+            end, std::nullopt, made<Moods>(made<Mood>(), List<Ref<MoodFrom>>{{
+                made<MoodFrom>("sad", 600.0, -0.7, -0.4), made<MoodFrom>("loud", 2400.0, 0.5, 0.9, 1.5)}}));
         plan = drafted->performed(drafted->placed, end);
         reports = drafted->reports;
     }};
@@ -184,7 +193,7 @@ int main() {{
     extend(3550.0, 0, 0, {{}}, 3660.0);
     for (const auto& c : plan->cues) {{
         std::cout << c->action->id << " " << c->stance << " " << c->then << " " << c->meta;
-        for (double x : {{c->start, c->end, c->entry, c->blend_in, c->blend_out, c->hold}})
+        for (double x : {{c->start, c->end, c->entry, c->blend_in, c->hold, c->extent, c->tempo}})
             std::cout << " " << lang::fixed(x, 9);
         std::cout << "\\n";
     }}
@@ -239,7 +248,7 @@ def _texts(values: Sequence[str]) -> str:
 
 def _graph_in_cpp(project: Project, graph: MetaGraph) -> str:
     """What a layer is made of, as functions that give it."""
-    actions, phases_ = [], []
+    actions, phases_, vigours = [], [], []
     for a in graph.actions.values():
         t = a.timing
         times = [_number(x) for x in (t.start, t.end, t.blend_in, t.blend_out)]
@@ -253,6 +262,7 @@ def _graph_in_cpp(project: Project, graph: MetaGraph) -> str:
             map(repr, (found.start, found.ready, found.stroke, found.stroke_end, found.relax, found.end))
         )
         phases_.append(f"out[{_text(a.id)}] = made<Phases>({own});")
+        vigours.append(f"{{{_text(a.id)}, {vigour(project, a)!r}}}")
     stances = ", ".join(
         f"made<Stance>({_text(s.id)}, {_text(s.layer)}, {_text(s.name)})" for s in graph.stances.values()
     )
@@ -282,6 +292,7 @@ def _graph_in_cpp(project: Project, graph: MetaGraph) -> str:
             "List<Ref<Action>> actions() { List<Ref<Action>> out;", *actions, "return out; }",
             "Map<std::string, Ref<Phases>> phases_of() { Map<std::string, Ref<Phases>> out;",
             *phases_, "return out; }",
+            f"Map<std::string, double> vigours() {{ return {{{', '.join(vigours)}}}; }}",
             "List<Ref<MetaRequest>> requests() { List<Ref<MetaRequest>> out;", *asked, "return out; }",
             "Ref<Markov> chain() {",
             f"return made<Markov>(\"arms\", List<std::tuple<std::string, std::string>>{{{states}}},",
@@ -391,6 +402,7 @@ REFUSED = {
     "def f(x: float) -> str:\n    return f'{x}'": "a float in a text",
     "def f(x: float) -> str:\n    return f'{x:.9f}'": "a way to write a number",
     "def f(x: float) -> float:\n    return x % 2.0": "% of numbers with fractions",
+    "def f(x: dict[str, float]) -> None:\n    x['a'] *= 2.0": "a change of a map's entry in place",
     "def f(x: list[int]) -> int:\n    return max(x, key=lambda n: n)": "max",
     "def f() -> int:\n    a = b = 1\n    return a + b": "two targets",
     "def f(x: str) -> str:\n    return x.upper()": "'.upper()' of a str",

@@ -4,6 +4,7 @@
 
 #include "graph.hpp"
 #include "meta_plan.hpp"
+#include "mood.hpp"
 
 namespace metagraph {
 
@@ -88,6 +89,13 @@ inline std::string place(const Json& value) {
     const std::string no_name = name(value);
     return no_name.empty() ? "" : point(value);
 }
+inline std::string feeling(const Json& value) {
+    if (value.is(Json::Kind::text)) return one_of(value, lang::keys(mood::MOODS));
+    bool fine = value.is(Json::Kind::list) && value.items.size() == 2;
+    for (const Json& one : value.items) fine = fine && ranged(one, -1, 1).empty();
+    return fine ? "" : "should be a mood's name, or valence and arousal";
+}
+inline std::string intensity(const Json& value) { return ranged(value, 0, 2); }
 inline std::string line(const Json& value) {
     const std::string no_name = name(value);
     return no_name.empty() ? "" : whole(value, -1e15, 1e15);
@@ -114,20 +122,23 @@ inline const Map<std::string, List<Field>>& fields() {
     static const Field limb_{"limb", Json(), limb}, duration{"duration", Json(), seconds}, stroke{"stroke", Json(), seconds};
     static const Field hold_{"hold", Json(), hold}, prepare{"prepare", true, flag}, resume{"resume", false, flag};
     static const Field late_{"late", Json(), late};
+    static const Field mood_{"mood", Json(), feeling}, intensity_{"intensity", Json(), intensity};
     static const Map<std::string, List<Field>> out = {
-        {"gesture", {layer_, tags_, limb_, duration, stroke, hold_, prepare, resume, late_}},
-        {"fidget", {layer_, tags_, limb_, duration, resume, late_}},
-        {"action", {{"action", Json(), name, true}, any_layer, stroke, hold_, prepare, late_}},
+        {"gesture", {layer_, tags_, limb_, duration, stroke, hold_, prepare, resume, late_, mood_, intensity_}},
+        {"fidget", {layer_, tags_, limb_, duration, resume, late_, mood_, intensity_}},
+        {"action", {{"action", Json(), name, true}, any_layer, stroke, hold_, prepare, late_, mood_, intensity_}},
         {"stance", {{"stance", Json(), name, true}, any_layer, {"stay", false, flag}, late_}},
         {"change", {layer_, limb_, duration, late_}},
-        {"nod", {tags_, late_}},
-        {"shake", {tags_, late_}},
+        {"nod", {tags_, late_, mood_, intensity_}},
+        {"shake", {tags_, late_, mood_, intensity_}},
         {"look", {{"to", "user", place}, duration, {"amount", 1.0, share}, {"strict", false, flag}}},
         {"blink", {}},
         {"say",
          {{"line", Json(), line}, {"text", "", words}, duration, {"gestures", true, flag},
-          {"words", Json::list(), word_list}, {"visemes", Json::list(), viseme_list}, {"set", Json(), viseme_set}}},
+          {"words", Json::list(), word_list}, {"visemes", Json::list(), viseme_list}, {"set", Json(), viseme_set},
+          mood_, intensity_}},
         {"mode", {{"mode", Json(), mode}}},
+        {"mood", {mood_, intensity_, duration}},
         {"place", {{"name", Json(), name, true}, {"point", Json(), point, true}}},
         {"withdraw", {{"what", "", id}}},
         {"bml", {{"bml", Json(), block, true}}},

@@ -50,10 +50,12 @@ struct Face {
 /// Directions are the character's; metres, radians.
 ///
 /// chain: joints from the root to the head. breath: axis (xyz) and angle (w) of each at the top of a breath.
+/// bowed: angle of each in a bowed posture.
 struct Body {
     Vec left, up, ahead;
     List<int> chain;
     List<Quat> breath;
+    List<double> bowed;
     List<Shoulder> shoulders;
     List<Looker> lookers;
     int trunk = 0;
@@ -74,6 +76,7 @@ inline const List<std::string> SHOWN = [] {
     }
     out.push_back("jaw_open");
     for (int n = 1; n < life::SHAPES; n++) out.push_back("viseme_" + lang::at(words::VISEMES, n));
+    for (const char* what : {"smile", "frown", "brow_down", "brow_up"}) out.push_back(what);
     return out;
 }();
 
@@ -142,6 +145,9 @@ inline Body read(const Node& json, int joints, List<std::string>& morphs) {
     const int count = lang::len(out.chain);
     if (count == 0 || lang::len(out.breath) != count) json.wrong("should have a chain of joints, and a breath for each");
     out.breath.resize(out.chain.size());
+    const Node bowed = json.maybe("bowed");
+    if (!bowed.empty() && !bowed.items().empty()) out.bowed = bowed.numbers(count);
+    out.bowed.resize(out.chain.size(), 0.0);
     for (const Node& one : json["lookers"].items()) {
         out.lookers.push_back({one["place"].count(0, std::max(0, count - 1)), one["share"].number()});
     }

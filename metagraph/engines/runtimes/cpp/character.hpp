@@ -181,7 +181,7 @@ private:
 
     /// Forget what is over, and settle the answers of what was asked for then.
     void forget(double over) {
-        const Ref<const Plan> left = since(*graph_, *plan_, over);
+        const Ref<const Plan> left = since(*plan_, over);
         const Set<std::string> asked = asked_;
         for (const std::string& id : asked) {
             Answer known = metagraph::answer(*plan_, id);
@@ -205,7 +205,7 @@ private:
                 note(cue->start, cue->end, layer, cue->action->name, cue->meta.substr(0, cue->meta.find('+')));
             }
         }
-        for (const auto& speech : plan_->track->speeches()) {
+        for (const auto& speech : plan_->track->speeches) {
             note(speech->start, speech->end, "speech", speech->line.value_or(speech->text), speech->id);
         }
         seen_ = now_;

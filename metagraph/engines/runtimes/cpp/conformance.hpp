@@ -46,11 +46,14 @@ inline std::string difference(const Json& found, const Json& wanted, double tole
 }
 
 inline Json cue_data(const Cue& cue) {
-    return Json::object({
+    Json out = Json::object({
         {"action", cue.action->id}, {"start", cue.start}, {"end", cue.end}, {"entry", cue.entry}, {"blend_in", cue.blend_in},
         {"blend_out", cue.blend_out}, {"stance", cue.stance}, {"then", cue.then}, {"meta", cue.meta},
         {"hold_from", cue.hold_from}, {"hold_to", cue.hold_to}, {"hold", cue.hold},
     });
+    if (cue.extent != 1) out.set("extent", cue.extent);
+    if (cue.tempo != 1) out.set("tempo", cue.tempo);
+    return out;
 }
 
 inline Json layer_data(const LayerPlan& layer) {
@@ -65,9 +68,9 @@ inline Json layer_data(const LayerPlan& layer) {
 
 inline Json lane_data(const Lane& lane) {
     Json out = Json::list();
-    for (int n = 0; n < lang::len(lane.starts); n++) {
-        Json row = Json::list({lang::at(lane.starts, n)});
-        for (const double value : lang::at(lane.values, n)) row.items.push_back(value);
+    for (int n = 0; n < lang::len(lane.times); n++) {
+        Json row = Json::list({lang::at(lane.times, n)});
+        for (const double value : lang::at(lane.rows, n)) row.items.push_back(value);
         out.items.push_back(row);
     }
     return out;
@@ -76,13 +79,20 @@ inline Json lane_data(const Lane& lane) {
 inline Json life_data(const Schedule& life) {
     Json targets = Json::list();
     for (const auto& t : life.targets) {
-        const Json to = t->to.point.has_value() ? Json::list({t->to.point->x, t->to.point->y, t->to.point->z}) : Json(t->to.name);
+        const Spot& spot = *t->to;
+        const Json to = spot.point.has_value() ? Json::list({spot.point->x, spot.point->y, spot.point->z}) : Json(spot.name);
         targets.items.push_back(Json::list({t->start, to, t->since, t->amount, t->strict, t->asked}));
     }
-    return Json::object({
+    Json out = Json::object({
         {"modes", lane_data(*life.modes)}, {"breaths", lane_data(*life.breaths)}, {"aversions", lane_data(*life.aversions)},
         {"saccades", lane_data(*life.saccades)}, {"blinks", lane_data(*life.blinks)}, {"targets", targets},
     });
+    const List<double> neutral = {0, 0, 1};
+    const auto& moods = life.moods->rows;
+    if (std::any_of(moods.begin(), moods.end(), [&](const auto& row) { return row != neutral; })) {
+        out.set("moods", lane_data(*life.moods));
+    }
+    return out;
 }
 
 /// Times of equal reports may differ in the last digits.
@@ -144,7 +154,7 @@ inline Ref<const Plan> planned(const Graph& graph, const Json& one) {
     Ref<const Plan> plan = lang::made<Plan>(static_cast<std::uint32_t>(one.find("seed")->number));
     for (const Json& step : one.find("steps")->items) {
         plan = hear(graph, *plan, step.find("now")->number, step.find("asks")->items, step.find("end")->number, options);
-        if (!step.find("forget")->empty()) plan = since(graph, *plan, step.find("forget")->number);
+        if (!step.find("forget")->empty()) plan = since(*plan, step.find("forget")->number);
     }
     return plan;
 }

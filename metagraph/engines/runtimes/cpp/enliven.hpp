@@ -27,12 +27,14 @@ public:
 
     /// Work out what happens at a time on a composed pose, which is only read. gaze: none for a body without a head.
     void find(const List<Joined>& pose, const Schedule& schedule, const Track& track, Gaze* gaze, double time) {
-        const Life& life = graph_.life;
+        const Life& life = *graph_.life;
         full_ = breath(*schedule.breaths, time);
+        const Ref<Mood> felt = mood::shown(schedule.moods->times, schedule.moods->rows, time);
+        bears_ = felt->neutral() ? Bearing() : *mood::bearing(felt);
         for (std::size_t n = 0; n < body_.chain.size(); n++) {
             solver_.chain[n] = lang::at(pose, body_.chain[n]);
             const Quat& breath = body_.breath[n];
-            const double half = 0.5 * full_ * breath.w;
+            const double half = 0.5 * (full_ * breath.w + bears_.droop * body_.bowed[n]);
             if (half == 0) continue;
             const double s = std::sin(half);
             const Quat turn{s * breath.x, s * breath.y, s * breath.z, std::cos(half)};
@@ -44,7 +46,7 @@ public:
         } else {
             solver_.rest();
         }
-        lids(pose, blink(*schedule.blinks, time));
+        lids(pose, std::max(blink(*schedule.blinks, time), bears_.lids));
         const lips::Shown said = life.lips > 0 ? lips::at(graph_, track, time) : lips::Shown{};
         for (std::size_t k = 0; k < said.size(); k++) channels_[life::FIRST_SHAPE + k] = said[k] * life.lips;
     }
@@ -60,7 +62,7 @@ public:
             turn(static_cast<std::size_t>(body_.lookers[n].place), solver_.turns[n]);
         }
         std::size_t place = chained;
-        for (const Shoulder& shoulder : body_.shoulders) turn(place++, shoulder.turn * full_);
+        for (const Shoulder& shoulder : body_.shoulders) turn(place++, shoulder.turn * (full_ + bears_.lift));
         for (std::size_t n = 0; n < 2; n++) {
             const Eye& eye = body_.eyes[n];
             const double left = solver_.eyes[2 * n], up = solver_.eyes[2 * n + 1];
@@ -72,7 +74,7 @@ public:
 
     /// Add the morph target weights of what was found, by their places in the graph's `morphs`.
     void morphs(List<double>& out) {
-        double values[13 + life::SHAPES];
+        double values[17 + life::SHAPES];
         values[0] = std::max((shut_[0] + shut_[1]) / 2, channels_[life::BLINK]);
         for (std::size_t side = 0; side < 2; side++) {
             const double left = solver_.eyes[2 * side] / MORPH_LOOK, up = solver_.eyes[2 * side + 1] / MORPH_LOOK;
@@ -85,6 +87,11 @@ public:
             own[5] = -up;
         }
         for (std::size_t k = 0; k < life::SHAPES; k++) values[13 + k] = channels_[life::BLINK + 1 + k];
+        double* feels = values + 13 + life::SHAPES;
+        feels[0] = bears_.smile;
+        feels[1] = bears_.frown;
+        feels[2] = bears_.brow_down;
+        feels[3] = bears_.brow_up;
         std::fill(added_.begin(), added_.end(), 0.0);
         for (const MorphShare& share : body_.face.morphs) {
             if (values[share.value] > 1e-4) lang::at(added_, share.target) += values[share.value] * share.weight;
@@ -107,26 +114,27 @@ private:
     std::array<double, life::CHANNELS> channels_{};
     std::array<double, life::LIDS> shut_{};
     double full_ = 0; // how full the chest is
+    Bearing bears_;
     List<double> added_;
 
     /// Return how full the chest is, 0 at rest, about 1 at the top of a breath.
     double breath(const Lane& lane, double time) const {
-        const int n = lang::bisect_right(lane.starts, time) - 1;
+        const int n = lang::bisect_right(lane.times, time) - 1;
         if (n < 0) return 0;
-        const List<double>& value = lang::at(lane.values, n);
-        const double gone = (time - lang::at(lane.starts, n)) / value[0];
+        const List<double>& value = lang::at(lane.rows, n);
+        const double gone = (time - lang::at(lane.times, n)) / value[0];
         const double full = rotation::ease(std::min(gone / INHALE, (1 - gone) / (1 - INHALE)));
-        return graph_.life.breathing * (1 - graph_.life.stillness) * value[1] * full;
+        return graph_.life->breathing * (1 - graph_.life->stillness) * value[1] * full;
     }
 
     /// Return how far a blink has shut the eyes, 0..1.
     double blink(const Lane& lane, double time) const {
-        const double close = graph_.life.blink_close, whole = close + graph_.life.blink_open;
+        const double close = graph_.life->blink_close, whole = close + graph_.life->blink_open;
         double out = 0;
         // A slow one may still be opening when the next begins.
-        for (int n = lang::bisect_right(lane.starts, time) - 1; n >= 0 && time - lang::at(lane.starts, n) < whole; n--) {
-            const double gone = time - lang::at(lane.starts, n);
-            out = std::max(out, rotation::ease(std::min(gone / close, (whole - gone) / graph_.life.blink_open)));
+        for (int n = lang::bisect_right(lane.times, time) - 1; n >= 0 && time - lang::at(lane.times, n) < whole; n--) {
+            const double gone = time - lang::at(lane.times, n);
+            out = std::max(out, rotation::ease(std::min(gone / close, (whole - gone) / graph_.life->blink_open)));
         }
         return out;
     }
@@ -142,7 +150,7 @@ private:
             const int lid = face.lids[n];
             const double already = lid >= 0 ? solve::part_along(lang::at(pose, lid).rotation, face.shut_by[n]) : 0;
             const double follows = joints ? face.follows[n] : MORPH_FOLLOWS[n];
-            shut_[n] = solve::lid(down, graph_.life.lids * follows, already, blink);
+            shut_[n] = solve::lid(down, graph_.life->lids * follows, already, blink);
             channels_[n] = shut_[n] - already;
         }
         channels_[life::BLINK] = blink;

@@ -35,11 +35,11 @@ public:
     // what aversions and saccades add, radians to the left and up
     double eyes[2] = {0, 0}, head[2] = {0, 0};
 
-    Gaze(const Graph& graph, Ref<const Schedule> schedule)
-        : schedule_(std::move(schedule)), body_(*graph.body), calm_(1 - graph.life.stillness) {
-        averting_ = graph.life.aversion_angle * RADIANS * calm_ * graph.life.gaze;
-        darting_ = graph.life.saccades * RADIANS * calm_;
-        angle_ = graph.life.aversion_angle;
+    Gaze(const Graph& graph, Ref<Schedule> schedule)
+        : schedule_(std::move(schedule)), body_(*graph.body), calm_(1 - graph.life->stillness) {
+        averting_ = graph.life->aversion_angle * RADIANS * calm_ * graph.life->gaze;
+        darting_ = graph.life->saccades * RADIANS * calm_;
+        angle_ = graph.life->aversion_angle;
         for (int n = 0; n < lang::len(schedule_->targets); n++) aims.push_back(aim(graph, n));
         parts.reserve(aims.size());
     }
@@ -71,7 +71,7 @@ private:
     static constexpr double SPRING = 8; // how many of the spring's own times a move takes; then all but 0.3 % is done
     static constexpr double RADIANS = lang::PI / 180;
 
-    Ref<const Schedule> schedule_;
+    Ref<Schedule> schedule_;
     const Body& body_;
     double calm_, averting_ = 0.0, darting_ = 0.0, angle_ = 0.0;
 
@@ -85,7 +85,11 @@ private:
 
     /// Where a target is, metres; nothing for what is nowhere: ahead.
     std::optional<Vec> point_of(const Graph& graph, const GazeTarget& target) const {
-        return place_of(target, graph.points, body_.partner);
+        if (target.to->point.has_value()) return target.to->point;
+        if (target.to->name == wanted::AHEAD) return std::nullopt;
+        const Vec* known = graph.points.find(target.to->name);
+        if (known != nullptr) return *known;
+        return target.to->name == wanted::PARTNER ? std::optional<Vec>(body_.partner) : std::nullopt;
     }
     /// The direction of a point from where the eyes are at rest.
     Vec towards(const std::optional<Vec>& point) const {
@@ -117,10 +121,10 @@ private:
 
     void avert(double time, double strict, double since) {
         const Lane& lane = *schedule_->aversions;
-        const int n = lang::bisect_right(lane.starts, time) - 1;
+        const int n = lang::bisect_right(lane.times, time) - 1;
         if (n < 0 || !(averting_ > 0)) return;
-        const List<double>& value = lang::at(lane.values, n);
-        const double start = lang::at(lane.starts, n), end = value[0], x = value[1], y = value[2];
+        const List<double>& value = lang::at(lane.rows, n);
+        const double start = lang::at(lane.times, n), end = value[0], x = value[1], y = value[2];
         const double size = std::hypot(x, y) * angle_;
         double scale = averting_ * (1 - strict);
         if (since > start) scale *= 1 - rotation::ease((time - since) / ENDING); // a new look ends it
@@ -136,12 +140,12 @@ private:
 
     void dart(double time) {
         const Lane& lane = *schedule_->saccades;
-        const int n = lang::bisect_right(lane.starts, time) - 1;
+        const int n = lang::bisect_right(lane.times, time) - 1;
         if (n < 0 || !(darting_ > 0)) return;
-        const List<double>& value = lang::at(lane.values, n);
+        const List<double>& value = lang::at(lane.rows, n);
         const double x = value[0], y = value[1];
-        const double from_x = n > 0 ? lang::at(lane.values, n - 1)[0] : 0, from_y = n > 0 ? lang::at(lane.values, n - 1)[1] : 0;
-        const double way = rotation::ease((time - lang::at(lane.starts, n)) / eye_time(std::hypot(x - from_x, y - from_y)));
+        const double from_x = n > 0 ? lang::at(lane.rows, n - 1)[0] : 0, from_y = n > 0 ? lang::at(lane.rows, n - 1)[1] : 0;
+        const double way = rotation::ease((time - lang::at(lane.times, n)) / eye_time(std::hypot(x - from_x, y - from_y)));
         eyes[0] += darting_ * (from_x + (x - from_x) * way);
         eyes[1] += darting_ * (from_y + (y - from_y) * way);
     }

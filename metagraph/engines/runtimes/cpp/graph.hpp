@@ -2,6 +2,7 @@
 #pragma once
 
 #include "body.hpp"
+#include "contact_solve.hpp"
 #include "project.hpp"
 #include "voice.hpp"
 
@@ -37,20 +38,24 @@ struct PlacedAction : Action {
     List<int> still;
 };
 
-/// How a layer reaches the joints: their places [n], and its weights on them. kinds: of its actions.
+/// How a layer reaches the joints: their places [n], and its weights on them. strength: how much of the arms it moves, 0..1.
+/// kinds: of its actions.
 struct LayerGraph {
     Ref<MetaGraph> graph;
     Ref<Markov> markov;
     List<int> reach;
     List<double> weights;
+    double strength = 0.0;
     Set<std::string> kinds;
 };
 
-/// A line of dialogue. asks: what it asks for while it is said.
+/// A line of dialogue. asks: what it asks for while it is said. mood, intensity: what it is said in, if that is told.
 struct Line {
     std::string text;
     std::optional<double> duration;
     List<Json> asks;
+    Json mood;
+    std::optional<double> intensity;
 };
 
 /// Everything of an export that planning and posing need. Joints are told by their places, parents first.
@@ -60,24 +65,25 @@ struct Line {
 struct Graph {
     std::string name;
     List<std::string> joints, parts, sides, problems, morphs;
+    List<char> larger, smaller; // which joints turn farther, and which less far, where a cue is played larger or smaller than made
     List<int> parents;
     List<Joined> base;
     Ref<Project> project;
     std::uint32_t seed = 0;
     Map<std::string, Ref<LayerGraph>> layers;
-    Life life;
+    Ref<Life> life = lang::made<Life>();
     Map<std::string, Vec> points;
     Map<std::string, Line> lines;
-    Map<std::string, Ref<Voice>> voices;
+    Ref<Voices> voices = lang::made<Voices>();
     std::optional<Body> body;
+    Ref<ContactRig> contact_rig;
 
     const LayerGraph& layer(const std::string& word) const { return *layers.at(word); }
 };
 
 namespace graph {
 
-/// Layers in the order in which their offsets are multiplied onto the base pose.
-inline const List<std::string> LAYERS = {"body", "arms", "head"};
+using words::LAYERS;
 inline const List<std::string> KINDS = {"stance", "gesture", "fidget", "transition"};
 inline const List<std::string> LIMBS = {"left", "right", "both"};
 

@@ -1,6 +1,7 @@
 // Performing what is asked while it comes in: working asks into a running plan, forgetting what is over, and answering.
 #pragma once
 
+#include "hearing.hpp"
 #include "planner.hpp"
 #include "understand.hpp"
 
@@ -17,21 +18,8 @@ struct Answer {
 
 namespace hearing {
 
-/// Return the asks a request may have been made by: that of its own id, and those of which it would be a part.
-inline List<std::string> owners(std::string id) {
-    List<std::string> out = {id};
-    for (;;) {
-        const std::size_t dot = id.rfind('.');
-        const bool part = dot != std::string::npos && dot + 1 < id.size()
-            && id.find_first_not_of("0123456789", dot + 1) == std::string::npos;
-        if (!part) return out;
-        id.resize(dot);
-        out.push_back(id);
-    }
-}
-
 inline Answer answer(const std::string& id, const Plan& plan) {
-    auto of = [&id](const std::string& made) { return lang::contains(owners(made), id); };
+    auto of = [&id](const std::string& made) { return lang::contains(hearing::owners(made), id); };
     Answer out;
     out.id = id;
     auto plays = [&out](double start, double end, const std::string& what) {
@@ -53,10 +41,12 @@ inline Answer answer(const std::string& id, const Plan& plan) {
             if (meta->start >= plan.end && of(meta->request->id)) waiting.push_back(meta->start);
         }
     }
-    static const List<std::string> kinds = {"look", "speech", "mode", "place", "blink", "stay"};
-    for (const auto& item : plan.track->items()) {
-        if (item->kind != Item::stay && of(item->id)) plays(item->start, item->end, lang::at(kinds, item->kind));
-    }
+    for (const auto& x : plan.track->looks) if (of(x->id)) plays(x->start, x->end, "look");
+    for (const auto& x : plan.track->speeches) if (of(x->id)) plays(x->start, x->end, "speech");
+    for (const auto& x : plan.track->modes) if (of(x->id)) plays(x->start, x->start, "mode");
+    for (const auto& x : plan.track->places) if (of(x->id)) plays(x->start, x->start, "place");
+    for (const auto& x : plan.track->blinks) if (of(x->id)) plays(x->start, x->start, "blink");
+    for (const auto& x : plan.track->moods) if (of(x->id)) plays(x->start, x->end, "mood");
     List<std::string> why;
     bool late = false, there = false, all_played = true, told = false;
     for (const auto& report : plan.reports) {
@@ -120,58 +110,24 @@ inline Ref<const Plan> hear(
     const Graph& graph, const Plan& plan, double now, const List<Json>& asks, double end, const PlanOptions& options = {}
 ) {
     const double fixed = now > 0 ? now + graph.project->settings->lookahead : 0;
-    const Meaning meant = understand::understand(graph, asks, fixed);
-    Set<std::string> gone = meant.withdrawn, before;
-    for (const auto& request : meant.requests) gone.insert(request->id);
-    for (const auto& item : meant.items) gone.insert(item->id);
-    for (const auto& report : meant.refused) gone.insert(report->request);
-    for (const auto& request : plan.requests) before.insert(request->id);
-    for (const auto& item : plan.track->items()) before.insert(item->id);
-    const bool every = meant.withdrawn.count("") > 0;
-    Set<std::string> withdrawn;
-    for (const std::string& id : before) {
-        const List<std::string> owners = hearing::owners(id);
-        const bool own = std::any_of(owners.begin(), owners.end(), [&gone](const auto& owner) { return gone.count(owner) > 0; });
-        if (every || own) withdrawn.insert(id);
+    const Ref<Meaning> meaning = understand::understand(graph, asks, fixed);
+    const Meaning& meant = *meaning;
+    List<std::string> refused, turning;
+    for (const auto& report : meant.refused) refused.push_back(report->request);
+    for (const std::string& layer : graph::LAYERS) {
+        if (!graph.layer(layer).markov->modes.empty()) turning.push_back(layer);
     }
-    // Only a layer that stays somewhere, or is to, needs to be told that it need not.
-    Set<std::string> staying, touched;
-    Items items;
-    for (const auto& stay : lang::together(plan.track->stays(), meant.items)) {
-        if (stay->kind == Item::stay && stay->on) staying.insert(stay->layer);
-    }
-    for (const auto& item : meant.items) {
-        if (item->kind != Item::stay || staying.count(item->layer) > 0) items.push_back(item);
-    }
-    for (const auto& request : meant.requests) touched.insert(request->layer);
-    for (const auto& request : plan.requests) {
-        if (withdrawn.count(request->id) > 0) touched.insert(request->layer);
-    }
-    auto changed = [&](const Item& item) { return gone.count(item.id) > 0 || withdrawn.count(item.id) > 0; };
-    auto speaks = [](const Item& item) { return item.kind == Item::mode_from || item.kind == Item::speech; };
-    bool turns = false; // who talks moves otherwise than who listens
-    for (const auto& stay : lang::together(plan.track->stays(), items)) {
-        if (stay->kind == Item::stay && changed(*stay)) touched.insert(stay->layer);
-    }
-    for (const auto& item : items) turns = turns || speaks(*item);
-    for (const auto& item : plan.track->items()) turns = turns || (speaks(*item) && withdrawn.count(item->id) > 0);
+    const Ref<Heard> heard = hearing::heard(
+        plan.requests, plan.track, meant.requests, meaning->track(), meant.withdrawn, refused, fixed, turning
+    );
     Set<std::string> leave;
     for (const std::string& layer : graph::LAYERS) {
-        if (turns && !graph.layer(layer).markov->modes.empty()) touched.insert(layer);
         // Without any asks everything is planned on; with some, what they have to do with.
-        if (!asks.empty() && now > 0 && end == plan.end && touched.count(layer) == 0) leave.insert(layer);
+        if (!asks.empty() && now > 0 && end == plan.end && heard->touched.count(layer) == 0) leave.insert(layer);
     }
     Plan with = plan;
-    Items going_on;
-    Set<std::string> begun, ended = withdrawn; // begun: of which more is said
-    for (const auto& item : items) {
-        going_on.push_back(track::goes_on(*plan.track, item, fixed));
-        if (going_on.back() == item) continue;
-        begun.insert(item->id);
-        ended.erase(item->id);
-    }
-    with.track = track::plus(track::without(track::without(plan.track, ended, fixed), begun, -INFINITY), going_on);
-    const Ref<const Plan> after = planner::extend(graph, with, fixed, meant.requests, end, options, withdrawn, leave);
+    with.track = heard->track;
+    const Ref<const Plan> after = planner::extend(graph, with, fixed, meant.requests, end, options, heard->withdrawn, leave);
     if (meant.refused.empty()) return after;
     auto out = lang::made<Plan>(*after);
     lang::extend(out->reports, meant.refused);
@@ -180,7 +136,7 @@ inline Ref<const Plan> hear(
 
 /// Return a running plan without what ended before `seconds`; what is planned on from it stays as it would have been. Poses
 /// before `seconds` are lost.
-inline Ref<const Plan> since(const Graph& graph, const Plan& plan, double seconds) {
+inline Ref<const Plan> since(const Plan& plan, double seconds) {
     auto out = lang::made<Plan>(plan);
     Set<std::string> known;
     for (const std::string& layer : graph::LAYERS) {
@@ -195,8 +151,8 @@ inline Ref<const Plan> since(const Graph& graph, const Plan& plan, double second
     for (const auto& request : plan.requests) {
         if (request->start >= seconds || known.count(request->id) > 0) out->requests.push_back(request);
     }
-    out->track = track::since(plan.track, seconds);
-    out->life = schedule::since(graph.life, plan.life, seconds);
+    out->track = plan.track->since(seconds);
+    out->life = plan.life->since(seconds);
     return out;
 }
 

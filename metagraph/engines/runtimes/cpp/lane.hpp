@@ -1,50 +1,83 @@
-// A lane of events in time, drawn one after another; never changed, extended at the end, forgotten at the front.
+// A lane of events in time, drawn one after another: never changed, extended at the end, forgotten at the front.
+//
+// Translated from metagraph/playback/life/lane.py; change that, and translate anew.
 #pragma once
 
 #include "language.hpp"
 
 namespace metagraph {
 
-/// starts ascend, seconds. values: what each event is. first: number of the first event that is still kept.
-struct Lane {
-    List<double> starts;
-    List<List<double>> values;
-    int first = 0;
+struct Lane;
+
+/// times: when events begin, ascending, seconds. rows: what each event is. first: number of the first event that is
+/// still kept. width: how many numbers a row has.
+struct Lane : std::enable_shared_from_this<Lane> {
+    List<double> times;
+    List<List<double>> rows;
+    int first;
+    int width;
+
+    explicit Lane(
+        List<double> times_ = List<double>{},
+        List<List<double>> rows_ = List<List<double>>{},
+        int first_ = 0,
+        int width_ = 1
+    )
+        : times(std::move(times_)), rows(std::move(rows_)), first(first_), width(width_) {}
 
     /// The number of the event to be drawn next.
-    int next() const { return first + lang::len(starts); }
-    bool empty() const { return starts.empty(); }
+    int next() const;
+
+    /// Return the lane with only what begins before a time.
+    Ref<Lane> until(double seconds) const;
+
+    /// Return the lane with later events.
+    Ref<Lane> plus(const List<double>& times, const List<List<double>>& rows) const;
+
+    /// Return the lane without what neither goes on at `seconds` nor comes later; `before`: how many more are kept.
+    Ref<Lane> since(double seconds, int before = 1) const;
 };
 
-namespace lane {
-
-inline Ref<const Lane> part(const Ref<const Lane>& lane, int first, int last) {
-    if (first == 0 && last == lang::len(lane->starts)) return lane;
-    auto out = lang::made<Lane>();
-    out->starts = lang::part(lane->starts, first, last);
-    out->values = lang::part(lane->values, first, last);
-    out->first = lane->first + first;
-    return out;
+inline int Lane::next() const {
+    return this->first + lang::len(this->times);
 }
 
-/// The lane with only what begins before a time.
-inline Ref<const Lane> until(const Ref<const Lane>& lane, double seconds) {
-    return part(lane, 0, lang::bisect_left(lane->starts, seconds));
+inline Ref<Lane> Lane::until(double seconds) const {
+    int count = lang::bisect_left(this->times, seconds);
+    if (count == lang::len(this->times)) {
+        return lang::self(this);
+    }
+    return lang::made<Lane>(
+        lang::part(this->times, 0, count),
+        lang::part(this->rows, 0, count),
+        this->first,
+        this->width
+    );
 }
 
-/// The lane with later events.
-inline Ref<const Lane> plus(const Ref<const Lane>& lane, const List<double>& starts, const List<List<double>>& values) {
-    if (starts.empty()) return lane;
-    auto out = lang::made<Lane>(*lane);
-    lang::extend(out->starts, starts);
-    lang::extend(out->values, values);
-    return out;
+inline Ref<Lane> Lane::plus(const List<double>& times, const List<List<double>>& rows) const {
+    if (lang::len(times) == 0) {
+        return lang::self(this);
+    }
+    return lang::made<Lane>(
+        lang::together(this->times, times),
+        lang::together(this->rows, rows),
+        this->first,
+        this->width
+    );
 }
 
-/// The lane without what neither goes on at `seconds` nor comes later; `before`: how many more are kept.
-inline Ref<const Lane> since(const Ref<const Lane>& lane, double seconds, int before = 1) {
-    return part(lane, std::max(0, lang::bisect_right(lane->starts, seconds) - 1 - before), lang::len(lane->starts));
+inline Ref<Lane> Lane::since(double seconds, int before) const {
+    int gone = std::max(0, lang::bisect_right(this->times, seconds) - 1 - before);
+    if (gone == 0) {
+        return lang::self(this);
+    }
+    return lang::made<Lane>(
+        lang::part(this->times, gone),
+        lang::part(this->rows, gone),
+        this->first + gone,
+        this->width
+    );
 }
 
-}  // namespace lane
 }  // namespace metagraph

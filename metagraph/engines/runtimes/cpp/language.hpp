@@ -81,6 +81,12 @@ Ref<T> made(Given&&... given) {
     return std::make_shared<T>(std::forward<Given>(given)...);
 }
 
+/// A record as others may keep it.
+template <class T>
+Ref<T> self(const T* of) {
+    return std::const_pointer_cast<T>(of->shared_from_this());
+}
+
 template <class C>
 int len(const C& items) {
     return static_cast<int>(items.size());
@@ -268,6 +274,20 @@ inline std::string joined(const List<std::string>& texts, const std::string& bet
     std::string out;
     for (std::size_t n = 0; n < texts.size(); n++) out += (n ? between : "") + texts[n];
     return out;
+}
+/// A text before the last of another, that, and what is behind it; nothing of the first two where it has none.
+inline std::tuple<std::string, std::string, std::string> parted_last(const std::string& text, const std::string& by) {
+    const auto place = text.rfind(by);
+    if (place == std::string::npos) return {"", "", text};
+    return {text.substr(0, place), by, text.substr(place + by.size())};
+}
+/// A text in small letters, as far as they are English.
+inline std::string lowered(std::string text) {
+    for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return text;
+}
+inline bool digits(const std::string& text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
 }
 inline bool starts_with(const std::string& text, const std::string& begin) { return text.rfind(begin, 0) == 0; }
 inline std::string stripped(const std::string& text) {

@@ -5,7 +5,9 @@
 #pragma once
 
 #include "model.hpp"
+#include "cue_shapes.hpp"
 #include "markov.hpp"
+#include "mood.hpp"
 #include "meta_plan.hpp"
 #include "replan.hpp"
 #include "sampling.hpp"
@@ -31,8 +33,10 @@ inline Ref<LayerDraft> draft(
     const List<Ref<MetaRequest>>& fresh,
     const Set<std::string>& replaced,
     double end,
-    const std::optional<std::string>& stance
+    const std::optional<std::string>& stance,
+    const Ref<Moods>& moods
 );
+inline Ref<MetaRequest> in_time(const Ref<MetaRequest>& request, const Ref<Moods>& moods);
 inline Ref<MetaAction> meta_of(const Ref<MetaRequest>& request);
 inline std::string _begin(
     const Ref<MetaGraph>& graph,
@@ -102,7 +106,7 @@ namespace layer_planning {
 ///
 /// chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of the plan so
 /// far. fresh: requests, of all layers. replaced: ids of those that are asked for anew or withdrawn. stance: which the
-/// layer would begin in.
+/// layer would begin in. moods: what it is in the mood for, and when.
 inline Ref<LayerDraft> draft(
     const Ref<Project>& project,
     const Ref<MetaGraph>& graph,
@@ -115,13 +119,14 @@ inline Ref<LayerDraft> draft(
     const List<Ref<MetaRequest>>& fresh,
     const Set<std::string>& replaced,
     double end,
-    const std::optional<std::string>& stance
+    const std::optional<std::string>& stance,
+    const Ref<Moods>& moods
 ) {
     std::string layer = graph->layer;
     List<Ref<MetaAction>> asked;
     for (const auto& request : fresh) {
         if (request->layer == layer) {
-            asked.push_back(layer_planning::meta_of(request));
+            asked.push_back(layer_planning::meta_of(layer_planning::in_time(request, moods)));
         }
     }
     List<Ref<Cue>> kept;
@@ -197,7 +202,7 @@ inline Ref<LayerDraft> draft(
         }
     }
     std::string begin = layer_planning::_begin(graph, old, stance);
-    Ref<Performer> performer = sampling::performer_after(project, graph, seed, begin, old->past, kept);
+    Ref<Performer> performer = sampling::performer_after(project, graph, seed, begin, old->past, kept, moods);
     if (begin == "" || !performer->begin(begin)) {
         std::string why = lang::text("the ", layer, " layer has no stance with a loop to begin in");
         List<Ref<MetaAction>> waits = lang::together(future, asked);
@@ -253,14 +258,47 @@ inline Ref<LayerDraft> draft(
     return lang::made<LayerDraft>(layer, performer, true, done, placed, every, old->past, cursor, written);
 }
 
+/// Return a request that may begin as much earlier as its preparation takes longer in its mood.
+inline Ref<MetaRequest> in_time(const Ref<MetaRequest>& request, const Ref<Moods>& moods) {
+    if (!request->stroke.has_value()) {
+        return request;
+    }
+    Ref<Mood> mood = mood::mood_at(moods, *request->stroke);
+    double speed = mood::tempo(mood::changed(mood, request->valence, request->arousal, request->intensity));
+    if (speed >= 1) {
+        return request;
+    }
+    return lang::made<MetaRequest>(
+        request->id,
+        request->layer,
+        request->kind,
+        std::max(0.0, *request->stroke - (*request->stroke - request->start) / speed),
+        request->duration,
+        request->action,
+        request->tags,
+        request->limb,
+        request->stance,
+        request->priority,
+        request->resume,
+        request->stroke,
+        request->hold,
+        request->prepare,
+        request->among,
+        request->late,
+        request->valence,
+        request->arousal,
+        request->intensity
+    );
+}
+
 /// Return a request with the window it may use; where its stroke is judged, the moment it is wanted at.
 inline Ref<MetaAction> meta_of(const Ref<MetaRequest>& request) {
     if (request->late.has_value() && request->stroke.has_value()) {
-        return lang::made<MetaAction>(request, *request->stroke, *request->stroke + sampling::FITS);
+        return lang::made<MetaAction>(request, *request->stroke, *request->stroke + cue_shapes::FITS);
     }
     double length = !request->duration.has_value() ? layer_planning::WINDOW : std::max(0.0, *request->duration);
     if (request->stroke.has_value()) {
-        length = std::max(length, *request->stroke - request->start + sampling::FITS);
+        length = std::max(length, *request->stroke - request->start + cue_shapes::FITS);
     }
     return lang::made<MetaAction>(request, request->start, request->start + length);
 }

@@ -19,10 +19,11 @@ struct Life {
     double aversion_rate = 12.0, aversion_length = 0.93, aversion_angle = 14.0;
     double saccades = 1.0, saccade_rate = 60.0, lids = 1.0, blinks = 17.0, accent_blinks = 1.0;
     double blink_close = 0.07, blink_open = 0.1, lips = 1.0, lip_smoothing = 0.03;
-    List<Manner> manners = {
-        {1.0, 1.0, 1.1, 2.4, 1.4, 1.0, 0.85, 1.0},
-        {1.0, 1.0, 0.6, 0.46, 0.8, 0.9, 1.0, 1.0},
-        {1.15, 1.1, 1.25, 1.0, 1.0, 1.0, 1.0, 1.0},
+    double valence = 0.0, arousal = 0.0, intensity = 1.0;
+    List<Ref<Manner>> manners = {
+        lang::made<Manner>(Manner{1.0, 1.0, 1.1, 2.4, 1.4, 1.0, 0.85, 1.0}),
+        lang::made<Manner>(Manner{1.0, 1.0, 0.6, 0.46, 0.8, 0.9, 1.0, 1.0}),
+        lang::made<Manner>(Manner{1.15, 1.1, 1.25, 1.0, 1.0, 1.0, 1.0, 1.0}),
     };
 };
 
@@ -35,9 +36,10 @@ inline constexpr int CHANNELS = LIDS + 1 + SHAPES; // lids, blink, an open jaw, 
 inline constexpr int FIRST_SHAPE = CHANNELS - (SHAPES - 1);
 
 /// Return the settings with what an export says of them, where it says anything.
-inline Life read(const Node& json) {
-    Life out;
-    if (json.empty()) return out;
+inline Ref<Life> read(const Node& json) {
+    const auto made = lang::made<Life>();
+    Life& out = *made;
+    if (json.empty()) return made;
     const Node on = json.maybe("on");
     out.on = on.empty() || on.flag();
     auto dial = [&json](const char* name, double& value, double low, double high) {
@@ -60,19 +62,42 @@ inline Life read(const Node& json) {
     dial("blink_open", out.blink_open, 0.02, 1);
     dial("lips", out.lips, 0, 2);
     dial("lip_smoothing", out.lip_smoothing, 0, 0.2);
+    dial("valence", out.valence, -1, 1);
+    dial("arousal", out.arousal, -1, 1);
+    dial("intensity", out.intensity, 0, 2);
     const Node modes = json.maybe("modes");
-    if (modes.empty()) return out;
+    if (modes.empty()) return made;
     for (int n = 0; n < lang::len(words::MODES); n++) {
         const Node own = modes.maybe(lang::at(words::MODES, n));
         if (own.empty()) continue;
         auto factor = [&own](const char* name) { return own.maybe(name).within_or(0, 4, 1); };
-        lang::at(out.manners, n) = {
+        lang::at(out.manners, n) = lang::made<Manner>(Manner{
             factor("breathing"), factor("breath_rate"), factor("aversion_rate"), factor("aversion_length"),
             factor("aversion_angle"), factor("saccades"), factor("saccade_rate"), factor("blinks"),
-        };
+        });
     }
+    return made;
+}
+
+/// What a mode makes of the amounts.
+inline const Ref<Manner>& manner(const Ref<Life>& life, const std::string& mode) {
+    return lang::at(life->manners, lang::index(words::MODES, mode));
+}
+
+/// Return what a mode makes of the amounts, each that a mood changes times a factor.
+inline Ref<Manner> scaled(
+    const Ref<Manner>& ways, double breathing, double breath_rate, double aversion_rate, double saccade_rate, double blinks
+) {
+    const auto out = lang::made<Manner>(*ways);
+    out->breathing *= breathing;
+    out->breath_rate *= breath_rate;
+    out->aversion_rate *= aversion_rate;
+    out->saccade_rate *= saccade_rate;
+    out->blinks *= blinks;
     return out;
 }
+
+inline bool same_life(const Ref<Life>& one, const Ref<Life>& other) { return one == other; }
 
 }  // namespace life
 }  // namespace metagraph

@@ -113,6 +113,7 @@ inline const Map<std::string, double> WEAK = Map<std::string, double>{
     {"mouthSmileLeft", 0.3},
     {"mouthSmileRight", 0.3}
 };
+inline bool alike_timings(const Ref<LineTiming>& one, const Ref<LineTiming>& other);
 inline Map<std::string, std::string> _table(const std::string& name);
 inline std::string set_of(const List<Ref<VisemeMark>>& marks);
 inline std::string wrong_in(
@@ -171,6 +172,40 @@ struct LineTiming {
 };
 
 namespace line_timing {
+
+/// Whether two lines' words and shapes come alike.
+inline bool alike_timings(const Ref<LineTiming>& one, const Ref<LineTiming>& other) {
+    if (one == nullptr || other == nullptr) {
+        return one == nullptr && other == nullptr;
+    }
+    if (lang::len(one->words) != lang::len(other->words) || lang::len(one->marks) != lang::len(other->marks)) {
+        return false;
+    }
+    bool are_all = true;
+    for (int n = 0; n < lang::len(one->words); n++) {
+        const auto& a = lang::at(one->words, n);
+        const auto& b = lang::at(other->words, n);
+        if (!(a->text == b->text && a->start == b->start && a->end == b->end)) {
+            are_all = false;
+            break;
+        }
+    }
+    bool words = are_all;
+    bool holds = words;
+    if (holds) {
+        bool are_all2 = true;
+        for (int n = 0; n < lang::len(one->marks); n++) {
+            const auto& a = lang::at(one->marks, n);
+            const auto& b = lang::at(other->marks, n);
+            if (!(a->at == b->at && a->viseme == b->viseme && a->weight == b->weight)) {
+                are_all2 = false;
+                break;
+            }
+        }
+        holds = are_all2;
+    }
+    return holds;
+}
 
 inline Map<std::string, std::string> _table(const std::string& name) {
     if (name == "oculus") {

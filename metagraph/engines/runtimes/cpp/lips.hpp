@@ -12,7 +12,7 @@ inline constexpr double CLOSING = 0.12; // seconds the mouth takes to close wher
 /// How much of each shape but silence the mouth shows.
 using Shown = std::array<double, life::SHAPES - 1>;
 
-inline void add(const Voice& voice, const Item& speech, double time, double share, Shown& out) {
+inline void add(const Voice& voice, const Speech& speech, double time, double share, Shown& out) {
     if (time < speech.start) return;
     const double kept = share * (1 - rotation::ease((time - speech.end) / CLOSING));
     const int last = static_cast<int>(voice.weights.size()) / life::SHAPES - 1;
@@ -29,11 +29,11 @@ inline void add(const Voice& voice, const Item& speech, double time, double shar
 /// Return what the mouth shows at a time; all 0 where nothing is said.
 inline Shown at(const Graph& graph, const Track& track, double time) {
     Shown out{};
-    const double smoothing = graph.life.lip_smoothing;
-    for (const auto& speech : track.speeches()) {
+    const double smoothing = graph.life->lip_smoothing;
+    for (const auto& speech : track.speeches) {
         if (speech->start > time + smoothing) break;
         if (speech->end + CLOSING + smoothing <= time || time <= speech->start - smoothing) continue;
-        const Ref<Voice> voice = voice_of(graph.voices, *speech);
+        const Ref<Voice> voice = graph.voices->of(speech);
         // The weighted mean over `smoothing` seconds before and after.
         if (smoothing > 0) {
             add(*voice, *speech, time - smoothing, 0.25, out);

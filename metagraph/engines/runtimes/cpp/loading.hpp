@@ -1,7 +1,9 @@
 // Reading an export: its JSON and its GLB.
 #pragma once
 
+#include "asks.hpp"
 #include "clip.hpp"
+#include "contacts.hpp"
 #include "layer_planning.hpp"
 
 namespace metagraph {
@@ -28,6 +30,10 @@ inline void read_joints(Graph& out, const Node& root) {
         out.joints.push_back(name);
         out.parts.push_back(one["part"].text());
         out.sides.push_back(one["side"].text());
+        const Node scales = one.maybe("scales");
+        const std::string how = scales.empty() ? "both" : scales.text();
+        out.larger.push_back(how == "both");
+        out.smaller.push_back(how != "neither");
     }
     const List<Node> rotations = root["base"]["rotations"].items(), translations = root["base"]["translations"].items();
     if (rotations.size() != out.joints.size() || translations.size() != out.joints.size() || out.joints.empty()) {
@@ -48,7 +54,7 @@ inline Ref<Settings> read_settings(Graph& out, const Node& json) {
     };
     constant("window", layer_planning::WINDOW);
     constant("loop_fade", sampling::LOOP_FADE);
-    constant("hurry", sampling::HURRY);
+    constant("hurry", cue_shapes::HURRY);
     constant("least_blend", phase_times::LEAST_BLEND);
     return lang::made<Settings>(
         json["alpha"].within(0, 1e15), static_cast<int>(out.seed), json["never_twice"].flag(), json["shortest"].within(0, 1e9),
@@ -106,7 +112,7 @@ inline std::pair<Ref<PlacedAction>, Ref<Phases>> read_action(const std::string& 
     const double end = std::max(start, json["whole_end"].flag() ? length : std::min(json["end"].within(0, 1e9), length));
     const auto stroke = json["stroke"].number_or_null();
     const auto earliest = json["earliest_exit"].number_or_null();
-    const Node spacing = json.maybe("spacing");
+    const Node spacing = json.maybe("spacing"), touching = json.maybe("contacts");
     Action action(
         json["id"].text(), clip, json["kind"].one_of(graph::KINDS), layer, json["stance"].text(), json["name"].text(),
         json["end_stance"].text_or_null(),
@@ -115,7 +121,8 @@ inline std::pair<Ref<PlacedAction>, Ref<Phases>> read_action(const std::string& 
         ),
         json["limb"].one_of(graph::LIMBS), json["joints"].texts(), json["tags"].texts(), json["likelihood"].within(0, 1e15),
         json.maybe("cooldown").within_or(0, 1e9, 0),
-        spacing.empty() ? std::nullopt : std::optional<int>(spacing.count(0, 1000))
+        spacing.empty() ? std::nullopt : std::optional<int>(spacing.count(0, 1000)),
+        touching.empty() ? List<Ref<ContactSpan>>{} : contacts::read(touching)
     );
     // Where none are told, all of them are at the stroke, and that is halfway unless it was set.
     const double told = std::clamp(stroke.value_or((start + end) / 2), start, end);
@@ -143,7 +150,8 @@ inline List<int> still(const Graph& graph, const LayerGraph& layer, const Action
 
 /// Return a layer, with its actions, their phases added to `phases`.
 inline Ref<LayerGraph> read_layer(
-    const Graph& graph, const std::string& layer, const Node& json, const Lengths& clips, Map<std::string, Ref<Phases>>& phases
+    const Graph& graph, const std::string& layer, const Node& json, const Lengths& clips, Map<std::string, Ref<Phases>>& phases,
+    Map<std::string, double>& vigours
 ) {
     auto out = lang::made<LayerGraph>();
     List<Ref<Stance>> stances;
@@ -160,11 +168,14 @@ inline Ref<LayerGraph> read_layer(
         out->reach.push_back(static_cast<int>(j));
         out->weights.push_back(own);
     }
+    const Node arms = json["weights"].maybe("arms");
+    out->strength = arms.empty() ? 0.0 : std::min(1.0, arms.within(0, 100));
     List<Ref<Action>> actions;
     for (const Node& one : json["actions"].items()) {
         auto [action, own] = read_action(layer, one, clips);
         if (phases.find(action->id) != nullptr) one["id"].wrong("is used twice");
         phases[action->id] = own;
+        vigours[action->id] = one.maybe("vigour").within_or(-1, 1, 0);
         action->still = still(graph, *out, *action);
         out->kinds.insert(action->kind);
         actions.push_back(action);
@@ -223,6 +234,11 @@ inline void read_speech(Graph& out, const Node& root) {
             const Node text = json.maybe("text"), asks = json.maybe("asks");
             line.text = text.empty() ? "" : text.text();
             line.duration = json.maybe("duration").number_or_null();
+            const Node mood = json.maybe("mood"), intensity = json.maybe("intensity");
+            const std::string wrong = mood.empty() ? "" : asks::feeling(mood.value());
+            if (!wrong.empty()) mood.wrong(wrong);
+            line.mood = mood.value();
+            if (!intensity.empty()) line.intensity = intensity.within(0, 2);
             if (!asks.empty()) {
                 for (const Node& ask : asks.items()) line.asks.push_back(ask.value());
             }
@@ -230,7 +246,7 @@ inline void read_speech(Graph& out, const Node& root) {
         }
     }
     if (!voices.empty()) {
-        for (const auto& [id, json] : voices.fields()) out.voices[id] = voice::read(json);
+        for (const auto& [id, json] : voices.fields()) out.voices->known[id] = voice::read(json);
     }
 }
 
@@ -256,11 +272,12 @@ inline Ref<const Graph> read(const Node& root, const std::uint8_t* glb, std::siz
     }
     if (trouble.found()) return nullptr;
     Map<std::string, Ref<Phases>> phases;
+    Map<std::string, double> vigours;
     const Node layers = root["layers"];
     for (const std::string& layer : graph::LAYERS) {
-        out->layers[layer] = read_layer(*out, layer, layers[layer], clips, phases);
+        out->layers[layer] = read_layer(*out, layer, layers[layer], clips, phases, vigours);
     }
-    out->project = lang::made<Project>(settings, phases);
+    out->project = lang::made<Project>(settings, phases, vigours);
     out->life = life::read(root.maybe("life"));
     read_speech(*out, root);
     if (trouble.found()) return nullptr;
@@ -268,6 +285,7 @@ inline Ref<const Graph> read(const Node& root, const std::uint8_t* glb, std::siz
     if (trouble.found()) return nullptr;
     read_clips(*out, root, file);
     if (!root.maybe("rig").empty()) out->body = body::read(root["rig"], lang::len(out->joints), out->morphs);
+    if (!root.maybe("contact_rig").empty()) out->contact_rig = contacts::read_rig(root["contact_rig"], out->joints);
     return trouble.found() ? nullptr : out;
 }
 

@@ -34,7 +34,8 @@ inline const Set<std::string> TEMPORAL = Set<std::string>{"late", "cut", "resume
 /// its remainder goes on afterwards. stroke: when a gesture's stroke should come; `start` is then the earliest it may
 /// begin. hold: seconds its hold should last, None for as long as it was made. prepare: whether its preparation plays.
 /// among: ids of the only actions it may be, any where empty. late: by how many seconds its stroke, or where none is
-/// asked for its start, may come late, 0 for on time or not at all; None for as late as the settings allow.
+/// asked for its start, may come late, 0 for on time or not at all; None for as late as the settings allow. valence,
+/// arousal, intensity: of the mood it is played in, as in `mood.Mood`; None for as it is then.
 struct MetaRequest {
     std::string id;
     std::string layer;
@@ -52,6 +53,9 @@ struct MetaRequest {
     bool prepare;
     List<std::string> among;
     std::optional<double> late;
+    std::optional<double> valence;
+    std::optional<double> arousal;
+    std::optional<double> intensity;
 
     MetaRequest(
         std::string id_,
@@ -69,7 +73,10 @@ struct MetaRequest {
         std::optional<double> hold_ = std::nullopt,
         bool prepare_ = true,
         List<std::string> among_ = List<std::string>{},
-        std::optional<double> late_ = std::nullopt
+        std::optional<double> late_ = std::nullopt,
+        std::optional<double> valence_ = std::nullopt,
+        std::optional<double> arousal_ = std::nullopt,
+        std::optional<double> intensity_ = std::nullopt
     )
         : id(std::move(id_)),
             layer(std::move(layer_)),
@@ -86,7 +93,10 @@ struct MetaRequest {
             hold(hold_),
             prepare(prepare_),
             among(std::move(among_)),
-            late(late_) {}
+            late(late_),
+            valence(valence_),
+            arousal(arousal_),
+            intensity(intensity_) {}
 };
 
 /// Where writing stands: before meta action `number`, in state number `state` (-1: none yet), which ended at `time`
@@ -119,11 +129,13 @@ struct MetaAction {
     std::string key() const;
 };
 
-/// One action in the plan. It plays its clip from `entry` on during `start`..`end`, at its own speed but for its hold.
+/// One action in the plan. It plays its clip from `entry` on during `start`..`end`, at `tempo` times its own speed but
+/// for its hold.
 ///
 /// hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not stretched.
 /// blend_in, blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in.
-/// meta: key of the meta action it realises.
+/// meta: key of the meta action it realises. extent: how large it is played, a factor of its turns away from the
+/// stance.
 struct Cue {
     Ref<Action> action;
     double start;
@@ -137,6 +149,8 @@ struct Cue {
     double hold_from;
     double hold_to;
     double hold;
+    double extent;
+    double tempo;
 
     Cue(
         Ref<Action> action_,
@@ -150,7 +164,9 @@ struct Cue {
         std::string meta_,
         double hold_from_ = 0.0,
         double hold_to_ = 0.0,
-        double hold_ = 0.0
+        double hold_ = 0.0,
+        double extent_ = 1.0,
+        double tempo_ = 1.0
     )
         : action(std::move(action_)),
             start(start_),
@@ -163,7 +179,9 @@ struct Cue {
             meta(std::move(meta_)),
             hold_from(hold_from_),
             hold_to(hold_to_),
-            hold(hold_) {}
+            hold(hold_),
+            extent(extent_),
+            tempo(tempo_) {}
 };
 
 /// The stance loop that lies under the cues from `start` on: loop seconds are `time - start`, wrapped.

@@ -5,6 +5,7 @@
 // Translated from metagraph/graph/model.py; change that, and translate anew.
 #pragma once
 
+#include "contact_spans.hpp"
 #include "language.hpp"
 
 namespace metagraph {
@@ -64,7 +65,8 @@ struct Timing {
 /// transitions. limb: which arm it needs; the other keeps to the stance. joints: names of the only joints it moves;
 /// empty means all. tags: free words, "positive" and "negative" among them. likelihood: relative, > 0. cooldown:
 /// seconds after it has ended in which it is not drawn again. spacing: how many other actions of its kind and stance
-/// are drawn before it may be drawn again; None as the settings' never_twice says.
+/// are drawn before it may be drawn again; None as the settings' never_twice says. contacts: where its hands stay on
+/// the body.
 struct Action {
     std::string id;
     std::string clip;
@@ -80,6 +82,7 @@ struct Action {
     double likelihood;
     double cooldown;
     std::optional<int> spacing;
+    List<Ref<ContactSpan>> contacts;
 
     Action(
         std::string id_,
@@ -95,7 +98,8 @@ struct Action {
         List<std::string> tags_ = List<std::string>{},
         double likelihood_ = 1.0,
         double cooldown_ = 0.0,
-        std::optional<int> spacing_ = std::nullopt
+        std::optional<int> spacing_ = std::nullopt,
+        List<Ref<ContactSpan>> contacts_ = List<Ref<ContactSpan>>{}
     )
         : id(std::move(id_)),
             clip(std::move(clip_)),
@@ -110,7 +114,8 @@ struct Action {
             tags(std::move(tags_)),
             likelihood(likelihood_),
             cooldown(cooldown_),
-            spacing(spacing_) {}
+            spacing(spacing_),
+            contacts(std::move(contacts_)) {}
 };
 
 struct Stance {

@@ -14,8 +14,8 @@ struct Plan {
     Map<std::string, Ref<LayerPlan>> layers; // values, as all the rest
     List<Ref<Report>> reports;
     List<Ref<MetaRequest>> requests;
-    Ref<const Track> track = lang::made<Track>();
-    Ref<const Schedule> life = lang::made<Schedule>();
+    Ref<Track> track = lang::made<Track>();
+    Ref<Schedule> life = lang::made<Schedule>();
 
     /// A plan of nothing, up to 0 seconds.
     explicit Plan(std::uint32_t seed_ = 0) : seed(seed_) {

@@ -11,8 +11,9 @@ namespace metagraph {
 namespace planner {
 
 /// Whether what a model wrote is performed: not where it would leave a stance that was asked for, to stay in, and as often as
-/// its mode says.
-inline bool performed(const LayerGraph& layer, const Plan& plan, const Ref<MetaAction>& meta) {
+/// its mode and mood say.
+inline bool performed(const LayerGraph& layer, const Plan& plan, const Ref<MetaAction>& meta, const Ref<Moods>& moods) {
+    if (!mood::stirs(mood::mood_at(moods, meta->start), plan.seed, meta->request->id)) return false;
     const bool leaves = meta->request->kind == "transition" && plan.track->stays_at(meta->request->layer, meta->start);
     return !leaves && markov::performs(layer.markov, plan.seed, meta, plan.track->told_mode(meta->start));
 }
@@ -33,6 +34,7 @@ inline Ref<const Plan> extend(
     auto out = lang::made<Plan>(plan);
     out->end = end;
     out->reports.clear();
+    const Ref<Moods> moods = wanted::moods_of(graph.life, plan.track);
     for (const std::string& layer : graph::LAYERS) {
         if (leave.count(layer) > 0) {
             for (const auto& r : plan.reports) {
@@ -43,11 +45,11 @@ inline Ref<const Plan> extend(
         const LayerGraph& own = graph.layer(layer);
         const Ref<LayerDraft> draft = layer_planning::draft(
             graph.project, own.graph, options.idle ? own.markov : nullptr, own.kinds, plan.layers.at(layer), plan.reports,
-            plan.seed, now, lang::values(fresh), again, end, lang::get(options.stances, layer)
+            plan.seed, now, lang::values(fresh), again, end, lang::get(options.stances, layer), moods
         );
         List<Ref<MetaAction>> metas;
         for (const auto& meta : draft->placed) {
-            if (!meta->written || performed(own, plan, meta)) metas.push_back(meta);
+            if (!meta->written || performed(own, plan, meta, moods)) metas.push_back(meta);
         }
         out->layers[layer] = draft->performed(metas, end);
         lang::extend(out->reports, draft->reports);
@@ -58,7 +60,7 @@ inline Ref<const Plan> extend(
         if (again.count(request->id) == 0) out->requests.push_back(request);
     }
     lang::extend(out->requests, lang::values(fresh));
-    out->life = schedule::extended(graph.life, graph.voices, plan.track, plan.seed, end, plan.life, now);
+    out->life = schedule::schedule(graph.life, plan.track, graph.voices, plan.seed, end, plan.life, now);
     return out;
 }
 

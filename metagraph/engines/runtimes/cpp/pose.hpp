@@ -2,6 +2,7 @@
 // a joint's rotation is `base * body^w * arms^w * head^w`, its translation a sum; then the life layers are added.
 #pragma once
 
+#include "contacts.hpp"
 #include "enliven.hpp"
 #include "plan.hpp"
 
@@ -9,12 +10,12 @@ namespace metagraph {
 
 namespace pose {
 
-/// The clip seconds a cue shows at a time: its own speed, but for its hold.
+/// The clip seconds a cue shows at a time: its tempo, but for its hold.
 inline double clip_seconds(const Cue& cue, double time) {
     const double elapsed = time - cue.start;
-    if (cue.hold <= 0) return cue.entry + elapsed;
-    const double held = std::clamp(elapsed - (cue.hold_from - cue.entry), 0.0, cue.hold);
-    return cue.entry + elapsed - held + held * ((cue.hold_to - cue.hold_from) / cue.hold);
+    if (cue.hold <= 0) return cue.entry + elapsed * cue.tempo;
+    const double held = std::clamp(elapsed - (cue.hold_from - cue.entry) / cue.tempo, 0.0, cue.hold);
+    return cue.entry + (elapsed - held) * cue.tempo + held * ((cue.hold_to - cue.hold_from) / cue.hold);
 }
 
 /// How much of a cue shows at a time within it: rising over its blend in, falling over its blend out.
@@ -67,6 +68,7 @@ public:
             life_->find(pose_, *plan_->life, *plan_->track, gaze_.get(), time);
             life_->apply(pose_);
         }
+        if (graph_->contact_rig != nullptr) contacts::touch(graph_->contact_rig, goals(time), pose_);
         return pose_;
     }
 
@@ -106,7 +108,26 @@ private:
     Ref<Gaze> gaze_;
     std::array<Layer, 3> layers_;
 
-    bool lives() const { return graph_->life.on && life_ != nullptr && plan_->life->end > 0; }
+    bool lives() const { return graph_->life->on && life_ != nullptr && plan_->life->end > 0; }
+
+    /// Where contacts of all layers want the hands at a time.
+    List<Ref<HandGoal>> goals(double time) {
+        List<Ref<HandGoal>> out;
+        if (!graph_->contact_rig->contacts) return out;
+        for (std::size_t n = 0; n < 3; n++) {
+            const LayerGraph& own = graph_->layer(graph::LAYERS[n]);
+            const Ref<LayerPlan>& plan = plan_->layers.at(graph::LAYERS[n]);
+            if (own.strength <= 0) continue;
+            const bool playing = cue_at(layers_[n], time) != nullptr;
+            Ref<Cue> cue = playing ? lang::at(plan->cues, layers_[n].cue - 1) : nullptr;
+            if (cue != nullptr && placed(*cue->action).offsets == nullptr) cue = nullptr;
+            const int place = plan->rests.empty() ? -1 : rest_at(layers_[n], time);
+            for (auto& goal : contact_goals::layer_goals(graph_->contact_rig, graph_->project, plan, cue, place, time, own.strength)) {
+                out.push_back(std::move(goal));
+            }
+        }
+        return out;
+    }
 
     /// Where a loop begins in its clip, how long it is, and its seam; seconds.
     std::tuple<double, double, double> loop_of(const Action& action) const {
@@ -140,7 +161,7 @@ private:
         sample(action, pose::clip_seconds(*cue, time), shown_, count);
         const bool entering = time < cue->start + cue->blend_in;
         const bool blending = entering || time >= cue->end - cue->blend_out;
-        if (!blending && action.still.empty()) return shown_;
+        if (!blending && action.still.empty() && cue->extent == 1) return shown_;
         stance(layer, time, count);
         if (blending) {
             // Lead the clip in from, or out to, its stance: add what the stance differs from the clip's pose at that edge. A
@@ -153,8 +174,21 @@ private:
                 shown_[i].translation += (stance_[i].translation - other_[i].translation) * weight;
             }
         }
+        if (cue->extent != 1) extend(cue->extent, graph_->layer(action.layer).reach);
         for (const int place : action.still) lang::at(shown_, place) = lang::at(stance_, place);
         return shown_;
+    }
+
+    /// Play what is shown larger or smaller round the stance.
+    void extend(double extent, const List<int>& reach) {
+        const List<char>& takes_part = extent > 1 ? graph_->larger : graph_->smaller;
+        for (std::size_t i = 0; i < reach.size(); i++) {
+            if (lang::at(takes_part, reach[i]) == 0) continue;
+            const Joined& rest = stance_[i];
+            const Quat away = rotation::multiply(rest.rotation.back(), shown_[i].rotation);
+            shown_[i].rotation = rotation::multiply(rest.rotation, rotation::power(away, mood::turn_extent(extent, away.w)));
+            shown_[i].translation = rest.translation + (shown_[i].translation - rest.translation) * extent;
+        }
     }
 
     /// Return the offsets of the stance that lies under the cues.

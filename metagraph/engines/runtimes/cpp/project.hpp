@@ -33,13 +33,14 @@ private:
     Map<std::string, List<Ref<Action>>> index_;
 };
 
-/// Settings, and of each action when it plays and its phases, by id.
+/// Settings, and of each action when it plays and its phases, and how energetic it is, by id.
 struct Project {
     Ref<Settings> settings;
     Map<std::string, Ref<Phases>> phases;
+    Map<std::string, double> vigours;
 
-    explicit Project(Ref<Settings> settings_, Map<std::string, Ref<Phases>> phases_ = {})
-        : settings(std::move(settings_)), phases(std::move(phases_)) {}
+    explicit Project(Ref<Settings> settings_, Map<std::string, Ref<Phases>> phases_ = {}, Map<std::string, double> vigours_ = {})
+        : settings(std::move(settings_)), phases(std::move(phases_)), vigours(std::move(vigours_)) {}
 
     /// Clip seconds in which an action plays.
     std::tuple<double, double> span(const Ref<Action>& action) const {

@@ -241,9 +241,9 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> _placed(
             bool resumes = last->request->resume && rest->end - rest->start >= settings->shortest;
             if (resumes) {
                 std::tuple<double, int, std::string, int> own = replan::_order(rest);
-                int place = at;
-                while (place < lang::len(queue) && !(own < replan::_order(lang::at(queue, place)))) {
-                    place += 1;
+                int place = lang::len(queue);
+                while (place > at && own < replan::_order(lang::at(queue, place - 1))) {
+                    place -= 1;
                 }
                 lang::insert(queue, place, rest);
             }
@@ -263,25 +263,25 @@ inline std::tuple<List<Ref<MetaAction>>, List<Ref<Report>>> _placed(
             );
             reports.push_back(replan::_told(last, outcome, message, kept || resumes));
             std::tuple<double, int, std::string, int> own2 = replan::_order(meta);
-            int place2 = at;
-            while (place2 < lang::len(queue) && !(own2 < replan::_order(lang::at(queue, place2)))) {
-                place2 += 1;
+            int place2 = lang::len(queue);
+            while (place2 > at && own2 < replan::_order(lang::at(queue, place2 - 1))) {
+                place2 -= 1;
             }
             lang::insert(queue, place2, meta);
         } else if (meta->request->late.has_value()) {
             std::tuple<double, int, std::string, int> own3 = replan::_order(replan::_after(meta, last->end));
-            int place3 = at;
-            while (place3 < lang::len(queue) && !(own3 < replan::_order(lang::at(queue, place3)))) {
-                place3 += 1;
+            int place3 = lang::len(queue);
+            while (place3 > at && own3 < replan::_order(lang::at(queue, place3 - 1))) {
+                place3 -= 1;
             }
             lang::insert(queue, place3, replan::_after(meta, last->end));
         } else if (last->end - meta->request->start > settings->wait) {
             reports.push_back(replan::_told(meta, "covered", replan::_no_time(last)));
         } else {
             std::tuple<double, int, std::string, int> own4 = replan::_order(replan::_after(meta, last->end));
-            int place4 = at;
-            while (place4 < lang::len(queue) && !(own4 < replan::_order(lang::at(queue, place4)))) {
-                place4 += 1;
+            int place4 = lang::len(queue);
+            while (place4 > at && own4 < replan::_order(lang::at(queue, place4 - 1))) {
+                place4 -= 1;
             }
             lang::insert(queue, place4, replan::_after(meta, last->end));
             reports.push_back(replan::_told(

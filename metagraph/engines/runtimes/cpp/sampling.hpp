@@ -6,26 +6,23 @@
 #include "model.hpp"
 #include "bounds.hpp"
 #include "choice.hpp"
+#include "cue_shapes.hpp"
+#include "mood.hpp"
 #include "phase_times.hpp"
 #include "phases.hpp"
 #include "meta_plan.hpp"
 #include "remembering.hpp"
+#include "vigour.hpp"
 #include "project.hpp"
 #include "language.hpp"
 
 namespace metagraph {
 
 struct SamplingStep;
-struct CueShape;
 struct Performer;
 
 namespace sampling {
 
-inline constexpr double FITS = 1e-06; // seconds by which sums of times may be off
-inline constexpr double HURRY = 2.0; // a hold is played at most this many times as fast as it was made
-// seconds in which an action whose retraction is cut goes back to its stance, at the least
-inline constexpr double RETRACTION = 0.4;
-inline constexpr double SHARED = 0.25; // seconds within which two strokes may be one
 // seconds of crossfade when a long rest changes from one loop of its stance to another
 inline constexpr double LOOP_FADE = 0.6;
 inline Ref<Performer> performer_after(
@@ -34,7 +31,8 @@ inline Ref<Performer> performer_after(
     std::uint32_t seed,
     const std::string& begin,
     const Ref<Past>& past,
-    const List<Ref<Cue>>& cues
+    const List<Ref<Cue>>& cues,
+    const Ref<Moods>& moods
 );
 
 }  // namespace sampling
@@ -48,44 +46,17 @@ struct SamplingStep {
         : candidates(std::move(candidates_)), hop(std::move(hop_)) {}
 };
 
-/// How an action would play: from `start` on, `length` seconds, at least `shortest`; the rest as in a cue.
-struct CueShape {
-    double start;
-    double entry;
-    double length;
-    double shortest;
-    double hold_from;
-    double hold_to;
-    double hold;
-
-    CueShape(
-        double start_,
-        double entry_,
-        double length_,
-        double shortest_,
-        double hold_from_ = 0.0,
-        double hold_to_ = 0.0,
-        double hold_ = 0.0
-    )
-        : start(start_),
-            entry(entry_),
-            length(length_),
-            shortest(shortest_),
-            hold_from(hold_from_),
-            hold_to(hold_to_),
-            hold(hold_) {}
-};
-
 /// One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
 ///
 /// uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun:
 /// keys of meta actions whose chain of transitions plays already. served: keys of those that another's action serves,
-/// too.
+/// too. moods: what it is in the mood for, and when.
 struct Performer {
     Ref<Project> project;
     Ref<MetaGraph> graph;
     std::uint32_t seed;
     std::string stance;
+    Ref<Moods> moods;
     double free;
     Map<std::string, int> uses;
     Map<std::string, List<std::string>> recent;
@@ -101,6 +72,7 @@ struct Performer {
         Ref<MetaGraph> graph_,
         std::uint32_t seed_,
         std::string stance_,
+        Ref<Moods> moods_,
         double free_ = 0.0,
         Map<std::string, int> uses_ = Map<std::string, int>{},
         Map<std::string, List<std::string>> recent_ = Map<std::string, List<std::string>>{},
@@ -115,6 +87,7 @@ struct Performer {
             graph(std::move(graph_)),
             seed(seed_),
             stance(std::move(stance_)),
+            moods(std::move(moods_)),
             free(free_),
             uses(std::move(uses_)),
             recent(std::move(recent_)),
@@ -143,32 +116,15 @@ struct Performer {
     /// time, and serve most of it.
     List<Ref<Action>> _timely(const Ref<Bound>& bound, const List<Ref<Action>>& fitting, double now);
 
-    /// Return by how many seconds an action that plays so comes late, at its stroke where one is asked for; less than 0
-    /// before its time.
-    double _lateness(const Ref<Action>& action, const Ref<MetaRequest>& request, const Ref<CueShape>& shape);
-
     /// Return what a request that comes late waits for.
     std::string _cause(const Ref<MetaRequest>& request, double now);
-
-    /// Whether two requests may be met by one stroke.
-    bool _shares(const Ref<MetaRequest>& request, const Ref<MetaRequest>& other);
-
-    /// Whether an action is what a request for any asks for.
-    bool _meets(const Ref<Action>& action, const Ref<MetaRequest>& request);
 
     /// Return when something that is asked for has to begin at the latest, to be on time; never in the past, where
     /// nothing meets it.
     double _latest(const Ref<MetaRequest>& request);
 
-    /// Return by how many seconds a request may come late, 0 where it does not say.
-    double _slack(const Ref<MetaRequest>& request);
-
     /// Return when what follows an action could begin at the earliest.
     double _over(const Ref<Action>& action, const Ref<MetaRequest>& request, double now);
-
-    /// Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless it was asked
-    /// for.
-    double _hurried(const Ref<Action>& action, const Ref<CueShape>& shape);
 
     /// Return when an action that is to be played through is left nevertheless: early enough for the first of what
     /// follows that can be in time then, late enough for its own stroke; infinity for never.
@@ -177,9 +133,6 @@ struct Performer {
     /// Leave the running action early for the first of what is asked for that can be in time then. What a model wrote
     /// is left at once, what was asked for where its retraction begins.
     void make_way(const Ref<MetaAction>& running, const List<Ref<MetaAction>>& asked, double now);
-
-    /// Whether something that plays so is over by a limit.
-    bool _fits(const Ref<CueShape>& shape, double limit);
 
     /// Return when an action may be drawn again.
     double _cooled(const Ref<Action>& action);
@@ -205,8 +158,22 @@ struct Performer {
     /// Return how an action would play for a request from `now` on, or as a step on the way to it.
     Ref<CueShape> _shape(const Ref<Action>& action, const Ref<MetaRequest>& request, double now);
 
-    /// Draw with p_k ~ likelihood_k / max(c_k, 1), leaving out those used too recently as long as any others are left.
-    Ref<Action> _draw(const List<Ref<Action>>& candidates, const std::string& key, double now);
+    /// Return the mood that something asked for is played in from `at` on, or at its stroke.
+    Ref<Mood> _mood(const Ref<MetaRequest>& request, double at);
+
+    /// Return how fast an action is played, 1 where it was made for the mood.
+    double _tempo(const Ref<Action>& action, const Ref<MetaRequest>& request, double at);
+
+    /// Return how large an action is played. Those that move feet or leave for another stance, touch something or were
+    /// made for the mood are played as they were made.
+    double _extent(const Ref<Action>& action, const Ref<Mood>& mood);
+
+    /// Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood favours, leaving out those used too recently as
+    /// long as any others are left.
+    Ref<Action> _draw(const List<Ref<Action>>& candidates, const std::string& key, double now, const Ref<Mood>& mood);
+
+    /// Return how much likelier a mood makes an action, 1 in none.
+    double _favour(const Ref<Action>& action, const Ref<Mood>& mood);
 
     /// Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and
     /// so on.
@@ -221,7 +188,8 @@ struct Performer {
         const Ref<CueShape>& shape,
         const Ref<Bound>& bound,
         bool hops,
-        const std::string& stance
+        const std::string& stance,
+        const Ref<Mood>& mood
     );
 
     void _keep(const Ref<Cue>& cue);
@@ -275,7 +243,7 @@ inline void Performer::perform(const List<Ref<MetaAction>>& metas, double end) {
             this->_realise(bound, std::max(this->ready(), bounds::begins(meta)));
             continue;
         }
-        if (meta->end <= this->ready() + sampling::FITS
+        if (meta->end <= this->ready() + cue_shapes::FITS
             && meta->start < this->ready()
             && !lang::contains(this->begun, meta->key())) {
             std::string running = "the running action";
@@ -314,7 +282,7 @@ inline void Performer::_realise(const Ref<Bound>& bound, double now) {
         if (limit < INFINITY) { // else all fit
             List<Ref<Action>> found;
             for (const auto& a : step->candidates) {
-                if (this->_fits(this->_shape(a, asked, now), limit)) {
+                if (cue_shapes::fits_before(this->_shape(a, asked, now), limit)) {
                     found.push_back(a);
                 }
             }
@@ -332,7 +300,7 @@ inline void Performer::_realise(const Ref<Bound>& bound, double now) {
         if (!hops && !meta->request->action.has_value()) {
             List<Ref<Action>> warm;
             for (const auto& a : fitting) {
-                if (a->cooldown <= 0 || this->_cooled(a) <= this->_shape(a, asked, now)->start + sampling::FITS) {
+                if (a->cooldown <= 0 || this->_cooled(a) <= this->_shape(a, asked, now)->start + cue_shapes::FITS) {
                     warm.push_back(a);
                 }
             }
@@ -363,9 +331,15 @@ inline void Performer::_realise(const Ref<Bound>& bound, double now) {
                 return;
             }
         }
-        Ref<Action> action = this->_draw(fitting, hops ? lang::text(meta->key(), "/", step->hop) : meta->key(), now);
+        Ref<Mood> mood = this->_mood(asked, now);
+        Ref<Action> action = this->_draw(
+            fitting,
+            hops ? lang::text(meta->key(), "/", step->hop) : meta->key(),
+            now,
+            mood
+        );
         Ref<CueShape> shape = this->_shape(action, asked, now);
-        Ref<Cue> cue = this->_cue(action, shape, bound, hops, stance);
+        Ref<Cue> cue = this->_cue(action, shape, bound, hops, stance, mood);
         cues.push_back(cue);
         now = cue->end;
         stance = cue->then;
@@ -378,10 +352,10 @@ inline void Performer::_realise(const Ref<Bound>& bound, double now) {
 inline List<Ref<Action>> Performer::_timely(const Ref<Bound>& bound, const List<Ref<Action>>& fitting, double now) {
     Ref<MetaAction> meta = bound->meta;
     Ref<MetaRequest> request = meta->request;
-    double allowed = this->_slack(request);
+    double allowed = cue_shapes::slack_of(request);
     Map<std::string, double> late;
     for (const auto& a : fitting) {
-        late[a->id] = this->_lateness(a, request, this->_shape(a, request, now));
+        late[a->id] = cue_shapes::lateness(this->project, a, request, this->_shape(a, request, now));
     }
     List<double> found;
     for (const auto& a : fitting) {
@@ -389,7 +363,7 @@ inline List<Ref<Action>> Performer::_timely(const Ref<Bound>& bound, const List<
     }
     double least = lang::min_of(found);
     std::string waits{};
-    if (least > allowed + sampling::FITS) {
+    if (least > allowed + cue_shapes::FITS) {
         waits = this->_cause(request, now);
         this->_tell(
             meta,
@@ -407,7 +381,7 @@ inline List<Ref<Action>> Performer::_timely(const Ref<Bound>& bound, const List<
         );
         return List<Ref<Action>>{};
     }
-    if (least > sampling::FITS) {
+    if (least > cue_shapes::FITS) {
         waits = this->_cause(request, now);
         this->_tell(
             meta,
@@ -419,17 +393,17 @@ inline List<Ref<Action>> Performer::_timely(const Ref<Bound>& bound, const List<
     }
     List<Ref<Action>> timely;
     for (const auto& a : fitting) {
-        if (late.at(a->id) <= std::max(least, 0.0) + sampling::FITS) {
+        if (late.at(a->id) <= std::max(least, 0.0) + cue_shapes::FITS) {
             timely.push_back(a);
         }
     }
     for (const auto& other : bound->after) {
-        if (!this->_shares(request, other->request)) {
+        if (!cue_shapes::may_share(request, other->request)) {
             continue;
         }
         List<Ref<Action>> both;
         for (const auto& a : timely) {
-            if (this->_meets(a, other->request)) {
+            if (cue_shapes::meets(a, other->request)) {
                 both.push_back(a);
             }
         }
@@ -439,7 +413,7 @@ inline List<Ref<Action>> Performer::_timely(const Ref<Bound>& bound, const List<
         }
         if (lang::len(both) > 0
             && other->request->late.has_value()
-            && behind <= *other->request->late + sampling::FITS) {
+            && behind <= *other->request->late + cue_shapes::FITS) {
             timely = both;
             this->served.insert(other->key());
             std::string message = lang::text("shares the stroke of '", request->id, "'");
@@ -453,7 +427,7 @@ inline List<Ref<Action>> Performer::_timely(const Ref<Bound>& bound, const List<
         }
     }
     for (const auto& other : following) {
-        for (const auto& slack : List<double>{0.0, this->_slack(other->request)}) {
+        for (const auto& slack : List<double>{0.0, cue_shapes::slack_of(other->request)}) {
             double by = this->_latest(other->request) + slack;
             List<Ref<Action>> over;
             for (const auto& a : timely) {
@@ -469,25 +443,13 @@ inline List<Ref<Action>> Performer::_timely(const Ref<Bound>& bound, const List<
     return timely;
 }
 
-inline double Performer::_lateness(
-    const Ref<Action>& action,
-    const Ref<MetaRequest>& request,
-    const Ref<CueShape>& shape
-) {
-    if (request->stroke.has_value() && action->kind == "gesture") {
-        Ref<Phases> found = phases::phases(this->project, action);
-        return shape->start + found->stroke - shape->entry - *request->stroke;
-    }
-    return shape->start - request->start;
-}
-
 inline std::string Performer::_cause(const Ref<MetaRequest>& request, double now) {
-    if (now <= request->start + sampling::FITS) {
+    if (now <= request->start + cue_shapes::FITS) {
         return "its own preparation";
     }
     if (lang::len(this->cues) > 0
-        && this->ready() >= now - sampling::FITS
-        && lang::at(this->cues, -1)->end >= this->free - sampling::FITS) {
+        && this->ready() >= now - cue_shapes::FITS
+        && lang::at(this->cues, -1)->end >= this->free - cue_shapes::FITS) {
         return lang::text(
             "'",
             lang::at(this->cues, -1)->action->name,
@@ -499,75 +461,37 @@ inline std::string Performer::_cause(const Ref<MetaRequest>& request, double now
     return lang::len(this->cues) > 0 ? std::string("what comes before it") : std::string("the time it became known at");
 }
 
-inline bool Performer::_shares(const Ref<MetaRequest>& request, const Ref<MetaRequest>& other) {
-    if (!request->stroke.has_value() || !other->stroke.has_value()) {
-        return false;
-    }
-    return !request->action.has_value()
-        && !other->action.has_value()
-        && request->kind == other->kind
-        && (!other->hold.has_value() || *other->hold == request->hold)
-        && std::abs(*request->stroke - *other->stroke) <= sampling::SHARED;
-}
-
-inline bool Performer::_meets(const Ref<Action>& action, const Ref<MetaRequest>& request) {
-    bool are_all = true;
-    for (const auto& tag : request->tags) {
-        if (!lang::contains(action->tags, tag)) {
-            are_all = false;
-            break;
-        }
-    }
-    return are_all
-        && (!request->limb.has_value() || action->limb == *request->limb)
-        && (lang::len(request->among) == 0 || lang::contains(request->among, action->id));
-}
-
 inline double Performer::_latest(const Ref<MetaRequest>& request) {
     if (!request->stroke.has_value()) {
         return request->start;
     }
     double least = INFINITY;
     for (const auto& action : this->graph->of(this->stance, request->kind)) {
-        bool fits = this->_meets(action, request);
+        bool fits = cue_shapes::meets(action, request);
         if (request->action.has_value()) {
             fits = action->id == *request->action;
         }
         if (fits && this->_usable(action)) {
             Ref<Phases> found = phases::phases(this->project, action);
-            least = std::min(least, found->stroke - found->skip(action->timing->blend_in));
+            double lead = found->stroke - found->skip(action->timing->blend_in);
+            least = std::min(least, lead + mood::drag(lead, this->_tempo(action, request, *request->stroke)));
         }
     }
     return *request->stroke - least;
 }
 
-inline double Performer::_slack(const Ref<MetaRequest>& request) {
-    return !request->late.has_value() ? 0.0 : *request->late;
-}
-
 inline double Performer::_over(const Ref<Action>& action, const Ref<MetaRequest>& request, double now) {
     Ref<CueShape> shape = this->_shape(action, request, now);
-    return shape->start + this->_hurried(action, shape) + this->project->settings->rest - sampling::FITS;
-}
-
-inline double Performer::_hurried(const Ref<Action>& action, const Ref<CueShape>& shape) {
-    if (action->kind != "gesture" || action->timing->earliest_exit.has_value()) {
-        return shape->shortest;
-    }
-    Ref<Phases> found = phases::phases(this->project, action);
-    double left = found->relax - shape->entry + shape->hold - (shape->hold_to - shape->hold_from);
-    if (shape->hold <= 0) {
-        left = found->stroke_end - shape->entry;
-    }
-    return std::min(shape->length, left + std::max(action->timing->blend_out, sampling::RETRACTION));
+    return shape->start + cue_shapes::hurried(this->project, action, shape) + this->project->settings->rest
+        - cue_shapes::FITS;
 }
 
 inline double Performer::_until(const Ref<Action>& action, const Ref<CueShape>& shape, const Ref<Bound>& bound) {
     double rest = this->project->settings->rest;
-    double soonest = shape->start + this->_hurried(action, shape);
+    double soonest = shape->start + cue_shapes::hurried(this->project, action, shape);
     for (const auto& other : bound->after) {
-        double in_time = this->_latest(other->request) + this->_slack(other->request);
-        if (!lang::contains(this->served, other->key()) && soonest + rest <= in_time + sampling::FITS) {
+        double in_time = this->_latest(other->request) + cue_shapes::slack_of(other->request);
+        if (!lang::contains(this->served, other->key()) && soonest + rest <= in_time + cue_shapes::FITS) {
             return std::max(soonest, bounds::begins(other) - rest);
         }
     }
@@ -579,7 +503,7 @@ inline void Performer::make_way(const Ref<MetaAction>& running, const List<Ref<M
     if (running == nullptr || cue->action->kind == "transition" || cue->end - cue->blend_out <= now) {
         return;
     }
-    double soonest = now + std::max(cue->blend_out, sampling::RETRACTION);
+    double soonest = now + std::max(cue->blend_out, cue_shapes::RETRACTION);
     if (!running->written) {
         Ref<CueShape> shape = lang::made<CueShape>(
             cue->start,
@@ -588,20 +512,23 @@ inline void Performer::make_way(const Ref<MetaAction>& running, const List<Ref<M
             cue->end - cue->start,
             cue->hold_from,
             cue->hold_to,
-            cue->hold
+            cue->hold,
+            cue->tempo
         );
-        soonest = std::max(soonest, cue->start + this->_hurried(cue->action, shape));
+        soonest = std::max(soonest, cue->start + cue_shapes::hurried(this->project, cue->action, shape));
     }
     double rest = this->project->settings->rest;
     for (const auto& meta : asked) {
         Ref<MetaRequest> request = meta->request;
-        double in_time = this->_latest(request) + this->_slack(request);
-        if (!request->late.has_value() || meta->rank() < running->rank() || in_time < soonest + rest - sampling::FITS) {
+        double in_time = this->_latest(request) + cue_shapes::slack_of(request);
+        if (!request->late.has_value()
+            || meta->rank() < running->rank()
+            || in_time < soonest + rest - cue_shapes::FITS) {
             continue;
         }
         double end = std::max(soonest, bounds::begins(meta) - rest);
         if (end < cue->end) {
-            double out = std::max(cue->blend_out, sampling::RETRACTION);
+            double out = std::max(cue->blend_out, cue_shapes::RETRACTION);
             double into = std::min(cue->blend_in, std::max(0.0, end - out - cue->start));
             lang::at(this->cues, -1) = lang::made<Cue>(
                 cue->action,
@@ -615,17 +542,15 @@ inline void Performer::make_way(const Ref<MetaAction>& running, const List<Ref<M
                 cue->meta,
                 cue->hold_from,
                 cue->hold_to,
-                cue->hold
+                cue->hold,
+                cue->extent,
+                cue->tempo
             );
             this->free = end;
             this->ended[cue->action->id] = end;
         }
         return;
     }
-}
-
-inline bool Performer::_fits(const Ref<CueShape>& shape, double limit) {
-    return shape->start + shape->shortest <= limit + sampling::FITS;
 }
 
 inline double Performer::_cooled(const Ref<Action>& action) {
@@ -861,51 +786,46 @@ inline bool Performer::_usable(const Ref<Action>& action) {
 }
 
 inline Ref<CueShape> Performer::_shape(const Ref<Action>& action, const Ref<MetaRequest>& request, double now) {
-    auto [start, end] = this->project->span(action);
-    double begin = now;
-    double entry = start;
-    double hold_from = 0.0;
-    double hold_to = 0.0;
-    double hold = 0.0;
-    if (request != nullptr
-        && action->kind == "gesture"
-        && (request->hold.has_value() || request->stroke.has_value() || !request->prepare)) {
-        Ref<Phases> found = phases::phases(this->project, action);
-        double latest = found->skip(action->timing->blend_in);
-        entry = request->prepare ? start : latest;
-        // Wait for the stroke, or catch up with it by cutting the preparation.
-        if (request->stroke.has_value()) {
-            begin = std::max(now, *request->stroke - (found->stroke - entry));
-            entry = std::min(
-                std::max(entry, found->stroke - std::max(0.0, *request->stroke - begin)),
-                std::max(entry, latest)
-            );
-        }
-        if (request->hold.has_value()) {
-            hold_from = found->stroke_end;
-            hold_to = found->relax;
-            hold = std::max(*request->hold, (hold_to - hold_from) / sampling::HURRY);
-            if (hold <= 0) {
-                hold_from = 0.0;
-                hold_to = 0.0;
-            }
-        }
-    }
-    double length = end - entry + hold - (hold_to - hold_from);
-    double shortest = length;
-    std::optional<double> exit_at = action->timing->earliest_exit;
-    if (exit_at.has_value()) {
-        double left = *exit_at - entry + (*exit_at >= hold_to ? hold - (hold_to - hold_from) : 0.0);
-        shortest = std::min(length, std::max(0.0, left) + action->timing->blend_out);
-    }
-    return lang::made<CueShape>(begin, entry, length, shortest, hold_from, hold_to, hold);
+    return cue_shapes::shape_of(this->project, action, request, now, this->_tempo(action, request, now));
 }
 
-inline Ref<Action> Performer::_draw(const List<Ref<Action>>& candidates, const std::string& key, double now) {
+inline Ref<Mood> Performer::_mood(const Ref<MetaRequest>& request, double at) {
+    if (request == nullptr) {
+        return mood::mood_at(this->moods, at);
+    }
+    Ref<Mood> mood = mood::mood_at(this->moods, !request->stroke.has_value() ? at : *request->stroke);
+    if (!request->valence.has_value() && !request->arousal.has_value() && !request->intensity.has_value()) {
+        return mood;
+    }
+    return mood::changed(mood, request->valence, request->arousal, request->intensity);
+}
+
+inline double Performer::_tempo(const Ref<Action>& action, const Ref<MetaRequest>& request, double at) {
+    Ref<Mood> mood = this->_mood(request, at);
+    return (mood->neutral() || mood::made_for(mood, action->tags)) ? 1.0 : mood::tempo(mood);
+}
+
+inline double Performer::_extent(const Ref<Action>& action, const Ref<Mood>& mood) {
+    if (this->graph->layer == "body" || action->kind == "transition" || mood->neutral()) {
+        return 1.0;
+    }
+    return (lang::len(action->contacts) > 0
+            || lang::contains(action->tags, mood::HELD)
+            || mood::made_for(mood, action->tags))
+        ? 1.0
+        : mood::extent(mood);
+}
+
+inline Ref<Action> Performer::_draw(
+    const List<Ref<Action>>& candidates,
+    const std::string& key,
+    double now,
+    const Ref<Mood>& mood
+) {
     List<Ref<Action>> left = this->_spaced(candidates);
     Map<std::string, double> weights;
     for (const auto& a : left) {
-        weights[a->id] = a->likelihood / std::max(this->_count(a->id, now), 1.0);
+        weights[a->id] = a->likelihood / std::max(this->_count(a->id, now), 1.0) * this->_favour(a, mood);
     }
     bool is_any = false;
     for (const auto& w : lang::values(weights)) {
@@ -926,6 +846,10 @@ inline Ref<Action> Performer::_draw(const List<Ref<Action>>& candidates, const s
         }
     }
     return first;
+}
+
+inline double Performer::_favour(const Ref<Action>& action, const Ref<Mood>& mood) {
+    return mood->neutral() ? 1.0 : mood::favour(mood, action->tags, vigour::vigour(this->project, action));
 }
 
 inline List<Ref<Action>> Performer::_spaced(const List<Ref<Action>>& candidates) {
@@ -986,7 +910,8 @@ inline Ref<Cue> Performer::_cue(
     const Ref<CueShape>& shape,
     const Ref<Bound>& bound,
     bool hops,
-    const std::string& stance
+    const std::string& stance,
+    const Ref<Mood>& mood
 ) {
     double length = shape->length;
     double into = std::max(0.0, action->timing->blend_in);
@@ -997,7 +922,7 @@ inline Ref<Cue> Performer::_cue(
     } else if (!hops) {
         length = std::min(length, this->_until(action, shape, bound) - shape->start);
         if (length < shape->length) {
-            out = std::max(out, sampling::RETRACTION);
+            out = std::max(out, cue_shapes::RETRACTION);
         }
     }
     if (shape->entry > std::get<0>(this->project->span(action))) {
@@ -1021,7 +946,9 @@ inline Ref<Cue> Performer::_cue(
         bound->meta->key(),
         shape->hold_from,
         shape->hold_to,
-        shape->hold
+        shape->hold,
+        this->_extent(action, mood),
+        shape->tempo
     );
 }
 
@@ -1133,7 +1060,8 @@ inline Ref<Performer> performer_after(
     std::uint32_t seed,
     const std::string& begin,
     const Ref<Past>& past,
-    const List<Ref<Cue>>& cues
+    const List<Ref<Cue>>& cues,
+    const Ref<Moods>& moods
 ) {
     std::string stance = lang::contains(graph->stances, past->stance) ? past->stance : begin;
     Ref<Performer> out = lang::made<Performer>(
@@ -1141,6 +1069,7 @@ inline Ref<Performer> performer_after(
         graph,
         seed,
         stance,
+        moods,
         past->free,
         past->uses,
         past->recent,

@@ -1,315 +1,690 @@
 // When the life layers do what: drawn from the seed, event by event, then pure in time.
 //
-// Each event depends only on the one before it and on what is asked meanwhile, and its chance on its number. So a schedule
-// grows as a plan does: what has begun stays, tick by tick gives what one call gives, and what lies behind can be forgotten.
+// Each event depends only on the one before it and on what is asked meanwhile, and its chance on its number. So a
+// schedule grows as a plan does: what has begun stays, tick by tick gives what one call gives, and what lies behind can
+// be forgotten.
+//
+// Translated from metagraph/playback/life/schedule.py; change that, and translate anew.
 #pragma once
 
+#include "life.hpp"
+#include "words.hpp"
 #include "choice.hpp"
 #include "lane.hpp"
+#include "track.hpp"
+#include "voice.hpp"
 #include "wanted.hpp"
+#include "mood.hpp"
+#include "life.hpp"
+#include "voice.hpp"
+#include "language.hpp"
 
 namespace metagraph {
 
-/// Everything that happens of itself from 0 to `end` seconds, in lanes; a lane's values stand in the order given here.
-///
-/// modes: place among the modes. targets: what is looked at. breaths: length s, depth. aversions: end s, right-to-left and
-/// upward part of the offset (of life's angle). saccades: offset to the left and up, degrees. blinks: 0 of itself, 1 on a
-/// stressed syllable, 2 asked for. drawn: seconds up to which the lanes are filled, -1 before they ever were; track: what
-/// they were drawn from.
-struct Schedule {
-    double end = 0.0, drawn = -1.0;
-    Ref<const Lane> modes = lang::made<Lane>();
-    List<Ref<const GazeTarget>> targets;
-    Ref<const Lane> breaths = modes, aversions = modes, saccades = modes, blinks = modes;
-    Ref<const Track> track;
-};
+struct Schedule;
+struct LifeDraw;
 
 namespace schedule {
 
-inline constexpr double BLOCK = 8; // seconds drawn at a time, so that a running plan need not draw at every tick
-inline constexpr double RECALL = 4; // seconds of looks kept when the past is forgotten: longer than any turn of the head takes
-inline constexpr double AFTER_BLINK = 1; // seconds a stressed syllable's blink comes after the last, at least
-inline constexpr double BLINK_GAPS[] = {0.57, 0.845}; // of the mean gap: the shortest, and what chance adds to it
-inline constexpr double FIXATION = 0.2; // seconds the eyes rest at least
-inline constexpr double SACCADE = 1.2, LARGEST_SACCADE = 4, UPRIGHT = 0.6; // degrees on average, at most; of that, up and down
-inline constexpr double AVERSION_GAPS[] = {0.6, 0.8};
+inline constexpr double BLOCK = 8.0; // seconds drawn at a time, so that a running plan need not draw at every tick
+// seconds of looks kept when the past is forgotten: longer than any turn of the head takes
+inline constexpr double RECALL = 4.0;
+// Blinks (Yang et al., section 7.3): on stressed syllables at least so many seconds after the last; of
+// themselves 2 to 5 s after it at 17 a minute: the factors are of the mean gap.
+inline constexpr double AFTER_BLINK = 1.0;
+inline constexpr double BLINK_GAP = 0.57; // the shortest gap
+inline constexpr double BLINK_CHANCE = 0.845; // and what chance adds to it
+// Saccades: fixations last 0.2 s and more; sizes fall off as in "Eyes Alive", small ones only: the eyes stay
+// with what they look at.
+inline constexpr double FIXATION = 0.2;
+inline constexpr double SACCADE = 1.2; // degrees on average
+inline constexpr double LARGEST_SACCADE = 4.0; // degrees
+inline constexpr double UPRIGHT = 0.6; // how much of an offset goes up and down
+// Aversions: at somewhat regular intervals, in a random direction, more often to the sides.
+inline constexpr double AVERSION_GAP = 0.6;
+inline constexpr double AVERSION_CHANCE = 0.8;
 inline constexpr double BETWEEN_AVERSIONS = 0.6; // seconds at least
 inline constexpr double SHORTEST_AVERSION = 0.25;
-inline constexpr double BREATHS[] = {0.85, 0.3}; // of the mean length and depth: the least, and what chance adds
+inline constexpr double BREATH = 0.85; // of the mean length and depth: the least
+inline constexpr double BREATH_CHANCE = 0.3; // and what chance adds
+inline Ref<Schedule> schedule(
+    const Ref<Life>& life,
+    const Ref<Track>& track,
+    const Ref<Voices>& voices,
+    std::uint32_t seed,
+    double end,
+    const Ref<Schedule>& before,
+    double now
+);
+inline std::string _change(
+    const Ref<Schedule>& before,
+    const Ref<Life>& life,
+    const Ref<Track>& track,
+    const Ref<Voices>& voices,
+    std::uint32_t seed
+);
+inline Ref<LifeDraw> _draw(
+    const Ref<Life>& life,
+    const Ref<Track>& track,
+    const Ref<Voices>& voices,
+    std::uint32_t seed,
+    double cut,
+    double drawn,
+    const Ref<Schedule>& before
+);
+inline double share(const Ref<Lane>& lane, double start, double end);
 
-/// How many targets begin before a time, or with `after` no later.
-inline int begun_by(const List<Ref<const GazeTarget>>& targets, double time, bool after = true) {
-    int out = 0;
-    while (out < lang::len(targets)) {
-        const double start = lang::at(targets, out)->start;
-        if (start > time || (!after && start == time)) break;
-        out++;
-    }
-    return out;
-}
+}  // namespace schedule
 
-/// The schedule without what ended before `seconds`; what is drawn on from it stays as it would have been.
-inline Ref<const Schedule> since(const Life& life, const Ref<const Schedule>& before, double seconds) {
-    auto out = lang::made<Schedule>(*before);
-    double needed = INFINITY;
-    bool idle = false;
-    // Gaps run in modes' time from the event before, so the modes since then are needed.
-    auto kept = [&](Ref<const Lane>& lane, double rate) {
-        lane = lane::since(lane, seconds);
-        if (lane->empty()) idle = idle || before->drawn < 0 || rate > 0;
-        else needed = std::min(needed, lane->starts.front());
-    };
-    kept(out->breaths, life.breath_rate);
-    kept(out->aversions, life.aversion_rate);
-    kept(out->saccades, life.saccade_rate);
-    kept(out->blinks, life.blinks);
-    needed = idle ? 0 : needed == INFINITY ? seconds : needed;
-    out->targets = lang::part(before->targets, std::max(0, begun_by(before->targets, std::min(needed, seconds - RECALL)) - 1));
-    out->modes = lane::since(before->modes, needed, 0);
-    return out;
-}
+/// Everything that happens of itself from 0 to `end` seconds, in lanes; a lane's rows stand in the order given here.
+///
+/// modes: place among MODES. moods: valence, arousal, intensity. targets: what is looked at. breaths: length s, depth.
+/// aversions: end s, right-to-left and upward part of the offset (of life's angle). saccades: offset to the left and
+/// up, degrees. blinks: 0 of itself, 1 on a stressed syllable, 2 asked for. drawn: seconds up to which the lanes are
+/// filled; the rest is what they were drawn from.
+struct Schedule {
+    double end;
+    double drawn;
+    Ref<Lane> modes;
+    Ref<Lane> moods;
+    List<Ref<GazeTarget>> targets;
+    Ref<Lane> breaths;
+    Ref<Lane> aversions;
+    Ref<Lane> saccades;
+    Ref<Lane> blinks;
+    Ref<Life> life;
+    Ref<Track> track;
+    Ref<Voices> voices;
+    std::uint32_t seed;
 
-/// One extension: lanes filled from `cut` to `drawn`.
-class Draw {
-public:
-    Ref<const Lane> modes;
-    List<Ref<const GazeTarget>> targets;
-
-    Draw(
-        const Life& life, const Map<std::string, Ref<Voice>>& voices, const Track& track, std::uint32_t seed, double cut,
-        double drawn, const Schedule& before
+    explicit Schedule(
+        double end_ = 0.0,
+        double drawn_ = 0.0,
+        Ref<Lane> modes_ = lang::made<Lane>(List<double>{}, List<List<double>>{}, 0, 1),
+        Ref<Lane> moods_ = lang::made<Lane>(List<double>{}, List<List<double>>{}, 0, 3),
+        List<Ref<GazeTarget>> targets_ = List<Ref<GazeTarget>>{},
+        Ref<Lane> breaths_ = lang::made<Lane>(List<double>{}, List<List<double>>{}, 0, 2),
+        Ref<Lane> aversions_ = lang::made<Lane>(List<double>{}, List<List<double>>{}, 0, 3),
+        Ref<Lane> saccades_ = lang::made<Lane>(List<double>{}, List<List<double>>{}, 0, 2),
+        Ref<Lane> blinks_ = lang::made<Lane>(List<double>{}, List<List<double>>{}, 0, 1),
+        Ref<Life> life_ = nullptr,
+        Ref<Track> track_ = nullptr,
+        Ref<Voices> voices_ = nullptr,
+        std::uint32_t seed_ = 0
     )
-        : life_(life), voices_(voices), track_(track), seed_(seed), cut_(cut), drawn_(drawn), calm_(1 - life.stillness) {
-        modes = lane::until(before.modes, cut);
-        const int last = modes->empty() ? -1 : static_cast<int>(modes->values.back()[0]);
-        List<double> starts;
-        List<List<double>> values;
-        for (const auto& [at, mode] : wanted::modes_between(track, cut, drawn)) {
-            if (starts.empty() && at == cut && mode == last) continue;
-            starts.push_back(at);
-            values.push_back({static_cast<double>(mode)});
-        }
-        modes = lane::plus(modes, starts, values);
-        targets = lang::part(before.targets, 0, begun_by(before.targets, cut, false));
-        for (const auto& target : wanted::targets_between(track, cut, drawn)) {
-            if (targets.empty() || !target->like(*targets.back())) targets.push_back(target);
-        }
-    }
+        : end(end_),
+            drawn(drawn_),
+            modes(std::move(modes_)),
+            moods(std::move(moods_)),
+            targets(std::move(targets_)),
+            breaths(std::move(breaths_)),
+            aversions(std::move(aversions_)),
+            saccades(std::move(saccades_)),
+            blinks(std::move(blinks_)),
+            life(std::move(life_)),
+            track(std::move(track_)),
+            voices(std::move(voices_)),
+            seed(seed_) {}
 
-    /// Lay modes and strict looks out in one row of segments.
-    void begin(double cut) {
-        cut_ = cut;
-        Set<double> edges(modes->starts.begin(), modes->starts.end());
-        for (std::size_t n = 0; n < targets.size(); n++) {
-            if (n == 0 || targets[n]->strict != targets[n - 1]->strict) edges.insert(targets[n]->start);
-        }
-        for (const double edge : edges) {
-            const int mode = std::max(0, lang::bisect_right(modes->starts, edge) - 1);
-            edges_.push_back(edge);
-            manners_.push_back(lang::at(life_.manners, static_cast<int>(lang::at(modes->values, mode)[0])));
-            strict_.push_back(lang::at(targets, std::max(0, begun_by(targets, edge) - 1))->strict);
-        }
-    }
-
-    /// Each breath follows the one before; the first began before time 0, so that not everybody breathes alike.
-    Ref<const Lane> breaths(const Ref<const Lane>& lane) const {
-        List<double> starts;
-        List<List<double>> values;
-        std::optional<double> at;
-        if (!lane->empty()) at = lane->starts.back() + lane->values.back()[0];
-        for (int n = lane->next();;) {
-            if (at.has_value()) at = std::max(*at, cut_);
-            const Manner& ways = manner(at.value_or(0));
-            const double rate = life_.breath_rate * ways.breath_rate / 60;
-            if (rate <= 0) { // no breath until another mode begins
-                const int later = lang::bisect_right(edges_, at.value_or(0));
-                if (life_.breath_rate <= 0 || later == lang::len(edges_)) break;
-                at = lang::at(edges_, later);
-                continue;
-            }
-            double length = (BREATHS[0] + BREATHS[1] * chance({"breath", lang::text(n), "length"})) / rate;
-            length *= 1 + 2 * life_.stillness; // slower, too, but never halting
-            const double depth = ways.breathing * (BREATHS[0] + BREATHS[1] * chance({"breath", lang::text(n), "depth"}));
-            if (!at.has_value()) at = -length * chance({"breath", "first"});
-            if (*at >= drawn_) break;
-            starts.push_back(*at);
-            values.push_back({length, depth});
-            at = *at + length;
-            n++;
-        }
-        return lane::plus(lane, starts, values);
-    }
-
-    Ref<const Lane> saccades(const Ref<const Lane>& lane) const {
-        if (life_.saccade_rate <= 0 || calm_ <= 0) return lane;
-        const double mean = std::max(60 / life_.saccade_rate, FIXATION + 0.01);
-        return one_by_one(lane, lane->empty() ? 0 : lane->starts.back(), [&](const std::string& n, double last) {
-            const double need = FIXATION + (mean - FIXATION) * std::min(4.0, -std::log(chance({"saccade", n, "gap"})));
-            const double at = std::max(cut_, after(last, need, [&](const Manner& ways, bool) { return ways.saccade_rate * calm_; }));
-            double size = std::min(LARGEST_SACCADE, -SACCADE * std::log(chance({"saccade", n, "size"})));
-            size *= at < INFINITY ? manner(at).saccades : 0;
-            return Event{at, way("saccade", n, size), at};
-        });
-    }
-
-    Ref<const Lane> aversions(const Ref<const Lane>& lane) const {
-        if (life_.aversion_rate <= 0 || life_.aversion_length <= 0 || life_.aversion_angle <= 0 || calm_ <= 0) return lane;
-        auto speed = [&](const Manner& ways, bool strict) {
-            const double rate = life_.aversion_rate * ways.aversion_rate;
-            if (strict || rate <= 0) return 0.0;
-            return calm_ / std::max(BETWEEN_AVERSIONS, 60 / rate - life_.aversion_length * ways.aversion_length);
-        };
-        return one_by_one(lane, lane->empty() ? 0 : lane->values.back()[0], [&](const std::string& n, double last) {
-            const double need = AVERSION_GAPS[0] + AVERSION_GAPS[1] * chance({"aversion", n, "gap"});
-            const double at = std::max({cut_, last + BETWEEN_AVERSIONS, after(last, need, speed)});
-            const Manner& ways = at < INFINITY ? manner(at) : life_.manners.front();
-            const double length = life_.aversion_length * ways.aversion_length * (0.6 + 0.8 * chance({"aversion", n, "length"}));
-            const double end = at + std::max(SHORTEST_AVERSION, length);
-            const double size = ways.aversion_angle * (0.7 + 0.6 * chance({"aversion", n, "size"}));
-            return Event{at, lang::together(List<double>{end}, way("aversion", n, size)), end};
-        });
-    }
-
-    Ref<const Lane> blinks(const Ref<const Lane>& lane) const {
-        const double shut = life_.blink_close + life_.blink_open;
-        const double mean = life_.blinks > 0 && calm_ > 0 ? 60 / life_.blinks : INFINITY;
-        double last = lane->empty() ? -0.5 * std::min(mean, 10.0) * chance({"blink", "first"}) : lane->starts.back();
-        const List<std::pair<double, bool>> stressed = accents(std::max(0.0, std::min(cut_, last)));
-        // A stressed syllable may bring a blink: the first of a speech always, the others some time after the last blink.
-        auto suits = [&](const std::pair<double, bool>& one) {
-            return one.first >= cut_ && one.first >= last + (one.second ? shut + 0.1 : AFTER_BLINK / calm_);
-        };
-        List<double> asked;
-        for (const auto& blink : track_.blinks()) asked.push_back(blink->start);
-        List<double> starts;
-        List<List<double>> values;
-        std::size_t place = 0;
-        for (int n = lane->next();; n++) {
-            const double need = mean * (BLINK_GAPS[0] + BLINK_GAPS[1] * chance({"blink", lang::text(n), "gap"}));
-            double own = INFINITY;
-            if (need < INFINITY) {
-                own = std::max(cut_, after(last, need, [&](const Manner& ways, bool) { return ways.blinks * calm_; }));
-            }
-            while (place < stressed.size() && !suits(stressed[place])) place++;
-            const double accent = place < stressed.size() ? stressed[place].first : INFINITY;
-            const int wish = lang::bisect_left(asked, std::max(cut_, last + shut));
-            const double wanted = wish < lang::len(asked) ? lang::at(asked, wish) : INFINITY;
-            const double at = std::min({own, accent, wanted});
-            if (at >= drawn_) return lane::plus(lane, starts, values);
-            starts.push_back(at);
-            values.push_back({at == wanted ? 2.0 : at == accent ? 1.0 : 0.0});
-            last = at;
-        }
-    }
-
-private:
-    /// An event: when, what, and where the next gap begins.
-    struct Event {
-        double at;
-        List<double> value;
-        double next;
-    };
-
-    const Life& life_;
-    const Map<std::string, Ref<Voice>>& voices_;
-    const Track& track_;
-    std::uint32_t seed_;
-    double cut_, drawn_, calm_;
-    List<double> edges_;
-    List<Manner> manners_;
-    List<char> strict_;
-
-    double chance(const List<std::string>& words) const { return choice::uniform(seed_, words); }
-
-    int place_at(double seconds) const { return std::max(0, lang::bisect_right(edges_, seconds) - 1); }
-    const Manner& manner(double seconds) const { return lang::at(manners_, place_at(seconds)); }
-
-    /// Return when `need` has passed since `seconds`, for a clock that runs at `speed(manner, strict)`; infinity where not
-    /// before the end.
-    template <class Speed>
-    double after(double seconds, double need, Speed speed) const {
-        for (int place = place_at(seconds); seconds < drawn_; place++) {
-            const double end = place + 1 < lang::len(edges_) ? lang::at(edges_, place + 1) : drawn_;
-            const double rate = speed(lang::at(manners_, place), lang::at(strict_, place) != 0);
-            if (rate > 0 && seconds + need / rate < end) return seconds + need / rate;
-            need -= rate * std::max(0.0, end - seconds);
-            seconds = end;
-        }
-        return INFINITY;
-    }
-
-    /// Return an offset of a size in a random direction, more often to the sides: to the left and up.
-    List<double> way(const std::string& what, const std::string& n, double size) const {
-        const double turn = 2 * lang::PI * chance({what, n, "way"});
-        return {size * std::sin(turn + lang::PI / 2), UPRIGHT * size * std::sin(turn)};
-    }
-
-    /// Return the stressed syllables from `start` to the end that may bring blinks, and whether each is a speech's first.
-    List<std::pair<double, bool>> accents(double start) const {
-        List<std::pair<double, bool>> out;
-        if (!(calm_ > 0 && life_.accent_blinks > 0)) return out;
-        for (const auto& speech : track_.speeches()) {
-            if (speech->end <= start || speech->start >= drawn_) continue;
-            const Ref<Voice> voice = voice_of(voices_, *speech);
-            for (int n = 0; n < lang::len(voice->accents); n++) {
-                const double at = speech->start + lang::at(voice->accents, n);
-                const bool inside = start <= at && at < std::min(speech->end, drawn_);
-                if (inside && chance({speech->id, "accent", lang::text(n)}) < life_.accent_blinks) out.emplace_back(at, n == 0);
-            }
-        }
-        return out;
-    }
-
-    /// Draw events until the end.
-    template <class Next>
-    Ref<const Lane> one_by_one(const Ref<const Lane>& lane, double last, Next next) const {
-        List<double> starts;
-        List<List<double>> values;
-        for (int n = lane->next();; n++) {
-            const Event event = next(lang::text(n), last);
-            if (!(event.at < drawn_)) return lane::plus(lane, starts, values);
-            starts.push_back(event.at);
-            values.push_back(event.value);
-            last = event.next;
-        }
-    }
+    /// Return the schedule without what ended before `seconds`; what is drawn on from it stays as it would have been.
+    Ref<Schedule> since(double seconds) const;
 };
 
-/// Return the schedule to `end` seconds. What `before` holds that begins before `now` stays exactly as it was; what it holds
-/// for later is kept, too, where nothing it was drawn from has changed.
-inline Ref<const Schedule> extended(
-    const Life& life, const Map<std::string, Ref<Voice>>& voices, const Ref<const Track>& track, std::uint32_t seed, double end,
-    const Ref<const Schedule>& before, double now
-) {
-    auto out = lang::made<Schedule>(*before);
-    out->end = end;
-    out->track = track;
-    if (!life.on) return out;
-    out->drawn = std::max(BLOCK, std::ceil(end / BLOCK) * BLOCK);
-    const bool known = before->drawn >= 0;
-    auto alike = [&](Item::Kind kind) { return track::alike(*before->track, *track, kind); };
-    const bool only_places = known && alike(Item::look) && alike(Item::speech) && alike(Item::mode_from) && alike(Item::blink);
-    const bool same = only_places && alike(Item::place) && alike(Item::stay);
-    if (same && out->drawn == before->drawn) return out;
-    const double old = std::max(0.0, before->drawn);
-    const double cut = std::max(0.0, std::min(old, same ? out->drawn : now));
-    const double first = only_places && !same ? std::min(old, out->drawn) : cut;
-    Draw draw(life, voices, *track, seed, cut, out->drawn, *before);
-    out->breaths = lane::until(before->breaths, first);
-    out->aversions = lane::until(before->aversions, first);
-    out->saccades = lane::until(before->saccades, first);
-    out->blinks = lane::until(before->blinks, first);
-    if (first < out->drawn) {
-        draw.begin(first);
-        out->breaths = draw.breaths(out->breaths);
-        out->aversions = draw.aversions(out->aversions);
-        out->saccades = draw.saccades(out->saccades);
-        out->blinks = draw.blinks(out->blinks);
+/// One extension: lanes filled from `cut` to `drawn` seconds. edges: where modes, moods and strict looks change;
+/// manners: what mode and mood make of the amounts from each on; strict: 1 where the look then is, else 0.
+struct LifeDraw {
+    Ref<Life> life;
+    Ref<Track> track;
+    Ref<Voices> voices;
+    std::uint32_t seed;
+    double cut;
+    double drawn;
+    double calm;
+    Ref<Lane> modes;
+    Ref<Lane> moods;
+    List<Ref<GazeTarget>> targets;
+    List<double> edges;
+    List<Ref<Manner>> manners;
+    List<int> strict;
+
+    LifeDraw(
+        Ref<Life> life_,
+        Ref<Track> track_,
+        Ref<Voices> voices_,
+        std::uint32_t seed_,
+        double cut_,
+        double drawn_,
+        double calm_,
+        Ref<Lane> modes_,
+        Ref<Lane> moods_,
+        List<Ref<GazeTarget>> targets_,
+        List<double> edges_ = List<double>{},
+        List<Ref<Manner>> manners_ = List<Ref<Manner>>{},
+        List<int> strict_ = List<int>{}
+    )
+        : life(std::move(life_)),
+            track(std::move(track_)),
+            voices(std::move(voices_)),
+            seed(seed_),
+            cut(cut_),
+            drawn(drawn_),
+            calm(calm_),
+            modes(std::move(modes_)),
+            moods(std::move(moods_)),
+            targets(std::move(targets_)),
+            edges(std::move(edges_)),
+            manners(std::move(manners_)),
+            strict(std::move(strict_)) {}
+
+    /// Lay modes, moods and strict looks out in one row of segments.
+    void begin(double cut);
+
+    /// Return the chance of something about an event: 0..1, without the ends.
+    double chance(const std::string& what, int number, const std::string& purpose);
+
+    /// Return the place of the segment that a time is in.
+    int place_at(double seconds);
+
+    /// Return when `need` has passed since `seconds`, for a clock that runs at these rates, one for each segment;
+    /// infinity where it is not before the end.
+    double after(double seconds, double need, const List<double>& rates);
+
+    /// Each breath follows the one before; the first began before time 0, so that not everybody breathes alike.
+    Ref<Lane> breaths(const Ref<Lane>& lane);
+
+    /// The eyes' small jumps.
+    Ref<Lane> saccades(const Ref<Lane>& lane);
+
+    /// Looks away for a moment.
+    Ref<Lane> aversions(const Ref<Lane>& lane);
+
+    /// Blinks of themselves, on stressed syllables and asked for, whichever comes first.
+    Ref<Lane> blinks(const Ref<Lane>& lane);
+
+    /// Return the stressed syllables from `start` to the end that may bring blinks, and whether each is a speech's
+    /// first.
+    List<std::tuple<double, bool>> accents(double start);
+};
+
+inline Ref<Schedule> Schedule::since(double seconds) const {
+    Ref<Lane> breaths = this->breaths->since(seconds);
+    Ref<Lane> aversions = this->aversions->since(seconds);
+    Ref<Lane> saccades = this->saccades->since(seconds);
+    Ref<Lane> blinks = this->blinks->since(seconds);
+    List<double> rates = List<double>{1.0, 1.0, 1.0, 1.0};
+    if (this->life != nullptr) {
+        rates = List<double>{
+            this->life->breath_rate,
+            this->life->aversion_rate,
+            this->life->saccade_rate,
+            this->life->blinks
+        };
     }
-    out->modes = draw.modes;
-    out->targets = draw.targets;
+    // Gaps run in modes' time from the event before, so the modes since then are needed.
+    List<Ref<Lane>> lanes = List<Ref<Lane>>{breaths, aversions, saccades, blinks};
+    List<double> firsts;
+    for (const auto& kept : lanes) {
+        if (lang::len(kept->times) > 0) {
+            firsts.push_back(lang::at(kept->times, 0));
+        }
+    }
+    double needed = lang::len(firsts) > 0 ? lang::min_of(firsts) : seconds;
+    bool is_any = false;
+    for (int n = 0; n < lang::len(lanes); n++) {
+        const auto& kept = lang::at(lanes, n);
+        const auto& rate = lang::at(rates, n);
+        if (lang::len(kept->times) == 0 && rate > 0) {
+            is_any = true;
+            break;
+        }
+    }
+    if (is_any) {
+        needed = 0.0;
+    }
+    List<double> found;
+    for (const auto& t : this->targets) {
+        found.push_back(t->start);
+    }
+    int looked = lang::bisect_right(found, std::min(needed, seconds - schedule::RECALL)) - 1;
+    return lang::made<Schedule>(
+        this->end,
+        this->drawn,
+        this->modes->since(needed, 0),
+        this->moods->since(std::min(needed, seconds - schedule::RECALL), 0),
+        lang::part(this->targets, std::max(0, looked)),
+        breaths,
+        aversions,
+        saccades,
+        blinks,
+        this->life,
+        this->track,
+        this->voices,
+        this->seed
+    );
+}
+
+inline void LifeDraw::begin(double cut) {
+    this->cut = cut;
+    List<double> edges = this->modes->times;
+    lang::extend(edges, this->moods->times);
+    for (int n = 0; n < lang::len(this->targets); n++) {
+        const auto& target = lang::at(this->targets, n);
+        if (n == 0 || target->strict != lang::at(this->targets, n - 1)->strict) {
+            edges.push_back(target->start);
+        }
+    }
+    List<double> begun;
+    for (const auto& t : this->targets) {
+        begun.push_back(t->start);
+    }
+    for (const auto& edge : lang::in_order(edges)) {
+        if (lang::len(this->edges) > 0 && lang::at(this->edges, -1) == edge) {
+            continue;
+        }
+        int mode = std::max(0, lang::bisect_right(this->modes->times, edge) - 1);
+        int look = std::max(0, lang::bisect_right(begun, edge) - 1);
+        this->edges.push_back(edge);
+        List<double> felt = lang::at(this->moods->rows, std::max(0, lang::bisect_right(this->moods->times, edge) - 1));
+        Ref<Manner> ways = life::manner(
+            this->life,
+            lang::at(words::MODES, static_cast<int>(lang::at(lang::at(this->modes->rows, mode), 0)))
+        );
+        this->manners.push_back(wanted::ways_in(
+            ways,
+            lang::made<Mood>(lang::at(felt, 0), lang::at(felt, 1), lang::at(felt, 2))
+        ));
+        this->strict.push_back(lang::at(this->targets, look)->strict ? 1 : 0);
+    }
+}
+
+inline double LifeDraw::chance(const std::string& what, int number, const std::string& purpose) {
+    return choice::uniform(this->seed, List<std::string>{what, lang::text(number), purpose});
+}
+
+inline int LifeDraw::place_at(double seconds) {
+    return std::max(0, lang::bisect_right(this->edges, seconds) - 1);
+}
+
+inline double LifeDraw::after(double seconds, double need, const List<double>& rates) {
+    double at = seconds;
+    double left = need;
+    int place = this->place_at(at);
+    while (at < this->drawn) {
+        double end = place + 1 < lang::len(this->edges) ? lang::at(this->edges, place + 1) : this->drawn;
+        double rate = lang::at(rates, place);
+        if (rate > 0 && at + left / rate < end) {
+            return at + left / rate;
+        }
+        left -= rate * std::max(0.0, end - at);
+        at = end;
+        place += 1;
+    }
+    return INFINITY;
+}
+
+inline Ref<Lane> LifeDraw::breaths(const Ref<Lane>& lane) {
+    List<double> times;
+    List<List<double>> rows;
+    int number = lane->next();
+    bool begun = lang::len(lane->times) > 0;
+    double at = begun ? lang::at(lane->times, -1) + lang::at(lang::at(lane->rows, -1), 0) : 0.0;
+    while (true) {
+        if (begun) {
+            at = std::max(at, this->cut);
+        }
+        Ref<Manner> ways = lang::at(this->manners, this->place_at(at));
+        double rate = this->life->breath_rate * ways->breath_rate / 60.0;
+        if (rate <= 0) { // no breath until another mode begins
+            int later = lang::bisect_right(this->edges, at);
+            if (this->life->breath_rate <= 0 || later == lang::len(this->edges)) {
+                break;
+            }
+            at = lang::at(this->edges, later);
+            begun = true;
+            continue;
+        }
+        double length = (schedule::BREATH + schedule::BREATH_CHANCE * this->chance("breath", number, "length")) / rate;
+        length *= 1.0 + 2.0 * this->life->stillness; // slower, too, but never halting
+        double depth = ways->breathing
+            * (schedule::BREATH + schedule::BREATH_CHANCE * this->chance("breath", number, "depth"));
+        if (!begun) {
+            at = -length * choice::uniform(this->seed, List<std::string>{"breath", "first"});
+            begun = true;
+        }
+        if (at >= this->drawn) {
+            break;
+        }
+        times.push_back(at);
+        rows.push_back(List<double>{length, depth});
+        at += length;
+        number += 1;
+    }
+    return lane->plus(times, rows);
+}
+
+inline Ref<Lane> LifeDraw::saccades(const Ref<Lane>& lane) {
+    if (this->life->saccade_rate <= 0 || this->calm <= 0) {
+        return lane;
+    }
+    double mean = std::max(60.0 / this->life->saccade_rate, schedule::FIXATION + 0.01);
+    List<double> rates;
+    for (const auto& ways : this->manners) {
+        rates.push_back(ways->saccade_rate * this->calm);
+    }
+    List<double> times;
+    List<List<double>> rows;
+    int number = lane->next();
+    double last = lang::len(lane->times) > 0 ? lang::at(lane->times, -1) : 0.0;
+    while (true) {
+        double need = schedule::FIXATION
+            + (mean - schedule::FIXATION) * std::min(4.0, -std::log(this->chance("saccade", number, "gap")));
+        last = std::max(this->cut, this->after(last, need, rates));
+        if (!(last < this->drawn)) {
+            return lane->plus(times, rows);
+        }
+        double size = std::min(
+            schedule::LARGEST_SACCADE,
+            -schedule::SACCADE * std::log(this->chance("saccade", number, "size"))
+        );
+        size *= lang::at(this->manners, this->place_at(last))->saccades;
+        double turn = 2.0 * lang::PI * this->chance("saccade", number, "way");
+        times.push_back(last);
+        rows.push_back(List<double>{size * std::sin(turn + lang::PI / 2.0), schedule::UPRIGHT * size * std::sin(turn)});
+        number += 1;
+    }
+}
+
+inline Ref<Lane> LifeDraw::aversions(const Ref<Lane>& lane) {
+    Ref<Life> life = this->life;
+    if (life->aversion_rate <= 0 || life->aversion_length <= 0 || life->aversion_angle <= 0 || this->calm <= 0) {
+        return lane;
+    }
+    List<double> rates;
+    for (int n = 0; n < lang::len(this->manners); n++) {
+        const auto& ways = lang::at(this->manners, n);
+        const auto& strict = lang::at(this->strict, n);
+        double rate = life->aversion_rate * ways->aversion_rate;
+        if (strict == 1 || rate <= 0) {
+            rates.push_back(0.0);
+        } else {
+            double mean = std::max(
+                schedule::BETWEEN_AVERSIONS,
+                60.0 / rate - life->aversion_length * ways->aversion_length
+            );
+            rates.push_back(this->calm / mean);
+        }
+    }
+    List<double> times;
+    List<List<double>> rows;
+    int number = lane->next();
+    double last = lang::len(lane->rows) > 0 ? lang::at(lang::at(lane->rows, -1), 0) : 0.0;
+    while (true) {
+        double need = schedule::AVERSION_GAP + schedule::AVERSION_CHANCE * this->chance("aversion", number, "gap");
+        double at = std::max(this->cut, std::max(last + schedule::BETWEEN_AVERSIONS, this->after(last, need, rates)));
+        if (!(at < this->drawn)) {
+            return lane->plus(times, rows);
+        }
+        Ref<Manner> own = lang::at(this->manners, this->place_at(at));
+        double length = life->aversion_length * own->aversion_length;
+        length *= 0.6 + 0.8 * this->chance("aversion", number, "length");
+        last = at + std::max(schedule::SHORTEST_AVERSION, length);
+        double size = own->aversion_angle * (0.7 + 0.6 * this->chance("aversion", number, "size"));
+        double turn = 2.0 * lang::PI * this->chance("aversion", number, "way");
+        times.push_back(at);
+        rows.push_back(List<double>{
+            last,
+            size * std::sin(turn + lang::PI / 2.0),
+            schedule::UPRIGHT * size * std::sin(turn)
+        });
+        number += 1;
+    }
+}
+
+inline Ref<Lane> LifeDraw::blinks(const Ref<Lane>& lane) {
+    Ref<Life> life = this->life;
+    double shut = life->blink_close + life->blink_open;
+    double mean = (life->blinks > 0 && this->calm > 0) ? 60.0 / life->blinks : INFINITY;
+    List<double> rates;
+    for (const auto& ways : this->manners) {
+        rates.push_back(ways->blinks * this->calm);
+    }
+    double last = -0.5 * std::min(mean, 10.0) * choice::uniform(this->seed, List<std::string>{"blink", "first"});
+    if (lang::len(lane->times) > 0) {
+        last = lang::at(lane->times, -1);
+    }
+    List<std::tuple<double, bool>> accents;
+    if (this->calm > 0 && life->accent_blinks > 0) {
+        accents = this->accents(std::max(0.0, std::min(this->cut, last)));
+    }
+    List<double> asked;
+    for (const auto& b : this->track->blinks) {
+        asked.push_back(b->start);
+    }
+    List<double> times;
+    List<List<double>> rows;
+    int number = lane->next();
+    int place = 0;
+    while (true) {
+        double own = INFINITY;
+        if (mean < INFINITY) {
+            double need = mean * (schedule::BLINK_GAP + schedule::BLINK_CHANCE * this->chance("blink", number, "gap"));
+            own = std::max(this->cut, this->after(last, need, rates));
+        }
+        // A stressed syllable may bring a blink: the first of a speech always, the others some time after
+        // the last blink.
+        while (place < lang::len(accents)) {
+            auto [accent, first] = lang::at(accents, place);
+            if (accent >= this->cut && accent >= last + (first ? shut + 0.1 : schedule::AFTER_BLINK / this->calm)) {
+                break;
+            }
+            place += 1;
+        }
+        double heard = place < lang::len(accents) ? std::get<0>(lang::at(accents, place)) : INFINITY;
+        int wish = lang::bisect_left(asked, std::max(this->cut, last + shut));
+        double wanted = wish < lang::len(asked) ? lang::at(asked, wish) : INFINITY;
+        double at = std::min(own, std::min(heard, wanted));
+        if (at >= this->drawn) {
+            return lane->plus(times, rows);
+        }
+        times.push_back(at);
+        double kind = at == heard ? 1.0 : 0.0;
+        rows.push_back(List<double>{at == wanted ? 2.0 : kind});
+        last = at;
+        number += 1;
+    }
+}
+
+inline List<std::tuple<double, bool>> LifeDraw::accents(double start) {
+    List<std::tuple<double, bool>> out;
+    for (const auto& speech : this->track->speeches) {
+        if (speech->end <= start || speech->start >= this->drawn) {
+            continue;
+        }
+        double end = std::min(speech->end, this->drawn);
+        for (int n = 0; n < lang::len(voice::stressed(this->voices, speech)); n++) {
+            const auto& peak = lang::at(voice::stressed(this->voices, speech), n);
+            double at = speech->start + peak;
+            if (at < start || at >= end) {
+                continue;
+            }
+            if (choice::uniform(this->seed, List<std::string>{speech->id, "accent", lang::text(n)})
+                < this->life->accent_blinks) {
+                out.push_back(std::tuple<double, bool>{at, n == 0});
+            }
+        }
+    }
     return out;
+}
+
+namespace schedule {
+
+/// Return the schedule to `end` seconds. What `before` holds that begins before `now` stays exactly as it was.
+///
+/// What it holds for later is kept, too, where nothing it was drawn from has changed.
+inline Ref<Schedule> schedule(
+    const Ref<Life>& life,
+    const Ref<Track>& track,
+    const Ref<Voices>& voices,
+    std::uint32_t seed,
+    double end,
+    const Ref<Schedule>& before,
+    double now
+) {
+    if (!life->on) {
+        return lang::made<Schedule>(
+            end,
+            before->drawn,
+            before->modes,
+            before->moods,
+            before->targets,
+            before->breaths,
+            before->aversions,
+            before->saccades,
+            before->blinks,
+            life,
+            track,
+            voices,
+            seed
+        );
+    }
+    double drawn = std::max(schedule::BLOCK, static_cast<int>(std::ceil(end / schedule::BLOCK)) * schedule::BLOCK);
+    std::string change = schedule::_change(before, life, track, voices, seed);
+    if (change == "" && drawn == before->drawn) {
+        return lang::made<Schedule>(
+            end,
+            before->drawn,
+            before->modes,
+            before->moods,
+            before->targets,
+            before->breaths,
+            before->aversions,
+            before->saccades,
+            before->blinks,
+            before->life,
+            before->track,
+            before->voices,
+            before->seed
+        );
+    }
+    double cut = std::max(0.0, std::min(before->drawn, change == "" ? drawn : now));
+    double chance = change == "places" ? std::min(before->drawn, drawn) : cut;
+    Ref<LifeDraw> draw = schedule::_draw(life, track, voices, seed, cut, drawn, before);
+    Ref<Lane> breaths = before->breaths->until(chance);
+    Ref<Lane> aversions = before->aversions->until(chance);
+    Ref<Lane> saccades = before->saccades->until(chance);
+    Ref<Lane> blinks = before->blinks->until(chance);
+    if (chance < drawn) {
+        draw->begin(chance);
+        breaths = draw->breaths(breaths);
+        aversions = draw->aversions(aversions);
+        saccades = draw->saccades(saccades);
+        blinks = draw->blinks(blinks);
+    }
+    return lang::made<Schedule>(
+        end,
+        drawn,
+        draw->modes,
+        draw->moods,
+        draw->targets,
+        breaths,
+        aversions,
+        saccades,
+        blinks,
+        life,
+        track,
+        voices,
+        seed
+    );
+}
+
+/// Return "" where nothing a schedule was drawn from has changed, "places" where only those have, else "all".
+inline std::string _change(
+    const Ref<Schedule>& before,
+    const Ref<Life>& life,
+    const Ref<Track>& track,
+    const Ref<Voices>& voices,
+    std::uint32_t seed
+) {
+    if (before->track == nullptr || before->seed != seed || !life::same_life(before->life, life)) {
+        return "all";
+    }
+    if (!voice::same_voices(before->voices, voices)) {
+        return "all";
+    }
+    if (before->track == track || before->track->like(track)) {
+        return "";
+    }
+    return before->track->draws_like(track) ? std::string("places") : std::string("all");
+}
+
+/// Return what extends a schedule from `cut` to `drawn` seconds, with modes and looks in place.
+inline Ref<LifeDraw> _draw(
+    const Ref<Life>& life,
+    const Ref<Track>& track,
+    const Ref<Voices>& voices,
+    std::uint32_t seed,
+    double cut,
+    double drawn,
+    const Ref<Schedule>& before
+) {
+    Ref<Lane> modes = before->modes->until(cut);
+    int last = lang::len(modes->rows) > 0 ? static_cast<int>(lang::at(lang::at(modes->rows, -1), 0)) : -1;
+    List<double> times;
+    List<List<double>> rows;
+    for (const auto& [at, mode] : wanted::modes_between(track, cut, drawn)) {
+        if (lang::len(times) > 0 || mode != last) {
+            times.push_back(at);
+            rows.push_back(List<double>{static_cast<double>(mode)});
+        }
+    }
+    Ref<Lane> moods = before->moods->until(cut);
+    List<double> felt;
+    if (lang::len(moods->rows) > 0) {
+        felt = lang::at(moods->rows, -1);
+    }
+    List<double> changes;
+    List<List<double>> wanted;
+    for (const auto& [at, mood] : wanted::moods_between(wanted::moods_of(life, track), cut, drawn)) {
+        bool same = lang::len(felt) > 0
+            && lang::at(felt, 0) == mood->valence
+            && lang::at(felt, 1) == mood->arousal
+            && lang::at(felt, 2) == mood->intensity;
+        if (lang::len(changes) > 0 || !same) {
+            changes.push_back(at);
+            wanted.push_back(List<double>{mood->valence, mood->arousal, mood->intensity});
+        }
+    }
+    List<double> found;
+    for (const auto& t : before->targets) {
+        found.push_back(t->start);
+    }
+    int begun = lang::bisect_left(found, cut);
+    List<Ref<GazeTarget>> targets = lang::part(before->targets, 0, begun);
+    for (const auto& target : wanted::targets_between(track, cut, drawn)) {
+        if (lang::len(targets) == 0 || !target->like(lang::at(targets, -1))) {
+            targets.push_back(target);
+        }
+    }
+    return lang::made<LifeDraw>(
+        life,
+        track,
+        voices,
+        seed,
+        cut,
+        drawn,
+        1.0 - life->stillness,
+        modes->plus(times, rows),
+        moods->plus(changes, wanted),
+        targets
+    );
+}
+
+/// Return events a minute between two times.
+inline double share(const Ref<Lane>& lane, double start, double end) {
+    int count = lang::bisect_left(lane->times, end) - lang::bisect_left(lane->times, start);
+    return lang::divided(count, std::max(end - start, 1e-09)) * 60.0;
 }
 
 }  // namespace schedule
+
 }  // namespace metagraph

@@ -1,230 +1,402 @@
-// What was asked for and lasts: where to look, what to say, which mode to be in, which stance to stay in. Values; times are
-// seconds.
+// All that was asked for and lasts, in order; see `items`. Times are seconds.
+//
+// Translated from metagraph/playback/life/track.py; change that, and translate anew.
 #pragma once
 
-#include <array>
-
-#include "graph.hpp"
+#include "items.hpp"
+#include "mood.hpp"
+#include "language.hpp"
 
 namespace metagraph {
 
-/// A named point, or one in metres of the character's space.
-struct Spot {
-    std::string name;
-    std::optional<Vec> point;
+struct Track;
 
-    bool operator==(const Spot& other) const { return name == other.name && point == other.point; }
+/// All of it, each by start. Speeches do not overlap.
+struct Track : std::enable_shared_from_this<Track> {
+    List<Ref<LookAt>> looks;
+    List<Ref<Speech>> speeches;
+    List<Ref<ModeFrom>> modes;
+    List<Ref<PlaceFrom>> places;
+    List<Ref<BlinkAt>> blinks;
+    List<Ref<StayFrom>> stays;
+    List<Ref<MoodFrom>> moods;
+
+    explicit Track(
+        List<Ref<LookAt>> looks_ = List<Ref<LookAt>>{},
+        List<Ref<Speech>> speeches_ = List<Ref<Speech>>{},
+        List<Ref<ModeFrom>> modes_ = List<Ref<ModeFrom>>{},
+        List<Ref<PlaceFrom>> places_ = List<Ref<PlaceFrom>>{},
+        List<Ref<BlinkAt>> blinks_ = List<Ref<BlinkAt>>{},
+        List<Ref<StayFrom>> stays_ = List<Ref<StayFrom>>{},
+        List<Ref<MoodFrom>> moods_ = List<Ref<MoodFrom>>{}
+    )
+        : looks(std::move(looks_)),
+            speeches(std::move(speeches_)),
+            modes(std::move(modes_)),
+            places(std::move(places_)),
+            blinks(std::move(blinks_)),
+            stays(std::move(stays_)),
+            moods(std::move(moods_)) {}
+
+    /// Return the ids of all of it.
+    List<std::string> idents() const;
+
+    /// Return whether the models may not change a layer's stance at a time.
+    bool stays_at(const std::string& layer, double seconds) const;
+
+    /// Return the mode that was asked for at a time, or talking while something is said; None where neither tells.
+    std::optional<std::string> told_mode(double seconds) const;
+
+    /// Return the track without items of these ids that begin at `now` or later; what has begun ends now, if it can.
+    Ref<Track> without(const Set<std::string>& idents, double now = -INFINITY) const;
+
+    /// Return the track with those of another, whose speeches may overlap each other's.
+    Ref<Track> joined(const Ref<Track>& more) const;
+
+    /// Return the track without what no time from `seconds` on needs.
+    Ref<Track> since(double seconds) const;
+
+    /// Return the last of an id that is said.
+    Ref<Speech> last_speech(const std::string& ident) const;
+
+    /// Whether all is the same that chance depends on: where things are, and what stays, is not.
+    bool draws_like(const Ref<Track>& other) const;
+
+    /// Whether all is the same.
+    bool like(const Ref<Track>& other) const;
 };
 
-/// Something asked for: `kind` tells which fields count. Never changed once made.
-///
-/// look: to, end, amount, strict, priority. speech: end, line (none for `text` alone), text, priority, length (seconds it
-/// would have taken, where something cut it short), timing (when its words and mouth shapes come, none where that was not
-/// told), voice (of the timing, else guessed from the text). mode: none for talking while something is said and idling
-/// otherwise. place: name, to. stay: layer, on, end.
-struct Item {
-    enum Kind { look, speech, mode_from, place, blink, stay };
-    static constexpr int KINDS = 6;
-
-    Kind kind = look;
-    std::string id;
-    double start = 0.0, end = 0.0;
-    Spot to;
-    double amount = 1.0;
-    bool strict = false;
-    int priority = 1;
-    std::optional<std::string> line;
-    std::string text;
-    std::optional<double> length;
-    Ref<LineTiming> timing;
-    Ref<Voice> voice;
-    std::optional<std::string> mode;
-    std::string name, layer;
-    bool on = true;
-
-    bool operator==(const Item& b) const {
-        return kind == b.kind && id == b.id && start == b.start && end == b.end && to == b.to && amount == b.amount
-            && strict == b.strict && priority == b.priority && line == b.line && text == b.text && length == b.length
-            && voice::alike(timing, b.timing) && mode == b.mode && name == b.name && layer == b.layer && on == b.on;
+inline List<std::string> Track::idents() const {
+    List<std::string> out;
+    for (const auto& x : this->looks) {
+        out.push_back(x->id);
     }
-};
-
-using Items = List<Ref<const Item>>;
-
-/// All of it by kind, each by start. Speeches do not overlap.
-struct Track {
-    std::array<Items, Item::KINDS> lanes;
-
-    const Items& looks() const { return lanes[Item::look]; }
-    const Items& speeches() const { return lanes[Item::speech]; }
-    const Items& modes() const { return lanes[Item::mode_from]; }
-    const Items& places() const { return lanes[Item::place]; }
-    const Items& blinks() const { return lanes[Item::blink]; }
-    const Items& stays() const { return lanes[Item::stay]; }
-
-    Items items() const {
-        Items out;
-        for (const Items& lane : lanes) lang::extend(out, lane);
-        return out;
+    List<std::string> found;
+    for (const auto& x : this->speeches) {
+        found.push_back(x->id);
     }
-
-    /// Whether the models may not change a layer's stance at a time.
-    bool stays_at(const std::string& layer, double seconds) const {
-        const Item* last = nullptr;
-        for (const auto& stay : stays()) {
-            if (stay->layer == layer && stay->start <= seconds) last = stay.get();
-        }
-        return last != nullptr && last->on && seconds < last->end;
+    lang::extend(out, found);
+    List<std::string> found2;
+    for (const auto& x : this->modes) {
+        found2.push_back(x->id);
     }
-
-    /// The mode asked for at a time, or talking while something is said; none where neither tells.
-    std::optional<std::string> told_mode(double seconds) const {
-        const Item* asked = latest(modes(), seconds);
-        if (asked != nullptr && asked->mode.has_value()) return asked->mode;
-        const Item* said = latest(speeches(), seconds);
-        return said != nullptr && seconds < said->end ? std::optional<std::string>("talking") : std::nullopt;
+    lang::extend(out, found2);
+    List<std::string> found3;
+    for (const auto& x : this->places) {
+        found3.push_back(x->id);
     }
-
-private:
-    static const Item* latest(const Items& lane, double seconds) {
-        const Item* out = nullptr;
-        for (const auto& item : lane) {
-            if (item->start <= seconds) out = item.get();
-        }
-        return out;
+    lang::extend(out, found3);
+    List<std::string> found4;
+    for (const auto& x : this->blinks) {
+        found4.push_back(x->id);
     }
-};
-
-namespace track {
-
-/// The speech, ending no later than `at`; how long it would have been is remembered.
-inline Ref<const Item> cut(const Ref<const Item>& speech, double at) {
-    if (speech->end <= at) return speech;
-    auto out = lang::made<Item>(*speech);
-    out->end = at;
-    out->length = speech->length.value_or(speech->end - speech->start);
+    lang::extend(out, found4);
+    List<std::string> found5;
+    for (const auto& x : this->stays) {
+        found5.push_back(x->id);
+    }
+    lang::extend(out, found5);
+    List<std::string> found6;
+    for (const auto& x : this->moods) {
+        found6.push_back(x->id);
+    }
+    lang::extend(out, found6);
     return out;
 }
 
-/// Speeches without overlaps: one that is at least as important cuts the running one, a lesser one is not said.
-inline Items apart(const Items& speeches) {
-    Items out;
-    for (const auto& speech : speeches) {
-        if (!out.empty() && out.back()->end > speech->start) {
-            if (speech->priority < out.back()->priority) continue;
-            if (out.back()->start >= speech->start) {
-                out.pop_back();
-            } else {
-                out.back() = cut(out.back(), speech->start);
+inline bool Track::stays_at(const std::string& layer, double seconds) const {
+    Ref<StayFrom> first;
+    for (const auto& s : lang::backwards(this->stays)) {
+        if (s->layer == layer && s->start <= seconds) {
+            first = s;
+            break;
+        }
+    }
+    Ref<StayFrom> last = first;
+    return last != nullptr && last->on && seconds < last->end;
+}
+
+inline std::optional<std::string> Track::told_mode(double seconds) const {
+    List<double> found;
+    for (const auto& m : this->modes) {
+        found.push_back(m->start);
+    }
+    int asked = lang::bisect_right(found, seconds) - 1;
+    if (asked >= 0 && lang::at(this->modes, asked)->mode.has_value()) {
+        return lang::at(this->modes, asked)->mode;
+    }
+    List<double> found2;
+    for (const auto& s : this->speeches) {
+        found2.push_back(s->start);
+    }
+    int said = lang::bisect_right(found2, seconds) - 1;
+    return (said >= 0 && seconds < lang::at(this->speeches, said)->end)
+        ? std::optional<std::string>("talking")
+        : std::nullopt;
+}
+
+inline Ref<Track> Track::without(const Set<std::string>& idents, double now) const {
+    bool holds = lang::len(idents) == 0;
+    if (!holds) {
+        bool is_any = false;
+        for (const auto& ident : this->idents()) {
+            if (lang::contains(idents, ident)) {
+                is_any = true;
+                break;
             }
         }
-        out.push_back(speech);
+        holds = !is_any;
     }
-    return out;
-}
-
-/// The track without items of these ids that begin at `now` or later; what has begun ends now, if it can.
-inline Ref<const Track> without(const Ref<const Track>& track, const Set<std::string>& ids, double now) {
-    const Items every = track->items();
-    if (std::none_of(every.begin(), every.end(), [&ids](const auto& item) { return ids.count(item->id) > 0; })) return track;
-    auto out = lang::made<Track>();
-    for (const auto& item : every) {
-        Items& lane = out->lanes[item->kind];
-        if (ids.count(item->id) == 0) {
-            lane.push_back(item);
-        } else if (item->start < now && item->kind == Item::speech) {
-            lane.push_back(cut(item, now));
-        } else if (item->start < now && (item->kind == Item::look || item->kind == Item::stay)) {
-            auto ended = lang::made<Item>(*item);
-            ended->end = std::min(item->end, now);
-            lane.push_back(ended);
-        } else if (item->start < now) {
-            lane.push_back(item);
+    if (holds) {
+        return lang::self(this);
+    }
+    List<Ref<LookAt>> found;
+    for (const auto& x : this->looks) {
+        if (!lang::contains(idents, x->id) || x->start < now) {
+            found.push_back(lang::contains(idents, x->id)
+                ? lang::made<LookAt>(x->id, x->start, std::min(x->end, now), x->to, x->amount, x->strict, x->priority)
+                : x);
         }
     }
-    return out;
-}
-
-inline bool before(const Ref<const Item>& a, const Ref<const Item>& b) {
-    return a->start != b->start ? a->start < b->start : a->id < b->id;
-}
-
-/// The track with more items; of speeches that overlap the later or more important cuts the other short.
-inline Ref<const Track> plus(const Ref<const Track>& track, Items items) {
-    if (items.empty()) return track;
-    auto out = lang::made<Track>(*track);
-    std::stable_sort(items.begin(), items.end(), before);
-    bool speaks = false;
-    for (const auto& item : items) {
-        Items& lane = out->lanes[item->kind];
-        lane.insert(std::upper_bound(lane.begin(), lane.end(), item, before), item);
-        speaks = speaks || item->kind == Item::speech;
-    }
-    if (speaks) out->lanes[Item::speech] = apart(out->speeches());
-    return out;
-}
-
-/// An item as it goes on where a line of the same id has begun by `now`, or begins with it: it keeps its start and what has
-/// been said of it. Only lines whose words or shapes were told with their times do.
-inline Ref<const Item> goes_on(const Track& track, const Ref<const Item>& item, double now) {
-    if (item->kind != Item::speech || item->timing == nullptr) return item;
-    const Item* old = nullptr;
-    for (const auto& speech : track.speeches()) {
-        if (speech->id == item->id) old = speech.get();
-    }
-    if (old == nullptr || old->timing == nullptr || old->length.has_value()) return item;
-    if (std::max(old->start, item->start) > now && old->start != item->start) return item;
-    auto out = lang::made<Item>(*item);
-    out->timing = line_timing::extended(old->timing, item->timing, std::max(now - old->start, 0.0));
-    const double length = std::max(line_timing::timed_seconds(out->timing, std::nullopt), item->end - item->start);
-    out->start = old->start;
-    out->end = old->start + length;
-    if (item->text.empty() || item->text == line_timing::told_text(item->timing)) out->text = line_timing::told_text(out->timing);
-    out->voice = voice::from_timing(out->timing, out->end - out->start);
-    return out;
-}
-
-/// The track without what no time from `seconds` on needs.
-inline Ref<const Track> since(const Ref<const Track>& track, double seconds) {
-    Map<std::string, const Item*> last; // of modes, of each place, of each layer's stays
-    List<const Item*> kept; // looks that no later one has replaced; also what is over: it tells since when what shows has shown
-    for (const auto& item : track->items()) {
-        if (item->start > seconds) continue;
-        if (item->kind == Item::mode_from) last["mode"] = item.get();
-        if (item->kind == Item::place) last["place " + item->name] = item.get();
-        if (item->kind == Item::stay) last["stay " + item->layer] = item.get();
-        if (item->kind != Item::look) continue;
-        List<const Item*> above;
-        for (const Item* look : kept) {
-            if (look->priority > item->priority) above.push_back(look);
+    List<Ref<Speech>> found2;
+    for (const auto& x : this->speeches) {
+        if (!lang::contains(idents, x->id) || x->start < now) {
+            found2.push_back(lang::contains(idents, x->id) ? items::cut(x, now) : x);
         }
-        above.push_back(item.get());
-        kept = above;
     }
-    lang::extend(kept, lang::values(last));
-    auto out = lang::made<Track>();
-    for (const auto& item : track->items()) {
-        const bool goes_on = item->kind == Item::speech && item->end > seconds;
-        if (item->start > seconds || goes_on || lang::contains(kept, item.get())) out->lanes[item->kind].push_back(item);
+    List<Ref<ModeFrom>> found3;
+    for (const auto& x : this->modes) {
+        if (!lang::contains(idents, x->id) || x->start < now) {
+            found3.push_back(x);
+        }
     }
-    return out;
+    List<Ref<PlaceFrom>> found4;
+    for (const auto& x : this->places) {
+        if (!lang::contains(idents, x->id) || x->start < now) {
+            found4.push_back(x);
+        }
+    }
+    List<Ref<BlinkAt>> found5;
+    for (const auto& x : this->blinks) {
+        if (!lang::contains(idents, x->id) || x->start < now) {
+            found5.push_back(x);
+        }
+    }
+    List<Ref<StayFrom>> found6;
+    for (const auto& x : this->stays) {
+        if (!lang::contains(idents, x->id) || x->start < now) {
+            found6.push_back(lang::contains(idents, x->id)
+                ? lang::made<StayFrom>(x->id, x->start, x->layer, x->on, std::min(x->end, now))
+                : x);
+        }
+    }
+    List<Ref<MoodFrom>> found7;
+    for (const auto& x : this->moods) {
+        if (!lang::contains(idents, x->id) || x->start < now) {
+            found7.push_back(lang::contains(idents, x->id)
+                ? lang::made<MoodFrom>(x->id, x->start, x->valence, x->arousal, x->intensity, std::min(x->end, now))
+                : x);
+        }
+    }
+    return lang::made<Track>(found, found2, found3, found4, found5, found6, found7);
 }
 
-/// Whether two tracks hold the same in a lane.
-inline bool alike(const Track& a, const Track& b, Item::Kind kind) {
-    const Items &one = a.lanes[kind], &other = b.lanes[kind];
-    return std::equal(one.begin(), one.end(), other.begin(), other.end(), [](const auto& x, const auto& y) {
-        return x == y || *x == *y;
-    });
+inline Ref<Track> Track::joined(const Ref<Track>& more) const {
+    if (lang::len(more->idents()) == 0) {
+        return lang::self(this);
+    }
+    List<Ref<LookAt>> looks = this->looks;
+    for (const auto& look : more->looks) {
+        std::tuple<double, std::string> own = std::tuple<double, std::string>{look->start, look->id};
+        int place2 = lang::len(looks);
+        while (place2 > 0
+            && own < std::tuple<double, std::string>{
+                lang::at(looks, place2 - 1)->start,
+                lang::at(looks, place2 - 1)->id
+            }) {
+            place2 -= 1;
+        }
+        lang::insert(looks, place2, look);
+    }
+    List<Ref<Speech>> speeches = this->speeches;
+    for (const auto& speech : more->speeches) {
+        std::tuple<double, std::string> own2 = std::tuple<double, std::string>{speech->start, speech->id};
+        int place3 = lang::len(speeches);
+        while (place3 > 0
+            && own2 < std::tuple<double, std::string>{
+                lang::at(speeches, place3 - 1)->start,
+                lang::at(speeches, place3 - 1)->id
+            }) {
+            place3 -= 1;
+        }
+        lang::insert(speeches, place3, speech);
+    }
+    List<Ref<ModeFrom>> modes = this->modes;
+    for (const auto& mode : more->modes) {
+        std::tuple<double, std::string> own3 = std::tuple<double, std::string>{mode->start, mode->id};
+        int place4 = lang::len(modes);
+        while (place4 > 0
+            && own3 < std::tuple<double, std::string>{
+                lang::at(modes, place4 - 1)->start,
+                lang::at(modes, place4 - 1)->id
+            }) {
+            place4 -= 1;
+        }
+        lang::insert(modes, place4, mode);
+    }
+    List<Ref<PlaceFrom>> places = this->places;
+    for (const auto& place : more->places) {
+        std::tuple<double, std::string> own4 = std::tuple<double, std::string>{place->start, place->id};
+        int place5 = lang::len(places);
+        while (place5 > 0
+            && own4 < std::tuple<double, std::string>{
+                lang::at(places, place5 - 1)->start,
+                lang::at(places, place5 - 1)->id
+            }) {
+            place5 -= 1;
+        }
+        lang::insert(places, place5, place);
+    }
+    List<Ref<BlinkAt>> blinks = this->blinks;
+    for (const auto& blink : more->blinks) {
+        std::tuple<double, std::string> own5 = std::tuple<double, std::string>{blink->start, blink->id};
+        int place6 = lang::len(blinks);
+        while (place6 > 0
+            && own5 < std::tuple<double, std::string>{
+                lang::at(blinks, place6 - 1)->start,
+                lang::at(blinks, place6 - 1)->id
+            }) {
+            place6 -= 1;
+        }
+        lang::insert(blinks, place6, blink);
+    }
+    List<Ref<StayFrom>> stays = this->stays;
+    for (const auto& stay : more->stays) {
+        std::tuple<double, std::string> own6 = std::tuple<double, std::string>{stay->start, stay->id};
+        int place7 = lang::len(stays);
+        while (place7 > 0
+            && own6 < std::tuple<double, std::string>{
+                lang::at(stays, place7 - 1)->start,
+                lang::at(stays, place7 - 1)->id
+            }) {
+            place7 -= 1;
+        }
+        lang::insert(stays, place7, stay);
+    }
+    List<Ref<MoodFrom>> moods = this->moods;
+    for (const auto& mood : more->moods) {
+        std::tuple<double, std::string> own7 = std::tuple<double, std::string>{mood->start, mood->id};
+        int place8 = lang::len(moods);
+        while (place8 > 0
+            && own7 < std::tuple<double, std::string>{
+                lang::at(moods, place8 - 1)->start,
+                lang::at(moods, place8 - 1)->id
+            }) {
+            place8 -= 1;
+        }
+        lang::insert(moods, place8, mood);
+    }
+    List<Ref<Speech>> said = lang::len(more->speeches) > 0 ? items::apart(speeches) : speeches;
+    return lang::made<Track>(looks, said, modes, places, blinks, stays, moods);
 }
 
-}  // namespace track
+inline Ref<Track> Track::since(double seconds) const {
+    // Those that no later one has replaced; also what is over: it tells since when what shows has shown.
+    List<Ref<LookAt>> looks;
+    for (const auto& look : this->looks) {
+        if (look->start <= seconds) {
+            List<Ref<LookAt>> found;
+            for (const auto& x : looks) {
+                if (x->priority > look->priority) {
+                    found.push_back(x);
+                }
+            }
+            looks = found;
+        }
+        looks.push_back(look);
+    }
+    List<double> found2;
+    for (const auto& m : this->modes) {
+        found2.push_back(m->start);
+    }
+    int mode = std::max(0, lang::bisect_right(found2, seconds) - 1);
+    Map<std::string, int> places;
+    for (int n = 0; n < lang::len(this->places); n++) {
+        const auto& x = lang::at(this->places, n);
+        if (x->start <= seconds) {
+            places[x->name] = n;
+        }
+    }
+    Map<std::string, int> stays;
+    for (int n = 0; n < lang::len(this->stays); n++) {
+        const auto& x = lang::at(this->stays, n);
+        if (x->start <= seconds) {
+            stays[x->layer] = n;
+        }
+    }
+    List<Ref<Speech>> found3;
+    for (const auto& x : this->speeches) {
+        if (x->start > seconds || x->end > seconds) {
+            found3.push_back(x);
+        }
+    }
+    List<Ref<PlaceFrom>> found4;
+    for (int n = 0; n < lang::len(this->places); n++) {
+        const auto& x = lang::at(this->places, n);
+        if (x->start > seconds || places.at(x->name) == n) {
+            found4.push_back(x);
+        }
+    }
+    List<Ref<BlinkAt>> found5;
+    for (const auto& x : this->blinks) {
+        if (x->start > seconds) {
+            found5.push_back(x);
+        }
+    }
+    List<Ref<StayFrom>> found6;
+    for (int n = 0; n < lang::len(this->stays); n++) {
+        const auto& x = lang::at(this->stays, n);
+        if (x->start > seconds || stays.at(x->layer) == n) {
+            found6.push_back(x);
+        }
+    }
+    return lang::made<Track>(
+        looks,
+        found3,
+        lang::part(this->modes, mode),
+        found4,
+        found5,
+        found6,
+        mood::lasting(this->moods, seconds)
+    );
+}
 
-/// The voice of something said: as its words and shapes were told, as its line's was read from the sound, else guessed from its
-/// text.
-inline Ref<Voice> voice_of(const Map<std::string, Ref<Voice>>& voices, const Item& speech) {
-    const Ref<Voice>* known = speech.timing == nullptr && speech.line.has_value() ? voices.find(*speech.line) : nullptr;
-    return known == nullptr ? speech.voice : *known;
+inline Ref<Speech> Track::last_speech(const std::string& ident) const {
+    Ref<Speech> first;
+    for (const auto& s : lang::backwards(this->speeches)) {
+        if (s->id == ident) {
+            first = s;
+            break;
+        }
+    }
+    return first;
+}
+
+inline bool Track::draws_like(const Ref<Track>& other) const {
+    if (!items::alike_looks(this->looks, other->looks) || !items::alike_speeches(this->speeches, other->speeches)) {
+        return false;
+    }
+    if (!items::alike_felt(this->moods, other->moods)) {
+        return false;
+    }
+    return items::alike_modes(this->modes, other->modes) && items::alike_blinks(this->blinks, other->blinks);
+}
+
+inline bool Track::like(const Ref<Track>& other) const {
+    if (!items::alike_places(this->places, other->places) || !items::alike_stays(this->stays, other->stays)) {
+        return false;
+    }
+    return this->draws_like(other);
 }
 
 }  // namespace metagraph

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "graphemes.hpp"
+#include "items.hpp"
 #include "life.hpp"
 #include "line_timing.hpp"
 
@@ -43,16 +44,6 @@ inline Ref<Voice> from_timing(const Ref<LineTiming>& timing, double duration) {
     return voiced(*line_timing::timed_sounds(alphabet(), timing), duration);
 }
 
-/// Whether two lines' times are the same.
-inline bool alike(const Ref<LineTiming>& a, const Ref<LineTiming>& b) {
-    if (a == b) return true;
-    if (a == nullptr || b == nullptr) return false;
-    auto word = [](const auto& x, const auto& y) { return x->text == y->text && x->start == y->start && x->end == y->end; };
-    auto mark = [](const auto& x, const auto& y) { return x->at == y->at && x->viseme == y->viseme && x->weight == y->weight; };
-    return std::equal(a->words.begin(), a->words.end(), b->words.begin(), b->words.end(), word)
-        && std::equal(a->marks.begin(), a->marks.end(), b->marks.begin(), b->marks.end(), mark);
-}
-
 inline Ref<Voice> read(const Node& json) {
     Voice out;
     out.duration = json["duration"].within(0, 1e6);
@@ -64,6 +55,41 @@ inline Ref<Voice> read(const Node& json) {
     }
     return lang::made<Voice>(out);
 }
+
+}  // namespace voice
+
+/// The voices of lines by their ids, as an export has them.
+struct Voices {
+    Map<std::string, Ref<Voice>> known;
+
+    /// The voice of something said: as its words and shapes were told, as its line's was read from the sound, else guessed
+    /// from its text. What was made is remembered, a while, by each thread.
+    Ref<Voice> of(const Ref<Speech>& speech) const {
+        const Ref<Voice>* known_ = speech->timing == nullptr && speech->line.has_value() ? known.find(*speech->line) : nullptr;
+        if (known_ != nullptr) return *known_;
+        static thread_local std::vector<std::pair<std::weak_ptr<Speech>, Ref<Voice>>> made;
+        static thread_local std::size_t next = 0;
+        for (const auto& one : made) {
+            if (!one.first.owner_before(speech) && !speech.owner_before(one.first)) return one.second;
+        }
+        const double length = std::max(0.0, speech->length.value_or(speech->end - speech->start));
+        const auto out = speech->timing != nullptr ? voice::from_timing(speech->timing, length) : voice::from_text(speech->text, length);
+        if (made.size() < MOST) made.emplace_back();
+        made[next] = {speech, out};
+        next = (next + 1) % MOST;
+        return out;
+    }
+
+private:
+    static constexpr std::size_t MOST = 256;
+};
+
+namespace voice {
+
+/// Times of the stressed syllables of something said.
+inline List<double> stressed(const Ref<Voices>& voices, const Ref<Speech>& speech) { return voices->of(speech)->accents; }
+
+inline bool same_voices(const Ref<Voices>& one, const Ref<Voices>& other) { return one == other; }
 
 }  // namespace voice
 }  // namespace metagraph

@@ -1,4 +1,4 @@
-// The words modes and mouth shapes are told apart by.
+// The words layers, modes and mouth shapes are told apart by.
 #pragma once
 
 #include "language.hpp"
@@ -6,6 +6,8 @@
 namespace metagraph {
 namespace words {
 
+/// Layers in the order in which their offsets are multiplied onto the base pose.
+inline const List<std::string> LAYERS = List<std::string>{"body", "arms", "head"};
 inline const List<std::string> MODES = List<std::string>{"idle", "listening", "talking"};
 inline const List<std::string> VISEMES = List<std::string>{
     "sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "I", "O", "U",

@@ -4,6 +4,7 @@
  */
 
 import { SETS } from "./line_timing.js";
+import { MOODS } from "./mood.js";
 import { LAYERS, MODES } from "./words.js";
 
 const number = (low, high) => (x) => (Number.isFinite(x) && x >= low && x <= high ? "" : `should be a number from ${low} to ${high}`);
@@ -27,24 +28,27 @@ const TAGS = [[], tags];
 const LIMB = [null, one(["left", "right", "both"])];
 const HOLD = [null, number(0, 600)];
 const LATE = [null, number(0, 600)];
+const pair = (x) => (Array.isArray(x) && x.length === 2 && x.every((v) => !number(-1, 1)(v)) ? "" : "should be valence and arousal, -1 to 1");
+const MOOD = { mood: [null, either(one([...MOODS.keys()]), pair)], intensity: [null, number(0, 2)] };
 const FIELDS = {
   gesture: {
     layer: LAYER, tags: TAGS, limb: LIMB, duration: [null, seconds], stroke: [null, seconds], hold: HOLD, prepare: [true, flag],
-    resume: [false, flag], late: LATE,
+    resume: [false, flag], late: LATE, ...MOOD,
   },
-  fidget: { layer: LAYER, tags: TAGS, limb: LIMB, duration: [null, seconds], resume: [false, flag], late: LATE },
-  action: { action: [undefined, name], layer: ANY_LAYER, stroke: [null, seconds], hold: HOLD, prepare: [true, flag], late: LATE },
+  fidget: { layer: LAYER, tags: TAGS, limb: LIMB, duration: [null, seconds], resume: [false, flag], late: LATE, ...MOOD },
+  action: { action: [undefined, name], layer: ANY_LAYER, stroke: [null, seconds], hold: HOLD, prepare: [true, flag], late: LATE, ...MOOD },
   stance: { stance: [undefined, name], layer: ANY_LAYER, stay: [false, flag], late: LATE },
   change: { layer: LAYER, limb: LIMB, duration: [null, seconds], late: LATE },
-  nod: { tags: TAGS, late: LATE },
-  shake: { tags: TAGS, late: LATE },
+  nod: { tags: TAGS, late: LATE, ...MOOD },
+  shake: { tags: TAGS, late: LATE, ...MOOD },
   look: { to: ["user", either(name, point)], duration: [null, seconds], amount: [1, number(0, 1)], strict: [false, flag] },
   blink: {},
   say: {
     line: [null, either(name, whole(-1e15, 1e15))], text: ["", text(0, 20000)], duration: [null, seconds], gestures: [true, flag],
-    words: [[], list(4000)], visemes: [[], list(20000)], set: [null, one(SETS)],
+    words: [[], list(4000)], visemes: [[], list(20000)], set: [null, one(SETS)], ...MOOD,
   },
   mode: { mode: [null, one(MODES)] },
+  mood: { ...MOOD, duration: [null, seconds] },
   place: { name: [undefined, name], point: [undefined, point] },
   withdraw: { what: ["", text(0, 200)] },
   bml: { bml: [undefined, text(0, 200000)] },

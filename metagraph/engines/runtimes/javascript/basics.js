@@ -82,6 +82,15 @@ export function but(record, changes) {
 /** Return the words of a text. */
 export const splitWords = (text) => text.split(/\s+/).filter((word) => word.length > 0);
 
+/** Return a text before the last of another, that, and what is behind it; nothing of the first two where it has none. */
+export function partedLast(text, by) {
+  const place = text.lastIndexOf(by);
+  return place < 0 ? ["", "", text] : [text.slice(0, place), by, text.slice(place + by.length)];
+}
+
+/** Return whether a text is digits alone. */
+export const isDigits = (text) => /^[0-9]+$/.test(text);
+
 /** Return pairs of the items at the same places of two lists. */
 export const zip = (a, b) => a.map((item, n) => [item, b[n]]);
 

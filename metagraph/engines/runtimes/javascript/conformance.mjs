@@ -52,8 +52,9 @@ function runCase(graph, { seed, idle, stances, steps, plan: expected, life, pose
   const sorted = (rows) => [...rows].sort((a, b) => (order(a) < order(b) ? -1 : 1));
   same("reports", sorted(reports), sorted(expected.reports));
   for (const lane of ["modes", "breaths", "aversions", "saccades", "blinks"]) {
-    same(`life.${lane}`, plan.life[lane].starts.map((start, n) => [start, ...plan.life[lane].values[n]]), life[lane]);
+    same(`life.${lane}`, plan.life[lane].times.map((start, n) => [start, ...plan.life[lane].rows[n]]), life[lane]);
   }
+  if (life.moods) same("life.moods", plan.life.moods.times.map((start, n) => [start, ...plan.life.moods.rows[n]]), life.moods);
   same("life.targets", plan.life.targets.map((t) => [t.start, t.to, t.since, t.amount, t.strict, t.asked]), life.targets);
   for (const pose of poses) comparePose(graph, plan, pose, tolerance, fail);
 }
@@ -65,6 +66,7 @@ function cueData(cue) {
   return {
     action: cue.action.id, start: cue.start, end: cue.end, entry: cue.entry, blend_in: cue.blendIn, blend_out: cue.blendOut,
     stance: cue.stance, then: cue.then, meta: cue.meta, hold_from: cue.holdFrom, hold_to: cue.holdTo, hold: cue.hold,
+    ...(cue.extent !== 1 && { extent: cue.extent }), ...(cue.tempo !== 1 && { tempo: cue.tempo }),
   };
 }
 

@@ -1,15 +1,17 @@
 /** The exported graph and its clips, loaded once and shared by all characters that use them. */
 
+import { readContactRig, readContacts, strengthOf } from "./contacts.js";
 import { readBody } from "./life/body.js";
-import { Voices } from "./life/voice.js";
 import { Glb, GlbError, resample } from "./glb.js";
 import { hear } from "./hear.js";
+import { readLife } from "./life.js";
 import { Markov, Settings, Stance, Timing } from "./model.js";
 import { Phases } from "./phase_times.js";
 import { emptyPlan } from "./plan.js";
 import { morphsAt, poseAt } from "./pose.js";
 import { multiply } from "./rotation.js";
-import { LAYERS, inRange, readLife } from "./words.js";
+import { Voices } from "./voice.js";
+import { LAYERS, inRange } from "./words.js";
 
 export const FORMAT = 1; // the newest version of the export that is read here
 const MOVED = 1e-7; // metres below which a translation is none
@@ -97,6 +99,7 @@ export class Graph {
     this.layers = Object.fromEntries(LAYERS.map((layer) => [layer, layerGraph(layer)]));
     for (const clip of this.clips.values()) clip.rotations = clip.translations = null; // only offsets are played
     this.body = data.rig ? readBody(data.rig) : null;
+    this.contactRig = readContactRig(data.contact_rig, this.joints);
     const own = [...this.clips.values()].flatMap((clip) => clip.morphs.map((morph) => morph.name));
     /** Names of all morph targets that anything here moves. */
     this.morphs = [...new Set([...own, ...(this.body?.face.morphs ?? []).map((morph) => morph.name)])];
@@ -108,7 +111,7 @@ export class Graph {
     return [action.start, action.end];
   }
 
-  /** @returns {import("./life/voice.js").Voice} */
+  /** @returns {import("./voice.js").Voice} */
   voiceOf(speech) {
     return this.voices.of(speech);
   }
@@ -120,10 +123,14 @@ export class LayerGraph {
     this.layer = layer;
     this.start = data.start;
     this.stances = new Map(data.stances.map(({ id, name }) => [id, new Stance(id, layer, name)]));
+    this.strength = strengthOf(data.weights);
     const weights = joints.map((joint) => data.weights[joint.part] ?? 0);
     /** Places of the joints this layer moves [n], and its weights on them, null where all are 1. */
     this.reach = Int32Array.from(joints.keys()).filter((joint) => weights[joint] > 0);
     this.weights = [...this.reach].every((joint) => weights[joint] === 1) ? null : Float32Array.from(this.reach, (joint) => weights[joint]);
+    /** Which of them turn farther, and which less far, where a cue is played larger or smaller than made. */
+    this.larger = Uint8Array.from(this.reach, (joint) => (joints[joint].scales ?? "both") === "both");
+    this.smaller = Uint8Array.from(this.reach, (joint) => joints[joint].scales !== "neither");
     const offsets = new Map(); // by clip
     this.actions = new Map(data.actions.map((action) => [action.id, this.action(action, joints, durations, graph, offsets)]));
     this.index = new Map();
@@ -165,10 +172,11 @@ export class LayerGraph {
     const stays = (joint) => (joint.part === "arms" && joint.side === other) || masked(joint);
     return {
       id, name, clip, kind, layer: this.layer, stance, limb, likelihood: number("likelihood"), start, end, motion,
-      tags: data.tags, joints: data.joints,
+      tags: data.tags, joints: data.joints, contacts: readContacts(data.contacts),
       endStance: data.end_stance ?? null,
       timing: new Timing(start, end, number("blend_in"), number("blend_out"), kind === "stance", data.earliest_exit ?? null),
       phases: new Phases(start, ready, stroke, strokeEnd, relax, end), cooldown: number("cooldown", 0), spacing: data.spacing ?? null,
+      vigour: inRange(data.vigour ?? 0, -1, 1, `action ${id}'s vigour`),
       offsets: offsets.get(clip) ?? null,
       still: Int32Array.from(this.reach.keys()).filter((place) => stays(joints[this.reach[place]])),
     };

@@ -1,13 +1,15 @@
 /** Performing what is asked while it comes in: working asks into a running plan, forgetting what is over, and answering. */
 
 import { but } from "./basics.js";
+import { heard, owners } from "./hearing.js";
 import { Past } from "./meta_plan.js";
 import { extend } from "./planner.js";
 import { remember } from "./remembering.js";
-import { goesOn, plus, sinceTrack, trackItems, without } from "./life/track.js";
-import { sinceSchedule } from "./life/schedule.js";
 import { understand } from "./understand.js";
 import { LAYERS } from "./words.js";
+
+// What answers call what lasts; where a layer stays is told by the way to it.
+const LANES = { look: "looks", speech: "speeches", mode: "modes", place: "places", blink: "blinks", mood: "moods" };
 
 /**
  * Return the plan with asks worked in that became known at `now`, and the horizon moved to `end`.
@@ -20,40 +22,15 @@ import { LAYERS } from "./words.js";
 export function hear(graph, plan, now, asks, end, options = {}) {
   const fixed = now > 0 ? now + graph.settings.lookahead : 0;
   const meant = understand(graph, asks, fixed);
-  const asked = [...meant.requests, ...meant.items].map((x) => x.id);
-  const gone = new Set([...meant.withdrawn, ...asked, ...meant.refused.map((r) => r.request)]);
-  const every = meant.withdrawn.has("");
-  const before = [...plan.requests, ...trackItems(plan.track)].map((x) => x.id);
-  const withdrawn = new Set(before.filter((id) => every || owners(id).some((owner) => gone.has(owner))));
-  const isStay = (item) => item.kind === "stay";
-  const meantStays = meant.items.filter(isStay);
-  const staying = new Set([...plan.track.stays, ...meantStays].filter((stay) => stay.on).map((stay) => stay.layer));
-  const items = meant.items.filter((item) => !isStay(item) || staying.has(item.layer));
-  const changed = (stay) => gone.has(stay.id) || withdrawn.has(stay.id);
-  const touched = new Set([
-    ...meant.requests.map((r) => r.layer),
-    ...plan.requests.filter((r) => withdrawn.has(r.id)).map((r) => r.layer),
-    ...[...plan.track.stays, ...items.filter(isStay)].filter(changed).map((stay) => stay.layer),
-  ]);
-  const speaks = (item) => item.kind === "mode" || item.kind === "speech"; // who talks moves otherwise than who listens
-  if (items.some(speaks) || trackItems(plan.track).some((item) => speaks(item) && withdrawn.has(item.id))) {
-    for (const layer of LAYERS) if (graph.layers[layer].markov.modes.length) touched.add(layer);
-  }
+  const turning = LAYERS.filter((layer) => graph.layers[layer].markov.modes.length);
+  const refused = meant.refused.map((r) => r.request);
+  const { track, withdrawn, touched } = heard(
+    plan.requests, plan.track, meant.requests, meant.track(), meant.withdrawn, refused, fixed, turning,
+  );
   // Without any asks everything is planned on; with some, what they have to do with.
   const leave = asks.length && now > 0 && end === plan.end ? LAYERS.filter((layer) => !touched.has(layer)) : [];
-  const goingOn = items.map((item) => goesOn(plan.track, item, fixed));
-  const begun = new Set(goingOn.filter((item, n) => item !== items[n]).map((item) => item.id)); // of which more is said
-  const ended = without(plan.track, new Set([...withdrawn].filter((id) => !begun.has(id))), fixed);
-  const track = plus(without(ended, begun, -Infinity), goingOn);
   const after = extend(graph, { ...plan, track }, fixed, meant.requests, end, options, withdrawn, leave);
   return meant.refused.length ? { ...after, reports: [...after.reports, ...meant.refused] } : after;
-}
-
-/** Return the asks a request may have been made by: that of its own id, and those of which it would be a part. */
-function owners(id) {
-  const out = [id];
-  for (let part = /^(.*)\.[0-9]+$/s.exec(id); part; part = /^(.*)\.[0-9]+$/s.exec(part[1])) out.push(part[1]);
-  return out;
 }
 
 /**
@@ -75,9 +52,8 @@ export function answers(plan, ids) {
     }
     for (const meta of metas) if (meta.start >= plan.end) each(meta.request.id, (x) => x.waiting.push(meta.start));
   }
-  for (const item of trackItems(plan.track)) {
-    const { id, kind, start, end = start } = item;
-    if (kind !== "stay") each(id, (x) => x.plays.push({ start, end, what: kind }));
+  for (const [what, lane] of Object.entries(LANES)) {
+    for (const { id, start, end = start } of plan.track[lane]) each(id, (x) => x.plays.push({ start, end, what }));
   }
   for (const told of plan.reports) each(told.request, (x) => x.told.push(told));
   return new Map([...found].map(([id, x]) => [id, { id, ...answer(x) }]));
@@ -120,8 +96,8 @@ export function since(plan, seconds) {
     layers,
     reports: plan.reports.filter((r) => r.at >= seconds),
     requests: plan.requests.filter((r) => r.start >= seconds || known.has(r.id)),
-    track: sinceTrack(plan.track, seconds),
-    life: sinceSchedule(plan.life, seconds),
+    track: plan.track.since(seconds),
+    life: plan.life.since(seconds),
   };
 }
 

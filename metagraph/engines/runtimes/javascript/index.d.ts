@@ -16,28 +16,35 @@ export interface Common {
   told?: number | null;
 }
 
+/** In which mood: a name, or valence and arousal, -1 to 1; how strongly, 0 to 2. */
+export interface Felt {
+  mood?: string | [number, number] | null;
+  intensity?: number | null;
+}
+
 /** What can be asked for; docs/live.md says what each means. */
 export type Ask = Common &
   (
-    | {
+    | ({
         do: "gesture"; layer?: Layer; tags?: string[]; limb?: Limb | null; duration?: number | null; stroke?: number | null;
         hold?: number | null; prepare?: boolean; resume?: boolean; late?: number | null;
-      }
-    | { do: "fidget"; layer?: Layer; tags?: string[]; limb?: Limb | null; duration?: number | null; resume?: boolean; late?: number | null }
-    | {
+      } & Felt)
+    | ({ do: "fidget"; layer?: Layer; tags?: string[]; limb?: Limb | null; duration?: number | null; resume?: boolean; late?: number | null } & Felt)
+    | ({
         do: "action"; action: string; layer?: Layer | null; stroke?: number | null; hold?: number | null; prepare?: boolean;
         late?: number | null;
-      }
+      } & Felt)
     | { do: "stance"; stance: string; layer?: Layer | null; stay?: boolean; late?: number | null }
     | { do: "change"; layer?: Layer; limb?: Limb | null; duration?: number | null; late?: number | null }
-    | { do: "nod" | "shake"; tags?: string[]; late?: number | null }
+    | ({ do: "nod" | "shake"; tags?: string[]; late?: number | null } & Felt)
     | { do: "look"; to?: string | Point; duration?: number | null; amount?: number; strict?: boolean }
     | { do: "blink" }
-    | {
+    | ({
         do: "say"; line?: string | number | null; text?: string; duration?: number | null; gestures?: boolean;
         words?: (unknown[] | object)[]; visemes?: (unknown[] | object)[]; set?: "oculus" | "azure" | "sapi" | "polly" | "arkit" | null;
-      }
+      } & Felt)
     | { do: "mode"; mode?: Mode | null }
+    | ({ do: "mood"; duration?: number | null } & Felt)
     | { do: "place"; name: string; point: Point }
     | { do: "withdraw"; what?: string }
   );

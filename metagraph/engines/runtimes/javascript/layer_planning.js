@@ -5,10 +5,13 @@
  * Translated from metagraph/playback/layer_planning.py; change that, and translate anew.
  */
 
+import { FITS } from "./cue_shapes.js";
 import { write } from "./markov.js";
+import { changed, moodAt, tempo } from "./mood.js";
 import { LayerPlan, MetaAction, Report, TEMPORAL } from "./meta_plan.js";
 import { delay, replan } from "./replan.js";
-import { FITS, performerAfter } from "./sampling.js";
+import { performerAfter } from "./sampling.js";
+import { but } from "./basics.js";
 
 export const WINDOW = 1; // seconds a request may use when it does not say how long
 
@@ -55,7 +58,7 @@ export class LayerDraft {
  *
  * chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of the plan so far.
  * fresh: requests, of all layers. replaced: ids of those that are asked for anew or withdrawn. stance: which the layer would
- * begin in.
+ * begin in. moods: what it is in the mood for, and when.
  * @param {Project} project
  * @param {MetaGraph} graph
  * @param {?Markov} chain
@@ -68,11 +71,12 @@ export class LayerDraft {
  * @param {Set<string>} replaced
  * @param {number} end
  * @param {?string} stance
+ * @param {Moods} moods
  * @returns {LayerDraft}
  */
-export function draft(project, graph, chain, kinds, old, told, seed, now, fresh, replaced, end, stance) {
+export function draft(project, graph, chain, kinds, old, told, seed, now, fresh, replaced, end, stance, moods) {
   const layer = graph.layer;
-  let asked = fresh.filter((request) => request.layer === layer).map((request) => metaOf(request));
+  let asked = fresh.filter((request) => request.layer === layer).map((request) => metaOf(inTime(request, moods)));
   const kept = old.cues.filter((cue) => cue.start < now);
   const played = new Set(kept.map((cue) => cue.meta));
   // also those whose chain of transitions has begun
@@ -119,7 +123,7 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
       && ((TEMPORAL.has(report.outcome) && !judged.has(report.request))
         || !(planned.get(report.request) ?? []).includes(report.at)));
   const begin = _begin(graph, old, stance);
-  const performer = performerAfter(project, graph, seed, begin, old.past, kept);
+  const performer = performerAfter(project, graph, seed, begin, old.past, kept, moods);
   if (begin === "" || !performer.begin(begin)) {
     const why = `the ${layer} layer has no stance with a loop to begin in`;
     const waits = [...future, ...asked];
@@ -151,6 +155,24 @@ export function draft(project, graph, chain, kinds, old, told, seed, now, fresh,
   const [placed, moved] = replan([...future, ...written, ...asked], project.settings, busy);
   const every = [...reports, ...delayed, ...moved];
   return new LayerDraft(layer, performer, true, done, placed, every, old.past, cursor, written);
+}
+
+/**
+ * Return a request that may begin as much earlier as its preparation takes longer in its mood.
+ * @param {MetaRequest} request
+ * @param {Moods} moods
+ * @returns {MetaRequest}
+ */
+export function inTime(request, moods) {
+  if (request.stroke === null) {
+    return request;
+  }
+  const mood = moodAt(moods, request.stroke);
+  const speed = tempo(changed(mood, request.valence, request.arousal, request.intensity));
+  if (speed >= 1) {
+    return request;
+  }
+  return but(request, { start: Math.max(0, request.stroke - (request.stroke - request.start) / speed) });
 }
 
 /**

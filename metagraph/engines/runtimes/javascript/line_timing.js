@@ -140,6 +140,24 @@ export class LineTiming {
 }
 
 /**
+ * Whether two lines' words and shapes come alike.
+ * @param {?LineTiming} one
+ * @param {?LineTiming} other
+ * @returns {boolean}
+ */
+export function alikeTimings(one, other) {
+  if (one === null || other === null) {
+    return one === null && other === null;
+  }
+  if (one.words.length !== other.words.length || one.marks.length !== other.marks.length) {
+    return false;
+  }
+  const words = zip(one.words, other.words).every(([a, b]) => a.text === b.text && a.start === b.start && a.end === b.end);
+  return words
+    && zip(one.marks, other.marks).every(([a, b]) => a.at === b.at && a.viseme === b.viseme && a.weight === b.weight);
+}
+
+/**
  * @param {string} name
  * @returns {Map<string, string>}
  */

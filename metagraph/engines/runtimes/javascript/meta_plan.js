@@ -17,11 +17,12 @@ export const WRITTEN = 0; // priority of what the Markov model writes
  * on afterwards. stroke: when a gesture's stroke should come; `start` is then the earliest it may begin. hold: seconds its
  * hold should last, None for as long as it was made. prepare: whether its preparation plays. among: ids of the only actions
  * it may be, any where empty. late: by how many seconds its stroke, or where none is asked for its start, may come late, 0
- * for on time or not at all; None for as late as the settings allow.
+ * for on time or not at all; None for as late as the settings allow. valence, arousal, intensity: of the mood it is played
+ * in, as in `mood.Mood`; None for as it is then.
  *
  * id: string; layer: string; kind: string; start: number; duration: ?number; action: ?string; tags: string[]; limb: ?string;
  * stance: ?string; priority: number; resume: boolean; stroke: ?number; hold: ?number; prepare: boolean; among: string[];
- * late: ?number.
+ * late: ?number; valence: ?number; arousal: ?number; intensity: ?number.
  */
 export class MetaRequest {
   constructor(
@@ -41,6 +42,9 @@ export class MetaRequest {
     prepare = true,
     among = [],
     late = null,
+    valence = null,
+    arousal = null,
+    intensity = null,
   ) {
     this.id = id;
     this.layer = layer;
@@ -58,6 +62,9 @@ export class MetaRequest {
     this.prepare = prepare;
     this.among = among;
     this.late = late;
+    this.valence = valence;
+    this.arousal = arousal;
+    this.intensity = intensity;
   }
 }
 
@@ -101,17 +108,33 @@ export class MetaAction {
 }
 
 /**
- * One action in the plan. It plays its clip from `entry` on during `start`..`end`, at its own speed but for its hold.
+ * One action in the plan. It plays its clip from `entry` on during `start`..`end`, at `tempo` times its own speed but for
+ * its hold.
  *
  * hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not stretched. blend_in,
  * blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in. meta: key of the
- * meta action it realises.
+ * meta action it realises. extent: how large it is played, a factor of its turns away from the stance.
  *
  * action: Action; start: number; end: number; entry: number; blendIn: number; blendOut: number; stance: string; then:
- * string; meta: string; holdFrom: number; holdTo: number; hold: number.
+ * string; meta: string; holdFrom: number; holdTo: number; hold: number; extent: number; tempo: number.
  */
 export class Cue {
-  constructor(action, start, end, entry, blendIn, blendOut, stance, then, meta, holdFrom = 0, holdTo = 0, hold = 0) {
+  constructor(
+    action,
+    start,
+    end,
+    entry,
+    blendIn,
+    blendOut,
+    stance,
+    then,
+    meta,
+    holdFrom = 0,
+    holdTo = 0,
+    hold = 0,
+    extent = 1,
+    tempo = 1,
+  ) {
     this.action = action;
     this.start = start;
     this.end = end;
@@ -124,6 +147,8 @@ export class Cue {
     this.holdFrom = holdFrom;
     this.holdTo = holdTo;
     this.hold = hold;
+    this.extent = extent;
+    this.tempo = tempo;
   }
 }
 

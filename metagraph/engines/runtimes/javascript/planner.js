@@ -6,9 +6,10 @@
  */
 
 import { draft } from "./layer_planning.js";
-import { schedule } from "./life/schedule.js";
-import { staysAt, toldMode } from "./life/track.js";
 import { performs } from "./markov.js";
+import { moodAt, stirs } from "./mood.js";
+import { schedule } from "./schedule.js";
+import { moodsOf } from "./wanted.js";
 import { LAYERS } from "./words.js";
 
 /**
@@ -27,6 +28,7 @@ export function extend(graph, plan, now, requests, end, { stances = {}, idle = t
   const again = new Set([...fresh.map((r) => r.id), ...withdrawn]);
   const layers = {};
   const reports = [];
+  const moods = moodsOf(graph.life, plan.track);
   for (const layer of LAYERS) {
     if (leave.includes(layer)) {
       layers[layer] = plan.layers[layer];
@@ -37,11 +39,12 @@ export function extend(graph, plan, now, requests, end, { stances = {}, idle = t
     const chain = idle ? of.markov : null;
     const stance = stances?.[layer] ?? null;
     const drafted = draft(
-      graph, of, chain, of.kinds, plan.layers[layer], plan.reports, plan.seed, now, fresh, again, end, stance,
+      graph, of, chain, of.kinds, plan.layers[layer], plan.reports, plan.seed, now, fresh, again, end, stance, moods,
     );
-    // What a model wrote is not performed where it would leave a stance that was asked for, to stay in, and as often as its mode says.
-    const leaves = (m) => m.request.kind === "transition" && staysAt(plan.track, layer, m.start);
-    const performed = (m) => !leaves(m) && performs(of.markov, plan.seed, m, toldMode(plan.track, m.start));
+    // What a model wrote is not performed where it would leave a stance that was asked for, to stay in, and as often as its mode and mood say.
+    const leaves = (m) => m.request.kind === "transition" && plan.track.staysAt(layer, m.start);
+    const moved = (m) => stirs(moodAt(moods, m.start), plan.seed, m.request.id);
+    const performed = (m) => moved(m) && !leaves(m) && performs(of.markov, plan.seed, m, plan.track.toldMode(m.start));
     layers[layer] = drafted.performed(drafted.placed.filter((m) => !m.written || performed(m)), end);
     reports.push(...drafted.reports);
   }
@@ -49,6 +52,6 @@ export function extend(graph, plan, now, requests, end, { stances = {}, idle = t
     seed: plan.seed, end, layers, track: plan.track,
     reports: reports.sort((a, b) => a.at - b.at),
     requests: [...plan.requests.filter((r) => !again.has(r.id)), ...fresh],
-    life: schedule(graph, plan.track, plan.seed, end, plan.life, now),
+    life: schedule(graph.life, plan.track, graph.voices, plan.seed, end, plan.life, now),
   };
 }

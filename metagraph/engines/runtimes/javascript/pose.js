@@ -1,10 +1,13 @@
 /**
  * The one evaluator: what pose a plan gives at a time. Layers add their offsets from the base pose (Borer et al., section 5): a joint's
- * rotation is `base * body^w * arms^w * head^w`, its translation a sum; then the life layers are added.
+ * rotation is `base * body^w * arms^w * head^w`, its translation a sum; then the life layers are added, and
+ * hands kept in contact and out of the body.
  */
 
 import { ease } from "./life/gaze.js";
 import { Enlivener } from "./life/evaluate.js";
+import { touch } from "./contacts.js";
+import { turnExtent } from "./mood.js";
 import { clipSeconds } from "./plan.js";
 import { multiply, nlerp, normalize, power } from "./rotation.js";
 import { LAYERS } from "./words.js";
@@ -67,6 +70,7 @@ export class Player {
       life.find(pose.rotations, pose.translations, this.plan, this.gaze, time);
       life.apply(pose.rotations, pose.translations);
     }
+    if (this.graph.contactRig) touch(this.graph, this.playing(time), time, pose.rotations, pose.translations);
     rotations.set(pose.rotations);
     translations.set(pose.translations);
   }
@@ -90,6 +94,15 @@ export class Player {
       life.morphs(out);
     }
     for (let n = 0; n < out.length; n++) out[n] = Math.min(1, Math.max(0, out[n]));
+  }
+
+  /** Return what plays at a time: of each layer its name, plan, cue with motion or null, and the place of its rest. */
+  playing(time) {
+    return LAYERS.map((name, n) => {
+      const layer = this.plan.layers[name];
+      const cue = this.cueAt(n, layer, time);
+      return [name, layer, cue?.action.offsets ? cue : null, layer.rests.length ? this.restAt(n, layer, time) : -1];
+    });
   }
 
   get lives() {
@@ -127,7 +140,7 @@ export class Player {
     sample(action, clipSeconds(cue, time), shown, count);
     const entering = time < cue.start + cue.blendIn;
     const blending = entering || time >= cue.end - cue.blendOut;
-    if (!blending && !action.still.length) return shown;
+    if (!blending && !action.still.length && cue.extent === 1) return shown;
     this.stance(n, layer, time, count);
     if (blending) {
       // Lead the clip in from, or out to, its stance: add what the stance differs from the clip's pose at that edge. A crossfade
@@ -145,12 +158,27 @@ export class Player {
       }
       for (let k = 0; k < 3 * count; k++) shown.translations[k] += weight * (stance.translations[k] - other.translations[k]);
     }
+    if (cue.extent !== 1) this.extend(cue.extent, this.graph.layers[LAYERS[n]], count);
     for (let s = 0; s < action.still.length; s++) {
       const i = action.still[s];
       for (let k = 0; k < 4; k++) shown.rotations[4 * i + k] = stance.rotations[4 * i + k];
       for (let k = 0; k < 3; k++) shown.translations[3 * i + k] = stance.translations[3 * i + k];
     }
     return shown;
+  }
+
+  /** Play what is shown larger or smaller round the stance. */
+  extend(extent, { larger, smaller }, count) {
+    const { shown, stance, turn } = this.room;
+    const takesPart = extent > 1 ? larger : smaller;
+    for (let i = 0, q = 0; i < count; i++, q += 4) {
+      if (!takesPart[i]) continue;
+      for (let k = 0; k < 4; k++) turn[k] = k < 3 ? -stance.rotations[q + k] : stance.rotations[q + 3];
+      multiply(turn, 0, turn, 0, shown.rotations, q);
+      power(turn, 0, turnExtent(extent, turn[3]));
+      multiply(shown.rotations, q, stance.rotations, q, turn, 0);
+      for (let k = 3 * i; k < 3 * i + 3; k++) shown.translations[k] = stance.translations[k] + (shown.translations[k] - stance.translations[k]) * extent;
+    }
   }
 
   /** Return the offsets of the stance that lies under the cues. */

@@ -6,16 +6,15 @@
 
 import { begins, bounds } from "./bounds.js";
 import { pick } from "./choice.js";
+import { CueShape, FITS, RETRACTION, fitsBefore, hurried, lateness, mayShare, meets, shapeOf, slackOf } from "./cue_shapes.js";
+import { HELD, changed, drag, extent, favour, madeFor, moodAt, tempo } from "./mood.js";
 import { LEAST_BLEND } from "./phase_times.js";
 import { phases } from "./phases.js";
 import { Cue, Report, Rest } from "./meta_plan.js";
 import { REMEMBERED, node, remember } from "./remembering.js";
+import { vigour } from "./vigour.js";
 import { but, maxOf, minOf, thousandths } from "./basics.js";
 
-export const FITS = 1e-06; // seconds by which sums of times may be off
-export const HURRY = 2; // a hold is played at most this many times as fast as it was made
-export const RETRACTION = 0.4; // seconds in which an action whose retraction is cut goes back to its stance, at the least
-export const SHARED = 0.25; // seconds within which two strokes may be one
 export const LOOP_FADE = 0.6; // seconds of crossfade when a long rest changes from one loop of its stance to another
 
 /**
@@ -31,31 +30,15 @@ export class SamplingStep {
 }
 
 /**
- * How an action would play: from `start` on, `length` seconds, at least `shortest`; the rest as in a cue.
- *
- * start: number; entry: number; length: number; shortest: number; holdFrom: number; holdTo: number; hold: number.
- */
-export class CueShape {
-  constructor(start, entry, length, shortest, holdFrom = 0, holdTo = 0, hold = 0) {
-    this.start = start;
-    this.entry = entry;
-    this.length = length;
-    this.shortest = shortest;
-    this.holdFrom = holdFrom;
-    this.holdTo = holdTo;
-    this.hold = hold;
-  }
-}
-
-/**
  * One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
  *
  * uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of
- * meta actions whose chain of transitions plays already. served: keys of those that another's action serves, too.
+ * meta actions whose chain of transitions plays already. served: keys of those that another's action serves, too. moods:
+ * what it is in the mood for, and when.
  *
- * project: Project; graph: MetaGraph; seed: number; stance: string; free: number; uses: Map<string, number>; recent:
- * Map<string, string[]>; ended: Map<string, number>; cues: Cue[]; rests: Rest[]; reports: Report[]; begun: Set<string>;
- * served: Set<string>.
+ * project: Project; graph: MetaGraph; seed: number; stance: string; moods: Moods; free: number; uses: Map<string, number>;
+ * recent: Map<string, string[]>; ended: Map<string, number>; cues: Cue[]; rests: Rest[]; reports: Report[]; begun:
+ * Set<string>; served: Set<string>.
  */
 export class Performer {
   constructor(
@@ -63,6 +46,7 @@ export class Performer {
     graph,
     seed,
     stance,
+    moods,
     free = 0,
     uses = new Map(),
     recent = new Map(),
@@ -77,6 +61,7 @@ export class Performer {
     this.graph = graph;
     this.seed = seed;
     this.stance = stance;
+    this.moods = moods;
     this.free = free;
     this.uses = uses;
     this.recent = recent;
@@ -156,7 +141,7 @@ export class Performer {
       const asked = hops ? null : meta.request;
       let fitting = [...step.candidates];
       if (limit < Infinity) { // else all fit
-        fitting = step.candidates.filter((a) => this.fits(this.shape(a, asked, now), limit));
+        fitting = step.candidates.filter((a) => fitsBefore(this.shape(a, asked, now), limit));
       }
       if (fitting.length === 0) {
         const before = meta.written ? "" : " before something more important";
@@ -179,9 +164,10 @@ export class Performer {
           return;
         }
       }
-      const action = this.draw(fitting, hops ? `${meta.key}/${step.hop}` : meta.key, now);
+      const mood = this.mood(asked, now);
+      const action = this.draw(fitting, hops ? `${meta.key}/${step.hop}` : meta.key, now, mood);
       const shape = this.shape(action, asked, now);
-      const cue = this.cue(action, shape, bound, hops, stance);
+      const cue = this.cue(action, shape, bound, hops, stance, mood);
       cues.push(cue);
       now = cue.end;
       stance = cue.then;
@@ -198,8 +184,8 @@ export class Performer {
   timely(bound, fitting, now) {
     const meta = bound.meta;
     const request = meta.request;
-    const allowed = this.slack(request);
-    const late = new Map(fitting.map((a) => [a.id, this.lateness(a, request, this.shape(a, request, now))]));
+    const allowed = slackOf(request);
+    const late = new Map(fitting.map((a) => [a.id, lateness(this.project, a, request, this.shape(a, request, now))]));
     const least = minOf(fitting.map((a) => late.get(a.id)));
     let waits;
     if (least > allowed + FITS) {
@@ -219,10 +205,10 @@ export class Performer {
     }
     let timely = fitting.filter((a) => late.get(a.id) <= Math.max(least, 0) + FITS);
     for (const other of bound.after) {
-      if (!this.shares(request, other.request)) {
+      if (!mayShare(request, other.request)) {
         continue;
       }
-      const both = timely.filter((a) => this.meets(a, other.request));
+      const both = timely.filter((a) => meets(a, other.request));
       let behind = 0;
       if (request.stroke !== null && other.request.stroke !== null) {
         behind = Math.max(0, request.stroke + Math.max(least, 0) - other.request.stroke);
@@ -236,7 +222,7 @@ export class Performer {
     }
     const following = bound.after.filter((other) => !this.served.has(other.key));
     for (const other of following) {
-      for (const slack of [0, this.slack(other.request)]) {
+      for (const slack of [0, slackOf(other.request)]) {
         const by = this.latest(other.request) + slack;
         const over = timely.filter((a) => this.over(a, request, now) <= by);
         if (over.length > 0) {
@@ -245,18 +231,6 @@ export class Performer {
       }
     }
     return timely;
-  }
-
-  /**
-   * Return by how many seconds an action that plays so comes late, at its stroke where one is asked for; less than 0 before
-   * its time.
-   */
-  lateness(action, request, shape) {
-    if (request.stroke !== null && action.kind === "gesture") {
-      const found = phases(this.project, action);
-      return shape.start + found.stroke - shape.entry - request.stroke;
-    }
-    return shape.start - request.start;
   }
 
   /** Return what a request that comes late waits for. */
@@ -270,25 +244,6 @@ export class Performer {
     return this.cues.length > 0 ? "what comes before it" : "the time it became known at";
   }
 
-  /** Whether two requests may be met by one stroke. */
-  shares(request, other) {
-    if (request.stroke === null || other.stroke === null) {
-      return false;
-    }
-    return request.action === null
-      && other.action === null
-      && request.kind === other.kind
-      && (other.hold === null || other.hold === request.hold)
-      && Math.abs(request.stroke - other.stroke) <= SHARED;
-  }
-
-  /** Whether an action is what a request for any asks for. */
-  meets(action, request) {
-    return request.tags.every((tag) => action.tags.includes(tag))
-      && (request.limb === null || action.limb === request.limb)
-      && (request.among.length === 0 || request.among.includes(action.id));
-  }
-
   /**
    * Return when something that is asked for has to begin at the latest, to be on time; never in the past, where nothing
    * meets it.
@@ -299,40 +254,23 @@ export class Performer {
     }
     let least = Infinity;
     for (const action of this.graph.of(this.stance, request.kind)) {
-      let fits = this.meets(action, request);
+      let fits = meets(action, request);
       if (request.action !== null) {
         fits = action.id === request.action;
       }
       if (fits && this.usable(action)) {
         const found = phases(this.project, action);
-        least = Math.min(least, found.stroke - found.skip(action.timing.blendIn));
+        const lead = found.stroke - found.skip(action.timing.blendIn);
+        least = Math.min(least, lead + drag(lead, this.tempo(action, request, request.stroke)));
       }
     }
     return request.stroke - least;
   }
 
-  /** Return by how many seconds a request may come late, 0 where it does not say. */
-  slack(request) {
-    return request.late === null ? 0 : request.late;
-  }
-
   /** Return when what follows an action could begin at the earliest. */
   over(action, request, now) {
     const shape = this.shape(action, request, now);
-    return shape.start + this.hurried(action, shape) + this.project.settings.rest - FITS;
-  }
-
-  /** Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless it was asked for. */
-  hurried(action, shape) {
-    if (action.kind !== "gesture" || action.timing.earliestExit !== null) {
-      return shape.shortest;
-    }
-    const found = phases(this.project, action);
-    let left = found.relax - shape.entry + shape.hold - (shape.holdTo - shape.holdFrom);
-    if (shape.hold <= 0) {
-      left = found.strokeEnd - shape.entry;
-    }
-    return Math.min(shape.length, left + Math.max(action.timing.blendOut, RETRACTION));
+    return shape.start + hurried(this.project, action, shape) + this.project.settings.rest - FITS;
   }
 
   /**
@@ -341,9 +279,9 @@ export class Performer {
    */
   until(action, shape, bound) {
     const rest = this.project.settings.rest;
-    const soonest = shape.start + this.hurried(action, shape);
+    const soonest = shape.start + hurried(this.project, action, shape);
     for (const other of bound.after) {
-      const inTime = this.latest(other.request) + this.slack(other.request);
+      const inTime = this.latest(other.request) + slackOf(other.request);
       if (!this.served.has(other.key) && soonest + rest <= inTime + FITS) {
         return Math.max(soonest, begins(other) - rest);
       }
@@ -370,13 +308,14 @@ export class Performer {
         cue.holdFrom,
         cue.holdTo,
         cue.hold,
+        cue.tempo,
       );
-      soonest = Math.max(soonest, cue.start + this.hurried(cue.action, shape));
+      soonest = Math.max(soonest, cue.start + hurried(this.project, cue.action, shape));
     }
     const rest = this.project.settings.rest;
     for (const meta of asked) {
       const request = meta.request;
-      const inTime = this.latest(request) + this.slack(request);
+      const inTime = this.latest(request) + slackOf(request);
       if (request.late === null || meta.rank < running.rank || inTime < soonest + rest - FITS) {
         continue;
       }
@@ -390,11 +329,6 @@ export class Performer {
       }
       return;
     }
-  }
-
-  /** Whether something that plays so is over by a limit. */
-  fits(shape, limit) {
-    return shape.start + shape.shortest <= limit + FITS;
   }
 
   /** Return when an action may be drawn again. */
@@ -555,52 +489,56 @@ export class Performer {
 
   /** Return how an action would play for a request from `now` on, or as a step on the way to it. */
   shape(action, request, now) {
-    const [start, end] = this.project.span(action);
-    let begin = now;
-    let entry = start;
-    let holdFrom = 0;
-    let holdTo = 0;
-    let hold = 0;
-    if (request !== null
-      && action.kind === "gesture"
-      && (request.hold !== null || request.stroke !== null || !request.prepare)) {
-      const found = phases(this.project, action);
-      const latest = found.skip(action.timing.blendIn);
-      entry = request.prepare ? start : latest;
-      // Wait for the stroke, or catch up with it by cutting the preparation.
-      if (request.stroke !== null) {
-        begin = Math.max(now, request.stroke - (found.stroke - entry));
-        entry = Math.min(Math.max(entry, found.stroke - Math.max(0, request.stroke - begin)), Math.max(entry, latest));
-      }
-      if (request.hold !== null) {
-        holdFrom = found.strokeEnd;
-        holdTo = found.relax;
-        hold = Math.max(request.hold, (holdTo - holdFrom) / HURRY);
-        if (hold <= 0) {
-          holdFrom = 0;
-          holdTo = 0;
-        }
-      }
-    }
-    const length = end - entry + hold - (holdTo - holdFrom);
-    let shortest = length;
-    const exitAt = action.timing.earliestExit;
-    if (exitAt !== null) {
-      const left = exitAt - entry + (exitAt >= holdTo ? hold - (holdTo - holdFrom) : 0);
-      shortest = Math.min(length, Math.max(0, left) + action.timing.blendOut);
-    }
-    return new CueShape(begin, entry, length, shortest, holdFrom, holdTo, hold);
+    return shapeOf(this.project, action, request, now, this.tempo(action, request, now));
   }
 
-  /** Draw with p_k ~ likelihood_k / max(c_k, 1), leaving out those used too recently as long as any others are left. */
-  draw(candidates, key, now) {
+  /** Return the mood that something asked for is played in from `at` on, or at its stroke. */
+  mood(request, at) {
+    if (request === null) {
+      return moodAt(this.moods, at);
+    }
+    const mood = moodAt(this.moods, request.stroke === null ? at : request.stroke);
+    if (request.valence === null && request.arousal === null && request.intensity === null) {
+      return mood;
+    }
+    return changed(mood, request.valence, request.arousal, request.intensity);
+  }
+
+  /** Return how fast an action is played, 1 where it was made for the mood. */
+  tempo(action, request, at) {
+    const mood = this.mood(request, at);
+    return (mood.neutral || madeFor(mood, action.tags)) ? 1 : tempo(mood);
+  }
+
+  /**
+   * Return how large an action is played. Those that move feet or leave for another stance, touch something or were made for
+   * the mood are played as they were made.
+   */
+  extent(action, mood) {
+    if (this.graph.layer === "body" || action.kind === "transition" || mood.neutral) {
+      return 1;
+    }
+    return (action.contacts.length > 0 || action.tags.includes(HELD) || madeFor(mood, action.tags)) ? 1 : extent(mood);
+  }
+
+  /**
+   * Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood favours, leaving out those used too recently as long as
+   * any others are left.
+   */
+  draw(candidates, key, now, mood) {
     const left = this.spaced(candidates);
-    const weights = new Map(left.map((a) => [a.id, a.likelihood / Math.max(this.count(a.id, now), 1)]));
+    const weights = new Map(left.map((a) =>
+      [a.id, a.likelihood / Math.max(this.count(a.id, now), 1) * this.favour(a, mood)]));
     if (![...weights.values()].some((w) => w > 0)) {
       return left[0];
     }
     const chosen = pick(this.seed, key, "action", weights);
     return left.find((a) => a.id === chosen);
+  }
+
+  /** Return how much likelier a mood makes an action, 1 in none. */
+  favour(action, mood) {
+    return mood.neutral ? 1 : favour(mood, action.tags, vigour(this.project, action));
   }
 
   /** Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and so on. */
@@ -643,7 +581,7 @@ export class Performer {
   }
 
   /** hops: whether it is a transition on the way to what is asked for. */
-  cue(action, shape, bound, hops, stance) {
+  cue(action, shape, bound, hops, stance, mood) {
     let length = shape.length;
     let into = Math.max(0, action.timing.blendIn);
     let out = Math.max(0, action.timing.blendOut);
@@ -678,6 +616,8 @@ export class Performer {
       shape.holdFrom,
       shape.holdTo,
       shape.hold,
+      this.extent(action, mood),
+      shape.tempo,
     );
   }
 
@@ -753,15 +693,17 @@ export class Performer {
  * @param {string} begin
  * @param {Past} past
  * @param {Cue[]} cues
+ * @param {Moods} moods
  * @returns {Performer}
  */
-export function performerAfter(project, graph, seed, begin, past, cues) {
+export function performerAfter(project, graph, seed, begin, past, cues, moods) {
   const stance = graph.stances.has(past.stance) ? past.stance : begin;
   const out = new Performer(
     project,
     graph,
     seed,
     stance,
+    moods,
     past.free,
     new Map(past.uses),
     new Map(past.recent),

@@ -8,6 +8,7 @@
  */
 
 import { bisect } from "../basics.js";
+import { Bearing, bearing, shown } from "../mood.js";
 import { fromVector, multiply } from "../rotation.js";
 import { CHANNELS, LIDS, MOUTH } from "../words.js";
 import { Gaze, ease } from "./gaze.js";
@@ -24,7 +25,8 @@ const VISEME = CHANNELS.length - 14; // place of the first mouth shape but silen
 
 // What morph targets stand for, in the order in which `morphs` works it out.
 const SIDED = ["blink", "wide", "look_left", "look_right", "look_up", "look_down"];
-const SHOWN = ["blink", ...["left", "right"].flatMap((side) => SIDED.map((what) => `${what}_${side}`)), ...MOUTH];
+const SHOWN = ["blink", ...["left", "right"].flatMap((side) => SIDED.map((what) => `${what}_${side}`)), ...MOUTH, "smile", "frown", "brow_down", "brow_up"];
+const UNMOVED = new Bearing();
 
 /** What the life layers make of one body: `find` works a time out, `apply` and `morphs` use what it found. */
 export class Enlivener {
@@ -40,6 +42,7 @@ export class Enlivener {
     this.said = new Float64Array(14);
     this.shut = new Float64Array(LIDS.length);
     this.full = 0; // how full the chest is
+    this.bears = UNMOVED;
     this.values = new Float64Array(SHOWN.length);
     this.added = new Float64Array(graph.morphs.length);
     this.targets = body.face.morphs
@@ -58,11 +61,13 @@ export class Enlivener {
     const { life } = graph;
     const { chain, places } = solver;
     this.full = breathAt(plan.life.breaths, life, time);
+    const mood = shown(plan.life.moods.times, plan.life.moods.rows, time);
+    this.bears = mood.neutral ? UNMOVED : bearing(mood);
     for (let n = 0; n < body.chain.length; n++) {
       const joint = body.chain[n];
       for (let k = 0; k < 4; k++) chain[4 * n + k] = rotations[4 * joint + k];
       for (let k = 0; k < 3; k++) places[3 * n + k] = translations[3 * joint + k];
-      const half = 0.5 * this.full * body.breath[4 * n + 3];
+      const half = 0.5 * (this.full * body.breath[4 * n + 3] + this.bears.droop * body.bowed[n]);
       if (half === 0) continue;
       const s = Math.sin(half);
       for (let k = 0; k < 3; k++) this.turn[k] = s * body.breath[4 * n + k];
@@ -71,12 +76,12 @@ export class Enlivener {
     }
     if (gaze) {
       gaze.at(time);
-      solver.look(gaze, life.gaze, 1 - life.stillness, life.head_share);
+      solver.look(gaze, life.gaze, 1 - life.stillness, life.headShare);
     } else {
       solver.turns.fill(0);
       solver.eyes.fill(0);
     }
-    this.lids(rotations, blinkAt(plan.life.blinks, life, time));
+    this.lids(rotations, Math.max(blinkAt(plan.life.blinks, life, time), this.bears.lids));
     channels.fill(0, VISEME);
     this.said.fill(0);
     if (life.lips > 0 && mouthAt(graph, plan.track.speeches, time, this.said)) {
@@ -102,7 +107,8 @@ export class Enlivener {
 
   /** Add what was found to a composed pose, in place. */
   apply(rotations, translations) {
-    const { body, results, solver, full } = this;
+    const { body, results, solver } = this;
+    const full = this.full + this.bears.lift;
     const { chain, eyes } = solver;
     const count = body.joints.length;
     const chained = body.chain.length;
@@ -166,6 +172,8 @@ export class Enlivener {
       values[at + 5] = -up;
     }
     for (let k = 0; k < MOUTH.length; k++) values[13 + k] = channels[BLINK + 1 + k];
+    const { smile, frown, browDown, browUp } = this.bears;
+    [smile, frown, browDown, browUp].forEach((value, k) => (values[13 + MOUTH.length + k] = value));
     added.fill(0);
     for (let n = 0; n < this.targets.length; n++) {
       const { value, morph, weight } = this.targets[n];
@@ -176,21 +184,21 @@ export class Enlivener {
 }
 
 /** Return how full the chest is, 0 at rest, about 1 at the top of a breath. */
-function breathAt({ starts, values }, life, time) {
-  const n = bisect(starts, time, true) - 1;
+function breathAt({ times, rows }, life, time) {
+  const n = bisect(times, time, true) - 1;
   if (n < 0) return 0;
-  const gone = (time - starts[n]) / values[n][0];
-  return life.breathing * (1 - life.stillness) * values[n][1] * ease(Math.min(gone / INHALE, (1 - gone) / (1 - INHALE)));
+  const gone = (time - times[n]) / rows[n][0];
+  return life.breathing * (1 - life.stillness) * rows[n][1] * ease(Math.min(gone / INHALE, (1 - gone) / (1 - INHALE)));
 }
 
 /** Return how far a blink has shut the eyes, 0..1. */
-function blinkAt({ starts }, life, time) {
-  const whole = life.blink_close + life.blink_open;
+function blinkAt({ times }, life, time) {
+  const whole = life.blinkClose + life.blinkOpen;
   let out = 0;
   // A slow one may still be opening when the next begins.
-  for (let n = bisect(starts, time, true) - 1; n >= 0 && time - starts[n] < whole; n--) {
-    const gone = time - starts[n];
-    out = Math.max(out, ease(Math.min(gone / life.blink_close, (whole - gone) / life.blink_open)));
+  for (let n = bisect(times, time, true) - 1; n >= 0 && time - times[n] < whole; n--) {
+    const gone = time - times[n];
+    out = Math.max(out, ease(Math.min(gone / life.blinkClose, (whole - gone) / life.blinkOpen)));
   }
   return out;
 }

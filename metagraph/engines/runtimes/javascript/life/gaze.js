@@ -8,7 +8,7 @@
  */
 
 import { begunBy, bisect } from "../basics.js";
-import { AHEAD, PARTNER } from "./wanted.js";
+import { AHEAD, PARTNER } from "../wanted.js";
 
 const [EYE_TIME, EYE_TIME_PER_DEGREE] = [0.021, 0.0022]; // seconds
 const HEAD_LAG = 0.04; // seconds the head sets off after the eyes
@@ -36,9 +36,9 @@ export class Gaze {
     this.body = body;
     this.points = points;
     const calm = 1 - life.stillness;
-    this.averting = life.aversion_angle * RADIANS * calm * life.gaze; // radians of an aversion's offset of 1
+    this.averting = life.aversionAngle * RADIANS * calm * life.gaze; // radians of an aversion's offset of 1
     this.darting = life.saccades * RADIANS * calm;
-    this.angle = life.aversion_angle;
+    this.angle = life.aversionAngle;
     this.known = []; // targets as the gaze meets them
     this.count = 0; // how many targets take part, and each with the eyes' and the head's share of it, together 1
     this.aims = [];
@@ -73,14 +73,14 @@ export class Gaze {
     this.dart(saccades, time);
   }
 
-  avert({ starts, values }, time, strict, since) {
-    const n = bisect(starts, time, true) - 1;
+  avert({ times, rows }, time, strict, since) {
+    const n = bisect(times, time, true) - 1;
     if (n < 0 || !(this.averting > 0)) return;
-    const end = values[n][0], x = values[n][1], y = values[n][2];
+    const end = rows[n][0], x = rows[n][1], y = rows[n][2];
     const size = Math.hypot(x, y) * this.angle;
     let scale = this.averting * (1 - strict);
-    if (since > starts[n]) scale *= 1 - ease((time - since) / ENDING); // a new look ends it
-    const went = time - starts[n];
+    if (since > times[n]) scale *= 1 - ease((time - since) / ENDING); // a new look ends it
+    const went = time - times[n];
     const gone = time - end;
     const slow = headTime(size);
     if (gone >= HEAD_LAG + slow) return;
@@ -93,13 +93,13 @@ export class Gaze {
     this.head[1] = y * head;
   }
 
-  dart({ starts, values }, time) {
-    const n = bisect(starts, time, true) - 1;
+  dart({ times, rows }, time) {
+    const n = bisect(times, time, true) - 1;
     if (n < 0 || !(this.darting > 0)) return;
-    const x = values[n][0], y = values[n][1];
-    const fromX = n > 0 ? values[n - 1][0] : 0;
-    const fromY = n > 0 ? values[n - 1][1] : 0;
-    const way = ease((time - starts[n]) / eyeTime(Math.hypot(x - fromX, y - fromY)));
+    const x = rows[n][0], y = rows[n][1];
+    const fromX = n > 0 ? rows[n - 1][0] : 0;
+    const fromY = n > 0 ? rows[n - 1][1] : 0;
+    const way = ease((time - times[n]) / eyeTime(Math.hypot(x - fromX, y - fromY)));
     this.eyes[0] += this.darting * (fromX + (x - fromX) * way);
     this.eyes[1] += this.darting * (fromY + (y - fromY) * way);
   }

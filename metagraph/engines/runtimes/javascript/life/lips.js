@@ -12,7 +12,7 @@ const COUNT = VISEMES.length;
  * @param {import("../graph.js").Graph} graph @param {object[]} speeches @param {number} time @param {Float64Array} out
  */
 export function mouthAt(graph, speeches, time, out) {
-  const smoothing = graph.life.lip_smoothing;
+  const smoothing = graph.life.lipSmoothing;
   let said = false;
   for (let n = begunBy(speeches, time + smoothing) - 1; n >= 0; n--) {
     const speech = speeches[n];

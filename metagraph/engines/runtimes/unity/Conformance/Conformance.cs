@@ -147,7 +147,7 @@ public static class Conformance
                 "metas", of.Metas.ConvertAll<object>(m => Row(m.Key, m.Start, m.End, m.Written)),
                 "cues", of.Cues.ConvertAll(c => Fields(
                     "action", c.Action.Id, "start", c.Start, "end", c.End, "entry", c.Entry, "blend_in", c.BlendIn, "blend_out", c.BlendOut,
-                    "stance", c.Stance, "then", c.Then, "meta", c.Meta, "hold_from", c.HoldFrom, "hold_to", c.HoldTo, "hold", c.Hold)),
+                    "stance", c.Stance, "then", c.Then, "meta", c.Meta, "hold_from", c.HoldFrom, "hold_to", c.HoldTo, "hold", c.Hold, "extent", c.Extent, "tempo", c.Tempo)),
                 "rests", of.Rests.ConvertAll<object>(r => Row(r.Stance, r.Action.Id, r.Start, r.FadeStart, r.Fade)));
         }
         return found;
@@ -167,12 +167,12 @@ public static class Conformance
             t.Start, t.To.Point == null ? (object)t.To.Name : t.To.Point.Cast<object>().ToList(), t.Since, t.Amount, t.Strict, t.Asked));
         return Fields(
             "modes", Lanes(life.Modes), "breaths", Lanes(life.Breaths), "aversions", Lanes(life.Aversions),
-            "saccades", Lanes(life.Saccades), "blinks", Lanes(life.Blinks), "targets", targets);
+            "saccades", Lanes(life.Saccades), "blinks", Lanes(life.Blinks), "targets", targets, "moods", Lanes(life.Moods));
     }
 
     private static List<object> Lanes(Lane lane)
     {
-        return lane.Starts.Select((start, n) => (object)new object[] { start }.Concat(lane.Values[n].Cast<object>()).ToList()).ToList();
+        return lane.Times.Select((start, n) => (object)new object[] { start }.Concat(lane.Rows[n].Cast<object>()).ToList()).ToList();
     }
 
     // --- comparing

@@ -19,11 +19,13 @@ namespace Metagraph
     {
         public string Do, Id = "", Layer, Limb, Action, Stance, Line, Text = "", Mode, Name, What = "";
         public double? At, Duration, Stroke, Hold, Late;
+        /// <summary>Of its mood, null where it tells nothing: valence and arousal -1..1, intensity 0..2.</summary>
+        public double? Valence, Arousal, Intensity;
         public double Amount = 1.0;
         public int Priority = 1;
         public bool Prepare = true, Gestures = true, Resume, Stay, Strict;
         public string[] Tags = Basics.None;
-        public Spot To = new Spot(Wanted.Partner);
+        public Spot To = new Spot(WantedRules.Partner);
         public double[] Point;
 
         /// <summary>
@@ -37,17 +39,18 @@ namespace Metagraph
 
         private static readonly Dictionary<string, string> Fields = new Dictionary<string, string>
         {
-            { "gesture", "layer tags limb duration stroke hold prepare resume late" },
-            { "fidget", "layer tags limb duration resume late" },
-            { "action", "action layer stroke hold prepare late" },
+            { "gesture", "layer tags limb duration stroke hold prepare resume late mood intensity" },
+            { "fidget", "layer tags limb duration resume late mood intensity" },
+            { "action", "action layer stroke hold prepare late mood intensity" },
             { "stance", "stance layer stay late" },
             { "change", "layer limb duration late" },
-            { "nod", "tags late" },
-            { "shake", "tags late" },
+            { "nod", "tags late mood intensity" },
+            { "shake", "tags late mood intensity" },
             { "look", "to duration amount strict" },
             { "blink", "" },
-            { "say", "line text duration gestures words visemes set" },
+            { "say", "line text duration gestures words visemes set mood intensity" },
             { "mode", "mode" },
+            { "mood", "mood intensity duration" },
             { "place", "name point" },
             { "withdraw", "what" },
             { "bml", "bml" },
@@ -132,11 +135,32 @@ namespace Metagraph
                 case "visemes": Visemes = Entries(name, value, 20000); break;
                 case "set": Set = value == null ? null : OneOf(name, value, LineTimingRules.Sets.ToArray()); break;
                 case "mode": Mode = value == null ? null : OneOf(name, value, Basics.Modes); break;
+                case "mood": Feel(name, value); break;
+                case "intensity": Intensity = value == null ? (double?)null : Number(name, value, 0, 2); break;
                 case "name": Name = Word(name, value, 1, 200); break;
                 case "point": Point = Place(name, value); break;
                 case "what": What = Word(name, value, 0, 200); break;
                 case "bml": Word(name, value, 0, 200000); break;
             }
+        }
+
+        /// <summary>Take a mood: a name, or valence and arousal.</summary>
+        internal void Feel(string name, object value)
+        {
+            var text = value as string;
+            var pair = value as List<object>;
+            if (value == null || (pair != null && pair.Count == 2))
+            {
+                Valence = value == null ? (double?)null : Number(name, pair[0], -1, 1);
+                Arousal = value == null ? (double?)null : Number(name, pair[1], -1, 1);
+                return;
+            }
+            if (text == null || !MoodRules.Moods.ContainsKey(text))
+            {
+                throw new AskException(name + ": should be valence and arousal, or one of " + string.Join(", ", MoodRules.Moods.Keys));
+            }
+            Valence = MoodRules.Moods[text].Item1;
+            Arousal = MoodRules.Moods[text].Item2;
         }
 
         private static string Word(string name, object value, int least, int most)

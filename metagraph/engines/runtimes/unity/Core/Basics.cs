@@ -100,25 +100,6 @@ namespace Metagraph
             return low;
         }
 
-        /// <summary>The number of values, ascending, that are below x.</summary>
-        public static int BisectLeft(double[] values, double x)
-        {
-            int low = 0, high = values.Length;
-            while (low < high)
-            {
-                int middle = (low + high) / 2;
-                if (values[middle] < x)
-                {
-                    low = middle + 1;
-                }
-                else
-                {
-                    high = middle;
-                }
-            }
-            return low;
-        }
-
         /// <summary>The number of items, ascending by key, whose key is at most x.</summary>
         public static int BisectRight<T>(List<T> items, double x, Func<T, double> key)
         {

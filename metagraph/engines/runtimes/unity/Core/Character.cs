@@ -199,7 +199,7 @@ namespace Metagraph
             for (int n = 0; n < Plan.Track.Speeches.Count; n++)
             {
                 Speech speech = Plan.Track.Speeches[n];
-                Note(speech.Start, speech.End, "speech", speech.LineId ?? speech.Text, speech.Id);
+                Note(speech.Start, speech.End, "speech", speech.Line ?? speech.Text, speech.Id);
             }
             seen = Now;
             if (events.Count > Remembered)

@@ -7,6 +7,8 @@ namespace Metagraph
     {
         public string Name, Part, Side;
         public int Parent;
+        /// <summary>Whether it turns farther, and whether less far, where a cue is played larger or smaller than made.</summary>
+        public bool Larger = true, Smaller = true;
     }
 
     /// <summary>A clip as the export lists it. Motion: null where the GLB lacks it.</summary>
@@ -26,10 +28,11 @@ namespace Metagraph
     {
         public string Id, Name, Kind, Layer, Stance, EndStance, Limb;
         public ClipEntry Clip;
-        public double Start, End, Likelihood, Cooldown;
+        public double Start, End, Likelihood, Cooldown, Vigour;
         public Timing Timing;
         public int? Spacing;
         public List<string> Joints = new List<string>(), Tags = new List<string>();
+        public List<ContactSpan> Contacts = new List<ContactSpan>();
         public Phases Phases;
         public bool[] Mask;
 
@@ -63,6 +66,8 @@ namespace Metagraph
         /// <summary>Joints the layer moves, and how strongly, 0..2.</summary>
         public int[] Reach;
         public double[] Weights;
+        /// <summary>How much of the arms it moves, 0..1.</summary>
+        public double Strength;
 
         private readonly Dictionary<string, List<GraphAction>> index = new Dictionary<string, List<GraphAction>>();
         private readonly HashSet<string> kinds = new HashSet<string>();
@@ -131,6 +136,8 @@ namespace Metagraph
         public string Text = "", Audio;
         public double? Duration;
         public Voice Voice;
+        /// <summary>The mood it is said in: what an ask tells of it, null where it tells nothing.</summary>
+        public Ask Mood;
         public readonly List<Ask> Asks = new List<Ask>();
     }
 
@@ -147,8 +154,11 @@ namespace Metagraph
         public LifeSettings Life = new LifeSettings();
         /// <summary>What breathes and looks; null where the export does not say.</summary>
         public Body Body;
+        /// <summary>What keeps hands on the body, and out of it; null where the export does not say.</summary>
+        public ContactRig ContactRig;
         public readonly Dictionary<string, double[]> Points = new Dictionary<string, double[]>();
         public readonly Dictionary<string, Line> Lines = new Dictionary<string, Line>();
+        public readonly Voices Voices = new Voices();
         /// <summary>Names of all morph targets that clips or the face may move; poses have a weight for each.</summary>
         public readonly List<string> Morphs = new List<string>();
         /// <summary>What is not as it should be, in words; nothing of it stops a performance.</summary>

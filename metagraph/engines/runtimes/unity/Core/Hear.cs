@@ -23,53 +23,17 @@ namespace Metagraph
             Graph graph, Plan plan, double now, IList<Ask> asks, double end, IDictionary<string, string> stances = null, bool idle = true)
         {
             double begins = now > 0 ? now + graph.Settings.Lookahead : 0.0;
-            Understood meant = Understood.From(graph, asks, begins);
-            var gone = new HashSet<string>(meant.Withdrawn);
-            gone.UnionWith(meant.Requests.Select(r => r.Id));
-            gone.UnionWith(meant.Items.Select(i => i.Id));
-            gone.UnionWith(meant.Refused.Select(r => r.Request));
-            var withdrawn = new HashSet<string>(plan.Requests.Select(r => r.Id).Concat(plan.Track.Items.Select(i => i.Id)));
-            if (!meant.Withdrawn.Contains(""))
-            {
-                withdrawn.RemoveWhere(id => !Owners(id).Any(gone.Contains));
-            }
-            // Where the models may change stances again means nothing where they always might.
-            var staying = new HashSet<string>(
-                plan.Track.Stays.Concat(meant.Items.OfType<StayFrom>()).Where(s => s.On).Select(s => s.Layer));
-            List<Item> items = meant.Items.FindAll(i => !(i is StayFrom) || staying.Contains(((StayFrom)i).Layer));
-            var touched = new HashSet<string>(meant.Requests.Select(r => r.Layer));
-            touched.UnionWith(plan.Requests.Where(r => withdrawn.Contains(r.Id)).Select(r => r.Layer));
-            touched.UnionWith(plan.Track.Stays.Concat(items.OfType<StayFrom>())
-                .Where(s => gone.Contains(s.Id) || withdrawn.Contains(s.Id)).Select(s => s.Layer));
-            if (items.Concat(plan.Track.Items.Where(i => withdrawn.Contains(i.Id))).Any(i => i is ModeFrom || i is Speech))
-            {
-                // Who talks moves otherwise than who listens.
-                touched.UnionWith(Basics.Layers.Where(layer => graph.Layers[layer].Markov.Modes.Count > 0));
-            }
+            Meaning meant = Understood.From(graph, asks, begins);
+            List<string> turning = Basics.Layers.Where(layer => graph.Layers[layer].Markov.Modes.Count > 0).ToList();
+            Heard heard = HearingRules.Heard(
+                plan.Requests, plan.Track, meant.Requests, meant.Track(), meant.Withdrawn, meant.Refused.ConvertAll(r => r.Request), begins,
+                turning);
             bool partly = asks.Count > 0 && now > 0 && end == plan.End;
-            string[] leave = partly ? Basics.Layers.Where(layer => !touched.Contains(layer)).ToArray() : Basics.None;
-            List<Item> goingOn = items.ConvertAll(i => i is Speech ? ((Speech)i).GoingOn(plan.Track, begins) : i);
-            var begun = new HashSet<string>(goingOn.Where((item, n) => item != items[n]).Select(item => item.Id)); // of which more is said
-            Track ended = plan.Track.Without(new HashSet<string>(withdrawn.Except(begun)), begins);
-            plan = plan.With(ended.Without(begun, double.NegativeInfinity).Plus(goingOn));
-            Plan after = Planner.Extend(graph, plan, begins, meant.Requests, end, stances, idle, withdrawn, leave);
+            string[] leave = partly ? Basics.Layers.Where(layer => !heard.Touched.Contains(layer)).ToArray() : Basics.None;
+            plan = plan.With(heard.Track);
+            Plan after = Planner.Extend(graph, plan, begins, meant.Requests, end, stances, idle, heard.Withdrawn, leave);
             after.Reports.AddRange(meant.Refused);
             return after;
-        }
-
-        /// <summary>The asks a request may have been made by: that of its own id, and those of which it would be a part.</summary>
-        private static IEnumerable<string> Owners(string id)
-        {
-            yield return id;
-            for (int dot = id.LastIndexOf('.'); dot >= 0 && dot < id.Length - 1; dot = id.LastIndexOf('.'))
-            {
-                if (!id.Substring(dot + 1).All(char.IsDigit))
-                {
-                    yield break;
-                }
-                id = id.Substring(0, dot);
-                yield return id;
-            }
         }
 
         /// <summary>What a plan does about an ask: when it will play, or why it will not.</summary>
@@ -82,7 +46,7 @@ namespace Metagraph
         public static List<Answer> Answers(Plan plan, ICollection<string> ids)
         {
             Dictionary<string, Found> found = ids.ToDictionary(id => id, id => new Found());
-            Func<string, IEnumerable<Found>> of = made => Owners(made).Where(found.ContainsKey).Select(owner => found[owner]);
+            Func<string, IEnumerable<Found>> of = made => HearingRules.Owners(made).Where(found.ContainsKey).Select(owner => found[owner]);
             foreach (LayerPlan layer in plan.Layers.Values)
             {
                 layer.Cues.ForEach(cue => Each(of(cue.Meta.Split('+')[0]), one => one.Cues.Add(cue)));
@@ -92,9 +56,20 @@ namespace Metagraph
                 }
                 layer.Metas.FindAll(m => m.Start >= plan.End).ForEach(m => Each(of(m.Request.Id), one => one.Waiting.Add(m.Start)));
             }
-            Each(plan.Track.Items.Where(i => !(i is StayFrom)), item => Each(of(item.Id), one => one.Items.Add(item)));
+            Each(Lasting(plan.Track), item => Each(of(item.Item1), one => one.Items.Add(item)));
             plan.Reports.ForEach(report => Each(of(report.Request), one => one.Told.Add(report)));
             return ids.Select(id => AnswerOf(id, found[id])).ToList();
+        }
+
+        /// <summary>Id, start, end and word of what lasts; where a layer stays is told by the way to it.</summary>
+        private static IEnumerable<(string, double, double, string)> Lasting(Track track)
+        {
+            return track.Looks.Select(x => (x.Id, x.Start, x.End, "look"))
+                .Concat(track.Speeches.Select(x => (x.Id, x.Start, x.End, "speech")))
+                .Concat(track.Modes.Select(x => (x.Id, x.Start, x.Start, "mode")))
+                .Concat(track.Places.Select(x => (x.Id, x.Start, x.Start, "place")))
+                .Concat(track.Blinks.Select(x => (x.Id, x.Start, x.Start, "blink")))
+                .Concat(track.Moods.Select(x => (x.Id, x.Start, x.End, "mood")));
         }
 
         private static void Each<T>(IEnumerable<T> items, Action<T> act)
@@ -109,7 +84,7 @@ namespace Metagraph
         private sealed class Found
         {
             public readonly List<Cue> Cues = new List<Cue>();
-            public readonly List<Item> Items = new List<Item>();
+            public readonly List<(string, double, double, string)> Items = new List<(string, double, double, string)>();
             public readonly List<Report> Told = new List<Report>();
             public readonly List<double> Waiting = new List<double>();
         }
@@ -122,9 +97,9 @@ namespace Metagraph
             {
                 string[] late = { "late", "queued", "resumed" };
                 answer.State = told.Exists(r => late.Contains(r.Outcome)) ? "late" : "planned";
-                answer.At = found.Cues.Select(c => c.Start).Concat(found.Items.Select(i => i.Start)).Min();
-                answer.Until = found.Cues.Select(c => c.End).Concat(found.Items.Select(i => i.End)).Max();
-                answer.What = found.Cues.Select(c => c.Action.Name).Concat(found.Items.Select(i => i.Word)).ToArray();
+                answer.At = found.Cues.Select(c => c.Start).Concat(found.Items.Select(i => i.Item2)).Min();
+                answer.Until = found.Cues.Select(c => c.End).Concat(found.Items.Select(i => i.Item3)).Max();
+                answer.What = found.Cues.Select(c => c.Action.Name).Concat(found.Items.Select(i => i.Item4)).ToArray();
             }
             else if (told.Exists(r => r.Outcome == "already-there"))
             {

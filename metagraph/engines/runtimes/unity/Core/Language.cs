@@ -70,6 +70,18 @@ namespace Metagraph
             return number.ToString("F" + places, CultureInfo.InvariantCulture);
         }
 
+        /// <summary>A text before the last of another, that, and what is behind it; nothing of the first two where it has none.</summary>
+        public static (string, string, string) PartedLast(string text, string by)
+        {
+            int place = text.LastIndexOf(by, StringComparison.Ordinal);
+            return place < 0 ? ("", "", text) : (text.Substring(0, place), by, text.Substring(place + by.Length));
+        }
+
+        public static bool Digits(string text)
+        {
+            return text.Length > 0 && text.All(c => c >= '0' && c <= '9');
+        }
+
         public static List<string> Words(string text)
         {
             return text.Split((char[])null, StringSplitOptions.RemoveEmptyEntries).ToList();
@@ -210,6 +222,12 @@ namespace Metagraph
                 }
             }
             items.Insert(low, item);
+        }
+
+        /// <summary>Pairs of the items at the same places of two lists.</summary>
+        public static IEnumerable<(A, B)> Pairs<A, B>(IEnumerable<A> one, IEnumerable<B> other)
+        {
+            return one.Zip(other, (a, b) => (a, b));
         }
 
         /// <summary>How many of ascending values are at most x.</summary>

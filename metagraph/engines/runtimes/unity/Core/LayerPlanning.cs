@@ -75,7 +75,7 @@ namespace Metagraph
         ///
         /// chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of the plan so
         /// far. fresh: requests, of all layers. replaced: ids of those that are asked for anew or withdrawn. stance: which the
-        /// layer would begin in.
+        /// layer would begin in. moods: what it is in the mood for, and when.
         /// </summary>
         public static LayerDraft Draft(
             Graph project,
@@ -89,11 +89,12 @@ namespace Metagraph
             List<MetaRequest> fresh,
             HashSet<string> replaced,
             double end,
-            string stance
+            string stance,
+            Moods moods
         )
         {
             var layer = graph.Layer;
-            var asked = fresh.Where(request => request.Layer == layer).Select(request => MetaOf(request)).ToList();
+            var asked = fresh.Where(request => request.Layer == layer).Select(request => MetaOf(InTime(request, moods))).ToList();
             var kept = old.Cues.Where(cue => cue.Start < now).ToList();
             var played = new HashSet<string>(kept.Select(cue => cue.Meta));
             // also those whose chain of transitions has begun
@@ -147,7 +148,7 @@ namespace Metagraph
                 && ((MetaPlanRules.Temporal.Contains(report.Outcome) && !judged.Contains(report.Request))
                     || !PlainMaps.GetOr(planned, report.Request, new List<double>()).Contains(report.At))).ToList();
             var begin = Begin(graph, old, stance);
-            var performer = SamplingRules.PerformerAfter(project, graph, seed, begin, old.Past, kept);
+            var performer = SamplingRules.PerformerAfter(project, graph, seed, begin, old.Past, kept, moods);
             if (begin == "" || !performer.Begin(begin))
             {
                 var why = "the " + layer + " layer has no stance with a loop to begin in";
@@ -192,6 +193,42 @@ namespace Metagraph
             return new LayerDraft(layer, performer, true, done, placed, every, old.Past, cursor, written);
         }
 
+        /// <summary>Return a request that may begin as much earlier as its preparation takes longer in its mood.</summary>
+        public static MetaRequest InTime(MetaRequest request, Moods moods)
+        {
+            if (request.Stroke == null)
+            {
+                return request;
+            }
+            var mood = MoodRules.MoodAt(moods, request.Stroke.Value);
+            var speed = MoodRules.Tempo(MoodRules.Changed(mood, request.Valence, request.Arousal, request.Intensity));
+            if (speed >= 1)
+            {
+                return request;
+            }
+            return new MetaRequest(
+                request.Id,
+                request.Layer,
+                request.Kind,
+                Math.Max(0.0, request.Stroke.Value - (request.Stroke.Value - request.Start) / speed),
+                request.Duration,
+                request.Action,
+                request.Tags,
+                request.Limb,
+                request.Stance,
+                request.Priority,
+                request.Resume,
+                request.Stroke,
+                request.Hold,
+                request.Prepare,
+                request.Among,
+                request.Late,
+                request.Valence,
+                request.Arousal,
+                request.Intensity
+            );
+        }
+
         /// <summary>
         /// Return a request with the window it may use; where its stroke is judged, the moment it is wanted at.
         /// </summary>
@@ -199,12 +236,12 @@ namespace Metagraph
         {
             if (request.Late != null && request.Stroke != null)
             {
-                return new MetaAction(request, request.Stroke.Value, request.Stroke.Value + SamplingRules.Fits);
+                return new MetaAction(request, request.Stroke.Value, request.Stroke.Value + CueShapesRules.Fits);
             }
             var length = request.Duration == null ? Window : Math.Max(0.0, request.Duration.Value);
             if (request.Stroke != null)
             {
-                length = Math.Max(length, request.Stroke.Value - request.Start + SamplingRules.Fits);
+                length = Math.Max(length, request.Stroke.Value - request.Start + CueShapesRules.Fits);
             }
             return new MetaAction(request, request.Start, request.Start + length);
         }

@@ -150,6 +150,26 @@ namespace Metagraph
             { "mouthSmileRight", 0.3 }
          };
 
+        /// <summary>Whether two lines' words and shapes come alike.</summary>
+        public static bool AlikeTimings(LineTiming one, LineTiming other)
+        {
+            if (one == null || other == null)
+            {
+                return one == null && other == null;
+            }
+            if (one.Words.Count != other.Words.Count || one.Marks.Count != other.Marks.Count)
+            {
+                return false;
+            }
+            var words = PlainLists.Pairs(one.Words, other.Words).All(pair => pair.Item1.Text == pair.Item2.Text
+                && pair.Item1.Start == pair.Item2.Start
+                && pair.Item1.End == pair.Item2.End);
+            return words
+                && PlainLists.Pairs(one.Marks, other.Marks).All(pair => pair.Item1.At == pair.Item2.At
+                    && pair.Item1.Viseme == pair.Item2.Viseme
+                    && pair.Item1.Weight == pair.Item2.Weight);
+        }
+
         private static Dictionary<string, string> Table(string name)
         {
             if (name == "oculus")
@@ -362,7 +382,7 @@ namespace Metagraph
             }
             var shown = new Spelled();
             var before = "sil";
-            foreach (var one in timing.Marks.Zip(Ends(timing.Marks), (a, b) => (a, b)))
+            foreach (var one in PlainLists.Pairs(timing.Marks, Ends(timing.Marks)))
             {
                 var mark = one.Item1;
                 var end = one.Item2;

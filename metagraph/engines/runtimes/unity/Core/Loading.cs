@@ -83,6 +83,7 @@ namespace Metagraph
                 }
             }
             Body = root.Maybe("rig", out found) && !found.IsNull ? ReadBody(found) : null;
+            ContactRig = root.Maybe("contact_rig", out found) && !found.IsNull ? Contacts.ReadRig(found, Joints) : null;
         }
 
         private void ReadJoints(Node root)
@@ -97,6 +98,12 @@ namespace Metagraph
                 {
                     Name = joints[j]["name"].Text, Part = joints[j]["part"].OneOf(Basics.Parts), Side = joints[j]["side"].Text, Parent = -1,
                 };
+                Node scales;
+                if (joints[j].Maybe("scales", out scales))
+                {
+                    joint.Larger = scales.Text == "both";
+                    joint.Smaller = scales.Text != "neither";
+                }
                 if (parent != null && !places.TryGetValue(parent, out joint.Parent))
                 {
                     throw joints[j].Wrong("its parent '" + parent + "' should stand before it");
@@ -169,6 +176,8 @@ namespace Metagraph
             }
             graph.Reach = reach.ToArray();
             graph.Weights = weights.ToArray();
+            Node arms;
+            graph.Strength = json["weights"].Maybe("arms", out arms) ? Math.Min(1.0, arms.Number) : 0.0;
             return graph;
         }
 
@@ -191,7 +200,9 @@ namespace Metagraph
             }
             Node found;
             action.Cooldown = json.Maybe("cooldown", out found) ? found.Within(0, 1e9) : 0.0;
+            action.Vigour = json.Maybe("vigour", out found) ? found.Within(-1, 1) : 0.0;
             action.Spacing = json.Maybe("spacing", out found) && !found.IsNull ? (int)found.Within(0, 1000) : (int?)null;
+            action.Contacts = json.Maybe("contacts", out found) && !found.IsNull ? Contacts.Read(found) : action.Contacts;
             double[] phases = json.Maybe("phases", out found) ? found.Numbers(-1) : new double[0];
             if (phases.Length != 4) // where none are told, all are at the stroke, and that is halfway unless it was set
             {
@@ -272,6 +283,9 @@ namespace Metagraph
                 line.Text = found[id].Maybe("text", out part) ? part.Text : "";
                 line.Audio = found[id].Maybe("audio", out part) ? part.TextOrNull : null;
                 line.Duration = found[id].Maybe("duration", out part) ? part.NumberOrNull : null;
+                line.Mood = new Ask();
+                line.Mood.Feel("mood", found[id].Maybe("mood", out part) ? part.Value : null);
+                line.Mood.Intensity = found[id].Maybe("intensity", out part) ? part.NumberOrNull : null;
                 foreach (Node ask in Glb.List(found[id], "asks"))
                 {
                     try
@@ -300,7 +314,7 @@ namespace Metagraph
                 }
                 if (Lines.ContainsKey(id))
                 {
-                    Lines[id].Voice = new Voice(voice["duration"].Number, voice["accents"].Numbers(-1), weights);
+                    Voices.Known[id] = Lines[id].Voice = new Voice(voice["duration"].Number, voice["accents"].Numbers(-1), weights);
                 }
             }
         }

@@ -14,7 +14,8 @@ namespace Metagraph
     /// on afterwards. stroke: when a gesture's stroke should come; `start` is then the earliest it may begin. hold: seconds its
     /// hold should last, None for as long as it was made. prepare: whether its preparation plays. among: ids of the only actions
     /// it may be, any where empty. late: by how many seconds its stroke, or where none is asked for its start, may come late, 0
-    /// for on time or not at all; None for as late as the settings allow.
+    /// for on time or not at all; None for as late as the settings allow. valence, arousal, intensity: of the mood it is played
+    /// in, as in `mood.Mood`; None for as it is then.
     /// </summary>
     public sealed class MetaRequest
     {
@@ -34,6 +35,9 @@ namespace Metagraph
         public readonly bool Prepare;
         public readonly List<string> Among;
         public readonly double? Late;
+        public readonly double? Valence;
+        public readonly double? Arousal;
+        public readonly double? Intensity;
 
         public MetaRequest(
             string id,
@@ -51,7 +55,10 @@ namespace Metagraph
             double? hold = null,
             bool prepare = true,
             List<string> among = null,
-            double? late = null
+            double? late = null,
+            double? valence = null,
+            double? arousal = null,
+            double? intensity = null
         )
         {
             Id = id;
@@ -70,6 +77,9 @@ namespace Metagraph
             Prepare = prepare;
             Among = among ?? new List<string>();
             Late = late;
+            Valence = valence;
+            Arousal = arousal;
+            Intensity = intensity;
         }
     }
 
@@ -133,11 +143,12 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// One action in the plan. It plays its clip from `entry` on during `start`..`end`, at its own speed but for its hold.
+    /// One action in the plan. It plays its clip from `entry` on during `start`..`end`, at `tempo` times its own speed but for
+    /// its hold.
     ///
     /// hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not stretched. blend_in,
     /// blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in. meta: key of the
-    /// meta action it realises.
+    /// meta action it realises. extent: how large it is played, a factor of its turns away from the stance.
     /// </summary>
     public sealed class Cue
     {
@@ -153,6 +164,8 @@ namespace Metagraph
         public readonly double HoldFrom;
         public readonly double HoldTo;
         public readonly double Hold;
+        public readonly double Extent;
+        public readonly double Tempo;
 
         public Cue(
             GraphAction action,
@@ -166,7 +179,9 @@ namespace Metagraph
             string meta,
             double holdFrom = 0.0,
             double holdTo = 0.0,
-            double hold = 0.0
+            double hold = 0.0,
+            double extent = 1.0,
+            double tempo = 1.0
         )
         {
             Action = action;
@@ -181,6 +196,8 @@ namespace Metagraph
             HoldFrom = holdFrom;
             HoldTo = holdTo;
             Hold = hold;
+            Extent = extent;
+            Tempo = tempo;
         }
     }
 

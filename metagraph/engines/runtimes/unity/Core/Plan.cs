@@ -15,10 +15,10 @@ namespace Metagraph
             double elapsed = time - cue.Start;
             if (cue.Hold <= 0)
             {
-                return cue.Entry + elapsed;
+                return cue.Entry + elapsed * cue.Tempo;
             }
-            double held = Basics.Clamp(elapsed - (cue.HoldFrom - cue.Entry), 0.0, cue.Hold);
-            return cue.Entry + elapsed - held + held * ((cue.HoldTo - cue.HoldFrom) / cue.Hold);
+            double held = Basics.Clamp(elapsed - (cue.HoldFrom - cue.Entry) / cue.Tempo, 0.0, cue.Hold);
+            return cue.Entry + (elapsed - held) * cue.Tempo + held * ((cue.HoldTo - cue.HoldFrom) / cue.Hold);
         }
 
         /// <summary>How much of a cue shows: 0 outside it, rising over its blend in, falling over its blend out.</summary>
@@ -75,7 +75,7 @@ namespace Metagraph
             {
                 layers[layer] = new LayerPlan(layer);
             }
-            return new Plan(seed, 0.0, layers, new List<Report>(), new List<MetaRequest>(), Track.Empty, Schedule.Empty);
+            return new Plan(seed, 0.0, layers, new List<Report>(), new List<MetaRequest>(), new Track(), new Schedule());
         }
 
         internal Plan With(Track track)

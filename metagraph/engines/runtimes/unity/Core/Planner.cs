@@ -20,6 +20,7 @@ namespace Metagraph
             again.UnionWith(withdrawn);
             var layers = new Dictionary<string, LayerPlan>();
             var reports = new List<Report>();
+            Moods moods = WantedRules.MoodsOf(graph.Life, plan.Track);
             foreach (string layer in Basics.Layers)
             {
                 if (leave.Contains(layer))
@@ -32,12 +33,13 @@ namespace Metagraph
                 string stance;
                 stance = stances != null && stances.TryGetValue(layer, out stance) ? stance : null;
                 LayerDraft drafted = LayerPlanningRules.Draft(
-                    graph, of, idle ? of.Markov : null, of.Kinds, plan.Layers[layer], plan.Reports, plan.Seed, now, fresh, again, end, stance);
-                layers[layer] = drafted.Performed(drafted.Placed.FindAll(m => !m.Written || Performed(of.Markov, plan, m)), end);
+                    graph, of, idle ? of.Markov : null, of.Kinds, plan.Layers[layer], plan.Reports, plan.Seed, now, fresh, again, end, stance,
+                    moods);
+                layers[layer] = drafted.Performed(drafted.Placed.FindAll(m => !m.Written || Performed(of.Markov, plan, m, moods)), end);
                 reports.AddRange(drafted.Reports);
             }
             List<MetaRequest> kept = plan.Requests.Where(r => !again.Contains(r.Id)).Concat(fresh).ToList();
-            Schedule life = Drawing.Extend(graph, plan.Track, plan.Seed, end, plan.Life, now);
+            Schedule life = ScheduleRules.Schedule(graph.Life, plan.Track, graph.Voices, plan.Seed, end, plan.Life, now);
             return new Plan(plan.Seed, end, layers, reports.OrderBy(r => r.At).ToList(), kept, plan.Track, life);
         }
 
@@ -60,9 +62,16 @@ namespace Metagraph
             return found;
         }
 
-        /// <summary>Whether what a model wrote is performed: not where it would leave a stance that was asked for, to stay in.</summary>
-        private static bool Performed(Markov model, Plan plan, MetaAction meta)
+        /// <summary>
+        /// Whether what a model wrote is performed: not where it would leave a stance that was asked for, to stay in, and as often as its
+        /// mode and mood say.
+        /// </summary>
+        private static bool Performed(Markov model, Plan plan, MetaAction meta, Moods moods)
         {
+            if (!MoodRules.Stirs(MoodRules.MoodAt(moods, meta.Start), plan.Seed, meta.Request.Id))
+            {
+                return false;
+            }
             bool leaves = meta.Request.Kind == "transition" && plan.Track.StaysAt(meta.Request.Layer, meta.Start);
             return !leaves && MarkovRules.Performs(model, plan.Seed, meta, plan.Track.ToldMode(meta.Start));
         }

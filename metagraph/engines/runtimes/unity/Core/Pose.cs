@@ -55,6 +55,7 @@ namespace Metagraph
 
         private readonly Graph graph;
         private readonly Enliven life;
+        private readonly Contacts contacts;
         private readonly Quat[] composed;
         private readonly Vec[] places;
         private readonly Sample shown, stance, edge, before, seam;
@@ -71,6 +72,7 @@ namespace Metagraph
             before = new Sample(count);
             seam = new Sample(count);
             life = graph.Body != null ? new Enliven(graph) : null;
+            contacts = graph.ContactRig != null ? new Contacts(graph) : null;
         }
 
         /// <summary>
@@ -104,6 +106,7 @@ namespace Metagraph
             {
                 life.Add(plan, time, pose);
             }
+            contacts?.Touch(plan, time, pose);
             for (int k = 0; k < pose.Morphs.Length; k++)
             {
                 pose.Morphs[k] = Math.Min(1f, Math.Max(0f, pose.Morphs[k]));
@@ -143,7 +146,7 @@ namespace Metagraph
             Show(motion, cue.ClipSeconds(time), reach, shown);
             bool entering = time < cue.Start + cue.BlendIn, leaving = time >= cue.End - cue.BlendOut;
             bool[] mask = cue.Action.Mask;
-            if (!entering && !leaving && mask == null)
+            if (!entering && !leaving && mask == null && cue.Extent == 1)
             {
                 return shown;
             }
@@ -159,6 +162,10 @@ namespace Metagraph
                     shown.Moves[j] += (stance.Moves[j] - edge.Moves[j]) * left;
                 }
             }
+            if (cue.Extent != 1)
+            {
+                Extend(cue.Extent, reach);
+            }
             foreach (int j in reach)
             {
                 if (mask != null && !mask[j])
@@ -168,6 +175,20 @@ namespace Metagraph
                 }
             }
             return shown;
+        }
+
+        /// <summary>Play what is shown larger or smaller round the stance.</summary>
+        private void Extend(double extent, int[] reach)
+        {
+            foreach (int j in reach)
+            {
+                if (extent > 1 ? graph.Joints[j].Larger : graph.Joints[j].Smaller)
+                {
+                    Quat apart = stance.Turns[j].Inverse * shown.Turns[j];
+                    shown.Turns[j] = stance.Turns[j] * apart.Power(MoodRules.TurnExtent(extent, apart.W));
+                    shown.Moves[j] = stance.Moves[j] + (shown.Moves[j] - stance.Moves[j]) * extent;
+                }
+            }
         }
 
         /// <summary>Find the offsets of the stance that lies under the cues.</summary>

@@ -19,43 +19,11 @@ namespace Metagraph
     }
 
     /// <summary>
-    /// How an action would play: from `start` on, `length` seconds, at least `shortest`; the rest as in a cue.
-    /// </summary>
-    public sealed class CueShape
-    {
-        public readonly double Start;
-        public readonly double Entry;
-        public readonly double Length;
-        public readonly double Shortest;
-        public readonly double HoldFrom;
-        public readonly double HoldTo;
-        public readonly double Hold;
-
-        public CueShape(
-            double start,
-            double entry,
-            double length,
-            double shortest,
-            double holdFrom = 0.0,
-            double holdTo = 0.0,
-            double hold = 0.0
-        )
-        {
-            Start = start;
-            Entry = entry;
-            Length = length;
-            Shortest = shortest;
-            HoldFrom = holdFrom;
-            HoldTo = holdTo;
-            Hold = hold;
-        }
-    }
-
-    /// <summary>
     /// One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
     ///
     /// uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of
-    /// meta actions whose chain of transitions plays already. served: keys of those that another's action serves, too.
+    /// meta actions whose chain of transitions plays already. served: keys of those that another's action serves, too. moods:
+    /// what it is in the mood for, and when.
     /// </summary>
     public sealed class Performer
     {
@@ -63,6 +31,7 @@ namespace Metagraph
         public LayerGraph Graph;
         public uint Seed;
         public string Stance;
+        public Moods Moods;
         public double Free;
         public Dictionary<string, int> Uses;
         public Dictionary<string, List<string>> Recent;
@@ -78,6 +47,7 @@ namespace Metagraph
             LayerGraph graph,
             uint seed,
             string stance,
+            Moods moods,
             double free = 0.0,
             Dictionary<string, int> uses = null,
             Dictionary<string, List<string>> recent = null,
@@ -93,6 +63,7 @@ namespace Metagraph
             Graph = graph;
             Seed = seed;
             Stance = stance;
+            Moods = moods;
             Free = free;
             Uses = uses ?? new Dictionary<string, int>();
             Recent = recent ?? new Dictionary<string, List<string>>();
@@ -153,7 +124,7 @@ namespace Metagraph
                     Realise(bound, Math.Max(Ready, BoundsRules.Begins(meta)));
                     continue;
                 }
-                if (meta.End <= Ready + SamplingRules.Fits && meta.Start < Ready && !Begun.Contains(meta.Key))
+                if (meta.End <= Ready + CueShapesRules.Fits && meta.Start < Ready && !Begun.Contains(meta.Key))
                 {
                     var running = "the running action";
                     if (Cues.Count > 0)
@@ -195,7 +166,7 @@ namespace Metagraph
                 var fitting = step.Candidates.ToList();
                 if (limit < double.PositiveInfinity) // else all fit
                 {
-                    fitting = step.Candidates.Where(a => Fits(Shape(a, asked, now), limit)).ToList();
+                    fitting = step.Candidates.Where(a => CueShapesRules.FitsBefore(Shape(a, asked, now), limit)).ToList();
                 }
                 if (fitting.Count == 0)
                 {
@@ -210,7 +181,7 @@ namespace Metagraph
                 if (!hops && meta.Request.Action == null)
                 {
                     var warm = fitting.Where(a => a.Cooldown <= 0
-                        || Cooled(a) <= Shape(a, asked, now).Start + SamplingRules.Fits).ToList();
+                        || Cooled(a) <= Shape(a, asked, now).Start + CueShapesRules.Fits).ToList();
                     if (warm.Count == 0)
                     {
                         var soonest = PlainNumbers.MinOf(fitting.Select(a => Cooled(a)).ToList());
@@ -232,9 +203,10 @@ namespace Metagraph
                         return;
                     }
                 }
-                var action = Draw(fitting, hops ? meta.Key + "/" + step.Hop : meta.Key, now);
+                var mood = Mood(asked, now);
+                var action = Draw(fitting, hops ? meta.Key + "/" + step.Hop : meta.Key, now, mood);
                 var shape = Shape(action, asked, now);
-                var cue = Cue(action, shape, bound, hops, stance);
+                var cue = Cue(action, shape, bound, hops, stance, mood);
                 cues.Add(cue);
                 now = cue.End;
                 stance = cue.Then;
@@ -253,11 +225,11 @@ namespace Metagraph
         {
             var meta = bound.Meta;
             var request = meta.Request;
-            var allowed = Slack(request);
-            var late = fitting.Select(a => (a.Id, Lateness(a, request, Shape(a, request, now)))).ToMap();
+            var allowed = CueShapesRules.SlackOf(request);
+            var late = fitting.Select(a => (a.Id, CueShapesRules.Lateness(Project, a, request, Shape(a, request, now)))).ToMap();
             var least = PlainNumbers.MinOf(fitting.Select(a => late[a.Id]).ToList());
             string waits = default(string);
-            if (least > allowed + SamplingRules.Fits)
+            if (least > allowed + CueShapesRules.Fits)
             {
                 waits = Cause(request, now);
                 Tell(
@@ -274,25 +246,25 @@ namespace Metagraph
                 );
                 return new List<GraphAction>();
             }
-            if (least > SamplingRules.Fits)
+            if (least > CueShapesRules.Fits)
             {
                 waits = Cause(request, now);
                 Tell(meta, "late", "comes " + PlainText.Fixed(least, 2) + " s late; it waits for " + waits, true, least);
             }
-            var timely = fitting.Where(a => late[a.Id] <= Math.Max(least, 0.0) + SamplingRules.Fits).ToList();
+            var timely = fitting.Where(a => late[a.Id] <= Math.Max(least, 0.0) + CueShapesRules.Fits).ToList();
             foreach (MetaAction other in bound.After)
             {
-                if (!Shares(request, other.Request))
+                if (!CueShapesRules.MayShare(request, other.Request))
                 {
                     continue;
                 }
-                var both = timely.Where(a => Meets(a, other.Request)).ToList();
+                var both = timely.Where(a => CueShapesRules.Meets(a, other.Request)).ToList();
                 var behind = 0.0;
                 if (request.Stroke != null && other.Request.Stroke != null)
                 {
                     behind = Math.Max(0.0, request.Stroke.Value + Math.Max(least, 0.0) - other.Request.Stroke.Value);
                 }
-                if (both.Count > 0 && other.Request.Late != null && behind <= other.Request.Late.Value + SamplingRules.Fits)
+                if (both.Count > 0 && other.Request.Late != null && behind <= other.Request.Late.Value + CueShapesRules.Fits)
                 {
                     timely = both;
                     Served.Add(other.Key);
@@ -303,7 +275,7 @@ namespace Metagraph
             var following = bound.After.Where(other => !Served.Contains(other.Key)).ToList();
             foreach (MetaAction other in following)
             {
-                foreach (double slack in new List<double> { 0.0, Slack(other.Request) })
+                foreach (double slack in new List<double> { 0.0, CueShapesRules.SlackOf(other.Request) })
                 {
                     var by = Latest(other.Request) + slack;
                     var over = timely.Where(a => Over(a, request, now) <= by).ToList();
@@ -316,54 +288,18 @@ namespace Metagraph
             return timely;
         }
 
-        /// <summary>
-        /// Return by how many seconds an action that plays so comes late, at its stroke where one is asked for; less than 0
-        /// before its time.
-        /// </summary>
-        public double Lateness(GraphAction action, MetaRequest request, CueShape shape)
-        {
-            if (request.Stroke != null && action.Kind == "gesture")
-            {
-                var found = PhasesRules.Phases(Project, action);
-                return shape.Start + found.Stroke - shape.Entry - request.Stroke.Value;
-            }
-            return shape.Start - request.Start;
-        }
-
         /// <summary>Return what a request that comes late waits for.</summary>
         public string Cause(MetaRequest request, double now)
         {
-            if (now <= request.Start + SamplingRules.Fits)
+            if (now <= request.Start + CueShapesRules.Fits)
             {
                 return "its own preparation";
             }
-            if (Cues.Count > 0 && Ready >= now - SamplingRules.Fits && Cues[Cues.Count - 1].End >= Free - SamplingRules.Fits)
+            if (Cues.Count > 0 && Ready >= now - CueShapesRules.Fits && Cues[Cues.Count - 1].End >= Free - CueShapesRules.Fits)
             {
                 return "'" + Cues[Cues.Count - 1].Action.Name + "', which plays until " + PlainText.Fixed(Free, 2) + " s";
             }
             return Cues.Count > 0 ? "what comes before it" : "the time it became known at";
-        }
-
-        /// <summary>Whether two requests may be met by one stroke.</summary>
-        public bool Shares(MetaRequest request, MetaRequest other)
-        {
-            if (request.Stroke == null || other.Stroke == null)
-            {
-                return false;
-            }
-            return request.Action == null
-                && other.Action == null
-                && request.Kind == other.Kind
-                && (other.Hold == null || other.Hold.Value == request.Hold)
-                && Math.Abs(request.Stroke.Value - other.Stroke.Value) <= SamplingRules.Shared;
-        }
-
-        /// <summary>Whether an action is what a request for any asks for.</summary>
-        public bool Meets(GraphAction action, MetaRequest request)
-        {
-            return request.Tags.All(tag => action.Tags.Contains(tag))
-                && (request.Limb == null || action.Limb == request.Limb)
-                && (request.Among.Count == 0 || request.Among.Contains(action.Id));
         }
 
         /// <summary>
@@ -379,7 +315,7 @@ namespace Metagraph
             var least = double.PositiveInfinity;
             foreach (GraphAction action in Graph.Of(Stance, request.Kind))
             {
-                var fits = Meets(action, request);
+                var fits = CueShapesRules.Meets(action, request);
                 if (request.Action != null)
                 {
                     fits = action.Id == request.Action;
@@ -387,41 +323,18 @@ namespace Metagraph
                 if (fits && Usable(action))
                 {
                     var found = PhasesRules.Phases(Project, action);
-                    least = Math.Min(least, found.Stroke - found.Skip(action.Timing.BlendIn));
+                    var lead = found.Stroke - found.Skip(action.Timing.BlendIn);
+                    least = Math.Min(least, lead + MoodRules.Drag(lead, Tempo(action, request, request.Stroke.Value)));
                 }
             }
             return request.Stroke.Value - least;
-        }
-
-        /// <summary>Return by how many seconds a request may come late, 0 where it does not say.</summary>
-        public double Slack(MetaRequest request)
-        {
-            return request.Late == null ? 0.0 : request.Late.Value;
         }
 
         /// <summary>Return when what follows an action could begin at the earliest.</summary>
         public double Over(GraphAction action, MetaRequest request, double now)
         {
             var shape = Shape(action, request, now);
-            return shape.Start + Hurried(action, shape) + Project.Settings.Rest - SamplingRules.Fits;
-        }
-
-        /// <summary>
-        /// Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless it was asked for.
-        /// </summary>
-        public double Hurried(GraphAction action, CueShape shape)
-        {
-            if (action.Kind != "gesture" || action.Timing.EarliestExit != null)
-            {
-                return shape.Shortest;
-            }
-            var found = PhasesRules.Phases(Project, action);
-            var left = found.Relax - shape.Entry + shape.Hold - (shape.HoldTo - shape.HoldFrom);
-            if (shape.Hold <= 0)
-            {
-                left = found.StrokeEnd - shape.Entry;
-            }
-            return Math.Min(shape.Length, left + Math.Max(action.Timing.BlendOut, SamplingRules.Retraction));
+            return shape.Start + CueShapesRules.Hurried(Project, action, shape) + Project.Settings.Rest - CueShapesRules.Fits;
         }
 
         /// <summary>
@@ -431,11 +344,11 @@ namespace Metagraph
         public double Until(GraphAction action, CueShape shape, Bound bound)
         {
             var rest = Project.Settings.Rest;
-            var soonest = shape.Start + Hurried(action, shape);
+            var soonest = shape.Start + CueShapesRules.Hurried(Project, action, shape);
             foreach (MetaAction other in bound.After)
             {
-                var inTime = Latest(other.Request) + Slack(other.Request);
-                if (!Served.Contains(other.Key) && soonest + rest <= inTime + SamplingRules.Fits)
+                var inTime = Latest(other.Request) + CueShapesRules.SlackOf(other.Request);
+                if (!Served.Contains(other.Key) && soonest + rest <= inTime + CueShapesRules.Fits)
                 {
                     return Math.Max(soonest, BoundsRules.Begins(other) - rest);
                 }
@@ -454,7 +367,7 @@ namespace Metagraph
             {
                 return;
             }
-            var soonest = now + Math.Max(cue.BlendOut, SamplingRules.Retraction);
+            var soonest = now + Math.Max(cue.BlendOut, CueShapesRules.Retraction);
             if (!running.Written)
             {
                 var shape = new CueShape(
@@ -464,23 +377,24 @@ namespace Metagraph
                     cue.End - cue.Start,
                     cue.HoldFrom,
                     cue.HoldTo,
-                    cue.Hold
+                    cue.Hold,
+                    cue.Tempo
                 );
-                soonest = Math.Max(soonest, cue.Start + Hurried(cue.Action, shape));
+                soonest = Math.Max(soonest, cue.Start + CueShapesRules.Hurried(Project, cue.Action, shape));
             }
             var rest = Project.Settings.Rest;
             foreach (MetaAction meta in asked)
             {
                 var request = meta.Request;
-                var inTime = Latest(request) + Slack(request);
-                if (request.Late == null || meta.Rank < running.Rank || inTime < soonest + rest - SamplingRules.Fits)
+                var inTime = Latest(request) + CueShapesRules.SlackOf(request);
+                if (request.Late == null || meta.Rank < running.Rank || inTime < soonest + rest - CueShapesRules.Fits)
                 {
                     continue;
                 }
                 var end = Math.Max(soonest, BoundsRules.Begins(meta) - rest);
                 if (end < cue.End)
                 {
-                    var out_ = Math.Max(cue.BlendOut, SamplingRules.Retraction);
+                    var out_ = Math.Max(cue.BlendOut, CueShapesRules.Retraction);
                     var into = Math.Min(cue.BlendIn, Math.Max(0.0, end - out_ - cue.Start));
                     Cues[Cues.Count - 1] = new Cue(
                         cue.Action,
@@ -494,19 +408,15 @@ namespace Metagraph
                         cue.Meta,
                         cue.HoldFrom,
                         cue.HoldTo,
-                        cue.Hold
+                        cue.Hold,
+                        cue.Extent,
+                        cue.Tempo
                     );
                     Free = end;
                     Ended[cue.Action.Id] = end;
                 }
                 return;
             }
-        }
-
-        /// <summary>Whether something that plays so is over by a limit.</summary>
-        public bool Fits(CueShape shape, double limit)
-        {
-            return shape.Start + shape.Shortest <= limit + SamplingRules.Fits;
         }
 
         /// <summary>Return when an action may be drawn again.</summary>
@@ -710,66 +620,66 @@ namespace Metagraph
         /// <summary>Return how an action would play for a request from `now` on, or as a step on the way to it.</summary>
         public CueShape Shape(GraphAction action, MetaRequest request, double now)
         {
-            var both = Project.Span(action);
-            double start = both.Item1;
-            double end = both.Item2;
-            var begin = now;
-            var entry = start;
-            var holdFrom = 0.0;
-            var holdTo = 0.0;
-            var hold = 0.0;
-            if (request != null
-                && action.Kind == "gesture"
-                && (request.Hold != null || request.Stroke != null || !request.Prepare))
+            return CueShapesRules.ShapeOf(Project, action, request, now, Tempo(action, request, now));
+        }
+
+        /// <summary>Return the mood that something asked for is played in from `at` on, or at its stroke.</summary>
+        public Mood Mood(MetaRequest request, double at)
+        {
+            if (request == null)
             {
-                var found = PhasesRules.Phases(Project, action);
-                var latest = found.Skip(action.Timing.BlendIn);
-                entry = request.Prepare ? start : latest;
-                // Wait for the stroke, or catch up with it by cutting the preparation.
-                if (request.Stroke != null)
-                {
-                    begin = Math.Max(now, request.Stroke.Value - (found.Stroke - entry));
-                    entry = Math.Min(
-                        Math.Max(entry, found.Stroke - Math.Max(0.0, request.Stroke.Value - begin)),
-                        Math.Max(entry, latest)
-                    );
-                }
-                if (request.Hold != null)
-                {
-                    holdFrom = found.StrokeEnd;
-                    holdTo = found.Relax;
-                    hold = Math.Max(request.Hold.Value, (holdTo - holdFrom) / SamplingRules.Hurry);
-                    if (hold <= 0)
-                    {
-                        holdFrom = 0.0;
-                        holdTo = 0.0;
-                    }
-                }
+                return MoodRules.MoodAt(Moods, at);
             }
-            var length = end - entry + hold - (holdTo - holdFrom);
-            var shortest = length;
-            var exitAt = action.Timing.EarliestExit;
-            if (exitAt != null)
+            var mood = MoodRules.MoodAt(Moods, request.Stroke == null ? at : request.Stroke.Value);
+            if (request.Valence == null && request.Arousal == null && request.Intensity == null)
             {
-                var left = exitAt.Value - entry + (exitAt.Value >= holdTo ? hold - (holdTo - holdFrom) : 0.0);
-                shortest = Math.Min(length, Math.Max(0.0, left) + action.Timing.BlendOut);
+                return mood;
             }
-            return new CueShape(begin, entry, length, shortest, holdFrom, holdTo, hold);
+            return MoodRules.Changed(mood, request.Valence, request.Arousal, request.Intensity);
+        }
+
+        /// <summary>Return how fast an action is played, 1 where it was made for the mood.</summary>
+        public double Tempo(GraphAction action, MetaRequest request, double at)
+        {
+            var mood = Mood(request, at);
+            return (mood.Neutral || MoodRules.MadeFor(mood, action.Tags)) ? 1.0 : MoodRules.Tempo(mood);
         }
 
         /// <summary>
-        /// Draw with p_k ~ likelihood_k / max(c_k, 1), leaving out those used too recently as long as any others are left.
+        /// Return how large an action is played. Those that move feet or leave for another stance, touch something or were made
+        /// for the mood are played as they were made.
         /// </summary>
-        public GraphAction Draw(List<GraphAction> candidates, string key, double now)
+        public double Extent(GraphAction action, Mood mood)
+        {
+            if (Graph.Layer == "body" || action.Kind == "transition" || mood.Neutral)
+            {
+                return 1.0;
+            }
+            return (action.Contacts.Count > 0 || action.Tags.Contains(MoodRules.Held) || MoodRules.MadeFor(mood, action.Tags))
+                ? 1.0
+                : MoodRules.Extent(mood);
+        }
+
+        /// <summary>
+        /// Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood favours, leaving out those used too recently as long
+        /// as any others are left.
+        /// </summary>
+        public GraphAction Draw(List<GraphAction> candidates, string key, double now, Mood mood)
         {
             var left = Spaced(candidates);
-            var weights = left.Select(a => (a.Id, a.Likelihood / Math.Max(Count(a.Id, now), 1.0))).ToMap();
+            var weights = left.Select(a => (a.Id, a.Likelihood / Math.Max(Count(a.Id, now), 1.0) * Favour(a, mood))).ToMap();
             if (!weights.Values.ToList().Any(w => w > 0))
             {
                 return left[0];
             }
             var chosen = ChoiceRules.Pick(Seed, key, "action", weights);
             return left.Where(a => a.Id == chosen).First();
+        }
+
+        /// <summary>Return how much likelier a mood makes an action, 1 in none.</summary>
+        public double Favour(GraphAction action, Mood mood)
+        {
+            return mood.Neutral ? 1.0 : MoodRules.Favour(mood, action.Tags, VigourRules.Vigour(Project, action));
         }
 
         /// <summary>
@@ -825,7 +735,7 @@ namespace Metagraph
         }
 
         /// <summary>hops: whether it is a transition on the way to what is asked for.</summary>
-        public Cue Cue(GraphAction action, CueShape shape, Bound bound, bool hops, string stance)
+        public Cue Cue(GraphAction action, CueShape shape, Bound bound, bool hops, string stance, Mood mood)
         {
             var length = shape.Length;
             var into = Math.Max(0.0, action.Timing.BlendIn);
@@ -840,7 +750,7 @@ namespace Metagraph
                 length = Math.Min(length, Until(action, shape, bound) - shape.Start);
                 if (length < shape.Length)
                 {
-                    out_ = Math.Max(out_, SamplingRules.Retraction);
+                    out_ = Math.Max(out_, CueShapesRules.Retraction);
                 }
             }
             if (shape.Entry > Project.Span(action).Item1)
@@ -866,7 +776,9 @@ namespace Metagraph
                 bound.Meta.Key,
                 shape.HoldFrom,
                 shape.HoldTo,
-                shape.Hold
+                shape.Hold,
+                Extent(action, mood),
+                shape.Tempo
             );
         }
 
@@ -952,11 +864,6 @@ namespace Metagraph
 
     public static class SamplingRules
     {
-        public const double Fits = 1e-06; // seconds by which sums of times may be off
-        public const double Hurry = 2.0; // a hold is played at most this many times as fast as it was made
-        // seconds in which an action whose retraction is cut goes back to its stance, at the least
-        public const double Retraction = 0.4;
-        public const double Shared = 0.25; // seconds within which two strokes may be one
         // seconds of crossfade when a long rest changes from one loop of its stance to another
         public const double LoopFade = 0.6;
 
@@ -967,7 +874,8 @@ namespace Metagraph
             uint seed,
             string begin,
             Past past,
-            List<Cue> cues
+            List<Cue> cues,
+            Moods moods
         )
         {
             var stance = graph.Stances.ContainsKey(past.Stance) ? past.Stance : begin;
@@ -976,6 +884,7 @@ namespace Metagraph
                 graph,
                 seed,
                 stance,
+                moods,
                 past.Free,
                 new Dictionary<string, int>(past.Uses),
                 new Dictionary<string, List<string>>(past.Recent),

@@ -121,7 +121,7 @@ func _differences(graph, case, tolerance):
 		_steps += 1
 	var wrong = _unlike(_plan_data(plan, unread), case.plan, "plan", tolerance.seconds)
 	if wrong == "":
-		wrong = _unlike(_life_data(plan.life), case.life, "life", tolerance.seconds)
+		wrong = _unlike(_life_data(plan.life, case.life), case.life, "life", tolerance.seconds)
 	for expected in case.poses:
 		if wrong == "":
 			wrong = _apart(graph, plan, expected, tolerance)
@@ -141,6 +141,10 @@ func _plan_data(plan, unread):
 				action = c.action.id, start = c.start, end = c.end, entry = c.entry, blend_in = c.blend_in, blend_out = c.blend_out,
 				stance = c.stance, then = c.then, meta = c.meta, hold_from = c.hold_from, hold_to = c.hold_to, hold = c.hold
 			})
+			if c.extent != 1:
+				cues[-1].extent = c.extent
+			if c.tempo != 1:
+				cues[-1].tempo = c.tempo
 		var rests = []
 		for r in of.rests:
 			rests.append([r.stance, r.action.id, r.start, r.fade_start, r.fade])
@@ -153,14 +157,14 @@ func _plan_data(plan, unread):
 	return {layers = layers, reports = Util.ordered(reports, keys)}
 
 
-func _life_data(life):
+func _life_data(life, expected):
 	var out = {targets = []}
 	for t in life.targets:
 		out.targets.append([t.start, t.to, t.since, t.amount, t.strict, t.asked])
-	for name in ["modes", "breaths", "aversions", "saccades", "blinks"]:
+	for name in ["modes", "breaths", "aversions", "saccades", "blinks"] + (["moods"] if expected.has("moods") else []):
 		out[name] = []
-		for n in range(life[name].starts.size()):
-			out[name].append([life[name].starts[n]] + life[name].rows[n])
+		for n in range(life[name].times.size()):
+			out[name].append([life[name].times[n]] + life[name].rows[n])
 	return out
 
 

@@ -12,7 +12,9 @@ namespace Metagraph
         private const double MorphWide = 0.6; // of a target that opens wide, for a lid as far open as it would be shut
         private static readonly double MorphLook = Solve.Radians(30); // the turn of an eye that a morph target of a look stands for
         private static readonly double MorphFollows = 0.6 / Solve.Radians(40); // how far a target shuts for an eye a radian down
-        private const int Values = 15 + FaceRig.Channels; // blink, seven of each eye, then the channels that joints have, too
+        // Blink, seven of each eye, the channels that joints have, too, then what a mood shows.
+        private const int Moods = 15 + FaceRig.Channels, Values = Moods + 4;
+        private static readonly string[] MoodFace = { "smile", "frown", "brow_down", "brow_up" };
 
         private readonly Graph graph;
         private readonly Body body;
@@ -24,6 +26,9 @@ namespace Metagraph
         private readonly double[] shut = new double[4], eyeLeft = new double[2], eyeUp = new double[2], weights;
         private double blink, full;
         private Gaze gaze;
+        private Bearing bears = new Bearing();
+        private Lane felt; // that `settled` is a place of
+        private int settled = -1; // the place of the mood that `bears` is of, -1 on the way from one to the next
 
         public Enliven(Graph graph)
         {
@@ -47,6 +52,11 @@ namespace Metagraph
                 {
                     return 1 + n + (channel.EndsWith("_right", StringComparison.Ordinal) ? 7 : 0);
                 }
+            }
+            int mood = Array.IndexOf(MoodFace, channel);
+            if (mood >= 0)
+            {
+                return Moods + mood;
             }
             if (channel == "blink" || channel == "jaw_open")
             {
@@ -86,7 +96,7 @@ namespace Metagraph
             }
             for (int n = 0; n < shoulders.Length; n++)
             {
-                (shoulders[n] * Quat.Turn(body.ShoulderTurns[n] * full)).Write(rotations, body.Shoulders[n]);
+                (shoulders[n] * Quat.Turn(body.ShoulderTurns[n] * (full + bears.Lift))).Write(rotations, body.Shoulders[n]);
             }
             for (int n = 0; n < 2; n++)
             {
@@ -137,6 +147,10 @@ namespace Metagraph
                 values[at + 5] = -eyeUp[n] / MorphLook;
             }
             Array.Copy(channels, 0, values, 15, channels.Length);
+            values[Moods] = bears.Smile;
+            values[Moods + 1] = bears.Frown;
+            values[Moods + 2] = bears.BrowDown;
+            values[Moods + 3] = bears.BrowUp;
             Array.Clear(weights, 0, weights.Length);
             for (int n = 0; n < body.Face.Morphs.Count; n++)
             {
@@ -158,14 +172,15 @@ namespace Metagraph
             LifeSettings life = graph.Life;
             double calm = 1 - life.Stillness;
             full = BreathAt(plan.Life.Breaths, life, time);
+            Bear(plan.Life.Moods, time);
             for (int n = 0; n < chain.Length; n++)
             {
                 int joint = body.Chain[n];
                 chain[n] = Quat.Of(rotations, joint);
                 places[n] = new Vec(translations[3 * joint], translations[3 * joint + 1], translations[3 * joint + 2]);
-                if (body.Angles[n] != 0 && full != 0)
+                if (body.Angles[n] != 0 && (full != 0 || bears.Droop != 0))
                 {
-                    chain[n] *= Quat.About(body.Breath[n], full * body.Angles[n]);
+                    chain[n] *= Quat.About(body.Breath[n], full * body.Angles[n] + bears.Droop * body.Bowed[n]);
                 }
             }
             eyeLeft[0] = eyeLeft[1] = eyeUp[0] = eyeUp[1] = 0.0;
@@ -184,16 +199,35 @@ namespace Metagraph
                 Array.Copy(solve.EyesLeft, eyeLeft, 2);
                 Array.Copy(solve.EyesUp, eyeUp, 2);
             }
-            blink = BlinkAt(plan.Life.Blinks, life, time);
+            blink = Math.Max(BlinkAt(plan.Life.Blinks, life, time), bears.Lids);
             FindLids(life, rotations);
             if (life.Lips > 0)
             {
-                Lips.Shapes(plan.Track, life.LipSmoothing, time, shapes);
+                Lips.Shapes(plan.Track, graph.Voices, life.LipSmoothing, time, shapes);
                 for (int v = 0; v < shapes.Length; v++)
                 {
                     channels[FaceRig.JawOpen + 1 + v] = shapes[v] * life.Lips;
                 }
             }
+        }
+
+        /// <summary>Find posture and face of the mood that shows; nothing is allocated while that stays.</summary>
+        private void Bear(Lane moods, double time)
+        {
+            if (felt != moods)
+            {
+                felt = moods;
+                settled = -1;
+            }
+            int place = Math.Max(0, PlainLists.Right(moods.Times, time) - 1);
+            bool stays = place == 0 || time - moods.Times[place] >= MoodRules.Fade;
+            if (stays && place == settled)
+            {
+                return;
+            }
+            Mood mood = MoodRules.Shown(moods.Times, moods.Rows, time);
+            bears = mood.Neutral ? new Bearing() : MoodRules.Bearing(mood);
+            settled = stays ? place : -1;
         }
 
         private void FindLids(LifeSettings life, float[] rotations)
@@ -224,13 +258,13 @@ namespace Metagraph
         /// <summary>How full the chest is, 0 at rest, about 1 at the top of a breath.</summary>
         private static double BreathAt(Lane lane, LifeSettings life, double time)
         {
-            int n = Basics.BisectRight(lane.Starts, time) - 1;
+            int n = PlainLists.Right(lane.Times, time) - 1;
             if (n < 0)
             {
                 return 0.0;
             }
-            double gone = (time - lane.Starts[n]) / lane.Values[n][0];
-            double depth = life.Breathing * (1 - life.Stillness) * lane.Values[n][1];
+            double gone = (time - lane.Times[n]) / lane.Rows[n][0];
+            double depth = life.Breathing * (1 - life.Stillness) * lane.Rows[n][1];
             return depth * Basics.Ease(Math.Min(gone / Inhale, (1 - gone) / (1 - Inhale)));
         }
 
@@ -239,9 +273,9 @@ namespace Metagraph
         {
             double whole = life.BlinkClose + life.BlinkOpen, found = 0.0;
             // A slow one may still be opening when the next begins.
-            for (int n = Basics.BisectRight(lane.Starts, time) - 1; n >= 0 && time - lane.Starts[n] < whole; n--)
+            for (int n = PlainLists.Right(lane.Times, time) - 1; n >= 0 && time - lane.Times[n] < whole; n--)
             {
-                double gone = time - lane.Starts[n];
+                double gone = time - lane.Times[n];
                 found = Math.Max(found, Basics.Ease(Math.Min(gone / life.BlinkClose, (whole - gone) / life.BlinkOpen)));
             }
             return found;

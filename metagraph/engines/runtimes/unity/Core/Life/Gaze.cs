@@ -31,7 +31,7 @@ namespace Metagraph
         private const double Ending = 0.12; // seconds in which a new look ends an aversion
         private const double Spring = 8.0; // how many of the spring's own times a move takes; then all but 0.3 % is done
         private static readonly double Settled = 1 - (1 + Spring) * Math.Exp(-Spring);
-        private static readonly Func<Target, double> Start = target => target.Start;
+        private static readonly Func<GazeTarget, double> Start = target => target.Start;
 
         public readonly Schedule Schedule;
         public readonly List<GazePart> Parts = new List<GazePart>();
@@ -76,7 +76,7 @@ namespace Metagraph
         /// <summary>Find what the gaze does at a time.</summary>
         public void At(double time)
         {
-            List<Target> targets = Schedule.Targets;
+            List<GazeTarget> targets = Schedule.Targets;
             Parts.Clear();
             EyesLeft = EyesUp = HeadLeft = HeadUp = 0.0;
             int last = targets.Count > 0 ? Math.Max(0, Basics.BisectRight(targets, time, Start) - 1) : -1;
@@ -97,12 +97,12 @@ namespace Metagraph
         private void Avert(double time, int last, double strict)
         {
             Lane lane = Schedule.Aversions;
-            int n = Basics.BisectRight(lane.Starts, time) - 1;
+            int n = PlainLists.Right(lane.Times, time) - 1;
             if (n < 0 || averts <= 0)
             {
                 return;
             }
-            double start = lane.Starts[n], end = lane.Values[n][0], x = lane.Values[n][1], y = lane.Values[n][2];
+            double start = lane.Times[n], end = lane.Rows[n][0], x = lane.Rows[n][1], y = lane.Rows[n][2];
             double scale = averts * (1 - strict), size = Hypot(x, y) * angle;
             if (last >= 0 && Schedule.Targets[last].Since > start) // a new look ends it
             {
@@ -123,14 +123,14 @@ namespace Metagraph
         private void Dart(double time)
         {
             Lane lane = Schedule.Saccades;
-            int n = Basics.BisectRight(lane.Starts, time) - 1;
+            int n = PlainLists.Right(lane.Times, time) - 1;
             if (n < 0 || darts <= 0)
             {
                 return;
             }
-            double x = lane.Values[n][0], y = lane.Values[n][1];
-            double fromX = n > 0 ? lane.Values[n - 1][0] : 0.0, fromY = n > 0 ? lane.Values[n - 1][1] : 0.0;
-            double way = Basics.Ease((time - lane.Starts[n]) / Eyes(Hypot(x - fromX, y - fromY)));
+            double x = lane.Rows[n][0], y = lane.Rows[n][1];
+            double fromX = n > 0 ? lane.Rows[n - 1][0] : 0.0, fromY = n > 0 ? lane.Rows[n - 1][1] : 0.0;
+            double way = Basics.Ease((time - lane.Times[n]) / Eyes(Hypot(x - fromX, y - fromY)));
             EyesLeft += darts * (fromX + (x - fromX) * way);
             EyesUp += darts * (fromY + (y - fromY) * way);
         }
@@ -138,7 +138,7 @@ namespace Metagraph
         /// <summary>A target as it is met; how long the move to it takes is told by how far it is from the one before.</summary>
         private Aim Meet(int place)
         {
-            Target target = Schedule.Targets[place];
+            GazeTarget target = Schedule.Targets[place];
             Vec at, seen, before;
             bool somewhere = Seen(target, out at, out seen);
             double turn = 0.0;
@@ -157,7 +157,7 @@ namespace Metagraph
         }
 
         /// <summary>Where a target is, and its direction from where the eyes are at rest; false, and ahead, for what is nowhere.</summary>
-        private bool Seen(Target target, out Vec at, out Vec seen)
+        private bool Seen(GazeTarget target, out Vec at, out Vec seen)
         {
             string name = target.To.Name;
             double[] point = target.To.Point;
@@ -165,7 +165,7 @@ namespace Metagraph
             {
                 points.TryGetValue(name, out point);
             }
-            if (name == Wanted.Ahead || (point == null && name != Wanted.Partner))
+            if (name == WantedRules.Ahead || (point == null && name != WantedRules.Partner))
             {
                 at = body.Partner;
                 seen = body.Ahead;

@@ -29,6 +29,38 @@ namespace Metagraph
             }
             return manner;
         }
+
+        /// <summary>What it makes of the amounts, each that a mood changes times a factor.</summary>
+        internal Manner Scaled(double breathing, double breathRate, double aversionRate, double saccadeRate, double blinks)
+        {
+            var ways = (Manner)MemberwiseClone();
+            ways.Breathing *= breathing;
+            ways.BreathRate *= breathRate;
+            ways.AversionRate *= aversionRate;
+            ways.SaccadeRate *= saccadeRate;
+            ways.Blinks *= blinks;
+            return ways;
+        }
+    }
+
+    /// <summary>What planning asks of the settings.</summary>
+    public static class LifeRules
+    {
+        public static Manner Manner(LifeSettings life, string mode)
+        {
+            return life.Manner(mode);
+        }
+
+        public static Manner Scaled(
+            Manner ways, double breathing, double breathRate, double aversionRate, double saccadeRate, double blinks)
+        {
+            return ways.Scaled(breathing, breathRate, aversionRate, saccadeRate, blinks);
+        }
+
+        public static bool SameLife(LifeSettings one, LifeSettings other)
+        {
+            return one == other;
+        }
     }
 
     /// <summary>
@@ -41,6 +73,7 @@ namespace Metagraph
         public double Stillness, Breathing = 1.0, BreathRate = 14.0, Gaze = 1.0, HeadShare = 0.6;
         public double AversionRate = 12.0, AversionLength = 0.93, AversionAngle = 14.0, Saccades = 1.0, SaccadeRate = 60.0;
         public double Lids = 1.0, Blinks = 17.0, AccentBlinks = 1.0, BlinkClose = 0.07, BlinkOpen = 0.10, Lips = 1.0, LipSmoothing = 0.03;
+        public double Valence, Arousal, Intensity = 1.0;
 
         private readonly Dictionary<string, Manner> modes = new Dictionary<string, Manner>
         {
@@ -80,6 +113,9 @@ namespace Metagraph
                     case "blink_open": life.BlinkOpen = value.Within(0.02, 1); break;
                     case "lips": life.Lips = value.Within(0, 2); break;
                     case "lip_smoothing": life.LipSmoothing = value.Within(0, 0.2); break;
+                    case "valence": life.Valence = value.Within(-1, 1); break;
+                    case "arousal": life.Arousal = value.Within(-1, 1); break;
+                    case "intensity": life.Intensity = value.Within(0, 2); break;
                     case "modes":
                         foreach (string mode in value.Names)
                         {

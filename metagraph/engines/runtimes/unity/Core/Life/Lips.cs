@@ -9,7 +9,7 @@ namespace Metagraph
         private static readonly Func<Speech, double> Start = speech => speech.Start, End = speech => speech.End;
 
         /// <summary>Write how much of each shape but silence the mouth shows at a time [14].</summary>
-        public static void Shapes(Track track, double smoothing, double time, double[] shapes)
+        public static void Shapes(Track track, Voices voices, double smoothing, double time, double[] shapes)
         {
             Array.Clear(shapes, 0, shapes.Length);
             int last = Basics.BisectRight(track.Speeches, time + smoothing, Start);
@@ -22,12 +22,12 @@ namespace Metagraph
                 }
                 if (smoothing <= 0)
                 {
-                    Add(speech, time, 1.0, shapes);
+                    Add(speech, voices.Of(speech), time, 1.0, shapes);
                     continue;
                 }
-                Add(speech, time - smoothing, 0.25, shapes);
-                Add(speech, time, 0.5, shapes);
-                Add(speech, time + smoothing, 0.25, shapes);
+                Add(speech, voices.Of(speech), time - smoothing, 0.25, shapes);
+                Add(speech, voices.Of(speech), time, 0.5, shapes);
+                Add(speech, voices.Of(speech), time + smoothing, 0.25, shapes);
             }
             double sum = 0.0; // two speeches may meet; together they are one mouth
             foreach (double shape in shapes)
@@ -40,13 +40,12 @@ namespace Metagraph
             }
         }
 
-        private static void Add(Speech speech, double time, double share, double[] shapes)
+        private static void Add(Speech speech, Voice voice, double time, double share, double[] shapes)
         {
             if (time < speech.Start)
             {
                 return;
             }
-            Voice voice = speech.Voice;
             double said = Math.Min(time, speech.End) - speech.Start;
             int low = Math.Min(Math.Max(Basics.BisectRight(voice.Times, said) - 1, 0), voice.Times.Length - 2);
             double gap = Math.Max(voice.Times[low + 1] - voice.Times[low], 1e-9);

@@ -22,6 +22,8 @@ namespace Metagraph
                 Eyes = json["eyes"].Items.ConvertAll(ReadEye).ToArray(), Face = ReadFace(json["face"]),
             };
             int count = body.Chain.Length;
+            Node bowed;
+            body.Bowed = json.Maybe("bowed", out bowed) && bowed.Items.Count > 0 ? bowed.Numbers(count) : new double[count];
             bool placed = Array.TrueForAll(body.Lookers, x => x.Place >= 0 && x.Place < count) && body.Trunk >= 0 && body.Trunk < count;
             if (!placed || body.Angles.Length != count || body.Eyes.Length != 2)
             {

@@ -1,6 +1,7 @@
 using System;
 using System.Collections.Generic;
 using System.Linq;
+using System.Runtime.CompilerServices;
 
 namespace Metagraph
 {
@@ -43,6 +44,47 @@ namespace Metagraph
             List<List<double>> rows = MouthRules.MouthTrack(said.Pieces, said.Pieces.Count > 0 ? duration : 0.0);
             float[][] weights = rows.Select(row => row.Select(weight => (float)weight).ToArray()).ToArray();
             return new Voice(duration, MouthRules.AccentsOf(said.Peaks, said.Strengths).ToArray(), weights);
+        }
+    }
+
+    /// <summary>
+    /// How lines sound: as their words and shapes were told, as an export has them by their ids, else guessed from text. What was
+    /// made is remembered for as long as it is said.
+    /// </summary>
+    public sealed class Voices
+    {
+        public readonly Dictionary<string, Voice> Known = new Dictionary<string, Voice>();
+        private readonly ConditionalWeakTable<Speech, Voice> made = new ConditionalWeakTable<Speech, Voice>();
+        private static readonly ConditionalWeakTable<Speech, Voice>.CreateValueCallback Made = speech =>
+        {
+            double length = Math.Max(0.0, speech.Length ?? speech.End - speech.Start);
+            return speech.Timing != null ? Voice.FromTiming(speech.Timing, length) : Voice.FromText(speech.Text, length);
+        };
+
+        /// <summary>The voice of something said.</summary>
+        public Voice Of(Speech speech)
+        {
+            Voice known;
+            if (speech.Timing == null && speech.Line != null && Known.TryGetValue(speech.Line, out known))
+            {
+                return known;
+            }
+            return made.GetValue(speech, Made);
+        }
+    }
+
+    /// <summary>What planning asks of voices.</summary>
+    public static class VoiceRules
+    {
+        /// <summary>Times of the stressed syllables of something said.</summary>
+        public static List<double> Stressed(Voices voices, Speech speech)
+        {
+            return voices.Of(speech).Accents.ToList();
+        }
+
+        public static bool SameVoices(Voices one, Voices other)
+        {
+            return one == other;
         }
     }
 }

@@ -1,27 +1,35 @@
 # What can be asked of a character: records with `do`, as agents send them and lines hold them. Times are seconds, points metres in the
 # character's space.
 
+const Mood = preload("mood.gd")
 const Util = preload("util.gd")
 # Field -> what it may be; a question mark allows null.
 const COMMON = {id = "text200", at = "seconds?", told = "seconds?", priority = "priority"}
 const FIELDS = {
 	gesture = {
 		layer = "layer", tags = "tags", limb = "limb?", duration = "seconds?", stroke = "seconds?", hold = "hold?", prepare = "switch",
-		resume = "switch", late = "hold?"
+		resume = "switch", late = "hold?", mood = "mood?", intensity = "intensity?"
 	},
-	fidget = {layer = "layer", tags = "tags", limb = "limb?", duration = "seconds?", resume = "switch", late = "hold?"},
-	action = {action = "name", layer = "layer?", stroke = "seconds?", hold = "hold?", prepare = "switch", late = "hold?"},
+	fidget = {
+		layer = "layer", tags = "tags", limb = "limb?", duration = "seconds?", resume = "switch", late = "hold?", mood = "mood?",
+		intensity = "intensity?"
+	},
+	action = {
+		action = "name", layer = "layer?", stroke = "seconds?", hold = "hold?", prepare = "switch", late = "hold?", mood = "mood?",
+		intensity = "intensity?"
+	},
 	stance = {stance = "name", layer = "layer?", stay = "switch", late = "hold?"},
 	change = {layer = "layer", limb = "limb?", duration = "seconds?", late = "hold?"},
-	nod = {tags = "tags", late = "hold?"},
-	shake = {tags = "tags", late = "hold?"},
+	nod = {tags = "tags", late = "hold?", mood = "mood?", intensity = "intensity?"},
+	shake = {tags = "tags", late = "hold?", mood = "mood?", intensity = "intensity?"},
 	look = {to = "spot", duration = "seconds?", amount = "share", strict = "switch"},
 	blink = {},
 	say = {
 		"line": "line?", "text": "text20000", "duration": "seconds?", "gestures": "switch", "words": "entries4000",
-		"visemes": "entries20000", "set": "set?"
+		"visemes": "entries20000", "set": "set?", "mood": "mood?", "intensity": "intensity?"
 	},
 	mode = {mode = "mode?"},
+	mood = {mood = "mood?", intensity = "intensity?", duration = "seconds?"},
 	place = {name = "name", point = "point"},
 	withdraw = {what = "text200"},
 	bml = {bml = "text200000"}
@@ -78,6 +86,17 @@ static func _read(value, kind):
 			return _number(value, 0.0, 600.0)
 		"share":
 			return _number(value, 0.0, 1.0)
+		"intensity":
+			return _number(value, 0.0, 2.0)
+		"mood":
+			if text:
+				return value if Mood.MOODS.has(value) else null
+			if typeof(value) != TYPE_ARRAY or value.size() != 2:
+				return null
+			for part in value:
+				if _number(part, -1.0, 1.0) == null:
+					return null
+			return [float(value[0]), float(value[1])]
 		"priority":
 			var whole = _number(value, -1000.0, 1000.0)
 			return int(whole) if whole != null and whole == floor(whole) else null

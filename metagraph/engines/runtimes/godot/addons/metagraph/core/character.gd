@@ -4,6 +4,7 @@
 const Util = preload("util.gd")
 const Asks = preload("asks.gd")
 const Describe = preload("describe.gd")
+const Answers = preload("answers.gd")
 const Hear = preload("hear.gd")
 const Planner = preload("planner.gd")
 const Pose = preload("pose.gd")
@@ -126,9 +127,9 @@ func _plan_on():
 
 # Forgets what is over, and settles the answers of what was asked for then.
 func _forget(over):
-	var known = Hear.answers(plan, _asked)
+	var known = Answers.answers(plan, _asked)
 	plan = Planner.since(plan, over)
-	var left = Hear.answers(plan, _asked)
+	var left = Answers.answers(plan, _asked)
 	for ident in known:
 		var found = known[ident]
 		# What the plan no longer knows was played; so was a look without an end that another has replaced.
@@ -172,7 +173,7 @@ func answer(ident):
 	for waiting in _queue:
 		if waiting.id == ident:
 			return _told(ident, "planned", "taken up at the next update")
-	return Hear.answer(plan, ident)
+	return Answers.answer(plan, ident)
 
 
 # Returns what began and ended since this was last asked for, by time, of more than 1000 the latest: [{kind: "begin" or "end", at, layer:

@@ -3,17 +3,17 @@
 const Util = preload("util.gd")
 # Field -> what it is: a text, a number, a switch, a record, a list, or so many numbers; "?": null, or not there, which is made null.
 const EXPORT = {joints = "list", base = "record", clips = "list", layers = "record", planner = "record"}
-const OPTIONAL = {life = "record?", face = "record?", points = "record?", lines = "record?", voices = "record?", rig = "record?"}
+const OPTIONAL = {life = "record?", face = "record?", points = "record?", lines = "record?", voices = "record?", rig = "record?", contact_rig = "record?"}
 const EMPTY = ["life", "face", "points", "lines", "voices"]  # where these are not there
 const BASE = {rotations = "list", translations = "list"}
-const JOINT = {name = "text", parent = "text?", part = "text", side = "text", translation = "3", rotation = "4"}
+const JOINT = {name = "text", parent = "text?", part = "text", side = "text", translation = "3", rotation = "4", scales = "text?"}
 const CLIP = {id = "text", name = "text", animation = "number", fps = "number", frames = "number"}
 const LAYER = {start = "text?", weights = "record", stances = "list", actions = "list", markov = "record"}
 const STANCE = {id = "text", name = "text"}
 const ACTION = {
 	id = "text", name = "text", clip = "text", kind = "text", stance = "text", end_stance = "text?", start = "number", end = "number",
 	blend_in = "number", blend_out = "number", earliest_exit = "number?", stroke = "number?", limb = "text", joints = "list", tags = "list",
-	likelihood = "number", phases = "list?", cooldown = "number?", spacing = "number?"
+	likelihood = "number", phases = "list?", cooldown = "number?", spacing = "number?", contacts = "list?", vigour = "number?"
 }
 const MARKOV = {
 	states = "list", matrix = "list", gap = "number", positive = "number", negative = "number", tags = "list?", lengths = "list?", modes = "list?"
@@ -24,12 +24,17 @@ const PLANNER = {
 }
 const RIG = {
 	left = "3", up = "3", ahead = "3", chain = "list", breath = "list", shoulders = "list", lookers = "list", trunk = "number",
-	trunk_ahead = "3", head_ahead = "3", eyes = "list", partner = "3", eyes_at_rest = "3", face = "record"
+	trunk_ahead = "3", head_ahead = "3", eyes = "list", partner = "3", eyes_at_rest = "3", face = "record", bowed = "list?"
 }
 const EYE = {at = "3", left = "3", up = "3", ahead = "3", joint = "number", turn_left = "3", turn_up = "3", down = "4"}
 const SHOULDER = {joint = "number", turn = "3"}
 const LOOKER = {place = "number", share = "number"}
 const FACE = {joints = "list", turns = "list", shifts = "list", follows = "4", lid_joints = "4", shut_by = "list", morphs = "record"}
+const CONTACT_RIG = {contacts = "switch", guard = "switch", joints = "list", parents = "list", arms = "list", capsules = "list"}
+const CAPSULE = {joint = "number", a = "3", to = "number", b = "3", radius = "number", arm = "number", kind = "number"}
+const CONTACT = {
+	hand = "text", place = "text", to = "text", start = "number", end = "number", ease_in = "number", ease_out = "number", keys = "list"
+}
 const VOICE = {duration = "number", accents = "list", weights = "list"}
 
 
@@ -57,6 +62,10 @@ static func wrong(data):
 		checks.append([rig.get("shoulders"), SHOULDER, "$.rig.shoulders"])
 		checks.append([rig.get("lookers"), LOOKER, "$.rig.lookers"])
 		checks.append([[rig.get("face")], FACE, "$.rig.face"])
+	var touching = data.get("contact_rig")
+	if typeof(touching) == TYPE_DICTIONARY:
+		checks.append([[touching], CONTACT_RIG, "$.contact_rig"])
+		checks.append([touching.get("capsules"), CAPSULE, "$.contact_rig.capsules"])
 	if typeof(data.voices) == TYPE_DICTIONARY:
 		checks.append([data.voices.values(), VOICE, "$.voices"])
 	for check in checks:
@@ -83,7 +92,51 @@ static func _unlike(data):
 		var markov = data.layers[layer].markov
 		if markov.matrix.size() != markov.states.size():
 			return "$.layers.%s.markov.matrix: should have a row for each state" % layer
+		for action in data.layers[layer].actions:
+			if action.contacts != null:
+				var out = _stray_contacts(action.contacts, "$.layers.%s.actions.contacts" % layer)
+				if out != "":
+					return out
+	if data.contact_rig != null:
+		var out = _stray_places(data.contact_rig, data.joints.size())
+		if out != "":
+			return out
 	return "" if data.rig == null else _strays(data.rig, data.joints.size())
+
+
+# Returns what is wrong with an action's contacts.
+static func _stray_contacts(contacts, where):
+	var out = _lack(contacts, CONTACT, where)
+	if out != "":
+		return out
+	for each in contacts:
+		for key in each.keys:
+			if not _is(key, "8"):
+				return where + ".keys: should be rows of eight numbers"
+	return ""
+
+
+# Returns what of a contact rig names a joint, or a place among its joints, that is not there.
+static func _stray_places(rig, count):
+	var places = []
+	for arm in rig.arms:
+		if not _is(arm, "3"):
+			return "$.contact_rig.arms: should be places of three joints each"
+		places += arm
+	for capsule in rig.capsules:
+		places += [capsule.joint, capsule.to]
+	for joint in rig.joints:
+		if not Util.is_number(joint) or joint < 0 or joint >= count:
+			return "$.contact_rig: there is no joint %s" % str(joint)
+	for place in places:
+		if place < 0 or place >= rig.joints.size():
+			return "$.contact_rig: there is no place %s" % str(place)
+	if rig.arms.size() != 2 or rig.parents.size() != rig.joints.size():
+		return "$.contact_rig: should have two arms, and a parent for each joint"
+	for n in range(rig.parents.size()):
+		if not Util.is_number(rig.parents[n]) or rig.parents[n] >= n or rig.parents[n] < -1:
+			return "$.contact_rig: parents should come before their children"
+	return ""
 
 
 # Returns what of a rig names a joint, or a place in the chain, that is not there.
@@ -102,6 +155,9 @@ static func _strays(rig, count):
 			return "$.rig: there is no place %s in the chain" % str(place)
 	if rig.breath.size() != rig.chain.size() or rig.eyes.size() != 2:
 		return "$.rig: should have a breath for each joint of the chain, and two eyes"
+	for angle in rig.bowed if rig.bowed != null else []:
+		if not Util.is_number(angle):
+			return "$.rig.bowed: should be numbers"
 	return ""
 
 

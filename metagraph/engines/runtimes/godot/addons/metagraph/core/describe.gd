@@ -2,6 +2,7 @@
 
 const Util = preload("util.gd")
 const Asks = preload("asks.gd")
+const Words = preload("words.gd")
 
 
 # Returns {project, words: what `do` may be, modes, joints [{name, parent, part}], layers {layer: {start, stances [{id, name}], actions but
@@ -24,7 +25,7 @@ static func describe(graph):
 	for id in ids:
 		lines.append({id = id, text = graph.lines[id].get("text", "")})
 	return {
-		project = graph.name, words = words, modes = Util.MODES.duplicate(), joints = joints, layers = layers, lines = lines,
+		project = graph.name, words = words, modes = Words.MODES.duplicate(), joints = joints, layers = layers, lines = lines,
 		points = graph.spots
 	}
 

@@ -1,6 +1,7 @@
 # The life layers at a time: what they add to the pose the layers have composed. A turn is multiplied on the right of a joint's composed
 # rotation, a shift is added to its translation.
 
+const Mood = preload("mood.gd")
 const Util = preload("util.gd")
 const Turns = preload("turns.gd")
 const Gaze = preload("gaze.gd")
@@ -27,7 +28,7 @@ static func enliven(graph, plan, time, pose):
 		rotations[rig.chain[n]] = found.chain[n] * Turns.of(found.turns[n], rig.one)
 	for n in range(rig.shoulders.size()):
 		var joint = rig.shoulders[n].joint
-		rotations[joint] = pose.rotations[joint] * Turns.of(rig.shoulders[n].turn * found.full, rig.one)
+		rotations[joint] = pose.rotations[joint] * Turns.of(rig.shoulders[n].turn * (found.full + found.bears.lift), rig.one)
 	for n in range(2):
 		var eye = rig.eyes[n]
 		if eye.joint >= 0:
@@ -46,26 +47,29 @@ static func enliven(graph, plan, time, pose):
 
 
 # Returns {chain: rotations as breathing has them, turns of the chain, full: how full the chest is, eyes [left, up] of both, shut: how far
-# each lid is, blink, channels}.
+# each lid is, blink, channels, bears: the posture and face of the mood}.
 static func _found(graph, plan, time, pose):
 	var rig = graph.rig
 	var life = graph.life
 	var schedule = plan.life
 	var full = breath_at(schedule.breaths, life, time)
+	var mood = Mood.shown(schedule.moods.times, schedule.moods.rows, time)
+	var bears = Mood.Bearing.new() if mood.neutral else Mood.bearing(mood)
 	var chain = []
 	var places = []
 	var turns = []
 	for n in range(rig.chain.size()):
 		var joint = rig.chain[n]
-		var axis = rig.breath[n]
-		chain.append(pose.rotations[joint] * Turns.of(axis * full, rig.one) if full != 0 else pose.rotations[joint])
+		var turn = rig.breath[n] * full + rig.bowed[n] * bears.droop
+		chain.append(pose.rotations[joint] * Turns.of(turn, rig.one) if turn != Vector3() else pose.rotations[joint])
 		places.append(pose.translations[joint])
 		turns.append(Vector3())
 	var eyes = [[0.0, 0.0], [0.0, 0.0]]
 	if rig.lookers.size() > 0 and schedule.targets.size() > 0:
-		if schedule.gaze == null:
-			schedule.gaze = Gaze.new(graph, {targets = schedule.targets, aversions = schedule.aversions, saccades = schedule.saccades})
-		var looked = Solve.look(rig, chain, places, schedule.gaze.at(time), life.gaze, 1.0 - life.stillness, life.head_share)
+		if plan.gaze.get("of") != schedule:  # kept for as long as the schedule is the same
+			plan.gaze.of = schedule
+			plan.gaze.made = Gaze.new(graph, schedule)
+		var looked = Solve.look(rig, chain, places, plan.gaze.made.at(time), life.gaze, 1.0 - life.stillness, life.head_share)
 		eyes = looked.eyes
 		for n in range(rig.lookers.size()):
 			turns[rig.lookers[n].place] = looked.turns[n]
@@ -73,7 +77,7 @@ static func _found(graph, plan, time, pose):
 	for n in range(2):
 		if rig.eyes[n].joint >= 0:
 			down[n] += Solve.part_along(pose.rotations[rig.eyes[n].joint], rig.eyes[n].down)
-	var blink = blink_at(schedule.blinks, life, time)
+	var blink = Util.most(blink_at(schedule.blinks, life, time), bears.lids)
 	var lids = rig.face.lid_joints
 	var follows = rig.face.follows
 	if lids.max() < 0:
@@ -89,7 +93,7 @@ static func _found(graph, plan, time, pose):
 	var shown = Lips.mouth(graph, plan.track, life.lip_smoothing, time) if life.lips > 0 else null
 	for n in range(MOUTH.size() - 1):
 		channels.append(shown[n] * life.lips if shown != null else 0.0)
-	return {chain = chain, turns = turns, full = full, eyes = eyes, shut = shut, blink = blink, channels = channels}
+	return {chain = chain, turns = turns, full = full, eyes = eyes, shut = shut, blink = blink, channels = channels, bears = bears}
 
 
 # Returns {place: sum of the channels' shapes}.
@@ -104,10 +108,10 @@ static func _sums(shapes, channels):
 
 # Returns how full the chest is, 0 at rest, about 1 at the top of a breath.
 static func breath_at(lane, life, time):
-	var n = Util.right_of(lane.starts, time) - 1
+	var n = Util.right_of(lane.times, time) - 1
 	if n < 0:
 		return 0.0
-	var gone = (time - lane.starts[n]) / lane.rows[n][0]
+	var gone = (time - lane.times[n]) / lane.rows[n][0]
 	var curve = Util.smooth(Util.least(gone / INHALE, (1.0 - gone) / (1.0 - INHALE)))
 	return life.breathing * (1.0 - life.stillness) * lane.rows[n][1] * curve
 
@@ -116,9 +120,9 @@ static func breath_at(lane, life, time):
 static func blink_at(lane, life, time):
 	var whole = life.blink_close + life.blink_open
 	var out = 0.0
-	var n = Util.right_of(lane.starts, time) - 1
-	while n >= 0 and time - lane.starts[n] < whole:  # a slow one may still be opening when the next begins
-		var gone = time - lane.starts[n]
+	var n = Util.right_of(lane.times, time) - 1
+	while n >= 0 and time - lane.times[n] < whole:  # a slow one may still be opening when the next begins
+		var gone = time - lane.times[n]
 		out = Util.most(out, Util.smooth(Util.least(gone / life.blink_close, (whole - gone) / life.blink_open)))
 		n -= 1
 	return out
@@ -140,6 +144,10 @@ static func _morphs(face, found):
 		values["look_down" + side] = -up
 	for n in range(MOUTH.size()):
 		values[MOUTH[n]] = found.channels[LIDS + 1 + n]
+	values.smile = found.bears.smile
+	values.frown = found.bears.frown
+	values.brow_down = found.bears.brow_down
+	values.brow_up = found.bears.brow_up
 	var out = {}
 	for channel in face.morphs:
 		var value = values.get(channel, 0.0)

@@ -60,9 +60,9 @@ func at(time):
 	var eyes_y = 0.0
 	var head_x = 0.0
 	var head_y = 0.0
-	var n = Util.right_of(_life.aversions.starts, time) - 1
+	var n = Util.right_of(_life.aversions.times, time) - 1
 	if n >= 0 and _averting > 0:
-		var start = _life.aversions.starts[n]
+		var start = _life.aversions.times[n]
 		var row = _life.aversions.rows[n]
 		var size = sqrt(row[1] * row[1] + row[2] * row[2]) * _graph.life.aversion_angle
 		var scale = _averting * (1.0 - strict)
@@ -79,13 +79,13 @@ func at(time):
 			eyes_y = row[2] * now
 			head_x = row[1] * head
 			head_y = row[2] * head
-	n = Util.right_of(_life.saccades.starts, time) - 1
+	n = Util.right_of(_life.saccades.times, time) - 1
 	if n >= 0 and _darting > 0:
 		var to = _life.saccades.rows[n]
 		var from = _life.saccades.rows[n - 1] if n > 0 else [0.0, 0.0]
 		var x = to[0] - from[0]
 		var y = to[1] - from[1]
-		var way = Util.smooth((time - _life.saccades.starts[n]) / (EYE_TIME + EYE_TIME_PER_DEGREE * sqrt(x * x + y * y)))
+		var way = Util.smooth((time - _life.saccades.times[n]) / (EYE_TIME + EYE_TIME_PER_DEGREE * sqrt(x * x + y * y)))
 		eyes_x += _darting * (from[0] + x * way)
 		eyes_y += _darting * (from[1] + y * way)
 	return {parts = parts, eyes = [eyes_x, eyes_y], head = [head_x, head_y]}

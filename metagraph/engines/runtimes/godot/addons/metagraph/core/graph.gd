@@ -10,6 +10,7 @@ const Clip = preload("clip.gd")
 const Glb = preload("glb.gd")
 const Life = preload("life.gd")
 const Rig = preload("rig.gd")
+const Contacts = preload("contacts.gd")
 const Alphabet = preload("alphabet.gd")
 const FORMAT = 1  # the newest version of exports that is understood
 const CORE = "res://addons/metagraph/core/"
@@ -23,6 +24,8 @@ var names = []  # [J] joints, parents before children
 var parents = []  # [J], -1 for a root
 var parts = []
 var sides = []
+var larger = []  # which turn farther, and which less far, where a cue is played larger or smaller than made
+var smaller = []
 var rest_rotations = []
 var rest_translations = []
 var base_rotations = []
@@ -32,6 +35,7 @@ var layers = {}  # layer -> see layer_graph.gd
 var settings = {}
 var life = {}
 var rig = null  # see rig.gd; null where nothing lives
+var contact_rig = null  # see contacts.gd; null where the export has none
 var name = ""  # of the project
 var points = {}  # name -> Vector3
 var spots = {}  # name -> [x, y, z], as the export has them
@@ -81,6 +85,8 @@ func _read(json, bytes):
 		_read_layer(layer, data.layers[layer])
 	if data.rig != null:
 		rig = Rig.rig_of(data.rig, shim)
+	if data.contact_rig != null:
+		contact_rig = Contacts.rig_of(data.contact_rig, names)
 	if not shim.are_bytes(bytes):
 		return "the GLB cannot be read; check that '%s' is beside the JSON" % str(data.get("glb", "it"))
 	var glb = Glb.new(bytes, shim)
@@ -95,6 +101,8 @@ func _read_skeleton(data):
 		names.append(joint.name)
 		parts.append(joint.part)
 		sides.append(joint.side)
+		larger.append(joint.scales == null or joint.scales == "both")
+		smaller.append(joint.scales != "neither")
 		rest_rotations.append(Util.quaternion(joint.rotation, shim))
 		rest_translations.append(Util.vector(joint.translation))
 	for n in range(names.size()):
@@ -118,12 +126,15 @@ func _read_layer(layer, data):
 			told = [stroke, stroke, stroke, stroke]
 		action.phases = PhaseTimes.Phases.new(each.start, told[0], told[1], told[2], told[3], each.end)
 		action.cooldown = 0.0 if each.cooldown == null else each.cooldown
+		action.vigour = 0.0 if each.vigour == null else each.vigour
+		action.contacts = Contacts.read(each.contacts)
 		action.still = _still(action)
 		found.add(action)
 	var own = data.markov
 	found.markov = Model.Markov.new(
 		layer, own.states, own.matrix, own.gap, own.positive, own.negative, own.get("tags"), own.get("lengths"), own.get("modes")
 	)
+	found.strength = Util.least(1.0, data.weights.get("arms", 0.0))
 	for joint in range(names.size()):
 		var weight = data.weights.get(parts[joint], 0.0)
 		if weight > 0:
@@ -175,32 +186,3 @@ func _read_clips(data, glb):
 # Returns the seconds of its clip between which an action plays.
 func span(action):
 	return [action.start, action.end]
-
-
-# Returns the action of an id or, failing that, a name; of several of one name the likeliest; null for none. layer: null for any.
-func find_action(word, layer):
-	for each in Util.LAYERS:
-		var found = layers[each].actions.get(word)
-		if found != null:
-			if layer == null or layer == each:
-				return found
-			break
-	var best = null
-	for each in Util.LAYERS:
-		if layer == null or layer == each:
-			for action in layers[each].actions.values():
-				if action.name == word and (best == null or action.likelihood > best.likelihood):
-					best = action
-	return best
-
-
-# Returns [layer, stance id] of an id or name; null for none. layer: null for any.
-func find_stance(word, layer):
-	for each in Util.LAYERS:
-		if layer == null or layer == each:
-			if layers[each].stances.has(word):
-				return [each, word]
-			for stance in layers[each].stances:
-				if layers[each].stances[stance].name == word:
-					return [each, stance]
-	return null

@@ -1,31 +1,47 @@
-# A lane of events in time, drawn one after another: {starts [n] ascending, seconds; rows [n]: what each event is; first: the number
-# of the first event that is still kept}. Lanes are never changed: extended at the end, forgotten at the front, always as a copy.
+# A lane of events in time, drawn one after another: never changed, extended at the end, forgotten at the front.
+#
+# Translated from metagraph/playback/life/lane.py; change that, and translate anew.
 
 const Util = preload("util.gd")
 
 
-static func empty_lane():
-	return {starts = [], rows = [], first = 0}
+# times: when events begin, ascending, seconds. rows: what each event is. first: number of the first event that is still kept.
+# width: how many numbers a row has.
+class Lane:
+	var times
+	var rows
+	var first
+	var width
+	var next  # The number of the event to be drawn next.
 
+	func _init(times_ = null, rows_ = null, first_ = 0, width_ = 1):
+		self.times = times_ if times_ != null else []
+		self.rows = rows_ if rows_ != null else []
+		self.first = first_
+		self.width = width_
+		self.next = self.first + self.times.size()
 
-# Returns the number of the event to be drawn next.
-static func next_number(lane):
-	return lane.first + lane.starts.size()
+	# Return the lane with only what begins before a time.
+	func until(seconds):
+		var count = Util.left_of(self.times, seconds)
+		if count == self.times.size():
+			return self
+		return Lane.new(Util.part(self.times, 0, count), Util.part(self.rows, 0, count), self.first, self.width)
 
+	# Return the lane with later events.
+	func plus(times, rows):
+		if times.size() == 0:
+			return self
+		return Lane.new(self.times + times, self.rows + rows, self.first, self.width)
 
-# Returns the lane with only what begins before a time.
-static func until(lane, seconds):
-	var count = Util.left_of(lane.starts, seconds)
-	return {starts = Util.part(lane.starts, 0, count), rows = Util.part(lane.rows, 0, count), first = lane.first}
-
-
-# Returns the lane with later events.
-static func plus(lane, starts, rows):
-	return {starts = lane.starts + starts, rows = lane.rows + rows, first = lane.first}
-
-
-# Returns the lane without what neither goes on at `seconds` nor comes later; `before`: how many more are kept.
-static func since(lane, seconds, before):
-	var gone = Util.most(0, Util.right_of(lane.starts, seconds) - 1 - before)
-	var count = lane.starts.size()
-	return {starts = Util.part(lane.starts, gone, count), rows = Util.part(lane.rows, gone, count), first = lane.first + gone}
+	# Return the lane without what neither goes on at `seconds` nor comes later; `before`: how many more are kept.
+	func since(seconds, before = 1):
+		var gone = Util.most(0, Util.right_of(self.times, seconds) - 1 - before)
+		if gone == 0:
+			return self
+		return Lane.new(
+			Util.part(self.times, gone, self.times.size()),
+			Util.part(self.rows, gone, self.rows.size()),
+			self.first + gone,
+			self.width
+		)

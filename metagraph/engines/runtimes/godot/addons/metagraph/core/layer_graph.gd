@@ -10,6 +10,7 @@ var actions = {}  # id -> action
 var kinds = {}  # kind -> true
 var markov
 var reach = []  # [joint, weight] of those it moves
+var strength = 0.0  # how much of the arms it moves, 0..1
 var _index = {}  # kind and stance -> actions
 
 

@@ -3,7 +3,9 @@
 #
 # Translated from metagraph/playback/layer_planning.py; change that, and translate anew.
 
+const CueShapes = preload("cue_shapes.gd")
 const Markov = preload("markov.gd")
+const Mood = preload("mood.gd")
 const MetaPlan = preload("meta_plan.gd")
 const Replan = preload("replan.gd")
 const Sampling = preload("sampling.gd")
@@ -63,12 +65,13 @@ class LayerDraft:
 #
 # chain: what writes when nobody asks, if anything may. kinds: of actions the layer has. told: reports of the plan so far. fresh:
 # requests, of all layers. replaced: ids of those that are asked for anew or withdrawn. stance: which the layer would begin in.
-static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, replaced, end, stance):
+# moods: what it is in the mood for, and when.
+static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, replaced, end, stance, moods):
 	var layer = graph.layer
 	var asked = []
 	for request in fresh:
 		if request.layer == layer:
-			asked.append(meta_of(request))
+			asked.append(meta_of(in_time(request, moods)))
 	var kept = []
 	for cue in old.cues:
 		if cue.start < now:
@@ -122,7 +125,7 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 				or not planned.get(report.request, []).has(report.at))):
 			reports.append(report)
 	var begin = _begin(graph, old, stance)
-	var performer = Sampling.performer_after(project, graph, seed_, begin, old.past, kept)
+	var performer = Sampling.performer_after(project, graph, seed_, begin, old.past, kept, moods)
 	if begin == "" or not performer.begin(begin):
 		var why = "the %s layer has no stance with a loop to begin in" % [layer]
 		var waits = future + asked
@@ -168,13 +171,44 @@ static func draft(project, graph, chain, kinds, old, told, seed_, now, fresh, re
 	return LayerDraft.new(layer, performer, true, done, placed, every, old.past, cursor, written)
 
 
+# Return a request that may begin as much earlier as its preparation takes longer in its mood.
+static func in_time(request, moods):
+	if request.stroke == null:
+		return request
+	var mood = Mood.mood_at(moods, request.stroke)
+	var speed = Mood.tempo(Mood.changed(mood, request.valence, request.arousal, request.intensity))
+	if speed >= 1:
+		return request
+	return MetaPlan.MetaRequest.new(
+		request.id,
+		request.layer,
+		request.kind,
+		Util.most(0.0, request.stroke - (request.stroke - request.start) / speed),
+		request.duration,
+		request.action,
+		request.tags,
+		request.limb,
+		request.stance,
+		request.priority,
+		request.resume,
+		request.stroke,
+		request.hold,
+		request.prepare,
+		request.among,
+		request.late,
+		request.valence,
+		request.arousal,
+		request.intensity
+	)
+
+
 # Return a request with the window it may use; where its stroke is judged, the moment it is wanted at.
 static func meta_of(request):
 	if request.late != null and request.stroke != null:
-		return MetaPlan.MetaAction.new(request, request.stroke, request.stroke + Sampling.FITS)
+		return MetaPlan.MetaAction.new(request, request.stroke, request.stroke + CueShapes.FITS)
 	var length = WINDOW if request.duration == null else Util.most(0.0, request.duration)
 	if request.stroke != null:
-		length = Util.most(length, request.stroke - request.start + Sampling.FITS)
+		length = Util.most(length, request.stroke - request.start + CueShapes.FITS)
 	return MetaPlan.MetaAction.new(request, request.start, request.start + length)
 
 

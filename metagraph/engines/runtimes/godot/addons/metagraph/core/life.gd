@@ -3,7 +3,7 @@
 const DIALS = {
 	on = true, stillness = 0.0, breathing = 1.0, breath_rate = 14.0, gaze = 1.0, head_share = 0.6, aversion_rate = 12.0,
 	aversion_length = 0.93, aversion_angle = 14.0, saccades = 1.0, saccade_rate = 60.0, lids = 1.0, blinks = 17.0, accent_blinks = 1.0,
-	blink_close = 0.07, blink_open = 0.10, lips = 1.0, lip_smoothing = 0.03
+	blink_close = 0.07, blink_open = 0.10, lips = 1.0, lip_smoothing = 0.03, valence = 0.0, arousal = 0.0, intensity = 1.0
 }
 const FACTORS = {
 	breathing = 1.0, breath_rate = 1.0, aversion_rate = 1.0, aversion_length = 1.0, aversion_angle = 1.0, saccades = 1.0,
@@ -33,3 +33,24 @@ static func _over(usual, said):
 		if out.has(name):
 			out[name] = said[name]
 	return out
+
+
+# Returns what a mode makes of the amounts.
+static func manner(life, mode):
+	return life.manners[mode]
+
+
+# Returns what a mode makes of the amounts, each that a mood changes times a factor.
+static func scaled(ways, breathing, breath_rate, aversion_rate, saccade_rate, blinks):
+	var out = ways.duplicate()
+	out.breathing *= breathing
+	out.breath_rate *= breath_rate
+	out.aversion_rate *= aversion_rate
+	out.saccade_rate *= saccade_rate
+	out.blinks *= blinks
+	return out
+
+
+# Returns whether two are the same settings.
+static func same_life(one, other):
+	return typeof(one) == typeof(other) and one == other

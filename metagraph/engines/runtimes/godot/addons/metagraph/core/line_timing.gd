@@ -133,6 +133,33 @@ class LineTiming:
 		self.marks = marks_ if marks_ != null else []
 
 
+# Whether two lines' words and shapes come alike.
+static func alike_timings(one, other):
+	if one == null or other == null:
+		return one == null and other == null
+	if one.words.size() != other.words.size() or one.marks.size() != other.marks.size():
+		return false
+	var are_all = true
+	for n in range(one.words.size()):
+		var a = one.words[n]
+		var b = other.words[n]
+		if not (a.text == b.text and a.start == b.start and a.end == b.end):
+			are_all = false
+			break
+	var words = are_all
+	var holds = words
+	if holds:
+		var are_all2 = true
+		for n in range(one.marks.size()):
+			var a = one.marks[n]
+			var b = other.marks[n]
+			if not (a.at == b.at and a.viseme == b.viseme and a.weight == b.weight):
+				are_all2 = false
+				break
+		holds = are_all2
+	return holds
+
+
 static func _table(name):
 	if name == "oculus":
 		return OCULUS

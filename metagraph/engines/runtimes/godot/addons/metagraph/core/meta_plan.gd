@@ -14,7 +14,8 @@ const WRITTEN = 0  # priority of what the Markov model writes
 # stroke: when a gesture's stroke should come; `start` is then the earliest it may begin. hold: seconds its hold should last, None
 # for as long as it was made. prepare: whether its preparation plays. among: ids of the only actions it may be, any where empty.
 # late: by how many seconds its stroke, or where none is asked for its start, may come late, 0 for on time or not at all; None for
-# as late as the settings allow.
+# as late as the settings allow. valence, arousal, intensity: of the mood it is played in, as in `mood.Mood`; None for as it is
+# then.
 class MetaRequest:
 	var id
 	var layer
@@ -32,6 +33,9 @@ class MetaRequest:
 	var prepare
 	var among
 	var late
+	var valence
+	var arousal
+	var intensity
 
 	func _init(
 		id_,
@@ -49,7 +53,10 @@ class MetaRequest:
 		hold_ = null,
 		prepare_ = true,
 		among_ = null,
-		late_ = null
+		late_ = null,
+		valence_ = null,
+		arousal_ = null,
+		intensity_ = null
 	):
 		self.id = id_
 		self.layer = layer_
@@ -67,6 +74,9 @@ class MetaRequest:
 		self.prepare = prepare_
 		self.among = among_ if among_ != null else []
 		self.late = late_
+		self.valence = valence_
+		self.arousal = arousal_
+		self.intensity = intensity_
 
 
 # Where writing stands: before meta action `number`, in state number `state` (-1: none yet), which ended at `time` seconds.
@@ -102,11 +112,12 @@ class MetaAction:
 		self.key = self.request.id if self.part == 0 else "%s+%d" % [self.request.id, self.part]
 
 
-# One action in the plan. It plays its clip from `entry` on during `start`..`end`, at its own speed but for its hold.
+# One action in the plan. It plays its clip from `entry` on during `start`..`end`, at `tempo` times its own speed but for its
+# hold.
 #
 # hold_from, hold_to: clip seconds of the hold, which takes `hold` seconds; 0, 0, 0 where it is not stretched. blend_in,
 # blend_out: seconds, fitting inside the cue. stance: before it; then: the stance it leaves the layer in. meta: key of the meta
-# action it realises.
+# action it realises. extent: how large it is played, a factor of its turns away from the stance.
 class Cue:
 	var action
 	var start
@@ -120,6 +131,8 @@ class Cue:
 	var hold_from
 	var hold_to
 	var hold
+	var extent
+	var tempo
 
 	func _init(
 		action_,
@@ -133,7 +146,9 @@ class Cue:
 		meta_,
 		hold_from_ = 0.0,
 		hold_to_ = 0.0,
-		hold_ = 0.0
+		hold_ = 0.0,
+		extent_ = 1.0,
+		tempo_ = 1.0
 	):
 		self.action = action_
 		self.start = start_
@@ -147,6 +162,8 @@ class Cue:
 		self.hold_from = hold_from_
 		self.hold_to = hold_to_
 		self.hold = hold_
+		self.extent = extent_
+		self.tempo = tempo_
 
 
 # The stance loop that lies under the cues from `start` on: loop seconds are `time - start`, wrapped.

@@ -2,10 +2,12 @@
 # layer. Planning from nothing and extending a running plan are the same function.
 #
 # A plan is {seed32, end, layers {layer: layer plan}, reports, requests, track: what was asked of the life layers, life: what they
-# do}; layer plans are those of meta_plan.gd. Seconds throughout.
+# do, gaze: of that, made when first looked at}; layer plans are those of meta_plan.gd. Seconds throughout.
 
 const Util = preload("util.gd")
 const Markov = preload("markov.gd")
+const Mood = preload("mood.gd")
+const Wanted = preload("wanted.gd")
 const MetaPlan = preload("meta_plan.gd")
 const LayerPlanning = preload("layer_planning.gd")
 const Remembering = preload("remembering.gd")
@@ -19,7 +21,8 @@ static func empty_plan(seed32):
 	for layer in Util.LAYERS:
 		layers[layer] = MetaPlan.LayerPlan.new(layer)
 	return {
-		seed32 = seed32, end = 0.0, layers = layers, reports = [], requests = [], track = Track.empty_track(), life = Schedule.empty_life()
+		seed32 = seed32, end = 0.0, layers = layers, reports = [], requests = [], track = Track.Track.new(),
+		life = Schedule.Schedule.new(), gaze = {}
 	}
 
 
@@ -35,6 +38,7 @@ static func extend_plan(graph, plan, now, requests, end, stances, idle, withdraw
 		again[request.id] = true
 	var layers = {}
 	var reports = []
+	var moods = Wanted.moods_of(graph.life, plan.track)
 	for layer in Util.LAYERS:
 		if leave.has(layer):
 			layers[layer] = plan.layers[layer]
@@ -45,9 +49,9 @@ static func extend_plan(graph, plan, now, requests, end, stances, idle, withdraw
 		var of = graph.layers[layer]
 		var drafted = LayerPlanning.draft(
 			graph, of, of.markov if idle else null, of.kinds, plan.layers[layer], plan.reports, plan.seed32, now, fresh, again, end,
-			stances.get(layer)
+			stances.get(layer), moods
 		)
-		layers[layer] = drafted.performed(_performed(graph, plan, layer, drafted.placed), end)
+		layers[layer] = drafted.performed(_performed(graph, plan, layer, drafted.placed, moods), end)
 		reports += drafted.reports
 	var kept = []
 	for request in plan.requests:
@@ -55,18 +59,19 @@ static func extend_plan(graph, plan, now, requests, end, stances, idle, withdraw
 			kept.append(request)
 	return {
 		seed32 = plan.seed32, end = end, layers = layers, reports = Util.by(reports, "at"), requests = kept + fresh, track = plan.track,
-		life = Schedule.schedule(graph, plan.track, plan.seed32, end, plan.life, now)
+		gaze = plan.gaze, life = Schedule.schedule(graph.life, plan.track, graph, plan.seed32, end, plan.life, now)
 	}
 
 
 # Returns those of a layer's meta actions that are performed. What a model wrote is not where it would leave a stance that was asked for, to
-# stay in, and as often as its mode says.
-static func _performed(graph, plan, layer, metas):
+# stay in, and as often as its mode and mood say.
+static func _performed(graph, plan, layer, metas, moods):
 	var out = []
 	for meta in metas:
-		var leaves = meta.request.kind == "transition" and Track.stays_at(plan.track, layer, meta.start)
-		var mode = Track.told_mode(plan.track, meta.start)
-		if not meta.written or (not leaves and Markov.performs(graph.layers[layer].markov, plan.seed32, meta, mode)):
+		var stirs = Mood.stirs(Mood.mood_at(moods, meta.start), plan.seed32, meta.request.id)
+		var leaves = meta.request.kind == "transition" and plan.track.stays_at(layer, meta.start)
+		var mode = plan.track.told_mode(meta.start)
+		if not meta.written or (stirs and not leaves and Markov.performs(graph.layers[layer].markov, plan.seed32, meta, mode)):
 			out.append(meta)
 	return out
 
@@ -88,8 +93,8 @@ static func since(plan, seconds):
 		if request.start >= seconds or known.has(request.id):
 			requests.append(request)
 	var changes = {layers = layers, reports = reports, requests = requests}
-	changes.track = Track.since(plan.track, seconds)
-	changes.life = Schedule.since(plan.life, seconds)
+	changes.track = plan.track.since(seconds)
+	changes.life = plan.life.since(seconds)
 	return Util.but(plan, changes)
 
 

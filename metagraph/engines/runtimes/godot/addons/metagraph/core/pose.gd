@@ -3,7 +3,9 @@
 
 const Util = preload("util.gd")
 const Turns = preload("turns.gd")
+const Mood = preload("mood.gd")
 const Evaluate = preload("evaluate.gd")
+const Contacts = preload("contacts.gd")
 
 
 # Returns {rotations [J] local quaternions, translations [J] local, metres, morphs {name: weight 0..1}} at a time. alive: with the life
@@ -15,10 +17,25 @@ static func pose_at(graph, plan, time, alive = true):
 		composed = Evaluate.enliven(graph, plan, time, composed)
 		for name in composed.morphs:
 			morphs[name] = morphs.get(name, 0.0) + composed.morphs[name]
+	if graph.contact_rig != null:
+		Contacts.touch(graph, _playing(graph, plan, time), time, composed)
 	for name in morphs:
 		morphs[name] = Util.least(1.0, Util.most(0.0, morphs[name]))
 	composed.morphs = morphs
 	return composed
+
+
+# Returns of each layer [its plan, the cue with motion that plays or null, the place of its rest or -1, its strength on the arms].
+static func _playing(graph, plan, time):
+	var out = []
+	for layer in Util.LAYERS:
+		var of = plan.layers[layer]
+		var cue = cue_at(of, time)
+		if cue != null and not graph.clips.has(cue.action.clip):
+			cue = null
+		var place = Util.most(Util.after(of.rests, "fade_start", time) - 1, 0) if of.rests.size() > 0 else -1
+		out.append([of, cue, int(place), graph.layers[layer].strength])
+	return out
 
 
 static func _compose(graph, plan, time):
@@ -50,9 +67,9 @@ static func cue_weight(cue, time):
 static func clip_seconds(cue, time):
 	var elapsed = time - cue.start
 	if cue.hold <= 0:
-		return cue.entry + elapsed
-	var held = Util.within(elapsed - (cue.hold_from - cue.entry), 0.0, cue.hold)
-	return cue.entry + elapsed - held + held * ((cue.hold_to - cue.hold_from) / cue.hold)
+		return cue.entry + elapsed * cue.tempo
+	var held = Util.within(elapsed - (cue.hold_from - cue.entry) / cue.tempo, 0.0, cue.hold)
+	return cue.entry + (elapsed - held) * cue.tempo + held * ((cue.hold_to - cue.hold_from) / cue.hold)
 
 
 # Returns for seconds since a loop began: [clip second, clip second of the seam's other side, how much of that shows]. With a seam of x
@@ -87,7 +104,7 @@ static func _layer(graph, plan, time):
 	var entering = time < cue.start + cue.blend_in
 	var blending = entering or time >= cue.end - cue.blend_out
 	var still = cue.action.still
-	if not blending and still == null:
+	if not blending and still == null and cue.extent == 1:
 		return shown
 	var stance = _stance(graph, plan, time)
 	var out = {turns = shown.turns.duplicate(), shifts = shown.shifts.duplicate()}
@@ -102,6 +119,8 @@ static func _layer(graph, plan, time):
 			out.shifts[joint] = out.shifts.get(joint, Vector3()) + stance.shifts[joint] * weight
 		for joint in edge.shifts:
 			out.shifts[joint] = out.shifts.get(joint, Vector3()) - edge.shifts[joint] * weight
+	if cue.extent != 1:
+		_extend(graph, plan.layer, out, stance, cue.extent)
 	if still != null:
 		for joint in still:
 			out.turns[joint] = stance.turns[joint]
@@ -110,6 +129,20 @@ static func _layer(graph, plan, time):
 			else:
 				out.shifts.erase(joint)
 	return out
+
+
+# Plays what is shown larger or smaller round the stance.
+static func _extend(graph, layer, out, stance, extent):
+	var takes_part = graph.larger if extent > 1 else graph.smaller
+	for each in graph.layers[layer].reach:
+		var joint = each[0]
+		if takes_part[joint]:
+			var apart = Turns.back(stance.turns[joint]) * out.turns[joint]
+			out.turns[joint] = stance.turns[joint] * Turns.power(apart, Mood.turn_extent(extent, apart.w))
+			var away = out.shifts.get(joint, Vector3())
+			var rest = stance.shifts.get(joint, Vector3())
+			if away != rest:
+				out.shifts[joint] = rest + (away - rest) * extent
 
 
 # Returns the offsets of the stance that lies under the cues.

@@ -132,9 +132,9 @@ static func _placed(metas, settings):
 			var resumes = last.request.resume and rest.end - rest.start >= settings.shortest
 			if resumes:
 				var own = _order(rest)
-				var place = at
-				while place < queue.size() and not Util.less(own, _order(queue[place])):
-					place += 1
+				var place = queue.size()
+				while place > at and Util.less(own, _order(queue[place - 1])):
+					place -= 1
 				queue.insert(place, rest)
 			var word = "is cut" if kept else "gives way"
 			var after = " and goes on at %.2f s" % [meta.end] if resumes else ""
@@ -142,23 +142,23 @@ static func _placed(metas, settings):
 			var message = "%s at %.2f s for '%s', which is more important%s" % [word, meta.start, meta.request.id, after]
 			reports.append(_told(last, outcome, message, kept or resumes))
 			var own2 = _order(meta)
-			var place2 = at
-			while place2 < queue.size() and not Util.less(own2, _order(queue[place2])):
-				place2 += 1
+			var place2 = queue.size()
+			while place2 > at and Util.less(own2, _order(queue[place2 - 1])):
+				place2 -= 1
 			queue.insert(place2, meta)
 		elif meta.request.late != null:
 			var own3 = _order(_after(meta, last.end))
-			var place3 = at
-			while place3 < queue.size() and not Util.less(own3, _order(queue[place3])):
-				place3 += 1
+			var place3 = queue.size()
+			while place3 > at and Util.less(own3, _order(queue[place3 - 1])):
+				place3 -= 1
 			queue.insert(place3, _after(meta, last.end))
 		elif last.end - meta.request.start > settings.wait:
 			reports.append(_told(meta, "covered", _no_time(last)))
 		else:
 			var own4 = _order(_after(meta, last.end))
-			var place4 = at
-			while place4 < queue.size() and not Util.less(own4, _order(queue[place4])):
-				place4 += 1
+			var place4 = queue.size()
+			while place4 > at and Util.less(own4, _order(queue[place4 - 1])):
+				place4 -= 1
 			queue.insert(place4, _after(meta, last.end))
 			reports.append(_told(meta, "late", "waits %.2f s for '%s'" % [last.end - meta.request.start, last.request.id], true))
 	return [placed, reports]

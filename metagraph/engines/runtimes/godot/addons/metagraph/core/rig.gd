@@ -7,12 +7,15 @@ const Util = preload("util.gd")
 static func rig_of(data, shim):
 	var out = {
 		left = Util.vector(data.left), up = Util.vector(data.up), ahead = Util.vector(data.ahead), chain = _whole(data.chain), breath = [],
-		shoulders = [], lookers = [], trunk = int(data.trunk), trunk_ahead = Util.vector(data.trunk_ahead),
+		bowed = [], shoulders = [], lookers = [], trunk = int(data.trunk), trunk_ahead = Util.vector(data.trunk_ahead),
 		head_ahead = Util.vector(data.head_ahead), eyes = [], partner = Util.vector(data.partner),
 		eyes_at_rest = Util.vector(data.eyes_at_rest), one = shim.quat(0.0, 0.0, 0.0, 1.0)
 	}
 	for each in data.breath:
 		out.breath.append(Util.vector(each) * each[3])
+	for n in range(data.breath.size()):
+		var bowed = data.bowed[n] if data.bowed != null and data.bowed.size() > n else 0.0
+		out.bowed.append(Util.vector(data.breath[n]) * bowed)
 	for each in data.shoulders:
 		out.shoulders.append({joint = int(each.joint), turn = Util.vector(each.turn)})
 	for each in data.lookers:

@@ -4,15 +4,14 @@
 
 const Bounds = preload("bounds.gd")
 const Choice = preload("choice.gd")
+const CueShapes = preload("cue_shapes.gd")
+const Mood = preload("mood.gd")
 const PhaseTimes = preload("phase_times.gd")
 const Phases = preload("phases.gd")
 const MetaPlan = preload("meta_plan.gd")
 const Remembering = preload("remembering.gd")
+const Vigour = preload("vigour.gd")
 const Util = preload("util.gd")
-const FITS = 1e-06  # seconds by which sums of times may be off
-const HURRY = 2.0  # a hold is played at most this many times as fast as it was made
-const RETRACTION = 0.4  # seconds in which an action whose retraction is cut goes back to its stance, at the least
-const SHARED = 0.25  # seconds within which two strokes may be one
 const LOOP_FADE = 0.6  # seconds of crossfade when a long rest changes from one loop of its stance to another
 
 
@@ -26,35 +25,17 @@ class SamplingStep:
 		self.hop = hop_
 
 
-# How an action would play: from `start` on, `length` seconds, at least `shortest`; the rest as in a cue.
-class CueShape:
-	var start
-	var entry
-	var length
-	var shortest
-	var hold_from
-	var hold_to
-	var hold
-
-	func _init(start_, entry_, length_, shortest_, hold_from_ = 0.0, hold_to_ = 0.0, hold_ = 0.0):
-		self.start = start_
-		self.entry = entry_
-		self.length = length_
-		self.shortest = shortest_
-		self.hold_from = hold_from_
-		self.hold_to = hold_to_
-		self.hold = hold_
-
-
 # One layer being planned, cue after cue. Mutable while planning; nothing of it leaves the planner.
 #
 # uses: how often each action was used. recent: the last draws of each `node`. ended: when each action ended. begun: keys of meta
-# actions whose chain of transitions plays already. served: keys of those that another's action serves, too.
+# actions whose chain of transitions plays already. served: keys of those that another's action serves, too. moods: what it is in
+# the mood for, and when.
 class Performer:
 	var project
 	var graph
 	var seed_
 	var stance
+	var moods
 	var free_
 	var uses
 	var recent
@@ -70,6 +51,7 @@ class Performer:
 		graph_,
 		seed_,
 		stance_,
+		moods_,
 		free_ = 0.0,
 		uses_ = null,
 		recent_ = null,
@@ -84,6 +66,7 @@ class Performer:
 		self.graph = graph_
 		self.seed_ = seed_
 		self.stance = stance_
+		self.moods = moods_
 		self.free_ = free_
 		self.uses = uses_ if uses_ != null else {}
 		self.recent = recent_ if recent_ != null else {}
@@ -124,7 +107,7 @@ class Performer:
 			if meta.request.late != null:
 				self._realise(bound, Util.most(self.ready(), Bounds.begins(meta)))
 				continue
-			if meta.end <= self.ready() + FITS and meta.start < self.ready() and not self.begun.has(meta.key):
+			if meta.end <= self.ready() + CueShapes.FITS and meta.start < self.ready() and not self.begun.has(meta.key):
 				var running = "the running action"
 				if self.cues.size() > 0:
 					running = "'%s'" % [self.cues[-1].action.name]
@@ -151,7 +134,7 @@ class Performer:
 			if limit < INF:  # else all fit
 				var found = []
 				for a in step.candidates:
-					if self._fits(self._shape(a, asked, now), limit):
+					if CueShapes.fits_before(self._shape(a, asked, now), limit):
 						found.append(a)
 				fitting = found
 			if fitting.size() == 0:
@@ -161,7 +144,7 @@ class Performer:
 			if not hops and meta.request.action == null:
 				var warm = []
 				for a in fitting:
-					if a.cooldown <= 0 or self._cooled(a) <= self._shape(a, asked, now).start + FITS:
+					if a.cooldown <= 0 or self._cooled(a) <= self._shape(a, asked, now).start + CueShapes.FITS:
 						warm.append(a)
 				if warm.size() == 0:
 					var found2 = []
@@ -176,9 +159,10 @@ class Performer:
 				fitting = self._timely(bound, fitting, now)
 				if fitting.size() == 0:
 					return
-			var action = self._draw(fitting, "%s/%s" % [meta.key, step.hop] if hops else meta.key, now)
+			var mood = self._mood(asked, now)
+			var action = self._draw(fitting, "%s/%s" % [meta.key, step.hop] if hops else meta.key, now, mood)
 			var shape = self._shape(action, asked, now)
-			var cue = self._cue(action, shape, bound, hops, stance)
+			var cue = self._cue(action, shape, bound, hops, stance, mood)
 			cues.append(cue)
 			now = cue.end
 			stance = cue.then
@@ -190,16 +174,16 @@ class Performer:
 	func _timely(bound, fitting, now):
 		var meta = bound.meta
 		var request = meta.request
-		var allowed = self._slack(request)
+		var allowed = CueShapes.slack_of(request)
 		var late = {}
 		for a in fitting:
-			late[a.id] = self._lateness(a, request, self._shape(a, request, now))
+			late[a.id] = CueShapes.lateness(self.project, a, request, self._shape(a, request, now))
 		var found = []
 		for a in fitting:
 			found.append(late[a.id])
 		var least = Util.least_of(found)
 		var waits
-		if least > allowed + FITS:
+		if least > allowed + CueShapes.FITS:
 			waits = self._cause(request, now)
 			self._tell(
 				meta,
@@ -209,24 +193,24 @@ class Performer:
 				least
 			)
 			return []
-		if least > FITS:
+		if least > CueShapes.FITS:
 			waits = self._cause(request, now)
 			self._tell(meta, "late", "comes %.2f s late; it waits for %s" % [least, waits], true, least)
 		var timely = []
 		for a in fitting:
-			if late[a.id] <= Util.most(least, 0.0) + FITS:
+			if late[a.id] <= Util.most(least, 0.0) + CueShapes.FITS:
 				timely.append(a)
 		for other in bound.after:
-			if not self._shares(request, other.request):
+			if not CueShapes.may_share(request, other.request):
 				continue
 			var both = []
 			for a in timely:
-				if self._meets(a, other.request):
+				if CueShapes.meets(a, other.request):
 					both.append(a)
 			var behind = 0.0
 			if request.stroke != null and other.request.stroke != null:
 				behind = Util.most(0.0, request.stroke + Util.most(least, 0.0) - other.request.stroke)
-			if both.size() > 0 and other.request.late != null and behind <= other.request.late + FITS:
+			if both.size() > 0 and other.request.late != null and behind <= other.request.late + CueShapes.FITS:
 				timely = both
 				Util.add_to(self.served, other.key)
 				var message = "shares the stroke of '%s'" % [request.id]
@@ -236,7 +220,7 @@ class Performer:
 			if not self.served.has(other2.key):
 				following.append(other2)
 		for other in following:
-			for slack in [0.0, self._slack(other.request)]:
+			for slack in [0.0, CueShapes.slack_of(other.request)]:
 				var by = self._latest(other.request) + slack
 				var over = []
 				for a in timely:
@@ -246,42 +230,13 @@ class Performer:
 					return over
 		return timely
 
-	# Return by how many seconds an action that plays so comes late, at its stroke where one is asked for; less than 0 before its
-	# time.
-	func _lateness(action, request, shape):
-		if request.stroke != null and action.kind == "gesture":
-			var found = Phases.phases(self.project, action)
-			return shape.start + found.stroke - shape.entry - request.stroke
-		return shape.start - request.start
-
 	# Return what a request that comes late waits for.
 	func _cause(request, now):
-		if now <= request.start + FITS:
+		if now <= request.start + CueShapes.FITS:
 			return "its own preparation"
-		if self.cues.size() > 0 and self.ready() >= now - FITS and self.cues[-1].end >= self.free_ - FITS:
+		if (self.cues.size() > 0 and self.ready() >= now - CueShapes.FITS and self.cues[-1].end >= self.free_ - CueShapes.FITS):
 			return "'%s', which plays until %.2f s" % [self.cues[-1].action.name, self.free_]
 		return "what comes before it" if self.cues.size() > 0 else "the time it became known at"
-
-	# Whether two requests may be met by one stroke.
-	func _shares(request, other):
-		if request.stroke == null or other.stroke == null:
-			return false
-		return (request.action == null
-			and other.action == null
-			and request.kind == other.kind
-			and (other.hold == null or other.hold == request.hold)
-			and Util.absolute(request.stroke - other.stroke) <= SHARED)
-
-	# Whether an action is what a request for any asks for.
-	func _meets(action, request):
-		var are_all = true
-		for tag in request.tags:
-			if not action.tags.has(tag):
-				are_all = false
-				break
-		return (are_all
-			and (request.limb == null or action.limb == request.limb)
-			and (request.among.size() == 0 or request.among.has(action.id)))
 
 	# Return when something that is asked for has to begin at the latest, to be on time; never in the past, where nothing meets
 	# it.
@@ -290,41 +245,28 @@ class Performer:
 			return request.start
 		var least = INF
 		for action in self.graph.of(self.stance, request.kind):
-			var fits = self._meets(action, request)
+			var fits = CueShapes.meets(action, request)
 			if request.action != null:
 				fits = action.id == request.action
 			if fits and self._usable(action):
 				var found = Phases.phases(self.project, action)
-				least = Util.least(least, found.stroke - found.skip(action.timing.blend_in))
+				var lead = found.stroke - found.skip(action.timing.blend_in)
+				least = Util.least(least, lead + Mood.drag(lead, self._tempo(action, request, request.stroke)))
 		return request.stroke - least
-
-	# Return by how many seconds a request may come late, 0 where it does not say.
-	func _slack(request):
-		return 0.0 if request.late == null else request.late
 
 	# Return when what follows an action could begin at the earliest.
 	func _over(action, request, now):
 		var shape = self._shape(action, request, now)
-		return shape.start + self._hurried(action, shape) + self.project.settings.rest - FITS
-
-	# Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless it was asked for.
-	func _hurried(action, shape):
-		if action.kind != "gesture" or action.timing.earliest_exit != null:
-			return shape.shortest
-		var found = Phases.phases(self.project, action)
-		var left = found.relax - shape.entry + shape.hold - (shape.hold_to - shape.hold_from)
-		if shape.hold <= 0:
-			left = found.stroke_end - shape.entry
-		return Util.least(shape.length, left + Util.most(action.timing.blend_out, RETRACTION))
+		return shape.start + CueShapes.hurried(self.project, action, shape) + self.project.settings.rest - CueShapes.FITS
 
 	# Return when an action that is to be played through is left nevertheless: early enough for the first of what follows that can
 	# be in time then, late enough for its own stroke; infinity for never.
 	func _until(action, shape, bound):
 		var rest = self.project.settings.rest
-		var soonest = shape.start + self._hurried(action, shape)
+		var soonest = shape.start + CueShapes.hurried(self.project, action, shape)
 		for other in bound.after:
-			var in_time = self._latest(other.request) + self._slack(other.request)
-			if not self.served.has(other.key) and soonest + rest <= in_time + FITS:
+			var in_time = self._latest(other.request) + CueShapes.slack_of(other.request)
+			if not self.served.has(other.key) and soonest + rest <= in_time + CueShapes.FITS:
 				return Util.most(soonest, Bounds.begins(other) - rest)
 		return INF
 
@@ -334,27 +276,28 @@ class Performer:
 		var cue = self.cues[-1]
 		if running == null or cue.action.kind == "transition" or cue.end - cue.blend_out <= now:
 			return
-		var soonest = now + Util.most(cue.blend_out, RETRACTION)
+		var soonest = now + Util.most(cue.blend_out, CueShapes.RETRACTION)
 		if not running.written:
-			var shape = CueShape.new(
+			var shape = CueShapes.CueShape.new(
 				cue.start,
 				cue.entry,
 				cue.end - cue.start,
 				cue.end - cue.start,
 				cue.hold_from,
 				cue.hold_to,
-				cue.hold
+				cue.hold,
+				cue.tempo
 			)
-			soonest = Util.most(soonest, cue.start + self._hurried(cue.action, shape))
+			soonest = Util.most(soonest, cue.start + CueShapes.hurried(self.project, cue.action, shape))
 		var rest = self.project.settings.rest
 		for meta in asked:
 			var request = meta.request
-			var in_time = self._latest(request) + self._slack(request)
-			if request.late == null or meta.rank < running.rank or in_time < soonest + rest - FITS:
+			var in_time = self._latest(request) + CueShapes.slack_of(request)
+			if request.late == null or meta.rank < running.rank or in_time < soonest + rest - CueShapes.FITS:
 				continue
 			var end = Util.most(soonest, Bounds.begins(meta) - rest)
 			if end < cue.end:
-				var out = Util.most(cue.blend_out, RETRACTION)
+				var out = Util.most(cue.blend_out, CueShapes.RETRACTION)
 				var into = Util.least(cue.blend_in, Util.most(0.0, end - out - cue.start))
 				self.cues[-1] = MetaPlan.Cue.new(
 					cue.action,
@@ -368,15 +311,13 @@ class Performer:
 					cue.meta,
 					cue.hold_from,
 					cue.hold_to,
-					cue.hold
+					cue.hold,
+					cue.extent,
+					cue.tempo
 				)
 				self.free_ = end
 				self.ended[cue.action.id] = end
 			return
-
-	# Whether something that plays so is over by a limit.
-	func _fits(shape, limit):
-		return shape.start + shape.shortest <= limit + FITS
 
 	# Return when an action may be drawn again.
 	func _cooled(action):
@@ -544,48 +485,38 @@ class Performer:
 
 	# Return how an action would play for a request from `now` on, or as a step on the way to it.
 	func _shape(action, request, now):
-		var both = self.project.span(action)
-		var start = both[0]
-		var end = both[1]
-		var begin = now
-		var entry = start
-		var hold_from = 0.0
-		var hold_to = 0.0
-		var hold = 0.0
-		if (request != null
-			and action.kind == "gesture"
-			and (request.hold != null or request.stroke != null or not request.prepare)):
-			var found = Phases.phases(self.project, action)
-			var latest = found.skip(action.timing.blend_in)
-			entry = start if request.prepare else latest
-			# Wait for the stroke, or catch up with it by cutting the preparation.
-			if request.stroke != null:
-				begin = Util.most(now, request.stroke - (found.stroke - entry))
-				entry = Util.least(
-					Util.most(entry, found.stroke - Util.most(0.0, request.stroke - begin)),
-					Util.most(entry, latest)
-				)
-			if request.hold != null:
-				hold_from = found.stroke_end
-				hold_to = found.relax
-				hold = Util.most(request.hold, (hold_to - hold_from) / HURRY)
-				if hold <= 0:
-					hold_from = 0.0
-					hold_to = 0.0
-		var length = end - entry + hold - (hold_to - hold_from)
-		var shortest = length
-		var exit_at = action.timing.earliest_exit
-		if exit_at != null:
-			var left = exit_at - entry + (hold - (hold_to - hold_from) if exit_at >= hold_to else 0.0)
-			shortest = Util.least(length, Util.most(0.0, left) + action.timing.blend_out)
-		return CueShape.new(begin, entry, length, shortest, hold_from, hold_to, hold)
+		return CueShapes.shape_of(self.project, action, request, now, self._tempo(action, request, now))
 
-	# Draw with p_k ~ likelihood_k / max(c_k, 1), leaving out those used too recently as long as any others are left.
-	func _draw(candidates, key, now):
+	# Return the mood that something asked for is played in from `at` on, or at its stroke.
+	func _mood(request, at):
+		if request == null:
+			return Mood.mood_at(self.moods, at)
+		var mood = Mood.mood_at(self.moods, at if request.stroke == null else request.stroke)
+		if request.valence == null and request.arousal == null and request.intensity == null:
+			return mood
+		return Mood.changed(mood, request.valence, request.arousal, request.intensity)
+
+	# Return how fast an action is played, 1 where it was made for the mood.
+	func _tempo(action, request, at):
+		var mood = self._mood(request, at)
+		return 1.0 if (mood.neutral or Mood.made_for(mood, action.tags)) else Mood.tempo(mood)
+
+	# Return how large an action is played. Those that move feet or leave for another stance, touch something or were made for the
+	# mood are played as they were made.
+	func _extent(action, mood):
+		if self.graph.layer == "body" or action.kind == "transition" or mood.neutral:
+			return 1.0
+		return 1.0 if (action.contacts.size() > 0 or action.tags.has(Mood.HELD) or Mood.made_for(mood, action.tags)) else Mood.extent(
+			mood
+		)
+
+	# Draw with p_k ~ likelihood_k / max(c_k, 1), times what the mood favours, leaving out those used too recently as long as any
+	# others are left.
+	func _draw(candidates, key, now, mood):
 		var left = self._spaced(candidates)
 		var weights = {}
 		for a in left:
-			weights[a.id] = a.likelihood / Util.most(self._count(a.id, now), 1.0)
+			weights[a.id] = a.likelihood / Util.most(self._count(a.id, now), 1.0) * self._favour(a, mood)
 		var is_any = false
 		for w in weights.values():
 			if w > 0:
@@ -600,6 +531,10 @@ class Performer:
 				first = a
 				break
 		return first
+
+	# Return how much likelier a mood makes an action, 1 in none.
+	func _favour(action, mood):
+		return 1.0 if mood.neutral else Mood.favour(mood, action.tags, Vigour.vigour(self.project, action))
 
 	# Leave out what needs more other actions before it plays again; where that leaves nothing, all need one less, and so on.
 	func _spaced(candidates):
@@ -643,7 +578,7 @@ class Performer:
 		return alpha * used
 
 	# hops: whether it is a transition on the way to what is asked for.
-	func _cue(action, shape, bound, hops, stance):
+	func _cue(action, shape, bound, hops, stance, mood):
 		var length = shape.length
 		var into = Util.most(0.0, action.timing.blend_in)
 		var out = Util.most(0.0, action.timing.blend_out)
@@ -653,7 +588,7 @@ class Performer:
 		elif not hops:
 			length = Util.least(length, self._until(action, shape, bound) - shape.start)
 			if length < shape.length:
-				out = Util.most(out, RETRACTION)
+				out = Util.most(out, CueShapes.RETRACTION)
 		if shape.entry > self.project.span(action)[0]:
 			into = Util.most(into, PhaseTimes.LEAST_BLEND)
 		var squeeze = Util.least(1.0, length / (into + out)) if into + out > 0 else 1.0
@@ -673,7 +608,9 @@ class Performer:
 			bound.meta.key,
 			shape.hold_from,
 			shape.hold_to,
-			shape.hold
+			shape.hold,
+			self._extent(action, mood),
+			shape.tempo
 		)
 
 	func _keep(cue):
@@ -750,13 +687,14 @@ class Performer:
 
 
 # Return the performer that stands where cues have been played after a past.
-static func performer_after(project, graph, seed_, begin, past, cues):
+static func performer_after(project, graph, seed_, begin, past, cues, moods):
 	var stance = past.stance if graph.stances.has(past.stance) else begin
 	var out = Performer.new(
 		project,
 		graph,
 		seed_,
 		stance,
+		moods,
 		past.free_,
 		past.uses.duplicate(),
 		past.recent.duplicate(),

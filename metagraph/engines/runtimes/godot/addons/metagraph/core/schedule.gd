@@ -1,77 +1,511 @@
-# When the life layers do what: drawn from the seed, event by event, then pure in time. What has begun stays, tick by tick gives what
-# one call gives, and what lies behind can be forgotten.
+# When the life layers do what: drawn from the seed, event by event, then pure in time.
 #
-# A life schedule is {end, drawn: seconds up to which the lanes are filled, modes, targets, breaths, aversions, saccades, blinks,
-# track: what it was drawn from, gaze: made when first looked at}; lanes hold what draw.gd says.
+# Each event depends only on the one before it and on what is asked meanwhile, and its chance on its number. So a schedule grows
+# as a plan does: what has begun stays, tick by tick gives what one call gives, and what lies behind can be forgotten.
+#
+# Translated from metagraph/playback/life/schedule.py; change that, and translate anew.
 
-const Util = preload("util.gd")
+const Life = preload("life.gd")
+const Words = preload("words.gd")
+const Choice = preload("choice.gd")
 const Lane = preload("lane.gd")
-const Draw = preload("draw.gd")
+const Voice = preload("voice.gd")
+const Wanted = preload("wanted.gd")
+const Mood = preload("mood.gd")
+const Util = preload("util.gd")
 const BLOCK = 8.0  # seconds drawn at a time, so that a running plan need not draw at every tick
 const RECALL = 4.0  # seconds of looks kept when the past is forgotten: longer than any turn of the head takes
-const RANDOM = {breaths = "breath_rate", aversions = "aversion_rate", saccades = "saccade_rate", blinks = "blinks"}
+# Blinks (Yang et al., section 7.3): on stressed syllables at least so many seconds after the last; of
+# themselves 2 to 5 s after it at 17 a minute: the factors are of the mean gap.
+const AFTER_BLINK = 1.0
+const BLINK_GAP = 0.57  # the shortest gap
+const BLINK_CHANCE = 0.845  # and what chance adds to it
+# Saccades: fixations last 0.2 s and more; sizes fall off as in "Eyes Alive", small ones only: the eyes stay
+# with what they look at.
+const FIXATION = 0.2
+const SACCADE = 1.2  # degrees on average
+const LARGEST_SACCADE = 4.0  # degrees
+const UPRIGHT = 0.6  # how much of an offset goes up and down
+# Aversions: at somewhat regular intervals, in a random direction, more often to the sides.
+const AVERSION_GAP = 0.6
+const AVERSION_CHANCE = 0.8
+const BETWEEN_AVERSIONS = 0.6  # seconds at least
+const SHORTEST_AVERSION = 0.25
+const BREATH = 0.85  # of the mean length and depth: the least
+const BREATH_CHANCE = 0.3  # and what chance adds
 
 
-static func empty_life():
-	var none = Lane.empty_lane()
-	return {
-		end = 0.0, drawn = 0.0, modes = none, targets = [], breaths = none, aversions = none, saccades = none, blinks = none, track = null,
-		gaze = null, rates = {}
-	}
+# Everything that happens of itself from 0 to `end` seconds, in lanes; a lane's rows stand in the order given here.
+#
+# modes: place among MODES. moods: valence, arousal, intensity. targets: what is looked at. breaths: length s, depth. aversions:
+# end s, right-to-left and upward part of the offset (of life's angle). saccades: offset to the left and up, degrees. blinks: 0 of
+# itself, 1 on a stressed syllable, 2 asked for. drawn: seconds up to which the lanes are filled; the rest is what they were drawn
+# from.
+class Schedule:
+	var end
+	var drawn
+	var modes
+	var moods
+	var targets
+	var breaths
+	var aversions
+	var saccades
+	var blinks
+	var life
+	var track
+	var voices
+	var seed_
+
+	func _init(
+		end_ = 0.0,
+		drawn_ = 0.0,
+		modes_ = null,
+		moods_ = null,
+		targets_ = null,
+		breaths_ = null,
+		aversions_ = null,
+		saccades_ = null,
+		blinks_ = null,
+		life_ = null,
+		track_ = null,
+		voices_ = null,
+		seed_ = 0
+	):
+		self.end = end_
+		self.drawn = drawn_
+		self.modes = modes_ if modes_ != null else Lane.Lane.new([], [], 0, 1)
+		self.moods = moods_ if moods_ != null else Lane.Lane.new([], [], 0, 3)
+		self.targets = targets_ if targets_ != null else []
+		self.breaths = breaths_ if breaths_ != null else Lane.Lane.new([], [], 0, 2)
+		self.aversions = aversions_ if aversions_ != null else Lane.Lane.new([], [], 0, 3)
+		self.saccades = saccades_ if saccades_ != null else Lane.Lane.new([], [], 0, 2)
+		self.blinks = blinks_ if blinks_ != null else Lane.Lane.new([], [], 0, 1)
+		self.life = life_
+		self.track = track_
+		self.voices = voices_
+		self.seed_ = seed_
+
+	# Return the schedule without what ended before `seconds`; what is drawn on from it stays as it would have been.
+	func since(seconds):
+		var breaths = self.breaths.since(seconds)
+		var aversions = self.aversions.since(seconds)
+		var saccades = self.saccades.since(seconds)
+		var blinks = self.blinks.since(seconds)
+		var rates = [1.0, 1.0, 1.0, 1.0]
+		if self.life != null:
+			rates = [self.life.breath_rate, self.life.aversion_rate, self.life.saccade_rate, self.life.blinks]
+		# Gaps run in modes' time from the event before, so the modes since then are needed.
+		var lanes = [breaths, aversions, saccades, blinks]
+		var firsts = []
+		for kept in lanes:
+			if kept.times.size() > 0:
+				firsts.append(kept.times[0])
+		var needed = Util.least_of(firsts) if firsts.size() > 0 else seconds
+		var is_any = false
+		for n in range(lanes.size()):
+			var kept = lanes[n]
+			var rate = rates[n]
+			if kept.times.size() == 0 and rate > 0:
+				is_any = true
+				break
+		if is_any:
+			needed = 0.0
+		var found = []
+		for t in self.targets:
+			found.append(t.start)
+		var looked = Util.right_of(found, Util.least(needed, seconds - RECALL)) - 1
+		return Schedule.new(
+			self.end,
+			self.drawn,
+			self.modes.since(needed, 0),
+			self.moods.since(Util.least(needed, seconds - RECALL), 0),
+			Util.part(self.targets, Util.most(0, looked), self.targets.size()),
+			breaths,
+			aversions,
+			saccades,
+			blinks,
+			self.life,
+			self.track,
+			self.voices,
+			self.seed_
+		)
 
 
-# Returns the schedule to `end` seconds. What `before` holds that begins before `now` stays exactly as it was; what it holds for
-# later is kept, too, where nothing it was drawn from has changed.
-static func schedule(graph, track, seed32, end, before, now):
-	if not graph.life.on:
-		return Util.but(before, {end = end, track = track})
-	var drawn = Util.most(BLOCK, ceil(end / BLOCK) * BLOCK)
-	var change = _change(before.track, track)
+# Return the schedule to `end` seconds. What `before` holds that begins before `now` stays exactly as it was.
+#
+# What it holds for later is kept, too, where nothing it was drawn from has changed.
+static func schedule(life, track, voices, seed_, end, before, now):
+	if not life.on:
+		return Schedule.new(
+			end,
+			before.drawn,
+			before.modes,
+			before.moods,
+			before.targets,
+			before.breaths,
+			before.aversions,
+			before.saccades,
+			before.blinks,
+			life,
+			track,
+			voices,
+			seed_
+		)
+	var drawn = Util.most(BLOCK, int(ceil(end / BLOCK)) * BLOCK)
+	var change = _change(before, life, track, voices, seed_)
 	if change == "" and drawn == before.drawn:
-		return Util.but(before, {end = end, track = track})
+		return Schedule.new(
+			end,
+			before.drawn,
+			before.modes,
+			before.moods,
+			before.targets,
+			before.breaths,
+			before.aversions,
+			before.saccades,
+			before.blinks,
+			before.life,
+			before.track,
+			before.voices,
+			before.seed_
+		)
 	var cut = Util.most(0.0, Util.least(before.drawn, drawn if change == "" else now))
 	var chance = Util.least(before.drawn, drawn) if change == "places" else cut
-	var draw = Draw.new(graph, track, seed32, cut, drawn, before)
-	var out = {end = end, drawn = drawn, modes = draw.modes, targets = draw.targets, track = track, gaze = null, rates = {}}
-	for name in RANDOM:
-		out[name] = Lane.until(before[name], chance)
-		out.rates[name] = graph.life[RANDOM[name]]
+	var draw = _draw(life, track, voices, seed_, cut, drawn, before)
+	var breaths = before.breaths.until(chance)
+	var aversions = before.aversions.until(chance)
+	var saccades = before.saccades.until(chance)
+	var blinks = before.blinks.until(chance)
 	if chance < drawn:
 		draw.begin(chance)
-		for name in RANDOM:
-			out[name] = draw.call(name, out[name])
-	return out
+		breaths = draw.breaths(breaths)
+		aversions = draw.aversions(aversions)
+		saccades = draw.saccades(saccades)
+		blinks = draw.blinks(blinks)
+	return Schedule.new(
+		end,
+		drawn,
+		draw.modes,
+		draw.moods,
+		draw.targets,
+		breaths,
+		aversions,
+		saccades,
+		blinks,
+		life,
+		track,
+		voices,
+		seed_
+	)
 
 
-# Returns "" where nothing a schedule was drawn from has changed, "places" where only those have, else "all".
-static func _change(old, track):
-	if old == null:
+# Return "" where nothing a schedule was drawn from has changed, "places" where only those have, else "all".
+static func _change(before, life, track, voices, seed_):
+	if before.track == null or before.seed_ != seed_ or not Life.same_life(before.life, life):
 		return "all"
-	if Util.same(old, track):
+	if not Voice.same_voices(before.voices, voices):
+		return "all"
+	if before.track == track or before.track.like(track):
 		return ""
-	for list in ["looks", "speeches", "modes", "blinks"]:
-		if not Util.same(old[list], track[list]):
-			return "all"
-	return "places"
+	return "places" if before.track.draws_like(track) else "all"
 
 
-# Returns the schedule without what ended before `seconds`; what is drawn on from it stays as it would have been.
-static func since(life, seconds):
-	var changes = {gaze = null}
-	# Gaps run in modes' time from the event before, so the modes since then are needed.
-	var needed = INF
-	var idle = false
-	for name in RANDOM:
-		changes[name] = Lane.since(life[name], seconds, 1)
-		if changes[name].starts.size() > 0:
-			needed = Util.least(needed, changes[name].starts[0])
-		elif life.rates.get(name, 1.0) > 0:
-			idle = true
-	if idle:
-		needed = 0.0
-	elif needed == INF:
-		needed = seconds
-	var kept = Util.most(0, Util.after(life.targets, "start", Util.least(needed, seconds - RECALL)) - 1)
-	changes.modes = Lane.since(life.modes, needed, 0)
-	changes.targets = Util.part(life.targets, kept, life.targets.size())
-	return Util.but(life, changes)
+# One extension: lanes filled from `cut` to `drawn` seconds. edges: where modes, moods and strict looks change; manners: what mode
+# and mood make of the amounts from each on; strict: 1 where the look then is, else 0.
+class LifeDraw:
+	var life
+	var track
+	var voices
+	var seed_
+	var cut
+	var drawn
+	var calm
+	var modes
+	var moods
+	var targets
+	var edges
+	var manners
+	var strict
+
+	func _init(
+		life_,
+		track_,
+		voices_,
+		seed_,
+		cut_,
+		drawn_,
+		calm_,
+		modes_,
+		moods_,
+		targets_,
+		edges_ = null,
+		manners_ = null,
+		strict_ = null
+	):
+		self.life = life_
+		self.track = track_
+		self.voices = voices_
+		self.seed_ = seed_
+		self.cut = cut_
+		self.drawn = drawn_
+		self.calm = calm_
+		self.modes = modes_
+		self.moods = moods_
+		self.targets = targets_
+		self.edges = edges_ if edges_ != null else []
+		self.manners = manners_ if manners_ != null else []
+		self.strict = strict_ if strict_ != null else []
+
+	# Lay modes, moods and strict looks out in one row of segments.
+	func begin(cut):
+		self.cut = cut
+		var edges = Util.list(self.modes.times)
+		Util.extend(edges, self.moods.times)
+		for n in range(self.targets.size()):
+			var target = self.targets[n]
+			if n == 0 or target.strict != self.targets[n - 1].strict:
+				edges.append(target.start)
+		var begun = []
+		for t in self.targets:
+			begun.append(t.start)
+		for edge in Util.in_order(edges):
+			if self.edges.size() > 0 and self.edges[-1] == edge:
+				continue
+			var mode = Util.most(0, Util.right_of(self.modes.times, edge) - 1)
+			var look = Util.most(0, Util.right_of(begun, edge) - 1)
+			self.edges.append(edge)
+			var felt = self.moods.rows[Util.most(0, Util.right_of(self.moods.times, edge) - 1)]
+			var ways = Life.manner(self.life, Words.MODES[int(self.modes.rows[mode][0])])
+			self.manners.append(Wanted.ways_in(ways, Mood.Mood.new(felt[0], felt[1], felt[2])))
+			self.strict.append(1 if self.targets[look].strict else 0)
+
+	# Return the chance of something about an event: 0..1, without the ends.
+	func chance(what, number, purpose):
+		return Choice.uniform(self.seed_, [what, str(number), purpose])
+
+	# Return the place of the segment that a time is in.
+	func place_at(seconds):
+		return Util.most(0, Util.right_of(self.edges, seconds) - 1)
+
+	# Return when `need` has passed since `seconds`, for a clock that runs at these rates, one for each segment; infinity where it
+	# is not before the end.
+	func after(seconds, need, rates):
+		var at = seconds
+		var left = need
+		var place = self.place_at(at)
+		while at < self.drawn:
+			var end = self.edges[place + 1] if place + 1 < self.edges.size() else self.drawn
+			var rate = rates[place]
+			if rate > 0 and at + left / rate < end:
+				return at + left / rate
+			left -= rate * Util.most(0.0, end - at)
+			at = end
+			place += 1
+		return INF
+
+	# Each breath follows the one before; the first began before time 0, so that not everybody breathes alike.
+	func breaths(lane):
+		var times = []
+		var rows = []
+		var number = lane.next
+		var begun = lane.times.size() > 0
+		var at = lane.times[-1] + lane.rows[-1][0] if begun else 0.0
+		while true:
+			if begun:
+				at = Util.most(at, self.cut)
+			var ways = self.manners[self.place_at(at)]
+			var rate = self.life.breath_rate * ways.breath_rate / 60.0
+			if rate <= 0:  # no breath until another mode begins
+				var later = Util.right_of(self.edges, at)
+				if self.life.breath_rate <= 0 or later == self.edges.size():
+					break
+				at = self.edges[later]
+				begun = true
+				continue
+			var length = (BREATH + BREATH_CHANCE * self.chance("breath", number, "length")) / rate
+			length *= 1.0 + 2.0 * self.life.stillness  # slower, too, but never halting
+			var depth = ways.breathing * (BREATH + BREATH_CHANCE * self.chance("breath", number, "depth"))
+			if not begun:
+				at = -length * Choice.uniform(self.seed_, ["breath", "first"])
+				begun = true
+			if at >= self.drawn:
+				break
+			times.append(at)
+			rows.append([length, depth])
+			at += length
+			number += 1
+		return lane.plus(times, rows)
+
+	# The eyes' small jumps.
+	func saccades(lane):
+		if self.life.saccade_rate <= 0 or self.calm <= 0:
+			return lane
+		var mean = Util.most(60.0 / self.life.saccade_rate, FIXATION + 0.01)
+		var rates = []
+		for ways in self.manners:
+			rates.append(ways.saccade_rate * self.calm)
+		var times = []
+		var rows = []
+		var number = lane.next
+		var last = lane.times[-1] if lane.times.size() > 0 else 0.0
+		while true:
+			var need = FIXATION + (mean - FIXATION) * Util.least(4.0, -log(self.chance("saccade", number, "gap")))
+			last = Util.most(self.cut, self.after(last, need, rates))
+			if not (last < self.drawn):
+				return lane.plus(times, rows)
+			var size = Util.least(LARGEST_SACCADE, -SACCADE * log(self.chance("saccade", number, "size")))
+			size *= self.manners[self.place_at(last)].saccades
+			var turn = 2.0 * PI * self.chance("saccade", number, "way")
+			times.append(last)
+			rows.append([size * sin(turn + PI / 2.0), UPRIGHT * size * sin(turn)])
+			number += 1
+
+	# Looks away for a moment.
+	func aversions(lane):
+		var life = self.life
+		if life.aversion_rate <= 0 or life.aversion_length <= 0 or life.aversion_angle <= 0 or self.calm <= 0:
+			return lane
+		var rates = []
+		for n in range(self.manners.size()):
+			var ways = self.manners[n]
+			var strict = self.strict[n]
+			var rate = life.aversion_rate * ways.aversion_rate
+			if strict == 1 or rate <= 0:
+				rates.append(0.0)
+			else:
+				var mean = Util.most(BETWEEN_AVERSIONS, 60.0 / rate - life.aversion_length * ways.aversion_length)
+				rates.append(self.calm / mean)
+		var times = []
+		var rows = []
+		var number = lane.next
+		var last = lane.rows[-1][0] if lane.rows.size() > 0 else 0.0
+		while true:
+			var need = AVERSION_GAP + AVERSION_CHANCE * self.chance("aversion", number, "gap")
+			var at = Util.most(self.cut, Util.most(last + BETWEEN_AVERSIONS, self.after(last, need, rates)))
+			if not (at < self.drawn):
+				return lane.plus(times, rows)
+			var own = self.manners[self.place_at(at)]
+			var length = life.aversion_length * own.aversion_length
+			length *= 0.6 + 0.8 * self.chance("aversion", number, "length")
+			last = at + Util.most(SHORTEST_AVERSION, length)
+			var size = own.aversion_angle * (0.7 + 0.6 * self.chance("aversion", number, "size"))
+			var turn = 2.0 * PI * self.chance("aversion", number, "way")
+			times.append(at)
+			rows.append([last, size * sin(turn + PI / 2.0), UPRIGHT * size * sin(turn)])
+			number += 1
+
+	# Blinks of themselves, on stressed syllables and asked for, whichever comes first.
+	func blinks(lane):
+		var life = self.life
+		var shut = life.blink_close + life.blink_open
+		var mean = 60.0 / life.blinks if (life.blinks > 0 and self.calm > 0) else INF
+		var rates = []
+		for ways in self.manners:
+			rates.append(ways.blinks * self.calm)
+		var last = -0.5 * Util.least(mean, 10.0) * Choice.uniform(self.seed_, ["blink", "first"])
+		if lane.times.size() > 0:
+			last = lane.times[-1]
+		var accents = []
+		if self.calm > 0 and life.accent_blinks > 0:
+			accents = self.accents(Util.most(0.0, Util.least(self.cut, last)))
+		var asked = []
+		for b in self.track.blinks:
+			asked.append(b.start)
+		var times = []
+		var rows = []
+		var number = lane.next
+		var place = 0
+		while true:
+			var own = INF
+			if mean < INF:
+				var need = mean * (BLINK_GAP + BLINK_CHANCE * self.chance("blink", number, "gap"))
+				own = Util.most(self.cut, self.after(last, need, rates))
+			# A stressed syllable may bring a blink: the first of a speech always, the others some time after
+			# the last blink.
+			while place < accents.size():
+				var both = accents[place]
+				var accent = both[0]
+				var first = both[1]
+				if accent >= self.cut and accent >= last + (shut + 0.1 if first else AFTER_BLINK / self.calm):
+					break
+				place += 1
+			var heard = accents[place][0] if place < accents.size() else INF
+			var wish = Util.left_of(asked, Util.most(self.cut, last + shut))
+			var wanted = asked[wish] if wish < asked.size() else INF
+			var at = Util.least(own, Util.least(heard, wanted))
+			if at >= self.drawn:
+				return lane.plus(times, rows)
+			times.append(at)
+			var kind = 1.0 if at == heard else 0.0
+			rows.append([2.0 if at == wanted else kind])
+			last = at
+			number += 1
+
+	# Return the stressed syllables from `start` to the end that may bring blinks, and whether each is a speech's first.
+	func accents(start):
+		var out = []
+		for speech in self.track.speeches:
+			if speech.end <= start or speech.start >= self.drawn:
+				continue
+			var end = Util.least(speech.end, self.drawn)
+			for n in range(Voice.stressed(self.voices, speech).size()):
+				var peak = Voice.stressed(self.voices, speech)[n]
+				var at = speech.start + peak
+				if at < start or at >= end:
+					continue
+				if Choice.uniform(self.seed_, [speech.id, "accent", str(n)]) < self.life.accent_blinks:
+					out.append([at, n == 0])
+		return out
+
+
+# Return what extends a schedule from `cut` to `drawn` seconds, with modes and looks in place.
+static func _draw(life, track, voices, seed_, cut, drawn, before):
+	var modes = before.modes.until(cut)
+	var last = int(modes.rows[-1][0]) if modes.rows.size() > 0 else -1
+	var times = []
+	var rows = []
+	for pair in Wanted.modes_between(track, cut, drawn):
+		var at = pair[0]
+		var mode = pair[1]
+		if times.size() > 0 or mode != last:
+			times.append(at)
+			rows.append([float(mode)])
+	var moods = before.moods.until(cut)
+	var felt = []
+	if moods.rows.size() > 0:
+		felt = Util.list(moods.rows[-1])
+	var changes = []
+	var wanted = []
+	for pair in Wanted.moods_between(Wanted.moods_of(life, track), cut, drawn):
+		var at = pair[0]
+		var mood = pair[1]
+		var same = felt.size() > 0 and felt[0] == mood.valence and felt[1] == mood.arousal and felt[2] == mood.intensity
+		if changes.size() > 0 or not same:
+			changes.append(at)
+			wanted.append([mood.valence, mood.arousal, mood.intensity])
+	var found = []
+	for t in before.targets:
+		found.append(t.start)
+	var begun = Util.left_of(found, cut)
+	var targets = Util.part(before.targets, 0, begun)
+	for target in Wanted.targets_between(track, cut, drawn):
+		if targets.size() == 0 or not target.like(targets[-1]):
+			targets.append(target)
+	return LifeDraw.new(
+		life,
+		track,
+		voices,
+		seed_,
+		cut,
+		drawn,
+		1.0 - life.stillness,
+		modes.plus(times, rows),
+		moods.plus(changes, wanted),
+		Util.list(targets)
+	)
+
+
+# Return events a minute between two times.
+static func share(lane, start, end):
+	var count = Util.left_of(lane.times, end) - Util.left_of(lane.times, start)
+	return (float(count) / Util.most(end - start, 1e-09)) * 60.0

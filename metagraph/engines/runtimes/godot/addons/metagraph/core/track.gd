@@ -1,152 +1,280 @@
-# What was asked for and lasts: where to look, what to say, which mode to be in, which stance to stay in.
+# All that was asked for and lasts, in order; see `items`. Times are seconds.
 #
-# A track is {looks, speeches, modes, places, blinks, stays}, each by start; speeches do not overlap. Items have `list` (which of
-# these), id, start, and: looks end, to (a name or [x, y, z] metres), amount, strict, priority; speeches end, line, text, priority, length
-# (seconds it would have taken, where something cut it short), timing (when its words and mouth shapes come, null where that was not
-# told); modes mode; places name, point; stays layer, on, end.
+# Translated from metagraph/playback/life/track.py; change that, and translate anew.
 
-const LineTiming = preload("line_timing.gd")
+const Items = preload("items.gd")
+const Mood = preload("mood.gd")
 const Util = preload("util.gd")
-const LISTS = ["looks", "speeches", "modes", "places", "blinks", "stays"]
 
 
-static func empty_track():
-	return {looks = [], speeches = [], modes = [], places = [], blinks = [], stays = []}
+# All of it, each by start. Speeches do not overlap.
+class Track:
+	var looks
+	var speeches
+	var modes
+	var places
+	var blinks
+	var stays
+	var moods
 
+	func _init(looks_ = null, speeches_ = null, modes_ = null, places_ = null, blinks_ = null, stays_ = null, moods_ = null):
+		self.looks = looks_ if looks_ != null else []
+		self.speeches = speeches_ if speeches_ != null else []
+		self.modes = modes_ if modes_ != null else []
+		self.places = places_ if places_ != null else []
+		self.blinks = blinks_ if blinks_ != null else []
+		self.stays = stays_ if stays_ != null else []
+		self.moods = moods_ if moods_ != null else []
 
-# Returns all items.
-static func items(track):
-	var out = []
-	for list in LISTS:
-		out += track[list]
-	return out
+	# Return the ids of all of it.
+	func idents():
+		var out = []
+		for x in self.looks:
+			out.append(x.id)
+		var found = []
+		for x in self.speeches:
+			found.append(x.id)
+		Util.extend(out, found)
+		var found2 = []
+		for x in self.modes:
+			found2.append(x.id)
+		Util.extend(out, found2)
+		var found3 = []
+		for x in self.places:
+			found3.append(x.id)
+		Util.extend(out, found3)
+		var found4 = []
+		for x in self.blinks:
+			found4.append(x.id)
+		Util.extend(out, found4)
+		var found5 = []
+		for x in self.stays:
+			found5.append(x.id)
+		Util.extend(out, found5)
+		var found6 = []
+		for x in self.moods:
+			found6.append(x.id)
+		Util.extend(out, found6)
+		return out
 
+	# Return whether the models may not change a layer's stance at a time.
+	func stays_at(layer, seconds):
+		var first = null
+		for s in Util.backwards(self.stays):
+			if s.layer == layer and s.start <= seconds:
+				first = s
+				break
+		var last = first
+		return last != null and last.on and seconds < last.end
 
-# Returns whether the models may not change a layer's stance at a time.
-static func stays_at(track, layer, seconds):
-	for n in range(track.stays.size() - 1, -1, -1):
-		var stay = track.stays[n]
-		if stay.layer == layer and stay.start <= seconds:
-			return stay.on and seconds < stay.end
-	return false
+	# Return the mode that was asked for at a time, or talking while something is said; None where neither tells.
+	func told_mode(seconds):
+		var found = []
+		for m in self.modes:
+			found.append(m.start)
+		var asked = Util.right_of(found, seconds) - 1
+		if asked >= 0 and self.modes[asked].mode != null:
+			return self.modes[asked].mode
+		var found2 = []
+		for s in self.speeches:
+			found2.append(s.start)
+		var said = Util.right_of(found2, seconds) - 1
+		return "talking" if (said >= 0 and seconds < self.speeches[said].end) else null
 
+	# Return the track without items of these ids that begin at `now` or later; what has begun ends now, if it can.
+	func without(idents, now = -INF):
+		var holds = idents.size() == 0
+		if not holds:
+			var is_any = false
+			for ident in self.idents():
+				if idents.has(ident):
+					is_any = true
+					break
+			holds = not is_any
+		if holds:
+			return self
+		var found = []
+		for x in self.looks:
+			if not idents.has(x.id) or x.start < now:
+				found.append(Items.LookAt.new(
+					x.id,
+					x.start,
+					Util.least(x.end, now),
+					x.to,
+					x.amount,
+					x.strict,
+					x.priority
+				) if idents.has(x.id) else x)
+		var found2 = []
+		for x in self.speeches:
+			if not idents.has(x.id) or x.start < now:
+				found2.append(Items.cut(x, now) if idents.has(x.id) else x)
+		var found3 = []
+		for x in self.modes:
+			if not idents.has(x.id) or x.start < now:
+				found3.append(x)
+		var found4 = []
+		for x in self.places:
+			if not idents.has(x.id) or x.start < now:
+				found4.append(x)
+		var found5 = []
+		for x in self.blinks:
+			if not idents.has(x.id) or x.start < now:
+				found5.append(x)
+		var found6 = []
+		for x in self.stays:
+			if not idents.has(x.id) or x.start < now:
+				found6.append(Items.StayFrom.new(x.id, x.start, x.layer, x.on, Util.least(x.end, now)) if idents.has(x.id) else x)
+		var found7 = []
+		for x in self.moods:
+			if not idents.has(x.id) or x.start < now:
+				found7.append(Mood.MoodFrom.new(
+					x.id,
+					x.start,
+					x.valence,
+					x.arousal,
+					x.intensity,
+					Util.least(x.end, now)
+				) if idents.has(x.id) else x)
+		return Track.new(found, found2, found3, found4, found5, found6, found7)
 
-# Returns the mode asked for at a time, or talking while something is said; null where neither tells.
-static func told_mode(track, seconds):
-	var asked = Util.after(track.modes, "start", seconds) - 1
-	if asked >= 0 and track.modes[asked].mode != null:
-		return track.modes[asked].mode
-	var said = Util.after(track.speeches, "start", seconds) - 1
-	return "talking" if said >= 0 and seconds < track.speeches[said].end else null
+	# Return the track with those of another, whose speeches may overlap each other's.
+	func joined(more):
+		if more.idents().size() == 0:
+			return self
+		var looks = Util.list(self.looks)
+		for look in more.looks:
+			var own = [look.start, look.id]
+			var place2 = looks.size()
+			while place2 > 0 and Util.less(own, [looks[place2 - 1].start, looks[place2 - 1].id]):
+				place2 -= 1
+			looks.insert(place2, look)
+		var speeches = Util.list(self.speeches)
+		for speech in more.speeches:
+			var own2 = [speech.start, speech.id]
+			var place3 = speeches.size()
+			while place3 > 0 and Util.less(own2, [speeches[place3 - 1].start, speeches[place3 - 1].id]):
+				place3 -= 1
+			speeches.insert(place3, speech)
+		var modes = Util.list(self.modes)
+		for mode in more.modes:
+			var own3 = [mode.start, mode.id]
+			var place4 = modes.size()
+			while place4 > 0 and Util.less(own3, [modes[place4 - 1].start, modes[place4 - 1].id]):
+				place4 -= 1
+			modes.insert(place4, mode)
+		var places = Util.list(self.places)
+		for place in more.places:
+			var own4 = [place.start, place.id]
+			var place5 = places.size()
+			while place5 > 0 and Util.less(own4, [places[place5 - 1].start, places[place5 - 1].id]):
+				place5 -= 1
+			places.insert(place5, place)
+		var blinks = Util.list(self.blinks)
+		for blink in more.blinks:
+			var own5 = [blink.start, blink.id]
+			var place6 = blinks.size()
+			while place6 > 0 and Util.less(own5, [blinks[place6 - 1].start, blinks[place6 - 1].id]):
+				place6 -= 1
+			blinks.insert(place6, blink)
+		var stays = Util.list(self.stays)
+		for stay in more.stays:
+			var own6 = [stay.start, stay.id]
+			var place7 = stays.size()
+			while place7 > 0 and Util.less(own6, [stays[place7 - 1].start, stays[place7 - 1].id]):
+				place7 -= 1
+			stays.insert(place7, stay)
+		var moods = Util.list(self.moods)
+		for mood in more.moods:
+			var own7 = [mood.start, mood.id]
+			var place8 = moods.size()
+			while place8 > 0 and Util.less(own7, [moods[place8 - 1].start, moods[place8 - 1].id]):
+				place8 -= 1
+			moods.insert(place8, mood)
+		var said = Items.apart(speeches) if more.speeches.size() > 0 else speeches
+		return Track.new(
+			Util.list(looks),
+			Util.list(said),
+			Util.list(modes),
+			Util.list(places),
+			Util.list(blinks),
+			Util.list(stays),
+			Util.list(moods)
+		)
 
+	# Return the track without what no time from `seconds` on needs.
+	func since(seconds):
+		# Those that no later one has replaced; also what is over: it tells since when what shows has shown.
+		var looks = []
+		for look in self.looks:
+			if look.start <= seconds:
+				var found = []
+				for x in looks:
+					if x.priority > look.priority:
+						found.append(x)
+				looks = found
+			looks.append(look)
+		var found2 = []
+		for m in self.modes:
+			found2.append(m.start)
+		var mode = Util.most(0, Util.right_of(found2, seconds) - 1)
+		var places = {}
+		for n in range(self.places.size()):
+			var x = self.places[n]
+			if x.start <= seconds:
+				places[x.name] = n
+		var stays = {}
+		for n in range(self.stays.size()):
+			var x = self.stays[n]
+			if x.start <= seconds:
+				stays[x.layer] = n
+		var found3 = []
+		for x in self.speeches:
+			if x.start > seconds or x.end > seconds:
+				found3.append(x)
+		var found4 = []
+		for n in range(self.places.size()):
+			var x = self.places[n]
+			if x.start > seconds or places[x.name] == n:
+				found4.append(x)
+		var found5 = []
+		for x in self.blinks:
+			if x.start > seconds:
+				found5.append(x)
+		var found6 = []
+		for n in range(self.stays.size()):
+			var x = self.stays[n]
+			if x.start > seconds or stays[x.layer] == n:
+				found6.append(x)
+		return Track.new(
+			Util.list(looks),
+			found3,
+			Util.part(self.modes, mode, self.modes.size()),
+			found4,
+			found5,
+			found6,
+			Util.list(Mood.lasting(self.moods, seconds))
+		)
 
-# Returns the track without items of these ids {id: true} that begin at `now` or later; what has begun ends now, if it can.
-static func without(track, idents, now):
-	var out = {}
-	for list in LISTS:
-		out[list] = []
-		for item in track[list]:
-			if not idents.has(item.id):
-				out[list].append(item)
-			elif item.start < now:
-				if list == "speeches":
-					item = _cut(item, now)
-				elif list == "looks" or list == "stays":
-					item = Util.but(item, {end = Util.least(item.end, now)})
-				out[list].append(item)
-	return out
+	# Return the last of an id that is said.
+	func last_speech(ident):
+		var first = null
+		for s in Util.backwards(self.speeches):
+			if s.id == ident:
+				first = s
+				break
+		return first
 
+	# Whether all is the same that chance depends on: where things are, and what stays, is not.
+	func draws_like(other):
+		if not Items.alike_looks(self.looks, other.looks) or not Items.alike_speeches(self.speeches, other.speeches):
+			return false
+		if not Items.alike_felt(self.moods, other.moods):
+			return false
+		return Items.alike_modes(self.modes, other.modes) and Items.alike_blinks(self.blinks, other.blinks)
 
-# Returns the track with more items; of speeches that overlap the later or more important cuts the other short.
-static func plus(track, more):
-	var out = {}
-	for list in LISTS:
-		out[list] = track[list].duplicate()
-	var spoken = false
-	for item in Util.by(more, "start", "id"):
-		var into = out[item.list]
-		var place = into.size()
-		while place > 0 and Util.less([item.start, item.id], [into[place - 1].start, into[place - 1].id]):
-			place -= 1
-		into.insert(place, item)
-		spoken = spoken or item.list == "speeches"
-	if spoken:
-		out.speeches = _apart(out.speeches)
-	return out
-
-
-# Returns an item as it goes on where a line of the same id has begun by `now`, or begins with it: it keeps its start and what has been said of it. Only
-# lines whose words or shapes were told with their times do.
-static func going_on(track, item, now):
-	if item.list != "speeches" or item.timing == null:
-		return item
-	var old = null
-	for speech in track.speeches:
-		if speech.id == item.id:
-			old = speech
-	if old == null or old.timing == null or old.length != null:
-		return item
-	if Util.most(old.start, item.start) > now and old.start != item.start:
-		return item
-	var timing = LineTiming.extended(old.timing, item.timing, Util.most(now - old.start, 0.0))
-	var length = Util.most(LineTiming.timed_seconds(timing, null), item.end - item.start)
-	var text = item.text
-	if text == "" or text == LineTiming.told_text(item.timing):
-		text = LineTiming.told_text(timing)
-	return Util.but(item, {start = old.start, end = old.start + length, text = text, timing = timing})
-
-
-# Returns the track without what no time from `seconds` on needs.
-static func since(track, seconds):
-	var out = {}
-	for list in LISTS:
-		out[list] = []
-		var last = {}  # of each thing, the place of the item that holds at `seconds`
-		for n in range(track[list].size()):
-			if track[list][n].start <= seconds:
-				last[_thing(track[list][n])] = n
-		for n in range(track[list].size()):
-			var item = track[list][n]
-			var goes_on = list == "speeches" and item.end > seconds
-			var holds = ["modes", "places", "stays"].has(list) and last.get(_thing(item), -1) == n
-			if item.start > seconds or goes_on or holds:
-				out[list].append(item)
-	out.looks = _standing(track.looks, seconds) + out.looks
-	return out
-
-
-# Returns the looks begun by `seconds` that no later one has replaced; what is over, too: it tells since when what shows has shown.
-static func _standing(looks, seconds):
-	var out = []
-	for look in looks:
-		if look.start <= seconds:
-			while out.size() > 0 and out[-1].priority <= look.priority:
-				out.pop_back()
-			out.append(look)
-	return out
-
-
-static func _thing(item):
-	return item.name if item.list == "places" else (item.layer if item.list == "stays" else "")
-
-
-# Returns a speech ending no later than `at`; how long it would have been is remembered.
-static func _cut(speech, at):
-	if speech.end <= at:
-		return speech
-	return Util.but(speech, {end = at, length = speech.end - speech.start if speech.length == null else speech.length})
-
-
-# Returns speeches without overlaps: one that is at least as important cuts the running one, a lesser one is not said.
-static func _apart(speeches):
-	var out = []
-	for speech in speeches:
-		if out.size() > 0 and out[-1].end > speech.start:
-			if speech.priority < out[-1].priority:
-				continue
-			if out[-1].start >= speech.start:
-				out.pop_back()
-			else:
-				out[-1] = _cut(out[-1], speech.start)
-		out.append(speech)
-	return out
+	# Whether all is the same.
+	func like(other):
+		if not Items.alike_places(self.places, other.places) or not Items.alike_stays(self.stays, other.stays):
+			return false
+		return self.draws_like(other)

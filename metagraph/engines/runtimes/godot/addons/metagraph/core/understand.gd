@@ -1,178 +1,72 @@
 # From asks at any level of abstraction to what the planner and the life layers work with.
 
-const MetaPlan = preload("meta_plan.gd")
 const Util = preload("util.gd")
 const Asks = preload("asks.gd")
-const Graphemes = preload("graphemes.gd")
-const LineTiming = preload("line_timing.gd")
+const Meaning = preload("meaning.gd")
+const Mood = preload("mood.gd")
 const ToldTiming = preload("told_timing.gd")
-const Request = preload("request.gd")
-const FOREVER = 1e9  # seconds; a look that lasts until the next
 
 
-# Returns what asks mean: {requests: for the layers, items: for the track, withdrawn {id: true}: taken back; everything where it has "",
-# refused: reports}. now: when those begin that do not say. An ask that makes several requests gives them ids of its own:
-# <id>, then <id>.1, <id>.2, ...
+# Returns what asks mean, see meaning.gd. now: when those begin that do not say. An ask that makes several requests gives them ids of its
+# own: <id>, then <id>.1, <id>.2, ...
 static func understand(graph, asks, now):
-	var out = {requests = [], items = [], withdrawn = {}, refused = []}
+	var graphs = []
+	for layer in Util.LAYERS:
+		graphs.append(graph.layers[layer])
+	var out = Meaning.Meaning.new(graph, graphs, graph.alphabet)
 	for ask in asks:
-		var at = now if ask.at == null else ask.at
-		var meant = {requests = [], items = [], withdrawn = {}}
-		var why = _mean(graph, ask, at, meant)
-		if why != "":
-			var layer = ask.get("layer")
-			out.refused.append(MetaPlan.Report.new(ask.id, "not-understood", why, "arms" if layer == null else layer, at))
-			continue
-		out.requests += meant.requests
-		out.items += meant.items
-		for ident in meant.withdrawn:
-			out.withdrawn[ident] = true
+		var found = _plain(graph, ask)
+		if found[1] == "":
+			Meaning.understood(out, found[0], now)
+		else:
+			out.refuse(ask.id, found[1], ask.get("layer"), now if ask.at == null else ask.at)
+	for block in out.blocks:
+		out.refuse(block.id, "BML is read by the desktop, not by runtimes; send what it stands for", null, block.at)
 	return out
 
 
-# Adds what one ask means to `out`; returns why there is nothing it could mean, "" where there is.
-static func _mean(graph, ask, at, out):
-	match ask["do"]:
-		"gesture":
-			var more = {duration = ask.duration, tags = ask.tags, limb = ask.limb, resume = ask.resume, stroke = ask.stroke}
-			more.hold = ask.hold
-			more.prepare = ask.prepare
-			var start = at if ask.stroke == null else Util.most(0.0, ask.stroke - _longest_lead(graph, ask.layer, ask.tags))
-			_want(out, ask, ask.layer, "gesture", start, more)
-		"fidget":
-			_want(out, ask, ask.layer, "fidget", at, {duration = ask.duration, tags = ask.tags, limb = ask.limb, resume = ask.resume})
-		"action":
-			var action = graph.find_action(ask.action, ask.layer)
-			if action == null:
-				return "there is no action '%s'" % ask.action
-			var start = at if ask.stroke == null else Util.most(0.0, ask.stroke - _lead(action))
-			var more = {action = action.id, stroke = ask.stroke, hold = ask.hold, prepare = ask.prepare}
-			_want(out, ask, action.layer, action.kind, start, more)
-		"stance":
-			var found = graph.find_stance(ask.stance, ask.layer)
-			if found == null:
-				return "there is no stance '%s'" % ask.stance
-			_want(out, ask, found[0], "transition", at, {stance = found[1]})
-			out.items.append({list = "stays", id = ask.id, start = at, layer = found[0], on = ask.stay, end = INF})
-		"change":
-			_want(out, ask, ask.layer, "transition", at, {})
-		"nod", "shake":
-			return _head(graph, ask, at, out)
-		"look":
-			var until = FOREVER if ask.duration == null else at + ask.duration
-			out.items.append({
-				list = "looks", id = ask.id, start = at, end = until, to = ask.to, amount = ask.amount, strict = ask.strict,
-				priority = ask.priority
-			})
-		"blink":
-			out.items.append({list = "blinks", id = ask.id, start = at})
-		"mode":
-			out.items.append({list = "modes", id = ask.id, start = at, mode = ask.mode})
-		"place":
-			out.items.append({list = "places", id = ask.id, start = at, name = ask.name, point = ask.point})
-		"withdraw":
-			out.withdrawn[ask.what] = true
-		"say":
-			return _say(graph, ask, at, out)
-		"bml":
-			return "BML is read by the desktop, not by runtimes; send what it stands for"
-	return ""
-
-
-static func _want(out, ask, layer, kind, start, more):
-	more.priority = ask.priority
-	more.late = ask.late
-	out.requests.append(Request.make(ask.id, layer, kind, start, more))
-
-
-static func _say(graph, ask, at, out):
-	var line = null
-	if ask.line != null:
-		line = graph.lines.get(ask.line)
-		if line == null:
-			return "there is no line '%s'" % ask.line
-	var text = ask.text
-	if text == "" and line != null:
-		text = line.get("text", "")
+# Returns [an ask with every field that any has, what is wrong with it, else ""].
+static func _plain(graph, ask):
+	var out = Meaning.PlainAsk.new(ask["do"])
+	for name in ask:
+		if name != "mood":
+			out.set(name, ask[name])
+	var felt = _felt(ask.get("mood"))
+	out.valence = felt[0]
+	out.arousal = felt[1]
+	if ask["do"] != "say":
+		return [out, ""]
 	var told = ToldTiming.told_timing(graph.alphabet, ask)
 	if told[1] != "":
-		return told[1]
-	var timing = told[0]
-	if text == "" and line == null and timing != null:
-		text = LineTiming.told_text(timing)
-	if line == null and text == "" and timing == null:
-		return "say what: a line's id, text, or words with their times"
-	var length
-	if timing == null:
-		length = spoken_seconds(graph, ask.line, text, ask.duration)
-	else:
-		length = LineTiming.timed_seconds(timing, ask.duration)
-	out.items.append({
-		list = "speeches", id = ask.id, start = at, end = at + length, line = ask.line, text = text, priority = ask.priority, length = null,
-		timing = timing
-	})
-	if line == null or not ask.gestures:
-		return ""
-	var number = 0
-	for data in line.get("asks", []):
-		number += 1
+		return [null, told[1]]
+	out.timing = told[0]
+	if ask.line != null and graph.lines.has(ask.line):
+		var said = _said(graph, ask.line, ask.gestures)
+		if said[1] != "":
+			return [null, said[1]]
+		out.said = said[0]
+	return [out, ""]
+
+
+# Returns [a line as it is said, what is wrong with what it asks for, else ""].
+static func _said(graph, ident, gestures):
+	var line = graph.lines[ident]
+	var asks = []
+	for data in line.get("asks", []) if gestures else []:
 		var found = Asks.read(data)
-		var inner = found[0]
-		if inner == null:
-			return "line '%s': %s" % [ask.line, found[1]]
-		if inner["do"] == "say":
-			return "line '%s' would say another line; its asks may not" % ask.line
-		inner.at = at + (0.0 if inner.at == null else inner.at)
-		inner.id = "%s.%d" % [ask.id, number]
-		inner.priority = Util.most(inner.priority, ask.priority)
-		if inner.get("stroke") != null:
-			inner.stroke += at
-		var why = _mean(graph, inner, inner.at, out)
-		if why != "":
-			return why
-	return ""
+		if found[0] == null:
+			return [null, "line '%s': %s" % [ident, found[1]]]
+		asks.append(Meaning.PlainAsk.new("say") if found[0]["do"] == "say" else _plain(graph, found[0])[0])
+	var seconds = graph.voices[ident].duration if graph.voices.has(ident) else line.get("duration")
+	var mood = Asks.read({"do": "mood", "mood": line.get("mood"), "intensity": line.get("intensity")})
+	if mood[0] == null:
+		return [null, "line '%s': %s" % [ident, mood[1]]]
+	var felt = _felt(mood[0].mood)
+	return [Meaning.SaidLine.new(line.get("text", ""), seconds, asks, felt[0], felt[1], mood[0].intensity), ""]
 
 
-# Returns how long something takes to say: as asked, as its sound, as the line says, or as its text is long.
-static func spoken_seconds(graph, line, text, duration):
-	if duration != null:
-		return Util.most(duration, 0.0)
-	if line != null and graph.voices.has(line):
-		return graph.voices[line].duration
-	if line != null and graph.lines[line].get("duration") != null:
-		return graph.lines[line].duration
-	return Graphemes.read_aloud(graph.alphabet, text)
-
-
-# Nods are gestures tagged so; where none is, the likeliest of those called so, whatever stance it needs.
-static func _head(graph, ask, at, out):
-	var word = ask["do"]
-	var called = []
-	for action in graph.layers.head.actions.values():
-		if action.kind != "gesture" or not Util.has_all(action.tags, ask.tags):
-			continue
-		if action.tags.has(word):
-			_want(out, ask, "head", "gesture", at, {tags = [word] + ask.tags})
-			return ""
-		if action.name.to_lower().find(word) >= 0:
-			called.append(action.id)
-	if called.size() == 0:
-		return "the head layer has no gesture tagged or called '%s' with these tags" % word
-	_want(out, ask, "head", "gesture", at, {among = called})
-	return ""
-
-
-# Returns how long before its stroke any gesture with these tags begins.
-static func _longest_lead(graph, layer, tags):
-	var out = 0.0
-	var first = true
-	for action in graph.layers[layer].actions.values():
-		if action.kind == "gesture" and Util.has_all(action.tags, tags):
-			out = _lead(action) if first else Util.most(out, _lead(action))
-			first = false
-	return out
-
-
-# Returns the seconds from an action's start to its stroke; its middle where the export says nothing.
-static func _lead(action):
-	return action.phases.stroke - action.start
+# Returns [valence, arousal] of a mood that is asked for, nulls where it tells nothing.
+static func _felt(mood):
+	if mood == null:
+		return [null, null]
+	return Mood.MOODS[mood] if typeof(mood) == TYPE_STRING else mood

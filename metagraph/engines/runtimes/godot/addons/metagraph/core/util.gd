@@ -1,7 +1,6 @@
 # Small things that lists and records need everywhere. Records are dictionaries and are never changed once made: `but` copies.
 
 const LAYERS = ["body", "arms", "head"]
-const MODES = ["idle", "listening", "talking"]
 
 
 # Returns the smaller of two numbers. Godot 3's own min and max round to 32 bits.
@@ -46,19 +45,6 @@ static func after(items, field, value):
 			high = middle
 		else:
 			low = middle + 1
-	return low
-
-
-# Returns the place of the first item whose field is at least `value`; items ascend by it.
-static func before(items, field, value):
-	var low = 0
-	var high = items.size()
-	while low < high:
-		var middle = (low + high) >> 1
-		if items[middle][field] < value:
-			low = middle + 1
-		else:
-			high = middle
 	return low
 
 
@@ -136,29 +122,6 @@ static func is_finite_number(value):
 	return is_number(value) and not is_nan(value) and not is_inf(value)
 
 
-# Returns whether two values are the same; lists and records by what they hold.
-static func same(a, b):
-	if is_number(a) and is_number(b):
-		return a == b
-	if typeof(a) != typeof(b):
-		return false
-	if typeof(a) == TYPE_ARRAY:
-		if a.size() != b.size():
-			return false
-		for n in range(a.size()):
-			if not same(a[n], b[n]):
-				return false
-		return true
-	if typeof(a) == TYPE_DICTIONARY:
-		if a.size() != b.size():
-			return false
-		for name in a:
-			if not b.has(name) or not same(a[name], b[name]):
-				return false
-		return true
-	return a == b
-
-
 # Returns whether a list holds all of others.
 static func has_all(items, others):
 	for other in others:
@@ -203,12 +166,26 @@ static func quaternion(numbers, shim):
 
 # Returns a list of its own with the same items.
 static func list(items):
-	return Array(items)
+	return items.duplicate() if typeof(items) == TYPE_ARRAY else Array(items)
 
 
 # Returns the words of a text.
 static func words(text):
 	return Array(text.split(" ", false))
+
+
+# Returns [a text before the last of another, that, what is behind it]; nothing of the first two where it has none.
+static func parted_last(text, by):
+	var place = text.rfind(by)
+	return ["", "", text] if place < 0 else [text.substr(0, place), by, text.substr(place + by.length())]
+
+
+# Returns whether a text is digits alone.
+static func is_digits(text):
+	for n in range(text.length()):
+		if "0123456789".find(text[n]) < 0:
+			return false
+	return text.length() > 0
 
 
 # Returns ln(1 + x), near 0 too.

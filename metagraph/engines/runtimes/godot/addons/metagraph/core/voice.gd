@@ -31,3 +31,13 @@ static func _sounds(alphabet, text, timing, duration):
 static func _voice(found, duration):
 	var rows = Mouth.mouth_track(found.pieces, duration if found.pieces.size() > 0 else 0.0)
 	return {duration = duration, accents = Mouth.accents_of(found.peaks, found.strengths), weights = rows}
+
+
+# Returns the times of the stressed syllables of something said.
+static func stressed(graph, speech):
+	return of(graph, speech).accents
+
+
+# Returns whether lines sound the same.
+static func same_voices(one, other):
+	return one == other

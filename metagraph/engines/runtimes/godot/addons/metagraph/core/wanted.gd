@@ -1,56 +1,126 @@
 # What was asked of the life layers, as segments in time: which mode the character is in, and what it looks at.
 #
-# A target is {start, to: a point or a name, since: when the look at it began, amount, strict, asked: not of its own accord}.
+# Translated from metagraph/playback/life/wanted.py; change that, and translate anew.
 
+const Life = preload("life.gd")
+const Words = preload("words.gd")
+const Spots = preload("spots.gd")
+const Mood = preload("mood.gd")
 const Util = preload("util.gd")
-const Track = preload("track.gd")
 const PARTNER = "user"  # whom the character talks with, and looks at when nothing else is asked for
 const AHEAD = "ahead"  # nothing in particular: eyes and head as the layers have them
+# What changes what is looked at; of one time in this order.
+const OVER = 0
+const LOOK = 1
+const PLACE = 2
+const BEGIN = 3
 
 
-# Returns whether two targets are the same but for their times.
-static func like(a, b):
-	return Util.same(a.to, b.to) and a.amount == b.amount and a.strict == b.strict and a.asked == b.asked
+# What is looked at from `start` on: a point, or a name whose place the project knows. since: when the look at it began; its place
+# may have changed meanwhile. asked: not of its own accord.
+class GazeTarget:
+	var start
+	var to
+	var since
+	var amount
+	var strict
+	var asked
+
+	func _init(start_, to_, since_ = 0.0, amount_ = 1.0, strict_ = false, asked_ = false):
+		self.start = start_
+		self.to = to_
+		self.since = since_
+		self.amount = amount_
+		self.strict = strict_
+		self.asked = asked_
+
+	# Whether it is the same but for its times.
+	func like(other):
+		if self.amount != other.amount or self.strict != other.strict or self.asked != other.asked:
+			return false
+		return Spots.same_spot(self.to, other.to)
 
 
-# Returns the mode asked for; where none is, talking while something is said and idle otherwise.
+# Return the mode asked for; where none is, talking while something is said and idle otherwise.
 static func mode_at(track, seconds):
-	var mode = Track.told_mode(track, seconds)
-	return "idle" if mode == null else mode
+	var told = track.told_mode(seconds)
+	return "idle" if told == null else told
 
 
-# Returns [start, place among MODES] of each mode from `start` to before `end`; the first begins at `start`.
+# Return (start, place among MODES) of each mode from `start` to before `end`; the first begins at `start`.
 static func modes_between(track, start, end):
 	var edges = [start]
-	for item in track.modes + track.speeches:
-		edges.append(item.start)
-	for speech in track.speeches:
-		edges.append(speech.end)
-	edges.sort()
+	var found = []
+	for m in track.modes:
+		found.append(m.start)
+	Util.extend(edges, found)
+	var found2 = []
+	for s in track.speeches:
+		found2.append(s.start)
+	Util.extend(edges, found2)
+	var found3 = []
+	for s in track.speeches:
+		found3.append(s.end)
+	Util.extend(edges, found3)
 	var out = []
-	for edge in edges:
-		if edge < start or edge >= end:
-			continue
-		var mode = Util.MODES.find(mode_at(track, edge))
-		if out.size() == 0 or mode != out[-1][1]:
+	var last = -1
+	var found4 = []
+	for e in edges:
+		if start <= e and e < end:
+			found4.append(e)
+	for edge in Util.in_order(found4):
+		var mode = Words.MODES.find(mode_at(track, edge))
+		if mode != last:
 			out.append([edge, mode])
+		last = mode
 	return out
 
 
-# Returns what is looked at from `start` to before `end`; the first begins at `start`. The latest look holds until it ends or
-# another of its importance or more begins; a lesser one waits beneath.
+# Return what a character is in the mood for: what its life has set, and what is told over time.
+static func moods_of(life, track):
+	return Mood.Moods.new(Mood.Mood.new(life.valence, life.arousal, life.intensity), track.moods)
+
+
+# Return (start, mood) of each mood from `start` to before `end`; the first begins at `start`.
+static func moods_between(moods, start, end):
+	var out = []
+	for edge in Mood.mood_edges(moods, start, end):
+		var mood = Mood.mood_at(moods, edge)
+		if out.size() == 0 or not mood.like(out[-1][1]):
+			out.append([edge, mood])
+	return out
+
+
+# Return what a mode makes of the amounts, in a mood.
+static func ways_in(ways, mood):
+	if mood.neutral:
+		return ways
+	var of = Mood.life_of(mood)
+	return Life.scaled(ways, of.breathing, of.breath_rate, of.aversion_rate, of.saccade_rate, of.blinks)
+
+
+# Return what is looked at from `start` to before `end`; the first begins at `start`.
+#
+# The latest look holds until it ends or another of its importance or more begins; a lesser one waits beneath.
 static func targets_between(track, start, end):
 	var changes = []
-	for n in range(track.looks.size()):
-		changes.append([track.looks[n].start, 1, n])
-	for n in range(track.looks.size()):
-		changes.append([track.looks[n].end, 0, n])
-	for n in range(track.places.size()):
-		changes.append([track.places[n].start, 2, n])
-	changes.append([start, 3, 0])
+	for n2 in range(track.looks.size()):
+		var x = track.looks[n2]
+		changes.append([x.start, LOOK, n2])
+	var found = []
+	for n3 in range(track.looks.size()):
+		var x = track.looks[n3]
+		found.append([x.end, OVER, n3])
+	Util.extend(changes, found)
+	var found2 = []
+	for n4 in range(track.places.size()):
+		var p = track.places[n4]
+		found2.append([p.start, PLACE, n4])
+	Util.extend(changes, found2)
+	changes.append([start, BEGIN, 0])
 	var keys = []
-	for change in changes:
-		keys.append([change[0], change[1]])
+	for c in changes:
+		keys.append([c[0], c[1]])
 	changes = Util.ordered(changes, keys)
 	var looks = []  # places of looks, the most important first; those beneath are older or lesser
 	var places = {}
@@ -58,21 +128,28 @@ static func targets_between(track, start, end):
 	var since = 0.0
 	var out = []
 	for n in range(changes.size()):
-		var at = changes[n][0]
-		var which = changes[n][2]
+		var both = changes[n]
+		var at = both[0]
+		var kind = both[1]
+		var which = both[2]
 		if at >= end:
 			break
-		if changes[n][1] == 1:
-			var above = []
-			for other in looks:
-				if track.looks[other].priority > track.looks[which].priority:
-					above.append(other)
-			if track.looks[which].end > track.looks[which].start:
-				above.append(which)
-			looks = above
-		elif changes[n][1] == 0:
-			looks.erase(which)
-		elif changes[n][1] == 2:
+		if kind == LOOK:
+			var look = track.looks[which]
+			var found3 = []
+			for x in looks:
+				if track.looks[x].priority > look.priority:
+					found3.append(x)
+			looks = found3
+			if look.end > look.start:
+				looks.append(which)
+		elif kind == OVER:
+			var found4 = []
+			for x in looks:
+				if x != which:
+					found4.append(x)
+			looks = found4
+		elif kind == PLACE:
 			places[track.places[which].name] = track.places[which].point
 		var first = looks[0] if looks.size() > 0 else -1
 		if chosen != first:
@@ -80,16 +157,13 @@ static func targets_between(track, start, end):
 			since = at
 		if at < start or (n + 1 < changes.size() and changes[n + 1][0] == at):
 			continue
-		var target = _target(at, since, track.looks[chosen] if chosen >= 0 else null, places)
-		if out.size() == 0 or not like(target, out[-1]):
+		var target = _target(at, since, null if chosen < 0 else track.looks[chosen], places)
+		if out.size() == 0 or not target.like(out[-1]):
 			out.append(target)
 	return out
 
 
 static func _target(at, since, look, places):
 	if look == null:
-		return {start = at, to = places.get(PARTNER, PARTNER), since = since, amount = 1.0, strict = false, asked = false}
-	var to = look.to
-	if typeof(to) == TYPE_STRING and places.has(to):
-		to = places[to]
-	return {start = at, to = to, since = since, amount = look.amount, strict = look.strict, asked = true}
+		return GazeTarget.new(at, Spots.placed(places, Spots.named(PARTNER)), since)
+	return GazeTarget.new(at, Spots.placed(places, look.to), since, look.amount, look.strict, true)

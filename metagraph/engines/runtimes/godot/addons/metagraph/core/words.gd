@@ -1,4 +1,6 @@
-# The words modes and mouth shapes are told apart by.
+# The words layers, modes and mouth shapes are told apart by.
 
+const Util = preload("util.gd")
+const LAYERS = Util.LAYERS
 const MODES = ["idle", "listening", "talking"]
 const VISEMES = ["sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "I", "O", "U"]

@@ -1,0 +1,68 @@
+"""`metagraph contacts`: find where hands touch the body in a project's actions, and write it down."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.command_output import opened, say
+
+if TYPE_CHECKING:
+    from metagraph.graph.model import Layer, Project
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Add the options."""
+    parser.add_argument("-o", "--out", type=Path, help="the project to write (default: the same)")
+    parser.add_argument("--list", action="store_true", help="write nothing: list what would be found")
+    parser.add_argument("--clear", action="store_true", help="take the contacts of all actions away")
+    parser.add_argument(
+        "--action", action="append", default=[], metavar="NAME", help="only of actions of this name or id"
+    )
+    parser.add_argument("--contacts", choices=("on", "off"), help="whether contacts hold while it plays")
+    parser.add_argument(
+        "--guard", choices=("on", "off"), help="whether hands are kept out of the body while it plays"
+    )
+
+
+def run(options: Namespace) -> int:
+    """Find contacts, measure the body, and write the project."""
+    import msgspec
+
+    from metagraph.formats.gltf import read_character
+    from metagraph.formats.store import save_project
+    from metagraph.graph import edits
+    from metagraph.suggest.find_contacts import measured, with_contacts
+
+    project = opened(options.project)
+    chosen = [a for a in project.actions() if not options.action or {a.id, a.name} & set(options.action)]
+    if options.action and not chosen:
+        raise ValueError(f"there is no action called {' or '.join(map(repr, options.action))}")
+    idents = [a.id for a in chosen]
+    if options.clear:
+        project = edits.update_actions(project, idents, contacts=())
+    else:
+        mesh = options.project.parent / project.character if project.character is not None else None
+        project = measured(project, read_character(mesh) if mesh is not None and mesh.exists() else None)
+        project = with_contacts(project, [a.id for a in chosen if _moves_arms(project, a.layer)])
+    changes = {n: getattr(options, n) == "on" for n in ("contacts", "guard") if getattr(options, n)}
+    project = replace(project, touch=msgspec.structs.replace(project.touch, **changes))
+    found = [(a, s) for i in idents if (a := project.action(i)) is not None for s in a.contacts]
+    rows = [
+        {"action": a.id, "name": a.name, "hand": s.hand, "place": s.place, "to": s.to}
+        | {"start": s.start, "end": s.end}
+        for a, s in found
+    ]
+    lines = [f"{a.name}: {s.hand} {s.place} on {s.to} from {s.start:.2f} to {s.end:.2f} s" for a, s in found]
+    if not options.list:
+        out = options.out or options.project
+        save_project(project, out, options.project)
+    count = len({a.id for a, _ in found})
+    say(options, "\n".join([*lines, f"{len(found)} contacts in {count} actions"]), {"contacts": rows})
+    return 0
+
+
+def _moves_arms(project: Project, layer: Layer) -> bool:
+    return project.graphs[layer].weight("arms") > 0

@@ -1,0 +1,64 @@
+"""`metagraph moods`: which moods a project's character and lines are in; set them, or hear them in voices."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+
+from app.cli.command_output import opened, say
+from metagraph.graph.words import FEELINGS
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Add the options."""
+    parser.add_argument(
+        "--mood",
+        metavar="MOOD",
+        help=f"put the character in a mood: {', '.join(FEELINGS)}, or 'valence,arousal'",
+    )
+    parser.add_argument("--intensity", type=float, help="how large gestures are played, 0 to 2; 1 as made")
+    parser.add_argument(
+        "--from-voices",
+        action="store_true",
+        help="give lines that say nothing of their mood the arousal that is heard in their sound",
+    )
+
+
+def run(options: Namespace) -> int:
+    """Tell moods; set those that are asked for, and keep them in the project."""
+    from metagraph.formats.store import save_project
+    from metagraph.graph.performance_edits import set_life
+    from metagraph.playback.understand import felt
+
+    before = project = opened(options.project)
+    told = felt(_mood(options.mood), options.intensity)  # type: ignore[arg-type]
+    if told:
+        project = set_life(project, **told)
+    if options.from_voices:
+        from metagraph.speech.voice_mood import with_voice_moods
+
+        project = with_voice_moods(project, options.project.resolve().parent)
+    if project != before:
+        save_project(project, options.project, options.project)
+    life = project.life
+    words = [
+        f"the character: valence {life.valence:g}, arousal {life.arousal:g}, intensity {life.intensity:g}"
+    ]
+    lines = {i: x.mood for i, x in project.lines.items() if x.mood is not None}
+    for ident, mood in lines.items():
+        words.append(f"line {ident}: {mood if isinstance(mood, str) else ', '.join(f'{x:g}' for x in mood)}")
+    data = {"valence": life.valence, "arousal": life.arousal, "intensity": life.intensity, "lines": lines}
+    say(options, "\n".join(words), data)
+    return 0
+
+
+def _mood(word: str | None) -> str | tuple[float, ...] | None:
+    """Return the mood a word means. Raises ValueError where it means none."""
+    if word is None or word in FEELINGS:
+        return word
+    try:
+        point = tuple(float(x) for x in word.split(","))
+    except ValueError:
+        point = ()
+    if len(point) != 2 or not all(-1 <= x <= 1 for x in point):
+        raise ValueError(f"there is no mood '{word}'; there are {', '.join(FEELINGS)}, and 'valence,arousal'")
+    return point

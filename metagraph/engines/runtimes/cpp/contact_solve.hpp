@@ -1,0 +1,760 @@
+// Keeping hands in contact with the body, and out of it: two-bone arms brought to where they should be.
+//
+// The body's parts are capsules, each fixed to a joint. Rotations are quaternions xyzw, lengths metres; places are
+// those in a rig's list of joints. Worked out one pose at a time, in plain numbers, the same in all languages.
+//
+// Translated from metagraph/motion/contact_solve.py; change that, and translate anew.
+#pragma once
+
+#include "language.hpp"
+
+namespace metagraph {
+
+struct ContactArm;
+struct BodyCapsule;
+struct ContactRig;
+struct HandGoal;
+struct ContactPose;
+
+namespace contact_solve {
+
+inline constexpr double REACHED = 0.995; // of an arm's length: it does not snap straight
+inline constexpr double FOLDED = 0.906; // cosine of the least angle inside an elbow, 25 degrees
+// cosine of half of how far a contact may turn a hand from where it was, 70 degrees
+inline constexpr double WRIST = 0.819;
+inline constexpr double SOFT = 0.006; // metres of depth over which the push out of the body sets in
+inline constexpr double DEEP = 0.35; // of the radii: nearer than this to a capsule's line it is not pushed all the way
+inline constexpr double ELBOW = 0.1; // how little a forearm is pushed near its elbow, which a wrist cannot move
+inline constexpr int PASSES = 3; // of the guard
+inline constexpr int OBSTACLE = 0; // what a capsule is to the guard: others are pushed out of it
+inline constexpr int FOREARM = 1; // pushed out, from the elbow to the wrist
+inline constexpr int HAND = 2; // pushed out
+inline void spread(const Ref<ContactRig>& rig, const Ref<ContactPose>& pose);
+inline void _join(const Ref<ContactRig>& rig, const Ref<ContactPose>& pose, int place);
+inline bool solve_contacts(const Ref<ContactRig>& rig, const Ref<ContactPose>& pose, const List<Ref<HandGoal>>& goals);
+inline bool _on_arm(const Ref<ContactRig>& rig, int place, int arm);
+inline void _hold(
+    const Ref<ContactRig>& rig,
+    const Ref<ContactPose>& pose,
+    const List<Ref<HandGoal>>& goals,
+    int side,
+    const std::tuple<double, double, double>& wrist,
+    const std::tuple<double, double, double, double>& hand
+);
+inline std::tuple<double, double, double, double> _within_wrist(
+    const std::tuple<double, double, double, double>& hand,
+    const std::tuple<double, double, double, double>& turn
+);
+inline void _bring(
+    const Ref<ContactRig>& rig,
+    const Ref<ContactPose>& pose,
+    int side,
+    const std::tuple<double, double, double>& goal,
+    const std::tuple<double, double, double, double>& hand
+);
+inline std::tuple<double, double, double, double> _above(
+    const Ref<ContactRig>& rig,
+    const Ref<ContactPose>& pose,
+    int place
+);
+inline bool _guarded(const Ref<ContactRig>& rig, const Ref<ContactPose>& pose, const List<double>& held, double across);
+inline List<std::tuple<double, double, double>> capsule_ends(const Ref<ContactRig>& rig, const Ref<ContactPose>& pose);
+inline List<std::tuple<double, double, double, double>> _balls(
+    const Ref<ContactRig>& rig,
+    const List<std::tuple<double, double, double>>& ends
+);
+inline std::tuple<double, double, double> _shift(
+    const Ref<ContactRig>& rig,
+    const List<std::tuple<double, double, double>>& ends,
+    const List<std::tuple<double, double, double, double>>& balls,
+    int side,
+    const List<double>& held,
+    double across
+);
+inline std::tuple<double, double, double, double, double> apart(
+    const List<std::tuple<double, double, double>>& ends,
+    int i,
+    int k
+);
+inline std::tuple<double, double, double, double> times(
+    const std::tuple<double, double, double, double>& a,
+    const std::tuple<double, double, double, double>& b
+);
+inline std::tuple<double, double, double> rotated(
+    const std::tuple<double, double, double, double>& q,
+    const std::tuple<double, double, double>& v
+);
+inline std::tuple<double, double, double, double> between(
+    const std::tuple<double, double, double>& a,
+    const std::tuple<double, double, double>& b
+);
+inline double length(const std::tuple<double, double, double>& v);
+inline std::tuple<double, double, double> _unit(const std::tuple<double, double, double>& v);
+inline std::tuple<double, double, double, double> _unit_turn(const std::tuple<double, double, double, double>& q);
+inline std::tuple<double, double, double, double> _back(const std::tuple<double, double, double, double>& q);
+inline std::tuple<double, double, double> _plus(
+    const std::tuple<double, double, double>& a,
+    const std::tuple<double, double, double>& b
+);
+inline std::tuple<double, double, double> _minus(
+    const std::tuple<double, double, double>& a,
+    const std::tuple<double, double, double>& b
+);
+inline std::tuple<double, double, double> _scaled(const std::tuple<double, double, double>& a, double k);
+inline double _dot(const std::tuple<double, double, double>& a, const std::tuple<double, double, double>& b);
+
+}  // namespace contact_solve
+
+/// Places of an arm's joints, and of all joints from its upper arm on, parents first.
+struct ContactArm {
+    int upper;
+    int lower;
+    int hand;
+    List<int> below;
+
+    ContactArm(int upper_, int lower_, int hand_, List<int> below_)
+        : upper(upper_), lower(lower_), hand(hand_), below(std::move(below_)) {}
+};
+
+/// A part of the body. joint, to: the places its line's ends are fixed to; a, b: where, in those joints' own spaces.
+/// arm: 0 left, 1 right, -1 of neither. kind: whether it is pushed out of others: OBSTACLE is not; FOREARM runs from
+/// the elbow to the wrist; HAND.
+struct BodyCapsule {
+    int joint;
+    std::tuple<double, double, double> a;
+    int to;
+    std::tuple<double, double, double> b;
+    double radius;
+    int arm;
+    int kind;
+
+    BodyCapsule(
+        int joint_,
+        std::tuple<double, double, double> a_,
+        int to_,
+        std::tuple<double, double, double> b_,
+        double radius_,
+        int arm_ = -1,
+        int kind_ = 0
+    )
+        : joint(joint_), a(std::move(a_)), to(to_), b(std::move(b_)), radius(radius_), arm(arm_), kind(kind_) {}
+};
+
+/// What of a skeleton contacts need. joints: theirs, parents first. parents: for each the place of the nearest one
+/// above, which has to be its parent; -1 for a root. places: names of joints to their places. arms: left, right; hands:
+/// the names of their hands. contacts, guard: what is on.
+struct ContactRig {
+    List<int> joints;
+    List<int> parents;
+    Map<std::string, int> places;
+    List<Ref<ContactArm>> arms;
+    List<std::string> hands;
+    List<Ref<BodyCapsule>> capsules;
+    bool contacts;
+    bool guard;
+
+    ContactRig(
+        List<int> joints_,
+        List<int> parents_,
+        Map<std::string, int> places_,
+        List<Ref<ContactArm>> arms_,
+        List<std::string> hands_,
+        List<Ref<BodyCapsule>> capsules_,
+        bool contacts_ = true,
+        bool guard_ = true
+    )
+        : joints(std::move(joints_)),
+            parents(std::move(parents_)),
+            places(std::move(places_)),
+            arms(std::move(arms_)),
+            hands(std::move(hands_)),
+            capsules(std::move(capsules_)),
+            contacts(contacts_),
+            guard(guard_) {}
+};
+
+/// Where a wrist should be. arm: 0 left, 1 right. to: a place; at, turn: in its space. weight: 0..1.
+struct HandGoal {
+    int arm;
+    int to;
+    std::tuple<double, double, double> at;
+    std::tuple<double, double, double, double> turn;
+    double weight;
+
+    HandGoal(
+        int arm_,
+        int to_,
+        std::tuple<double, double, double> at_,
+        std::tuple<double, double, double, double> turn_,
+        double weight_
+    )
+        : arm(arm_), to(to_), at(std::move(at_)), turn(std::move(turn_)), weight(weight_) {}
+};
+
+/// A pose of a rig's joints: `local` rotations and `moved` translations in their parents' space, `turned` and `at` in
+/// the character's, which `spread` works out.
+struct ContactPose {
+    List<std::tuple<double, double, double, double>> local;
+    List<std::tuple<double, double, double>> moved;
+    List<std::tuple<double, double, double, double>> turned;
+    List<std::tuple<double, double, double>> at;
+
+    explicit ContactPose(
+        List<std::tuple<double, double, double, double>> local_ = List<std::tuple<double, double, double, double>>{},
+        List<std::tuple<double, double, double>> moved_ = List<std::tuple<double, double, double>>{},
+        List<std::tuple<double, double, double, double>> turned_ = List<std::tuple<double, double, double, double>>{},
+        List<std::tuple<double, double, double>> at_ = List<std::tuple<double, double, double>>{}
+    )
+        : local(std::move(local_)), moved(std::move(moved_)), turned(std::move(turned_)), at(std::move(at_)) {}
+};
+
+namespace contact_solve {
+
+/// Work out where all joints are.
+inline void spread(const Ref<ContactRig>& rig, const Ref<ContactPose>& pose) {
+    pose->turned = List<std::tuple<double, double, double, double>>{};
+    pose->at = List<std::tuple<double, double, double>>{};
+    for (int place = 0; place < lang::len(pose->local); place++) {
+        const auto& turn = lang::at(pose->local, place);
+        pose->turned.push_back(turn);
+        pose->at.push_back(lang::at(pose->moved, place));
+    }
+    for (int place = 0; place < lang::len(rig->parents); place++) {
+        contact_solve::_join(rig, pose, place);
+    }
+}
+
+inline void _join(const Ref<ContactRig>& rig, const Ref<ContactPose>& pose, int place) {
+    int above = lang::at(rig->parents, place);
+    if (above < 0) {
+        lang::at(pose->turned, place) = lang::at(pose->local, place);
+        lang::at(pose->at, place) = lang::at(pose->moved, place);
+    } else {
+        lang::at(pose->turned, place) = contact_solve::times(
+            lang::at(pose->turned, above),
+            lang::at(pose->local, place)
+        );
+        lang::at(pose->at, place) = contact_solve::_plus(
+            lang::at(pose->at, above),
+            contact_solve::rotated(lang::at(pose->turned, above), lang::at(pose->moved, place))
+        );
+    }
+}
+
+/// Bring hands to their goals, then hands and forearms out of the body; return whether anything moved. The joints'
+/// places have to be known (`spread`).
+inline bool solve_contacts(const Ref<ContactRig>& rig, const Ref<ContactPose>& pose, const List<Ref<HandGoal>>& goals) {
+    bool moved = false;
+    List<double> held = List<double>{0.0, 0.0};
+    double across = 0.0; // how much one arm is held on the other
+    for (const auto& goal : goals) {
+        lang::at(held, goal->arm) = std::min(1.0, lang::at(held, goal->arm) + goal->weight);
+        if (contact_solve::_on_arm(rig, goal->to, 1 - goal->arm)) {
+            across = std::max(across, goal->weight);
+        }
+    }
+    int rounds = lang::len(goals) == 0 ? 0 : across > 0.0 ? 2 : 1;
+    List<std::tuple<double, double, double>> wrists;
+    for (const auto& arm : rig->arms) {
+        wrists.push_back(lang::at(pose->at, arm->hand));
+    }
+    List<std::tuple<double, double, double, double>> hands;
+    for (const auto& arm : rig->arms) {
+        hands.push_back(lang::at(pose->turned, arm->hand));
+    }
+    while (rounds > 0) {
+        rounds -= 1;
+        for (int side = 0; side < lang::len(rig->arms); side++) {
+            if (lang::at(held, side) > 0.0) {
+                contact_solve::_hold(rig, pose, goals, side, lang::at(wrists, side), lang::at(hands, side));
+                moved = true;
+            }
+        }
+    }
+    if (rig->guard && contact_solve::_guarded(rig, pose, held, across)) {
+        moved = true;
+        for (int side = 0; side < lang::len(rig->arms); side++) {
+            if (across > 0.0 && lang::at(held, side) > 0.0) {
+                contact_solve::_hold(rig, pose, goals, side, lang::at(wrists, side), lang::at(hands, side));
+            }
+        }
+    }
+    return moved;
+}
+
+inline bool _on_arm(const Ref<ContactRig>& rig, int place, int arm) {
+    bool is_any = false;
+    for (const auto& below : lang::at(rig->arms, arm)->below) {
+        if (place == below) {
+            is_any = true;
+            break;
+        }
+    }
+    return is_any;
+}
+
+/// Bring a hand to the weighted mean of its goals. wrist, hand: where and how it was without any.
+inline void _hold(
+    const Ref<ContactRig>& rig,
+    const Ref<ContactPose>& pose,
+    const List<Ref<HandGoal>>& goals,
+    int side,
+    const std::tuple<double, double, double>& wrist,
+    const std::tuple<double, double, double, double>& hand
+) {
+    double total = 0.0;
+    double x = 0.0;
+    double y = 0.0;
+    double z = 0.0;
+    double a = 0.0;
+    double b = 0.0;
+    double c = 0.0;
+    double d = 0.0;
+    auto [hx, hy, hz, hw] = hand;
+    double k{};
+    for (const auto& goal : goals) {
+        if (goal->arm == side && goal->weight > 0.0) {
+            k = goal->weight;
+            auto [px, py, pz] = contact_solve::_plus(
+                lang::at(pose->at, goal->to),
+                contact_solve::rotated(lang::at(pose->turned, goal->to), goal->at)
+            );
+            auto [qx, qy, qz, qw] = contact_solve::times(lang::at(pose->turned, goal->to), goal->turn);
+            x = x + k * px;
+            y = y + k * py;
+            z = z + k * pz;
+            total = total + k;
+            if (qx * hx + qy * hy + qz * hz + qw * hw < 0.0) {
+                k = -k;
+            }
+            a = a + k * qx;
+            b = b + k * qy;
+            c = c + k * qz;
+            d = d + k * qw;
+        }
+    }
+    double weight = std::min(1.0, total);
+    std::tuple<double, double, double> mean = std::tuple<double, double, double>{x / total, y / total, z / total};
+    std::tuple<double, double, double, double> turn = contact_solve::_within_wrist(
+        hand,
+        contact_solve::_unit_turn(std::tuple<double, double, double, double>{a, b, c, d})
+    );
+    auto [tx, ty, tz, tw] = turn;
+    double rest = 1.0 - weight;
+    k = tx * hx + ty * hy + tz * hz + tw * hw < 0.0 ? -weight : weight;
+    turn = contact_solve::_unit_turn(
+        std::tuple<double, double, double, double>{
+            hx * rest + tx * k,
+            hy * rest + ty * k,
+            hz * rest + tz * k,
+            hw * rest + tw * k
+        }
+    );
+    contact_solve::_bring(
+        rig,
+        pose,
+        side,
+        contact_solve::_plus(wrist, contact_solve::_scaled(contact_solve::_minus(mean, wrist), weight)),
+        turn
+    );
+}
+
+/// Return a hand's turn, as near to it as the wrist may be turned from how the hand was.
+inline std::tuple<double, double, double, double> _within_wrist(
+    const std::tuple<double, double, double, double>& hand,
+    const std::tuple<double, double, double, double>& turn
+) {
+    auto [x, y, z, w] = contact_solve::times(turn, contact_solve::_back(hand));
+    if (w < 0.0) {
+        x = -x;
+        y = -y;
+        z = -z;
+        w = -w;
+    }
+    if (w >= contact_solve::WRIST) {
+        return turn;
+    }
+    double k = std::sqrt(1.0 - contact_solve::WRIST * contact_solve::WRIST)
+        / std::max(std::sqrt(x * x + y * y + z * z), 1e-12);
+    return contact_solve::times(
+        std::tuple<double, double, double, double>{x * k, y * k, z * k, contact_solve::WRIST},
+        hand
+    );
+}
+
+/// Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it.
+inline void _bring(
+    const Ref<ContactRig>& rig,
+    const Ref<ContactPose>& pose,
+    int side,
+    const std::tuple<double, double, double>& goal,
+    const std::tuple<double, double, double, double>& hand
+) {
+    Ref<ContactArm> arm = lang::at(rig->arms, side);
+    std::tuple<double, double, double> root = lang::at(pose->at, arm->upper);
+    std::tuple<double, double, double> elbow = lang::at(pose->at, arm->lower);
+    std::tuple<double, double, double> wrist = lang::at(pose->at, arm->hand);
+    std::tuple<double, double, double> bone = contact_solve::_minus(elbow, root);
+    std::tuple<double, double, double> fore = contact_solve::_minus(wrist, elbow);
+    double above_elbow = contact_solve::length(bone);
+    double below_elbow = contact_solve::length(fore);
+    double now = contact_solve::length(contact_solve::_minus(wrist, root));
+    if (above_elbow < 1e-06 || below_elbow < 1e-06 || now < 1e-06) {
+        return;
+    }
+    std::tuple<double, double, double> way = contact_solve::_minus(goal, root);
+    double most = std::max(contact_solve::REACHED * (above_elbow + below_elbow), now);
+    double least = std::min(
+        std::sqrt(above_elbow * above_elbow + below_elbow * below_elbow
+            - 2.0 * contact_solve::FOLDED * above_elbow * below_elbow),
+        now
+    );
+    double far = std::min(std::max(contact_solve::length(way), least), most);
+    std::tuple<double, double, double> ahead = contact_solve::_unit(way);
+    std::tuple<double, double, double> before = contact_solve::_scaled(contact_solve::_minus(wrist, root), 1.0 / now);
+    std::tuple<double, double, double> aside = contact_solve::_minus(
+        bone,
+        contact_solve::_scaled(before, contact_solve::_dot(bone, before))
+    );
+    // A straight arm has no side: it bends to one that goes with its bone.
+    std::tuple<double, double, double> spare = contact_solve::rotated(
+        lang::at(pose->turned, arm->upper),
+        std::tuple<double, double, double>{0.31, 0.52, 0.8}
+    );
+    spare = contact_solve::_minus(spare, contact_solve::_scaled(before, contact_solve::_dot(spare, before)));
+    aside = contact_solve::_plus(
+        aside,
+        contact_solve::_scaled(spare, std::max(0.0, 0.01 * above_elbow - contact_solve::length(aside)))
+    );
+    aside = contact_solve::_unit(contact_solve::rotated(contact_solve::between(before, ahead), aside));
+    double along = (above_elbow * above_elbow + far * far - below_elbow * below_elbow) / (2.0 * far);
+    double high = std::sqrt(std::max(0.0, above_elbow * above_elbow - along * along));
+    std::tuple<double, double, double> knee = contact_solve::_plus(
+        contact_solve::_scaled(ahead, along),
+        contact_solve::_scaled(aside, high)
+    );
+    std::tuple<double, double, double, double> swing = contact_solve::between(
+        contact_solve::_unit(bone),
+        contact_solve::_unit(knee)
+    );
+    std::tuple<double, double, double, double> fold = contact_solve::between(
+        contact_solve::_unit(contact_solve::rotated(swing, fore)),
+        contact_solve::_unit(contact_solve::_minus(contact_solve::_scaled(ahead, far), knee))
+    );
+    std::tuple<double, double, double, double> both = contact_solve::times(fold, swing);
+    std::tuple<double, double, double, double> above = contact_solve::_above(rig, pose, arm->upper);
+    lang::at(pose->local, arm->upper) = contact_solve::times(
+        contact_solve::_back(above),
+        contact_solve::times(swing, lang::at(pose->turned, arm->upper))
+    );
+    above = contact_solve::times(swing, contact_solve::_above(rig, pose, arm->lower));
+    lang::at(pose->local, arm->lower) = contact_solve::times(
+        contact_solve::_back(above),
+        contact_solve::times(both, lang::at(pose->turned, arm->lower))
+    );
+    above = contact_solve::times(both, contact_solve::_above(rig, pose, arm->hand));
+    lang::at(pose->local, arm->hand) = contact_solve::times(contact_solve::_back(above), hand);
+    for (const auto& place : arm->below) {
+        contact_solve::_join(rig, pose, place);
+    }
+}
+
+inline std::tuple<double, double, double, double> _above(
+    const Ref<ContactRig>& rig,
+    const Ref<ContactPose>& pose,
+    int place
+) {
+    int above = lang::at(rig->parents, place);
+    return above < 0 ? std::tuple<double, double, double, double>{0.0, 0.0, 0.0, 1.0} : lang::at(pose->turned, above);
+}
+
+/// Push forearms and hands out of what they are inside of, by the least shift of the wrists; return whether any was.
+/// held: how much each hand is kept somewhere, and so is not pushed.
+inline bool _guarded(
+    const Ref<ContactRig>& rig,
+    const Ref<ContactPose>& pose,
+    const List<double>& held,
+    double across
+) {
+    bool moved = false;
+    int passes = contact_solve::PASSES;
+    while (passes > 0) {
+        passes -= 1;
+        List<std::tuple<double, double, double>> ends = contact_solve::capsule_ends(rig, pose);
+        List<std::tuple<double, double, double, double>> balls = contact_solve::_balls(rig, ends);
+        List<std::tuple<double, double, double>> shifts;
+        for (int side2 = 0; side2 < lang::len(rig->arms); side2++) {
+            shifts.push_back(contact_solve::_shift(rig, ends, balls, side2, held, across));
+        }
+        bool found = false;
+        for (int side = 0; side < lang::len(shifts); side++) {
+            const auto& shift = lang::at(shifts, side);
+            if (contact_solve::length(shift) > 0.0) {
+                int hand = lang::at(rig->arms, side)->hand;
+                contact_solve::_bring(
+                    rig,
+                    pose,
+                    side,
+                    contact_solve::_plus(lang::at(pose->at, hand), shift),
+                    lang::at(pose->turned, hand)
+                );
+                found = true;
+            }
+        }
+        if (!found) {
+            return moved;
+        }
+        moved = true;
+    }
+    return moved;
+}
+
+/// Return both ends of every capsule's line, one after the other.
+inline List<std::tuple<double, double, double>> capsule_ends(const Ref<ContactRig>& rig, const Ref<ContactPose>& pose) {
+    List<std::tuple<double, double, double>> out;
+    for (const auto& capsule : rig->capsules) {
+        out.push_back(contact_solve::_plus(
+            lang::at(pose->at, capsule->joint),
+            contact_solve::rotated(lang::at(pose->turned, capsule->joint), capsule->a)
+        ));
+        out.push_back(contact_solve::_plus(
+            lang::at(pose->at, capsule->to),
+            contact_solve::rotated(lang::at(pose->turned, capsule->to), capsule->b)
+        ));
+    }
+    return out;
+}
+
+/// Return a ball round each capsule: its middle and radius.
+inline List<std::tuple<double, double, double, double>> _balls(
+    const Ref<ContactRig>& rig,
+    const List<std::tuple<double, double, double>>& ends
+) {
+    List<std::tuple<double, double, double, double>> out;
+    for (int n = 0; n < lang::len(rig->capsules); n++) {
+        const auto& capsule = lang::at(rig->capsules, n);
+        auto [ax, ay, az] = lang::at(ends, 2 * n);
+        auto [bx, by, bz] = lang::at(ends, 2 * n + 1);
+        double x = bx - ax;
+        double y = by - ay;
+        double z = bz - az;
+        double size = 0.5 * std::sqrt(x * x + y * y + z * z) + capsule->radius;
+        out.push_back(std::tuple<double, double, double, double>{ax + 0.5 * x, ay + 0.5 * y, az + 0.5 * z, size});
+    }
+    return out;
+}
+
+/// Return by what a wrist has to move, so that its arm is out of all else, or nearer to that.
+inline std::tuple<double, double, double> _shift(
+    const Ref<ContactRig>& rig,
+    const List<std::tuple<double, double, double>>& ends,
+    const List<std::tuple<double, double, double, double>>& balls,
+    int side,
+    const List<double>& held,
+    double across
+) {
+    std::tuple<double, double, double> shift = std::tuple<double, double, double>{0.0, 0.0, 0.0};
+    double own = 1.0 - lang::at(held, side);
+    if (own <= 0.0) {
+        return shift;
+    }
+    for (int i = 0; i < lang::len(rig->capsules); i++) {
+        const auto& mine = lang::at(rig->capsules, i);
+        if (mine->arm != side || mine->kind == contact_solve::OBSTACLE) {
+            continue;
+        }
+        auto [mx, my, mz, size] = lang::at(balls, i);
+        for (int k = 0; k < lang::len(rig->capsules); k++) {
+            Ref<BodyCapsule> other = lang::at(rig->capsules, k);
+            if (other->arm == side) {
+                continue;
+            }
+            auto [ox, oy, oz, most] = lang::at(balls, k);
+            double reach = most + size;
+            if ((ox - mx) * (ox - mx) + (oy - my) * (oy - my) + (oz - mz) * (oz - mz) >= reach * reach) {
+                continue; // most are nowhere near
+            }
+            double share = own;
+            if (other->arm >= 0) {
+                share = std::min(own, 1.0 - across);
+                if (other->kind != contact_solve::OBSTACLE) { // both give way
+                    share = share * (1.0 - 0.5 * (1.0 - lang::at(held, other->arm)));
+                }
+            }
+            if (share <= 0.0) {
+                continue;
+            }
+            auto [x, y, z, s, gap] = contact_solve::apart(ends, 2 * i, 2 * k);
+            double radii = mine->radius + other->radius;
+            if (gap >= radii || gap < 1e-09) {
+                continue;
+            }
+            double depth = radii - gap;
+            double amount = depth > contact_solve::SOFT
+                ? depth - 0.5 * contact_solve::SOFT
+                : depth * depth / (2.0 * contact_solve::SOFT);
+            double inner = std::min(1.0, gap / (contact_solve::DEEP * radii));
+            amount = amount * share * inner * inner * (3.0 - 2.0 * inner);
+            double part = mine->kind == contact_solve::FOREARM ? s : 1.0;
+            std::tuple<double, double, double> way = std::tuple<double, double, double>{x / gap, y / gap, z / gap};
+            double left = amount - part * contact_solve::_dot(way, shift);
+            if (left > 0.0) {
+                shift = contact_solve::_plus(
+                    shift,
+                    contact_solve::_scaled(way, left * part / (part * part + contact_solve::ELBOW * (1.0 - part)))
+                );
+            }
+        }
+    }
+    return shift;
+}
+
+/// Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, how far along the latter it
+/// ends, 0..1, and its length.
+inline std::tuple<double, double, double, double, double> apart(
+    const List<std::tuple<double, double, double>>& ends,
+    int i,
+    int k
+) {
+    std::tuple<double, double, double> a = lang::at(ends, i);
+    std::tuple<double, double, double> c = lang::at(ends, k);
+    std::tuple<double, double, double> u = contact_solve::_minus(lang::at(ends, i + 1), a);
+    std::tuple<double, double, double> v = contact_solve::_minus(lang::at(ends, k + 1), c);
+    std::tuple<double, double, double> w = contact_solve::_minus(a, c);
+    double uu = contact_solve::_dot(u, u);
+    double uv = contact_solve::_dot(u, v);
+    double vv = contact_solve::_dot(v, v);
+    double uw = contact_solve::_dot(u, w);
+    double vw = contact_solve::_dot(v, w);
+    double s = 0.0;
+    double t = 0.0;
+    if (uu > 1e-12) {
+        double below = uu * vv - uv * uv;
+        if (below > 1e-09 * uu * vv) {
+            s = std::min(std::max((uv * vw - vv * uw) / below, 0.0), 1.0);
+        }
+        if (vv > 1e-12) {
+            t = (uv * s + vw) / vv;
+            if (t < 0.0 || t > 1.0) {
+                t = std::min(std::max(t, 0.0), 1.0);
+                s = std::min(std::max((uv * t - uw) / uu, 0.0), 1.0);
+            }
+        } else {
+            s = std::min(std::max(-uw / uu, 0.0), 1.0);
+        }
+    } else if (vv > 1e-12) {
+        t = std::min(std::max(vw / vv, 0.0), 1.0);
+    }
+    auto [x, y, z] = contact_solve::_minus(
+        contact_solve::_plus(w, contact_solve::_scaled(u, s)),
+        contact_solve::_scaled(v, t)
+    );
+    return std::tuple<double, double, double, double, double>{x, y, z, s, std::sqrt(x * x + y * y + z * z)};
+}
+
+// --- arithmetic
+/// Return the product: rotate by `b`, then by `a`.
+inline std::tuple<double, double, double, double> times(
+    const std::tuple<double, double, double, double>& a,
+    const std::tuple<double, double, double, double>& b
+) {
+    auto [ax, ay, az, aw] = a;
+    auto [bx, by, bz, bw] = b;
+    return std::tuple<double, double, double, double>{
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz
+    };
+}
+
+/// Return a vector rotated.
+inline std::tuple<double, double, double> rotated(
+    const std::tuple<double, double, double, double>& q,
+    const std::tuple<double, double, double>& v
+) {
+    auto [x, y, z, w] = q;
+    auto [vx, vy, vz] = v;
+    double tx = 2.0 * (y * vz - z * vy);
+    double ty = 2.0 * (z * vx - x * vz);
+    double tz = 2.0 * (x * vy - y * vx);
+    return std::tuple<double, double, double>{
+        vx + w * tx + y * tz - z * ty,
+        vy + w * ty + z * tx - x * tz,
+        vz + w * tz + x * ty - y * tx
+    };
+}
+
+/// Return the shortest rotation that takes one direction to another, both of length 1.
+inline std::tuple<double, double, double, double> between(
+    const std::tuple<double, double, double>& a,
+    const std::tuple<double, double, double>& b
+) {
+    auto [ax, ay, az] = a;
+    auto [bx, by, bz] = b;
+    double dot = ax * bx + ay * by + az * bz;
+    if (dot < -0.999999999) { // half a turn about any axis across
+        return contact_solve::_unit_turn(
+            std::abs(ax) < 0.9
+                ? std::tuple<double, double, double, double>{0.0, az, -ay, 0.0}
+                : std::tuple<double, double, double, double>{-az, 0.0, ax, 0.0}
+        );
+    }
+    return contact_solve::_unit_turn(
+        std::tuple<double, double, double, double>{ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx, 1.0 + dot}
+    );
+}
+
+/// Return how long a vector is.
+inline double length(const std::tuple<double, double, double>& v) {
+    auto [x, y, z] = v;
+    return std::sqrt(x * x + y * y + z * z);
+}
+
+inline std::tuple<double, double, double> _unit(const std::tuple<double, double, double>& v) {
+    return contact_solve::_scaled(v, 1.0 / std::max(contact_solve::length(v), 1e-12));
+}
+
+inline std::tuple<double, double, double, double> _unit_turn(const std::tuple<double, double, double, double>& q) {
+    auto [x, y, z, w] = q;
+    double k = 1.0 / std::max(std::sqrt(x * x + y * y + z * z + w * w), 1e-12);
+    return std::tuple<double, double, double, double>{x * k, y * k, z * k, w * k};
+}
+
+inline std::tuple<double, double, double, double> _back(const std::tuple<double, double, double, double>& q) {
+    auto [x, y, z, w] = q;
+    return std::tuple<double, double, double, double>{-x, -y, -z, w};
+}
+
+inline std::tuple<double, double, double> _plus(
+    const std::tuple<double, double, double>& a,
+    const std::tuple<double, double, double>& b
+) {
+    auto [ax, ay, az] = a;
+    auto [bx, by, bz] = b;
+    return std::tuple<double, double, double>{ax + bx, ay + by, az + bz};
+}
+
+inline std::tuple<double, double, double> _minus(
+    const std::tuple<double, double, double>& a,
+    const std::tuple<double, double, double>& b
+) {
+    auto [ax, ay, az] = a;
+    auto [bx, by, bz] = b;
+    return std::tuple<double, double, double>{ax - bx, ay - by, az - bz};
+}
+
+inline std::tuple<double, double, double> _scaled(const std::tuple<double, double, double>& a, double k) {
+    auto [x, y, z] = a;
+    return std::tuple<double, double, double>{x * k, y * k, z * k};
+}
+
+inline double _dot(const std::tuple<double, double, double>& a, const std::tuple<double, double, double>& b) {
+    auto [ax, ay, az] = a;
+    auto [bx, by, bz] = b;
+    return ax * bx + ay * by + az * bz;
+}
+
+}  // namespace contact_solve
+
+}  // namespace metagraph

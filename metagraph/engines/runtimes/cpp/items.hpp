@@ -1,0 +1,378 @@
+// What was asked for and lasts: where to look, what to say, which mode to be in, which stance to stay in. Values; times
+// are seconds.
+//
+// Translated from metagraph/playback/life/items.py; change that, and translate anew.
+#pragma once
+
+#include "line_timing.hpp"
+#include "spots.hpp"
+#include "mood.hpp"
+#include "spots.hpp"
+#include "language.hpp"
+
+namespace metagraph {
+
+struct LookAt;
+struct Speech;
+struct ModeFrom;
+struct PlaceFrom;
+struct BlinkAt;
+struct StayFrom;
+
+namespace items {
+
+inline Ref<Speech> cut(const Ref<Speech>& speech, double at);
+inline List<Ref<Speech>> apart(const List<Ref<Speech>>& speeches);
+inline Ref<Speech> going_on(const Ref<Speech>& old, const Ref<Speech>& new_, double now);
+inline bool alike_looks(const List<Ref<LookAt>>& one, const List<Ref<LookAt>>& other);
+inline bool _same_look(const Ref<LookAt>& a, const Ref<LookAt>& b);
+inline bool alike_speeches(const List<Ref<Speech>>& one, const List<Ref<Speech>>& other);
+inline bool _same_speech(const Ref<Speech>& a, const Ref<Speech>& b);
+inline bool alike_modes(const List<Ref<ModeFrom>>& one, const List<Ref<ModeFrom>>& other);
+inline bool alike_places(const List<Ref<PlaceFrom>>& one, const List<Ref<PlaceFrom>>& other);
+inline bool _same_place(const Ref<PlaceFrom>& a, const Ref<PlaceFrom>& b);
+inline bool alike_blinks(const List<Ref<BlinkAt>>& one, const List<Ref<BlinkAt>>& other);
+inline bool alike_stays(const List<Ref<StayFrom>>& one, const List<Ref<StayFrom>>& other);
+inline bool _same_stay(const Ref<StayFrom>& a, const Ref<StayFrom>& b);
+inline bool alike_felt(const List<Ref<MoodFrom>>& one, const List<Ref<MoodFrom>>& other);
+inline bool _same_felt(const Ref<MoodFrom>& a, const Ref<MoodFrom>& b);
+
+}  // namespace items
+
+/// Look at a point or a named point from `start` until `end`, or until the next look. strict: without averting.
+struct LookAt {
+    std::string id;
+    double start;
+    double end;
+    Ref<Spot> to;
+    double amount;
+    bool strict;
+    int priority;
+
+    LookAt(
+        std::string id_,
+        double start_,
+        double end_,
+        Ref<Spot> to_,
+        double amount_ = 1.0,
+        bool strict_ = false,
+        int priority_ = 1
+    )
+        : id(std::move(id_)),
+            start(start_),
+            end(end_),
+            to(std::move(to_)),
+            amount(amount_),
+            strict(strict_),
+            priority(priority_) {}
+};
+
+/// Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts the lower.
+/// length: seconds it would have taken, where something cut it short. timing: when its words and mouth shapes come,
+/// where that was told.
+struct Speech {
+    std::string id;
+    double start;
+    double end;
+    std::optional<std::string> line;
+    std::string text;
+    int priority;
+    std::optional<double> length;
+    Ref<LineTiming> timing;
+
+    Speech(
+        std::string id_,
+        double start_,
+        double end_,
+        std::optional<std::string> line_ = std::nullopt,
+        std::string text_ = "",
+        int priority_ = 1,
+        std::optional<double> length_ = std::nullopt,
+        Ref<LineTiming> timing_ = nullptr
+    )
+        : id(std::move(id_)),
+            start(start_),
+            end(end_),
+            line(std::move(line_)),
+            text(std::move(text_)),
+            priority(priority_),
+            length(length_),
+            timing(std::move(timing_)) {}
+};
+
+/// The mode from `start` on; None for talking while something is said and idling otherwise.
+struct ModeFrom {
+    std::string id;
+    double start;
+    std::optional<std::string> mode;
+
+    ModeFrom(std::string id_, double start_, std::optional<std::string> mode_)
+        : id(std::move(id_)), start(start_), mode(std::move(mode_)) {}
+};
+
+/// Where a named point is from `start` on.
+struct PlaceFrom {
+    std::string id;
+    double start;
+    std::string name;
+    List<double> point;
+
+    PlaceFrom(std::string id_, double start_, std::string name_, List<double> point_)
+        : id(std::move(id_)), start(start_), name(std::move(name_)), point(std::move(point_)) {}
+};
+
+/// A blink asked for.
+struct BlinkAt {
+    std::string id;
+    double start;
+
+    BlinkAt(std::string id_, double start_)
+        : id(std::move(id_)), start(start_) {}
+};
+
+/// From `start` on the models change no stance of a layer (or, with `on` false, may again), until `end` or the next of
+/// these.
+struct StayFrom {
+    std::string id;
+    double start;
+    std::string layer;
+    bool on;
+    double end;
+
+    StayFrom(std::string id_, double start_, std::string layer_, bool on_ = true, double end_ = INFINITY)
+        : id(std::move(id_)), start(start_), layer(std::move(layer_)), on(on_), end(end_) {}
+};
+
+namespace items {
+
+/// Return the speech, ending no later than `at`; how long it would have been is remembered.
+inline Ref<Speech> cut(const Ref<Speech>& speech, double at) {
+    if (speech->end <= at) {
+        return speech;
+    }
+    return lang::made<Speech>(
+        speech->id,
+        speech->start,
+        at,
+        speech->line,
+        speech->text,
+        speech->priority,
+        !speech->length.has_value() ? speech->end - speech->start : *speech->length,
+        speech->timing
+    );
+}
+
+/// Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, a
+/// lesser one is not said.
+inline List<Ref<Speech>> apart(const List<Ref<Speech>>& speeches) {
+    List<Ref<Speech>> out;
+    for (const auto& speech : speeches) {
+        if (lang::len(out) > 0 && lang::at(out, -1)->end > speech->start) {
+            Ref<Speech> last = lang::at(out, -1);
+            if (speech->priority < last->priority) {
+                continue;
+            }
+            out.pop_back();
+            if (last->start < speech->start) {
+                out.push_back(items::cut(last, speech->start));
+            }
+        }
+        out.push_back(speech);
+    }
+    return out;
+}
+
+/// Return a line as it goes on where the last of the same id has begun by `now`, or begins with it: it keeps its start
+/// and what has been said of it. Only lines whose words or shapes were told with their times do.
+inline Ref<Speech> going_on(const Ref<Speech>& old, const Ref<Speech>& new_, double now) {
+    if (old == nullptr || old->timing == nullptr || new_->timing == nullptr || old->length.has_value()) {
+        return new_;
+    }
+    if (std::max(old->start, new_->start) > now && old->start != new_->start) {
+        return new_;
+    }
+    Ref<LineTiming> timing = line_timing::extended(old->timing, new_->timing, std::max(now - old->start, 0.0));
+    double length = std::max(line_timing::timed_seconds(timing, std::nullopt), new_->end - new_->start);
+    bool more = new_->text == "" || new_->text == line_timing::told_text(new_->timing);
+    return lang::made<Speech>(
+        new_->id,
+        old->start,
+        old->start + length,
+        new_->line,
+        more ? line_timing::told_text(timing) : new_->text,
+        new_->priority,
+        new_->length,
+        timing
+    );
+}
+
+/// Whether two tracks' looks are the same; so for the others below.
+inline bool alike_looks(const List<Ref<LookAt>>& one, const List<Ref<LookAt>>& other) {
+    bool holds = lang::len(one) == lang::len(other);
+    if (holds) {
+        bool are_all = true;
+        for (int n = 0; n < lang::len(one); n++) {
+            const auto& a = lang::at(one, n);
+            const auto& b = lang::at(other, n);
+            if (!(a == b || items::_same_look(a, b))) {
+                are_all = false;
+                break;
+            }
+        }
+        holds = are_all;
+    }
+    return holds;
+}
+
+inline bool _same_look(const Ref<LookAt>& a, const Ref<LookAt>& b) {
+    if (!spots::same_spot(a->to, b->to) || a->amount != b->amount || a->strict != b->strict) {
+        return false;
+    }
+    return a->id == b->id && a->start == b->start && a->end == b->end && a->priority == b->priority;
+}
+
+inline bool alike_speeches(const List<Ref<Speech>>& one, const List<Ref<Speech>>& other) {
+    bool holds = lang::len(one) == lang::len(other);
+    if (holds) {
+        bool are_all = true;
+        for (int n = 0; n < lang::len(one); n++) {
+            const auto& a = lang::at(one, n);
+            const auto& b = lang::at(other, n);
+            if (!(a == b || items::_same_speech(a, b))) {
+                are_all = false;
+                break;
+            }
+        }
+        holds = are_all;
+    }
+    return holds;
+}
+
+inline bool _same_speech(const Ref<Speech>& a, const Ref<Speech>& b) {
+    if (a->line != b->line || a->text != b->text || a->length != b->length || a->priority != b->priority) {
+        return false;
+    }
+    return a->id == b->id
+        && a->start == b->start
+        && a->end == b->end
+        && line_timing::alike_timings(a->timing, b->timing);
+}
+
+inline bool alike_modes(const List<Ref<ModeFrom>>& one, const List<Ref<ModeFrom>>& other) {
+    bool holds = lang::len(one) == lang::len(other);
+    if (holds) {
+        bool are_all = true;
+        for (int n = 0; n < lang::len(one); n++) {
+            const auto& a = lang::at(one, n);
+            const auto& b = lang::at(other, n);
+            if (!(a == b || (a->id == b->id && a->start == b->start && a->mode == b->mode))) {
+                are_all = false;
+                break;
+            }
+        }
+        holds = are_all;
+    }
+    return holds;
+}
+
+inline bool alike_places(const List<Ref<PlaceFrom>>& one, const List<Ref<PlaceFrom>>& other) {
+    bool holds = lang::len(one) == lang::len(other);
+    if (holds) {
+        bool are_all = true;
+        for (int n = 0; n < lang::len(one); n++) {
+            const auto& a = lang::at(one, n);
+            const auto& b = lang::at(other, n);
+            if (!(a == b || items::_same_place(a, b))) {
+                are_all = false;
+                break;
+            }
+        }
+        holds = are_all;
+    }
+    return holds;
+}
+
+inline bool _same_place(const Ref<PlaceFrom>& a, const Ref<PlaceFrom>& b) {
+    if (a->id != b->id || a->start != b->start || a->name != b->name) {
+        return false;
+    }
+    bool are_all = true;
+    for (int n = 0; n < lang::len(a->point); n++) {
+        const auto& x = lang::at(a->point, n);
+        const auto& y = lang::at(b->point, n);
+        if (!(x == y)) {
+            are_all = false;
+            break;
+        }
+    }
+    return are_all;
+}
+
+inline bool alike_blinks(const List<Ref<BlinkAt>>& one, const List<Ref<BlinkAt>>& other) {
+    bool holds = lang::len(one) == lang::len(other);
+    if (holds) {
+        bool are_all = true;
+        for (int n = 0; n < lang::len(one); n++) {
+            const auto& a = lang::at(one, n);
+            const auto& b = lang::at(other, n);
+            if (!(a == b || (a->id == b->id && a->start == b->start))) {
+                are_all = false;
+                break;
+            }
+        }
+        holds = are_all;
+    }
+    return holds;
+}
+
+inline bool alike_stays(const List<Ref<StayFrom>>& one, const List<Ref<StayFrom>>& other) {
+    bool holds = lang::len(one) == lang::len(other);
+    if (holds) {
+        bool are_all = true;
+        for (int n = 0; n < lang::len(one); n++) {
+            const auto& a = lang::at(one, n);
+            const auto& b = lang::at(other, n);
+            if (!(a == b || items::_same_stay(a, b))) {
+                are_all = false;
+                break;
+            }
+        }
+        holds = are_all;
+    }
+    return holds;
+}
+
+inline bool _same_stay(const Ref<StayFrom>& a, const Ref<StayFrom>& b) {
+    if (a->layer != b->layer || a->on != b->on || a->end != b->end) {
+        return false;
+    }
+    return a->id == b->id && a->start == b->start;
+}
+
+inline bool alike_felt(const List<Ref<MoodFrom>>& one, const List<Ref<MoodFrom>>& other) {
+    bool holds = lang::len(one) == lang::len(other);
+    if (holds) {
+        bool are_all = true;
+        for (int n = 0; n < lang::len(one); n++) {
+            const auto& a = lang::at(one, n);
+            const auto& b = lang::at(other, n);
+            if (!(a == b || items::_same_felt(a, b))) {
+                are_all = false;
+                break;
+            }
+        }
+        holds = are_all;
+    }
+    return holds;
+}
+
+inline bool _same_felt(const Ref<MoodFrom>& a, const Ref<MoodFrom>& b) {
+    if (a->valence != b->valence || a->arousal != b->arousal || a->intensity != b->intensity) {
+        return false;
+    }
+    return a->id == b->id && a->start == b->start && a->end == b->end;
+}
+
+}  // namespace items
+
+}  // namespace metagraph

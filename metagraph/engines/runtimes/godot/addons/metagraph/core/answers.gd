@@ -1,0 +1,81 @@
+# What becomes of what was asked.
+
+const Hearing = preload("hearing.gd")
+const WORDS = {looks = "look", speeches = "speech", modes = "mode", places = "place", blinks = "blink", moods = "mood"}
+const LAST = ["looks", "speeches", "moods"]  # which have an end
+
+
+# Says what a plan does about an ask: {id, state: planned, late, done or refused, at, until: seconds or null, what: words, why}.
+static func answer(plan, ident):
+	return answers(plan, [ident])[ident]
+
+
+# Says what a plan does about each of many asks, {id: answer}, in time that grows with the plan alone.
+static func answers(plan, idents):
+	var found = {}
+	for ident in idents:
+		found[ident] = {starts = [], ends = [], what = [], waiting = [], why = [], late = false, there = false, all_played = true}
+	var served = {}  # by the key of what serves them
+	for report in plan.reports:
+		if report.by != "":
+			served[report.by] = served.get(report.by, []) + [report.request]
+	for layer in plan.layers:
+		for cue in plan.layers[layer].cues:
+			for made in [cue.meta.split("+")[0]] + served.get(cue.meta, []):
+				for each in _of(found, made):
+					_plays(each, cue.start, cue.end, cue.action.name)
+		for meta in plan.layers[layer].metas:
+			if meta.start >= plan.end:
+				for each in _of(found, meta.request.id):
+					each.waiting.append(meta.start)
+	for lane in WORDS:
+		for item in plan.track[lane]:
+			for each in _of(found, item.id):
+				_plays(each, item.start, item.end if LAST.has(lane) else item.start, WORDS[lane])
+	for report in plan.reports:
+		for each in _of(found, report.request):
+			if not each.why.has(report.message):
+				each.why.append(report.message)
+			each.late = each.late or ["late", "queued", "resumed"].has(report.outcome)
+			each.there = each.there or report.outcome == "already-there"
+			each.all_played = each.all_played and report.played
+	var out = {}
+	for ident in found:
+		out[ident] = _answer(ident, found[ident])
+	return out
+
+
+# Returns what was found so far of the asks that something in the plan belongs to.
+static func _of(found, made):
+	var out = []
+	for owner in Hearing.owners(made):
+		if found.has(owner):
+			out.append(found[owner])
+	return out
+
+
+static func _plays(each, start, end, word):
+	each.starts.append(start)
+	each.ends.append(end)
+	each.what.append(word)
+
+
+static func _answer(ident, found):
+	var told = found.why.size() > 0
+	var why = ""
+	for message in found.why:
+		why += message if why == "" else "; " + message
+	var out = {id = ident, state = "refused", at = null, until = null, what = found.what, why = why}
+	if found.starts.size() > 0:
+		out.state = "late" if found.late else "planned"
+		out.at = found.starts.min()
+		out.until = found.ends.max()
+	elif found.there:
+		out.state = "done"
+	elif found.waiting.size() > 0 and found.all_played:
+		out.state = "late" if told else "planned"
+		out.at = found.waiting[0]
+		out.why = why if told else "chosen when its time is nearer"
+	elif not told:
+		out.why = "nothing came of it"
+	return out

@@ -1,0 +1,120 @@
+# Where contacts want the hands at a time: those of the cue that plays and of the loops under it, each by as much as shows of it.
+#
+# Translated from metagraph/playback/contact_goals.py; change that, and translate anew.
+
+const ContactSolve = preload("contact_solve.gd")
+const ContactSpans = preload("contact_spans.gd")
+const Util = preload("util.gd")
+const LEAST = 1e-06  # of a hand: what shows less than this is not solved
+
+
+# Return what a layer wants of the hands at a time. cue: the one that plays, if it has motion. place: of the rest that is in
+# force, -1 for none. strength: how much of the arms the layer moves, 0..1.
+static func layer_goals(rig, project, plan, cue, place, time, strength):
+	var out = []
+	var shown = [0.0, 0.0]
+	if cue != null:
+		var weight = _cue_weight(cue, time)
+		for arm in range(ContactSpans.HANDS.size()):
+			var hand = ContactSpans.HANDS[arm]
+			if _moves(rig, cue.action, arm, hand):
+				shown[arm] = weight
+		if cue.action.contacts.size() > 0:
+			var found = []
+			for w in shown:
+				found.append(strength * w)
+			Util.extend(out, _goals(rig, project, cue.action, _cue_seconds(cue, time), found))
+	if place >= 0:
+		var rest = plan.rests[place]
+		var over = 1.0
+		if place > 0 and rest.fade_start + rest.fade > time:
+			over = _ease((time - rest.fade_start) / rest.fade)
+			Util.extend(out, _loop_goals(rig, project, plan.rests[place - 1], time, strength * (1.0 - over), shown))
+		Util.extend(out, _loop_goals(rig, project, rest, time, strength * over, shown))
+	return out
+
+
+# Return what a loop wants, less what shows of the cue above it.
+static func _loop_goals(rig, project, rest, time, strength, shown):
+	var out = []
+	var action = rest.action
+	if action.contacts.size() == 0:
+		return out
+	var left = []
+	for w in shown:
+		left.append(strength * (1.0 - w))
+	var both = project.span(action)
+	var start = both[0]
+	var end = both[1]
+	var seam = Util.least(Util.most(0.0, action.timing.blend_in), (end - start) / 2.0)
+	var period = end - start - seam
+	if period <= 0.0:
+		return _goals(rig, project, action, start, left)
+	var elapsed = time - rest.start
+	var phase = Util.most(elapsed, 0.0) if seam > 0.0 else elapsed
+	phase = phase - period * int(floor(phase / period))
+	var old = 0.0
+	if seam > 0.0 and elapsed >= period:
+		old = 1.0 - _ease(phase / seam)
+	if old > 0.0:
+		var before = start + Util.least(period + phase, end - start)
+		var found = []
+		for w in left:
+			found.append(old * w)
+		Util.extend(out, _goals(rig, project, action, before, found))
+	var found2 = []
+	for w in left:
+		found2.append((1.0 - old) * w)
+	Util.extend(out, _goals(rig, project, action, start + phase, found2))
+	return out
+
+
+# Return the goals of an action at clip seconds. shares: how much of it shows at the left hand, the right.
+static func _goals(rig, project, action, seconds, shares):
+	var out = []
+	var both = project.span(action)
+	var start = both[0]
+	var end = both[1]
+	for span in action.contacts:
+		var arm = _arm(span)
+		var to = rig.places.get(span.to)
+		if to == null or span.keys.size() == 0 or shares[arm] <= LEAST:
+			continue
+		var weight = shares[arm] * ContactSpans.contact_weight(span, seconds, start, end)
+		if weight > LEAST:
+			var key = ContactSpans.contact_key(span, seconds)
+			out.append(ContactSolve.HandGoal.new(arm, to, key.at, key.turn, weight))
+	return out
+
+
+static func _arm(span):
+	return 0 if span.hand == "left" else 1
+
+
+# Whether an action moves a hand, and does not leave it to its stance.
+static func _moves(rig, action, arm, hand):
+	if not ["both", hand].has(action.limb):
+		return false
+	return action.joints.size() == 0 or action.joints.has(rig.hands[arm])
+
+
+static func _cue_weight(cue, time):
+	if time < cue.start or time >= cue.end:
+		return 0.0
+	var rise = _ease((time - cue.start) / cue.blend_in) if cue.blend_in > 0.0 else 1.0
+	var fall = _ease((cue.end - time) / cue.blend_out) if cue.blend_out > 0.0 else 1.0
+	return rise * fall
+
+
+static func _cue_seconds(cue, time):
+	var elapsed = time - cue.start
+	if cue.hold <= 0.0:
+		return cue.entry + elapsed * cue.tempo
+	var held = Util.least(Util.most(elapsed - (cue.hold_from - cue.entry) / cue.tempo, 0.0), cue.hold)
+	var more = (elapsed - held) * (cue.tempo - 1.0)
+	return cue.entry + elapsed - held + more + held * ((cue.hold_to - cue.hold_from) / cue.hold)
+
+
+static func _ease(x):
+	x = Util.least(Util.most(x, 0.0), 1.0)
+	return x * x * (3.0 - 2.0 * x)

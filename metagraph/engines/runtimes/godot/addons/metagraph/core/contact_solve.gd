@@ -1,0 +1,564 @@
+# Keeping hands in contact with the body, and out of it: two-bone arms brought to where they should be.
+#
+# The body's parts are capsules, each fixed to a joint. Rotations are quaternions xyzw, lengths metres; places are those in a
+# rig's list of joints. Worked out one pose at a time, in plain numbers, the same in all languages.
+#
+# Translated from metagraph/motion/contact_solve.py; change that, and translate anew.
+
+const Util = preload("util.gd")
+const REACHED = 0.995  # of an arm's length: it does not snap straight
+const FOLDED = 0.906  # cosine of the least angle inside an elbow, 25 degrees
+const WRIST = 0.819  # cosine of half of how far a contact may turn a hand from where it was, 70 degrees
+const SOFT = 0.006  # metres of depth over which the push out of the body sets in
+const DEEP = 0.35  # of the radii: nearer than this to a capsule's line it is not pushed all the way
+const ELBOW = 0.1  # how little a forearm is pushed near its elbow, which a wrist cannot move
+const PASSES = 3  # of the guard
+const OBSTACLE = 0  # what a capsule is to the guard: others are pushed out of it
+const FOREARM = 1  # pushed out, from the elbow to the wrist
+const HAND = 2  # pushed out
+
+
+# Places of an arm's joints, and of all joints from its upper arm on, parents first.
+class ContactArm:
+	var upper
+	var lower
+	var hand
+	var below
+
+	func _init(upper_, lower_, hand_, below_):
+		self.upper = upper_
+		self.lower = lower_
+		self.hand = hand_
+		self.below = below_
+
+
+# A part of the body. joint, to: the places its line's ends are fixed to; a, b: where, in those joints' own spaces. arm: 0 left, 1
+# right, -1 of neither. kind: whether it is pushed out of others: OBSTACLE is not; FOREARM runs from the elbow to the wrist; HAND.
+class BodyCapsule:
+	var joint
+	var a
+	var to
+	var b
+	var radius
+	var arm
+	var kind
+
+	func _init(joint_, a_, to_, b_, radius_, arm_ = -1, kind_ = 0):
+		self.joint = joint_
+		self.a = a_
+		self.to = to_
+		self.b = b_
+		self.radius = radius_
+		self.arm = arm_
+		self.kind = kind_
+
+
+# What of a skeleton contacts need. joints: theirs, parents first. parents: for each the place of the nearest one above, which has
+# to be its parent; -1 for a root. places: names of joints to their places. arms: left, right; hands: the names of their hands.
+# contacts, guard: what is on.
+class ContactRig:
+	var joints
+	var parents
+	var places
+	var arms
+	var hands
+	var capsules
+	var contacts
+	var guard
+
+	func _init(joints_, parents_, places_, arms_, hands_, capsules_, contacts_ = true, guard_ = true):
+		self.joints = joints_
+		self.parents = parents_
+		self.places = places_
+		self.arms = arms_
+		self.hands = hands_
+		self.capsules = capsules_
+		self.contacts = contacts_
+		self.guard = guard_
+
+
+# Where a wrist should be. arm: 0 left, 1 right. to: a place; at, turn: in its space. weight: 0..1.
+class HandGoal:
+	var arm
+	var to
+	var at
+	var turn
+	var weight
+
+	func _init(arm_, to_, at_, turn_, weight_):
+		self.arm = arm_
+		self.to = to_
+		self.at = at_
+		self.turn = turn_
+		self.weight = weight_
+
+
+# A pose of a rig's joints: `local` rotations and `moved` translations in their parents' space, `turned` and `at` in the
+# character's, which `spread` works out.
+class ContactPose:
+	var local
+	var moved
+	var turned
+	var at
+
+	func _init(local_ = null, moved_ = null, turned_ = null, at_ = null):
+		self.local = local_ if local_ != null else []
+		self.moved = moved_ if moved_ != null else []
+		self.turned = turned_ if turned_ != null else []
+		self.at = at_ if at_ != null else []
+
+
+# Work out where all joints are.
+static func spread(rig, pose):
+	pose.turned = []
+	pose.at = []
+	for place in range(pose.local.size()):
+		var turn = pose.local[place]
+		pose.turned.append(turn)
+		pose.at.append(pose.moved[place])
+	for place in range(rig.parents.size()):
+		_join(rig, pose, place)
+
+
+static func _join(rig, pose, place):
+	var above = rig.parents[place]
+	if above < 0:
+		pose.turned[place] = pose.local[place]
+		pose.at[place] = pose.moved[place]
+	else:
+		pose.turned[place] = times(pose.turned[above], pose.local[place])
+		pose.at[place] = _plus(pose.at[above], rotated(pose.turned[above], pose.moved[place]))
+
+
+# Bring hands to their goals, then hands and forearms out of the body; return whether anything moved. The joints' places have to
+# be known (`spread`).
+static func solve_contacts(rig, pose, goals):
+	var moved = false
+	var held = [0.0, 0.0]
+	var across = 0.0  # how much one arm is held on the other
+	for goal in goals:
+		held[goal.arm] = Util.least(1.0, held[goal.arm] + goal.weight)
+		if _on_arm(rig, goal.to, 1 - goal.arm):
+			across = Util.most(across, goal.weight)
+	var rounds = 0 if goals.size() == 0 else (2 if across > 0.0 else 1)
+	var wrists = []
+	for arm in rig.arms:
+		wrists.append(pose.at[arm.hand])
+	var hands = []
+	for arm in rig.arms:
+		hands.append(pose.turned[arm.hand])
+	while rounds > 0:
+		rounds -= 1
+		for side in range(rig.arms.size()):
+			if held[side] > 0.0:
+				_hold(rig, pose, goals, side, wrists[side], hands[side])
+				moved = true
+	if rig.guard and _guarded(rig, pose, held, across):
+		moved = true
+		for side in range(rig.arms.size()):
+			if across > 0.0 and held[side] > 0.0:
+				_hold(rig, pose, goals, side, wrists[side], hands[side])
+	return moved
+
+
+static func _on_arm(rig, place, arm):
+	var is_any = false
+	for below in rig.arms[arm].below:
+		if place == below:
+			is_any = true
+			break
+	return is_any
+
+
+# Bring a hand to the weighted mean of its goals. wrist, hand: where and how it was without any.
+static func _hold(rig, pose, goals, side, wrist, hand):
+	var total = 0.0
+	var x = 0.0
+	var y = 0.0
+	var z = 0.0
+	var a = 0.0
+	var b = 0.0
+	var c = 0.0
+	var d = 0.0
+	var both = hand
+	var hx = both[0]
+	var hy = both[1]
+	var hz = both[2]
+	var hw = both[3]
+	var k
+	for goal in goals:
+		if goal.arm == side and goal.weight > 0.0:
+			k = goal.weight
+			var both2 = _plus(pose.at[goal.to], rotated(pose.turned[goal.to], goal.at))
+			var px = both2[0]
+			var py = both2[1]
+			var pz = both2[2]
+			var both3 = times(pose.turned[goal.to], goal.turn)
+			var qx = both3[0]
+			var qy = both3[1]
+			var qz = both3[2]
+			var qw = both3[3]
+			x = x + k * px
+			y = y + k * py
+			z = z + k * pz
+			total = total + k
+			if qx * hx + qy * hy + qz * hz + qw * hw < 0.0:
+				k = -k
+			a = a + k * qx
+			b = b + k * qy
+			c = c + k * qz
+			d = d + k * qw
+	var weight = Util.least(1.0, total)
+	var mean = [x / total, y / total, z / total]
+	var turn = _within_wrist(hand, _unit_turn([a, b, c, d]))
+	var both4 = turn
+	var tx = both4[0]
+	var ty = both4[1]
+	var tz = both4[2]
+	var tw = both4[3]
+	var rest = 1.0 - weight
+	k = -weight if tx * hx + ty * hy + tz * hz + tw * hw < 0.0 else weight
+	turn = _unit_turn([hx * rest + tx * k, hy * rest + ty * k, hz * rest + tz * k, hw * rest + tw * k])
+	_bring(rig, pose, side, _plus(wrist, _scaled(_minus(mean, wrist), weight)), turn)
+
+
+# Return a hand's turn, as near to it as the wrist may be turned from how the hand was.
+static func _within_wrist(hand, turn):
+	var both = times(turn, _back(hand))
+	var x = both[0]
+	var y = both[1]
+	var z = both[2]
+	var w = both[3]
+	if w < 0.0:
+		x = -x
+		y = -y
+		z = -z
+		w = -w
+	if w >= WRIST:
+		return turn
+	var k = sqrt(1.0 - WRIST * WRIST) / Util.most(sqrt(x * x + y * y + z * z), 1e-12)
+	return times([x * k, y * k, z * k, WRIST], hand)
+
+
+# Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it.
+static func _bring(rig, pose, side, goal, hand):
+	var arm = rig.arms[side]
+	var root = pose.at[arm.upper]
+	var elbow = pose.at[arm.lower]
+	var wrist = pose.at[arm.hand]
+	var bone = _minus(elbow, root)
+	var fore = _minus(wrist, elbow)
+	var above_elbow = length(bone)
+	var below_elbow = length(fore)
+	var now = length(_minus(wrist, root))
+	if above_elbow < 1e-06 or below_elbow < 1e-06 or now < 1e-06:
+		return
+	var way = _minus(goal, root)
+	var most = Util.most(REACHED * (above_elbow + below_elbow), now)
+	var least = Util.least(
+		sqrt(above_elbow * above_elbow + below_elbow * below_elbow - 2.0 * FOLDED * above_elbow * below_elbow),
+		now
+	)
+	var far = Util.least(Util.most(length(way), least), most)
+	var ahead = _unit(way)
+	var before = _scaled(_minus(wrist, root), 1.0 / now)
+	var aside = _minus(bone, _scaled(before, _dot(bone, before)))
+	# A straight arm has no side: it bends to one that goes with its bone.
+	var spare = rotated(pose.turned[arm.upper], [0.31, 0.52, 0.8])
+	spare = _minus(spare, _scaled(before, _dot(spare, before)))
+	aside = _plus(aside, _scaled(spare, Util.most(0.0, 0.01 * above_elbow - length(aside))))
+	aside = _unit(rotated(between(before, ahead), aside))
+	var along = (above_elbow * above_elbow + far * far - below_elbow * below_elbow) / (2.0 * far)
+	var high = sqrt(Util.most(0.0, above_elbow * above_elbow - along * along))
+	var knee = _plus(_scaled(ahead, along), _scaled(aside, high))
+	var swing = between(_unit(bone), _unit(knee))
+	var fold = between(_unit(rotated(swing, fore)), _unit(_minus(_scaled(ahead, far), knee)))
+	var both = times(fold, swing)
+	var above = _above(rig, pose, arm.upper)
+	pose.local[arm.upper] = times(_back(above), times(swing, pose.turned[arm.upper]))
+	above = times(swing, _above(rig, pose, arm.lower))
+	pose.local[arm.lower] = times(_back(above), times(both, pose.turned[arm.lower]))
+	above = times(both, _above(rig, pose, arm.hand))
+	pose.local[arm.hand] = times(_back(above), hand)
+	for place in arm.below:
+		_join(rig, pose, place)
+
+
+static func _above(rig, pose, place):
+	var above = rig.parents[place]
+	return [0.0, 0.0, 0.0, 1.0] if above < 0 else pose.turned[above]
+
+
+# Push forearms and hands out of what they are inside of, by the least shift of the wrists; return whether any was. held: how much
+# each hand is kept somewhere, and so is not pushed.
+static func _guarded(rig, pose, held, across):
+	var moved = false
+	var passes = PASSES
+	while passes > 0:
+		passes -= 1
+		var ends = capsule_ends(rig, pose)
+		var balls = _balls(rig, ends)
+		var shifts = []
+		for side2 in range(rig.arms.size()):
+			shifts.append(_shift(rig, ends, balls, side2, held, across))
+		var found = false
+		for side in range(shifts.size()):
+			var shift = shifts[side]
+			if length(shift) > 0.0:
+				var hand = rig.arms[side].hand
+				_bring(rig, pose, side, _plus(pose.at[hand], shift), pose.turned[hand])
+				found = true
+		if not found:
+			return moved
+		moved = true
+	return moved
+
+
+# Return both ends of every capsule's line, one after the other.
+static func capsule_ends(rig, pose):
+	var out = []
+	for capsule in rig.capsules:
+		out.append(_plus(pose.at[capsule.joint], rotated(pose.turned[capsule.joint], capsule.a)))
+		out.append(_plus(pose.at[capsule.to], rotated(pose.turned[capsule.to], capsule.b)))
+	return out
+
+
+# Return a ball round each capsule: its middle and radius.
+static func _balls(rig, ends):
+	var out = []
+	for n in range(rig.capsules.size()):
+		var capsule = rig.capsules[n]
+		var both = ends[2 * n]
+		var ax = both[0]
+		var ay = both[1]
+		var az = both[2]
+		var both2 = ends[2 * n + 1]
+		var bx = both2[0]
+		var by = both2[1]
+		var bz = both2[2]
+		var x = bx - ax
+		var y = by - ay
+		var z = bz - az
+		var size = 0.5 * sqrt(x * x + y * y + z * z) + capsule.radius
+		out.append([ax + 0.5 * x, ay + 0.5 * y, az + 0.5 * z, size])
+	return out
+
+
+# Return by what a wrist has to move, so that its arm is out of all else, or nearer to that.
+static func _shift(rig, ends, balls, side, held, across):
+	var shift = [0.0, 0.0, 0.0]
+	var own = 1.0 - held[side]
+	if own <= 0.0:
+		return shift
+	for i in range(rig.capsules.size()):
+		var mine = rig.capsules[i]
+		if mine.arm != side or mine.kind == OBSTACLE:
+			continue
+		var both = balls[i]
+		var mx = both[0]
+		var my = both[1]
+		var mz = both[2]
+		var size = both[3]
+		for k in range(rig.capsules.size()):
+			var other = rig.capsules[k]
+			if other.arm == side:
+				continue
+			var both2 = balls[k]
+			var ox = both2[0]
+			var oy = both2[1]
+			var oz = both2[2]
+			var most = both2[3]
+			var reach = most + size
+			if (ox - mx) * (ox - mx) + (oy - my) * (oy - my) + (oz - mz) * (oz - mz) >= reach * reach:
+				continue  # most are nowhere near
+			var share = own
+			if other.arm >= 0:
+				share = Util.least(own, 1.0 - across)
+				if other.kind != OBSTACLE:  # both give way
+					share = share * (1.0 - 0.5 * (1.0 - held[other.arm]))
+			if share <= 0.0:
+				continue
+			var both3 = apart(ends, 2 * i, 2 * k)
+			var x = both3[0]
+			var y = both3[1]
+			var z = both3[2]
+			var s = both3[3]
+			var gap = both3[4]
+			var radii = mine.radius + other.radius
+			if gap >= radii or gap < 1e-09:
+				continue
+			var depth = radii - gap
+			var amount = depth - 0.5 * SOFT if depth > SOFT else depth * depth / (2.0 * SOFT)
+			var inner = Util.least(1.0, gap / (DEEP * radii))
+			amount = amount * share * inner * inner * (3.0 - 2.0 * inner)
+			var part = s if mine.kind == FOREARM else 1.0
+			var way = [x / gap, y / gap, z / gap]
+			var left = amount - part * _dot(way, shift)
+			if left > 0.0:
+				shift = _plus(shift, _scaled(way, left * part / (part * part + ELBOW * (1.0 - part))))
+	return shift
+
+
+# Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, how far along the latter it ends, 0..1, and
+# its length.
+static func apart(ends, i, k):
+	var a = ends[i]
+	var c = ends[k]
+	var u = _minus(ends[i + 1], a)
+	var v = _minus(ends[k + 1], c)
+	var w = _minus(a, c)
+	var uu = _dot(u, u)
+	var uv = _dot(u, v)
+	var vv = _dot(v, v)
+	var uw = _dot(u, w)
+	var vw = _dot(v, w)
+	var s = 0.0
+	var t = 0.0
+	if uu > 1e-12:
+		var below = uu * vv - uv * uv
+		if below > 1e-09 * uu * vv:
+			s = Util.least(Util.most((uv * vw - vv * uw) / below, 0.0), 1.0)
+		if vv > 1e-12:
+			t = (uv * s + vw) / vv
+			if t < 0.0 or t > 1.0:
+				t = Util.least(Util.most(t, 0.0), 1.0)
+				s = Util.least(Util.most((uv * t - uw) / uu, 0.0), 1.0)
+		else:
+			s = Util.least(Util.most(-uw / uu, 0.0), 1.0)
+	elif vv > 1e-12:
+		t = Util.least(Util.most(vw / vv, 0.0), 1.0)
+	var both = _minus(_plus(w, _scaled(u, s)), _scaled(v, t))
+	var x = both[0]
+	var y = both[1]
+	var z = both[2]
+	return [x, y, z, s, sqrt(x * x + y * y + z * z)]
+
+
+# --- arithmetic
+# Return the product: rotate by `b`, then by `a`.
+static func times(a, b):
+	var both = a
+	var ax = both[0]
+	var ay = both[1]
+	var az = both[2]
+	var aw = both[3]
+	var both2 = b
+	var bx = both2[0]
+	var by = both2[1]
+	var bz = both2[2]
+	var bw = both2[3]
+	return [
+		aw * bx + ax * bw + ay * bz - az * by,
+		aw * by - ax * bz + ay * bw + az * bx,
+		aw * bz + ax * by - ay * bx + az * bw,
+		aw * bw - ax * bx - ay * by - az * bz
+	]
+
+
+# Return a vector rotated.
+static func rotated(q, v):
+	var both = q
+	var x = both[0]
+	var y = both[1]
+	var z = both[2]
+	var w = both[3]
+	var both2 = v
+	var vx = both2[0]
+	var vy = both2[1]
+	var vz = both2[2]
+	var tx = 2.0 * (y * vz - z * vy)
+	var ty = 2.0 * (z * vx - x * vz)
+	var tz = 2.0 * (x * vy - y * vx)
+	return [vx + w * tx + y * tz - z * ty, vy + w * ty + z * tx - x * tz, vz + w * tz + x * ty - y * tx]
+
+
+# Return the shortest rotation that takes one direction to another, both of length 1.
+static func between(a, b):
+	var both = a
+	var ax = both[0]
+	var ay = both[1]
+	var az = both[2]
+	var both2 = b
+	var bx = both2[0]
+	var by = both2[1]
+	var bz = both2[2]
+	var dot = ax * bx + ay * by + az * bz
+	if dot < -0.999999999:  # half a turn about any axis across
+		return _unit_turn([0.0, az, -ay, 0.0] if Util.absolute(ax) < 0.9 else [-az, 0.0, ax, 0.0])
+	return _unit_turn([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx, 1.0 + dot])
+
+
+# Return how long a vector is.
+static func length(v):
+	var both = v
+	var x = both[0]
+	var y = both[1]
+	var z = both[2]
+	return sqrt(x * x + y * y + z * z)
+
+
+static func _unit(v):
+	return _scaled(v, 1.0 / Util.most(length(v), 1e-12))
+
+
+static func _unit_turn(q):
+	var both = q
+	var x = both[0]
+	var y = both[1]
+	var z = both[2]
+	var w = both[3]
+	var k = 1.0 / Util.most(sqrt(x * x + y * y + z * z + w * w), 1e-12)
+	return [x * k, y * k, z * k, w * k]
+
+
+static func _back(q):
+	var both = q
+	var x = both[0]
+	var y = both[1]
+	var z = both[2]
+	var w = both[3]
+	return [-x, -y, -z, w]
+
+
+static func _plus(a, b):
+	var both = a
+	var ax = both[0]
+	var ay = both[1]
+	var az = both[2]
+	var both2 = b
+	var bx = both2[0]
+	var by = both2[1]
+	var bz = both2[2]
+	return [ax + bx, ay + by, az + bz]
+
+
+static func _minus(a, b):
+	var both = a
+	var ax = both[0]
+	var ay = both[1]
+	var az = both[2]
+	var both2 = b
+	var bx = both2[0]
+	var by = both2[1]
+	var bz = both2[2]
+	return [ax - bx, ay - by, az - bz]
+
+
+static func _scaled(a, k):
+	var both = a
+	var x = both[0]
+	var y = both[1]
+	var z = both[2]
+	return [x * k, y * k, z * k]
+
+
+static func _dot(a, b):
+	var both = a
+	var ax = both[0]
+	var ay = both[1]
+	var az = both[2]
+	var both2 = b
+	var bx = both2[0]
+	var by = both2[1]
+	var bz = both2[2]
+	return ax * bx + ay * by + az * bz

@@ -1,0 +1,293 @@
+# What was asked for and lasts: where to look, what to say, which mode to be in, which stance to stay in. Values; times are
+# seconds.
+#
+# Translated from metagraph/playback/life/items.py; change that, and translate anew.
+
+const LineTiming = preload("line_timing.gd")
+const Spots = preload("spots.gd")
+const Util = preload("util.gd")
+
+
+# Look at a point or a named point from `start` until `end`, or until the next look. strict: without averting.
+class LookAt:
+	var id
+	var start
+	var end
+	var to
+	var amount
+	var strict
+	var priority
+
+	func _init(id_, start_, end_, to_, amount_ = 1.0, strict_ = false, priority_ = 1):
+		self.id = id_
+		self.start = start_
+		self.end = end_
+		self.to = to_
+		self.amount = amount_
+		self.strict = strict_
+		self.priority = priority_
+
+
+# Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts the lower. length:
+# seconds it would have taken, where something cut it short. timing: when its words and mouth shapes come, where that was told.
+class Speech:
+	var id
+	var start
+	var end
+	var line
+	var text
+	var priority
+	var length
+	var timing
+
+	func _init(id_, start_, end_, line_ = null, text_ = "", priority_ = 1, length_ = null, timing_ = null):
+		self.id = id_
+		self.start = start_
+		self.end = end_
+		self.line = line_
+		self.text = text_
+		self.priority = priority_
+		self.length = length_
+		self.timing = timing_
+
+
+# The mode from `start` on; None for talking while something is said and idling otherwise.
+class ModeFrom:
+	var id
+	var start
+	var mode
+
+	func _init(id_, start_, mode_):
+		self.id = id_
+		self.start = start_
+		self.mode = mode_
+
+
+# Where a named point is from `start` on.
+class PlaceFrom:
+	var id
+	var start
+	var name
+	var point
+
+	func _init(id_, start_, name_, point_):
+		self.id = id_
+		self.start = start_
+		self.name = name_
+		self.point = point_
+
+
+# A blink asked for.
+class BlinkAt:
+	var id
+	var start
+
+	func _init(id_, start_):
+		self.id = id_
+		self.start = start_
+
+
+# From `start` on the models change no stance of a layer (or, with `on` false, may again), until `end` or the next of these.
+class StayFrom:
+	var id
+	var start
+	var layer
+	var on
+	var end
+
+	func _init(id_, start_, layer_, on_ = true, end_ = INF):
+		self.id = id_
+		self.start = start_
+		self.layer = layer_
+		self.on = on_
+		self.end = end_
+
+
+# Return the speech, ending no later than `at`; how long it would have been is remembered.
+static func cut(speech, at):
+	if speech.end <= at:
+		return speech
+	return Speech.new(
+		speech.id,
+		speech.start,
+		at,
+		speech.line,
+		speech.text,
+		speech.priority,
+		speech.end - speech.start if speech.length == null else speech.length,
+		speech.timing
+	)
+
+
+# Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, a lesser one is
+# not said.
+static func apart(speeches):
+	var out = []
+	for speech in speeches:
+		if out.size() > 0 and out[-1].end > speech.start:
+			var last = out[-1]
+			if speech.priority < last.priority:
+				continue
+			out.pop_back()
+			if last.start < speech.start:
+				out.append(cut(last, speech.start))
+		out.append(speech)
+	return out
+
+
+# Return a line as it goes on where the last of the same id has begun by `now`, or begins with it: it keeps its start and what has
+# been said of it. Only lines whose words or shapes were told with their times do.
+static func going_on(old, new, now):
+	if old == null or old.timing == null or new.timing == null or old.length != null:
+		return new
+	if Util.most(old.start, new.start) > now and old.start != new.start:
+		return new
+	var timing = LineTiming.extended(old.timing, new.timing, Util.most(now - old.start, 0.0))
+	var length = Util.most(LineTiming.timed_seconds(timing, null), new.end - new.start)
+	var more = new.text == "" or new.text == LineTiming.told_text(new.timing)
+	return Speech.new(
+		new.id,
+		old.start,
+		old.start + length,
+		new.line,
+		LineTiming.told_text(timing) if more else new.text,
+		new.priority,
+		new.length,
+		timing
+	)
+
+
+# Whether two tracks' looks are the same; so for the others below.
+static func alike_looks(one, other):
+	var holds = one.size() == other.size()
+	if holds:
+		var are_all = true
+		for n in range(one.size()):
+			var a = one[n]
+			var b = other[n]
+			if not (a == b or _same_look(a, b)):
+				are_all = false
+				break
+		holds = are_all
+	return holds
+
+
+static func _same_look(a, b):
+	if not Spots.same_spot(a.to, b.to) or a.amount != b.amount or a.strict != b.strict:
+		return false
+	return a.id == b.id and a.start == b.start and a.end == b.end and a.priority == b.priority
+
+
+static func alike_speeches(one, other):
+	var holds = one.size() == other.size()
+	if holds:
+		var are_all = true
+		for n in range(one.size()):
+			var a = one[n]
+			var b = other[n]
+			if not (a == b or _same_speech(a, b)):
+				are_all = false
+				break
+		holds = are_all
+	return holds
+
+
+static func _same_speech(a, b):
+	if a.line != b.line or a.text != b.text or a.length != b.length or a.priority != b.priority:
+		return false
+	return a.id == b.id and a.start == b.start and a.end == b.end and LineTiming.alike_timings(a.timing, b.timing)
+
+
+static func alike_modes(one, other):
+	var holds = one.size() == other.size()
+	if holds:
+		var are_all = true
+		for n in range(one.size()):
+			var a = one[n]
+			var b = other[n]
+			if not (a == b or (a.id == b.id and a.start == b.start and a.mode == b.mode)):
+				are_all = false
+				break
+		holds = are_all
+	return holds
+
+
+static func alike_places(one, other):
+	var holds = one.size() == other.size()
+	if holds:
+		var are_all = true
+		for n in range(one.size()):
+			var a = one[n]
+			var b = other[n]
+			if not (a == b or _same_place(a, b)):
+				are_all = false
+				break
+		holds = are_all
+	return holds
+
+
+static func _same_place(a, b):
+	if a.id != b.id or a.start != b.start or a.name != b.name:
+		return false
+	var are_all = true
+	for n in range(a.point.size()):
+		var x = a.point[n]
+		var y = b.point[n]
+		if not (x == y):
+			are_all = false
+			break
+	return are_all
+
+
+static func alike_blinks(one, other):
+	var holds = one.size() == other.size()
+	if holds:
+		var are_all = true
+		for n in range(one.size()):
+			var a = one[n]
+			var b = other[n]
+			if not (a == b or (a.id == b.id and a.start == b.start)):
+				are_all = false
+				break
+		holds = are_all
+	return holds
+
+
+static func alike_stays(one, other):
+	var holds = one.size() == other.size()
+	if holds:
+		var are_all = true
+		for n in range(one.size()):
+			var a = one[n]
+			var b = other[n]
+			if not (a == b or _same_stay(a, b)):
+				are_all = false
+				break
+		holds = are_all
+	return holds
+
+
+static func _same_stay(a, b):
+	if a.layer != b.layer or a.on != b.on or a.end != b.end:
+		return false
+	return a.id == b.id and a.start == b.start
+
+
+static func alike_felt(one, other):
+	var holds = one.size() == other.size()
+	if holds:
+		var are_all = true
+		for n in range(one.size()):
+			var a = one[n]
+			var b = other[n]
+			if not (a == b or _same_felt(a, b)):
+				are_all = false
+				break
+		holds = are_all
+	return holds
+
+
+static func _same_felt(a, b):
+	if a.valence != b.valence or a.arousal != b.arousal or a.intensity != b.intensity:
+		return false
+	return a.id == b.id and a.start == b.start and a.end == b.end

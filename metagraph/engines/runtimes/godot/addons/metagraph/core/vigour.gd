@@ -1,0 +1,6 @@
+# How energetic an action is, as the export tells it.
+
+
+# Returns it beside others of its layer and kind, -1..1.
+static func vigour(_project, action):
+	return action.vigour

@@ -1,0 +1,175 @@
+/**
+ * Where contacts want the hands at a time: those of the cue that plays and of the loops under it, each by as much as shows
+ * of it.
+ *
+ * Translated from metagraph/playback/contact_goals.py; change that, and translate anew.
+ */
+
+import { HandGoal } from "./contact_solve.js";
+import { HANDS, contactKey, contactWeight } from "./contact_spans.js";
+
+export const LEAST = 1e-06; // of a hand: what shows less than this is not solved
+
+/**
+ * Return what a layer wants of the hands at a time. cue: the one that plays, if it has motion. place: of the rest that is in
+ * force, -1 for none. strength: how much of the arms the layer moves, 0..1.
+ * @param {ContactRig} rig
+ * @param {Project} project
+ * @param {LayerPlan} plan
+ * @param {?Cue} cue
+ * @param {number} place
+ * @param {number} time
+ * @param {number} strength
+ * @returns {HandGoal[]}
+ */
+export function layerGoals(rig, project, plan, cue, place, time, strength) {
+  const out = [];
+  const shown = [0, 0];
+  if (cue !== null) {
+    const weight = _cueWeight(cue, time);
+    for (const [arm, hand] of HANDS.entries()) {
+      if (_moves(rig, cue.action, arm, hand)) {
+        shown[arm] = weight;
+      }
+    }
+    if (cue.action.contacts.length > 0) {
+      out.push(..._goals(rig, project, cue.action, _cueSeconds(cue, time), shown.map((w) => strength * w)));
+    }
+  }
+  if (place >= 0) {
+    const rest = plan.rests[place];
+    let over = 1;
+    if (place > 0 && rest.fadeStart + rest.fade > time) {
+      over = _ease((time - rest.fadeStart) / rest.fade);
+      out.push(..._loopGoals(rig, project, plan.rests[place - 1], time, strength * (1 - over), shown));
+    }
+    out.push(..._loopGoals(rig, project, rest, time, strength * over, shown));
+  }
+  return out;
+}
+
+/**
+ * Return what a loop wants, less what shows of the cue above it.
+ * @param {ContactRig} rig
+ * @param {Project} project
+ * @param {Rest} rest
+ * @param {number} time
+ * @param {number} strength
+ * @param {number[]} shown
+ * @returns {HandGoal[]}
+ */
+function _loopGoals(rig, project, rest, time, strength, shown) {
+  const out = [];
+  const action = rest.action;
+  if (action.contacts.length === 0) {
+    return out;
+  }
+  const left = shown.map((w) => strength * (1 - w));
+  const [start, end] = project.span(action);
+  const seam = Math.min(Math.max(0, action.timing.blendIn), (end - start) / 2);
+  const period = end - start - seam;
+  if (period <= 0) {
+    return _goals(rig, project, action, start, left);
+  }
+  const elapsed = time - rest.start;
+  let phase = seam > 0 ? Math.max(elapsed, 0) : elapsed;
+  phase = phase - period * Math.floor(phase / period);
+  let old = 0;
+  if (seam > 0 && elapsed >= period) {
+    old = 1 - _ease(phase / seam);
+  }
+  if (old > 0) {
+    const before = start + Math.min(period + phase, end - start);
+    out.push(..._goals(rig, project, action, before, left.map((w) => old * w)));
+  }
+  out.push(..._goals(rig, project, action, start + phase, left.map((w) => (1 - old) * w)));
+  return out;
+}
+
+/**
+ * Return the goals of an action at clip seconds. shares: how much of it shows at the left hand, the right.
+ * @param {ContactRig} rig
+ * @param {Project} project
+ * @param {Action} action
+ * @param {number} seconds
+ * @param {number[]} shares
+ * @returns {HandGoal[]}
+ */
+function _goals(rig, project, action, seconds, shares) {
+  const out = [];
+  const [start, end] = project.span(action);
+  for (const span of action.contacts) {
+    const arm = _arm(span);
+    const to = rig.places.get(span.to) ?? null;
+    if (to === null || span.keys.length === 0 || shares[arm] <= LEAST) {
+      continue;
+    }
+    const weight = shares[arm] * contactWeight(span, seconds, start, end);
+    if (weight > LEAST) {
+      const key = contactKey(span, seconds);
+      out.push(new HandGoal(arm, to, key.at, key.turn, weight));
+    }
+  }
+  return out;
+}
+
+/**
+ * @param {ContactSpan} span
+ * @returns {number}
+ */
+function _arm(span) {
+  return span.hand === "left" ? 0 : 1;
+}
+
+/**
+ * Whether an action moves a hand, and does not leave it to its stance.
+ * @param {ContactRig} rig
+ * @param {Action} action
+ * @param {number} arm
+ * @param {string} hand
+ * @returns {boolean}
+ */
+function _moves(rig, action, arm, hand) {
+  if (!["both", hand].includes(action.limb)) {
+    return false;
+  }
+  return action.joints.length === 0 || action.joints.includes(rig.hands[arm]);
+}
+
+/**
+ * @param {Cue} cue
+ * @param {number} time
+ * @returns {number}
+ */
+function _cueWeight(cue, time) {
+  if (time < cue.start || time >= cue.end) {
+    return 0;
+  }
+  const rise = cue.blendIn > 0 ? _ease((time - cue.start) / cue.blendIn) : 1;
+  const fall = cue.blendOut > 0 ? _ease((cue.end - time) / cue.blendOut) : 1;
+  return rise * fall;
+}
+
+/**
+ * @param {Cue} cue
+ * @param {number} time
+ * @returns {number}
+ */
+function _cueSeconds(cue, time) {
+  const elapsed = time - cue.start;
+  if (cue.hold <= 0) {
+    return cue.entry + elapsed * cue.tempo;
+  }
+  const held = Math.min(Math.max(elapsed - (cue.holdFrom - cue.entry) / cue.tempo, 0), cue.hold);
+  const more = (elapsed - held) * (cue.tempo - 1);
+  return cue.entry + elapsed - held + more + held * ((cue.holdTo - cue.holdFrom) / cue.hold);
+}
+
+/**
+ * @param {number} x
+ * @returns {number}
+ */
+function _ease(x) {
+  x = Math.min(Math.max(x, 0), 1);
+  return x * x * (3 - 2 * x);
+}

@@ -1,0 +1,624 @@
+/**
+ * Keeping hands in contact with the body, and out of it: two-bone arms brought to where they should be.
+ *
+ * The body's parts are capsules, each fixed to a joint. Rotations are quaternions xyzw, lengths metres; places are those in
+ * a rig's list of joints. Worked out one pose at a time, in plain numbers, the same in all languages.
+ *
+ * Translated from metagraph/motion/contact_solve.py; change that, and translate anew.
+ */
+
+import { range } from "./basics.js";
+
+export const REACHED = 0.995; // of an arm's length: it does not snap straight
+export const FOLDED = 0.906; // cosine of the least angle inside an elbow, 25 degrees
+export const WRIST = 0.819; // cosine of half of how far a contact may turn a hand from where it was, 70 degrees
+export const SOFT = 0.006; // metres of depth over which the push out of the body sets in
+export const DEEP = 0.35; // of the radii: nearer than this to a capsule's line it is not pushed all the way
+export const ELBOW = 0.1; // how little a forearm is pushed near its elbow, which a wrist cannot move
+export const PASSES = 3; // of the guard
+export const OBSTACLE = 0; // what a capsule is to the guard: others are pushed out of it
+export const FOREARM = 1; // pushed out, from the elbow to the wrist
+export const HAND = 2; // pushed out
+
+/**
+ * Places of an arm's joints, and of all joints from its upper arm on, parents first.
+ *
+ * upper: number; lower: number; hand: number; below: number[].
+ */
+export class ContactArm {
+  constructor(upper, lower, hand, below) {
+    this.upper = upper;
+    this.lower = lower;
+    this.hand = hand;
+    this.below = below;
+  }
+}
+
+/**
+ * A part of the body. joint, to: the places its line's ends are fixed to; a, b: where, in those joints' own spaces. arm: 0
+ * left, 1 right, -1 of neither. kind: whether it is pushed out of others: OBSTACLE is not; FOREARM runs from the elbow to
+ * the wrist; HAND.
+ *
+ * joint: number; a: [number, number, number]; to: number; b: [number, number, number]; radius: number; arm: number; kind:
+ * number.
+ */
+export class BodyCapsule {
+  constructor(joint, a, to, b, radius, arm = -1, kind = 0) {
+    this.joint = joint;
+    this.a = a;
+    this.to = to;
+    this.b = b;
+    this.radius = radius;
+    this.arm = arm;
+    this.kind = kind;
+  }
+}
+
+/**
+ * What of a skeleton contacts need. joints: theirs, parents first. parents: for each the place of the nearest one above,
+ * which has to be its parent; -1 for a root. places: names of joints to their places. arms: left, right; hands: the names of
+ * their hands. contacts, guard: what is on.
+ *
+ * joints: number[]; parents: number[]; places: Map<string, number>; arms: ContactArm[]; hands: string[]; capsules:
+ * BodyCapsule[]; contacts: boolean; guard: boolean.
+ */
+export class ContactRig {
+  constructor(joints, parents, places, arms, hands, capsules, contacts = true, guard = true) {
+    this.joints = joints;
+    this.parents = parents;
+    this.places = places;
+    this.arms = arms;
+    this.hands = hands;
+    this.capsules = capsules;
+    this.contacts = contacts;
+    this.guard = guard;
+  }
+}
+
+/**
+ * Where a wrist should be. arm: 0 left, 1 right. to: a place; at, turn: in its space. weight: 0..1.
+ *
+ * arm: number; to: number; at: [number, number, number]; turn: [number, number, number, number]; weight: number.
+ */
+export class HandGoal {
+  constructor(arm, to, at, turn, weight) {
+    this.arm = arm;
+    this.to = to;
+    this.at = at;
+    this.turn = turn;
+    this.weight = weight;
+  }
+}
+
+/**
+ * A pose of a rig's joints: `local` rotations and `moved` translations in their parents' space, `turned` and `at` in the
+ * character's, which `spread` works out.
+ *
+ * local: [number, number, number, number][]; moved: [number, number, number][]; turned: [number, number, number, number][];
+ * at: [number, number, number][].
+ */
+export class ContactPose {
+  constructor(local = [], moved = [], turned = [], at = []) {
+    this.local = local;
+    this.moved = moved;
+    this.turned = turned;
+    this.at = at;
+  }
+}
+
+/**
+ * Work out where all joints are.
+ * @param {ContactRig} rig
+ * @param {ContactPose} pose
+ */
+export function spread(rig, pose) {
+  pose.turned = [];
+  pose.at = [];
+  for (const [place, turn] of pose.local.entries()) {
+    pose.turned.push(turn);
+    pose.at.push(pose.moved[place]);
+  }
+  for (let place = 0; place < rig.parents.length; place++) {
+    _join(rig, pose, place);
+  }
+}
+
+/**
+ * @param {ContactRig} rig
+ * @param {ContactPose} pose
+ * @param {number} place
+ */
+function _join(rig, pose, place) {
+  const above = rig.parents[place];
+  if (above < 0) {
+    pose.turned[place] = pose.local[place];
+    pose.at[place] = pose.moved[place];
+  } else {
+    pose.turned[place] = times(pose.turned[above], pose.local[place]);
+    pose.at[place] = _plus(pose.at[above], rotated(pose.turned[above], pose.moved[place]));
+  }
+}
+
+/**
+ * Bring hands to their goals, then hands and forearms out of the body; return whether anything moved. The joints' places
+ * have to be known (`spread`).
+ * @param {ContactRig} rig
+ * @param {ContactPose} pose
+ * @param {HandGoal[]} goals
+ * @returns {boolean}
+ */
+export function solveContacts(rig, pose, goals) {
+  let moved = false;
+  const held = [0, 0];
+  let across = 0; // how much one arm is held on the other
+  for (const goal of goals) {
+    held[goal.arm] = Math.min(1, held[goal.arm] + goal.weight);
+    if (_onArm(rig, goal.to, 1 - goal.arm)) {
+      across = Math.max(across, goal.weight);
+    }
+  }
+  let rounds = goals.length === 0 ? 0 : across > 0 ? 2 : 1;
+  const wrists = rig.arms.map((arm) => pose.at[arm.hand]);
+  const hands = rig.arms.map((arm) => pose.turned[arm.hand]);
+  while (rounds > 0) {
+    rounds -= 1;
+    for (let side = 0; side < rig.arms.length; side++) {
+      if (held[side] > 0) {
+        _hold(rig, pose, goals, side, wrists[side], hands[side]);
+        moved = true;
+      }
+    }
+  }
+  if (rig.guard && _guarded(rig, pose, held, across)) {
+    moved = true;
+    for (let side = 0; side < rig.arms.length; side++) {
+      if (across > 0 && held[side] > 0) {
+        _hold(rig, pose, goals, side, wrists[side], hands[side]);
+      }
+    }
+  }
+  return moved;
+}
+
+/**
+ * @param {ContactRig} rig
+ * @param {number} place
+ * @param {number} arm
+ * @returns {boolean}
+ */
+function _onArm(rig, place, arm) {
+  return rig.arms[arm].below.some((below) => place === below);
+}
+
+/**
+ * Bring a hand to the weighted mean of its goals. wrist, hand: where and how it was without any.
+ * @param {ContactRig} rig
+ * @param {ContactPose} pose
+ * @param {HandGoal[]} goals
+ * @param {number} side
+ * @param {[number, number, number]} wrist
+ * @param {[number, number, number, number]} hand
+ */
+function _hold(rig, pose, goals, side, wrist, hand) {
+  let total = 0;
+  let x = 0;
+  let y = 0;
+  let z = 0;
+  let a = 0;
+  let b = 0;
+  let c = 0;
+  let d = 0;
+  const [hx, hy, hz, hw] = hand;
+  let k;
+  for (const goal of goals) {
+    if (goal.arm === side && goal.weight > 0) {
+      k = goal.weight;
+      const [px, py, pz] = _plus(pose.at[goal.to], rotated(pose.turned[goal.to], goal.at));
+      const [qx, qy, qz, qw] = times(pose.turned[goal.to], goal.turn);
+      x = x + k * px;
+      y = y + k * py;
+      z = z + k * pz;
+      total = total + k;
+      if (qx * hx + qy * hy + qz * hz + qw * hw < 0) {
+        k = -k;
+      }
+      a = a + k * qx;
+      b = b + k * qy;
+      c = c + k * qz;
+      d = d + k * qw;
+    }
+  }
+  const weight = Math.min(1, total);
+  const mean = [x / total, y / total, z / total];
+  let turn = _withinWrist(hand, _unitTurn([a, b, c, d]));
+  const [tx, ty, tz, tw] = turn;
+  const rest = 1 - weight;
+  k = tx * hx + ty * hy + tz * hz + tw * hw < 0 ? -weight : weight;
+  turn = _unitTurn([hx * rest + tx * k, hy * rest + ty * k, hz * rest + tz * k, hw * rest + tw * k]);
+  _bring(rig, pose, side, _plus(wrist, _scaled(_minus(mean, wrist), weight)), turn);
+}
+
+/**
+ * Return a hand's turn, as near to it as the wrist may be turned from how the hand was.
+ * @param {[number, number, number, number]} hand
+ * @param {[number, number, number, number]} turn
+ * @returns {[number, number, number, number]}
+ */
+function _withinWrist(hand, turn) {
+  const [x, y, z, w] = times(turn, _back(hand));
+  if (w < 0) {
+    x = -x;
+    y = -y;
+    z = -z;
+    w = -w;
+  }
+  if (w >= WRIST) {
+    return turn;
+  }
+  const k = Math.sqrt(1 - WRIST * WRIST) / Math.max(Math.sqrt(x * x + y * y + z * z), 1e-12);
+  return times([x * k, y * k, z * k, WRIST], hand);
+}
+
+/**
+ * Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it.
+ * @param {ContactRig} rig
+ * @param {ContactPose} pose
+ * @param {number} side
+ * @param {[number, number, number]} goal
+ * @param {[number, number, number, number]} hand
+ */
+function _bring(rig, pose, side, goal, hand) {
+  const arm = rig.arms[side];
+  const root = pose.at[arm.upper];
+  const elbow = pose.at[arm.lower];
+  const wrist = pose.at[arm.hand];
+  const bone = _minus(elbow, root);
+  const fore = _minus(wrist, elbow);
+  const aboveElbow = length(bone);
+  const belowElbow = length(fore);
+  const now = length(_minus(wrist, root));
+  if (aboveElbow < 1e-06 || belowElbow < 1e-06 || now < 1e-06) {
+    return;
+  }
+  const way = _minus(goal, root);
+  const most = Math.max(REACHED * (aboveElbow + belowElbow), now);
+  const least = Math.min(
+    Math.sqrt(aboveElbow * aboveElbow + belowElbow * belowElbow - 2 * FOLDED * aboveElbow * belowElbow),
+    now
+  );
+  const far = Math.min(Math.max(length(way), least), most);
+  const ahead = _unit(way);
+  const before = _scaled(_minus(wrist, root), 1 / now);
+  let aside = _minus(bone, _scaled(before, _dot(bone, before)));
+  // A straight arm has no side: it bends to one that goes with its bone.
+  let spare = rotated(pose.turned[arm.upper], [0.31, 0.52, 0.8]);
+  spare = _minus(spare, _scaled(before, _dot(spare, before)));
+  aside = _plus(aside, _scaled(spare, Math.max(0, 0.01 * aboveElbow - length(aside))));
+  aside = _unit(rotated(between(before, ahead), aside));
+  const along = (aboveElbow * aboveElbow + far * far - belowElbow * belowElbow) / (2 * far);
+  const high = Math.sqrt(Math.max(0, aboveElbow * aboveElbow - along * along));
+  const knee = _plus(_scaled(ahead, along), _scaled(aside, high));
+  const swing = between(_unit(bone), _unit(knee));
+  const fold = between(_unit(rotated(swing, fore)), _unit(_minus(_scaled(ahead, far), knee)));
+  const both = times(fold, swing);
+  let above = _above(rig, pose, arm.upper);
+  pose.local[arm.upper] = times(_back(above), times(swing, pose.turned[arm.upper]));
+  above = times(swing, _above(rig, pose, arm.lower));
+  pose.local[arm.lower] = times(_back(above), times(both, pose.turned[arm.lower]));
+  above = times(both, _above(rig, pose, arm.hand));
+  pose.local[arm.hand] = times(_back(above), hand);
+  for (const place of arm.below) {
+    _join(rig, pose, place);
+  }
+}
+
+/**
+ * @param {ContactRig} rig
+ * @param {ContactPose} pose
+ * @param {number} place
+ * @returns {[number, number, number, number]}
+ */
+function _above(rig, pose, place) {
+  const above = rig.parents[place];
+  return above < 0 ? [0, 0, 0, 1] : pose.turned[above];
+}
+
+/**
+ * Push forearms and hands out of what they are inside of, by the least shift of the wrists; return whether any was. held:
+ * how much each hand is kept somewhere, and so is not pushed.
+ * @param {ContactRig} rig
+ * @param {ContactPose} pose
+ * @param {number[]} held
+ * @param {number} across
+ * @returns {boolean}
+ */
+function _guarded(rig, pose, held, across) {
+  let moved = false;
+  let passes = PASSES;
+  while (passes > 0) {
+    passes -= 1;
+    const ends = capsuleEnds(rig, pose);
+    const balls = _balls(rig, ends);
+    const shifts = range(rig.arms.length).map((side) => _shift(rig, ends, balls, side, held, across));
+    let found = false;
+    for (const [side, shift] of shifts.entries()) {
+      if (length(shift) > 0) {
+        const hand = rig.arms[side].hand;
+        _bring(rig, pose, side, _plus(pose.at[hand], shift), pose.turned[hand]);
+        found = true;
+      }
+    }
+    if (!found) {
+      return moved;
+    }
+    moved = true;
+  }
+  return moved;
+}
+
+/**
+ * Return both ends of every capsule's line, one after the other.
+ * @param {ContactRig} rig
+ * @param {ContactPose} pose
+ * @returns {[number, number, number][]}
+ */
+export function capsuleEnds(rig, pose) {
+  const out = [];
+  for (const capsule of rig.capsules) {
+    out.push(_plus(pose.at[capsule.joint], rotated(pose.turned[capsule.joint], capsule.a)));
+    out.push(_plus(pose.at[capsule.to], rotated(pose.turned[capsule.to], capsule.b)));
+  }
+  return out;
+}
+
+/**
+ * Return a ball round each capsule: its middle and radius.
+ * @param {ContactRig} rig
+ * @param {[number, number, number][]} ends
+ * @returns {[number, number, number, number][]}
+ */
+function _balls(rig, ends) {
+  const out = [];
+  for (const [n, capsule] of rig.capsules.entries()) {
+    const [ax, ay, az] = ends[2 * n];
+    const [bx, by, bz] = ends[2 * n + 1];
+    const x = bx - ax;
+    const y = by - ay;
+    const z = bz - az;
+    const size = 0.5 * Math.sqrt(x * x + y * y + z * z) + capsule.radius;
+    out.push([ax + 0.5 * x, ay + 0.5 * y, az + 0.5 * z, size]);
+  }
+  return out;
+}
+
+/**
+ * Return by what a wrist has to move, so that its arm is out of all else, or nearer to that.
+ * @param {ContactRig} rig
+ * @param {[number, number, number][]} ends
+ * @param {[number, number, number, number][]} balls
+ * @param {number} side
+ * @param {number[]} held
+ * @param {number} across
+ * @returns {[number, number, number]}
+ */
+function _shift(rig, ends, balls, side, held, across) {
+  let shift = [0, 0, 0];
+  const own = 1 - held[side];
+  if (own <= 0) {
+    return shift;
+  }
+  for (const [i, mine] of rig.capsules.entries()) {
+    if (mine.arm !== side || mine.kind === OBSTACLE) {
+      continue;
+    }
+    const [mx, my, mz, size] = balls[i];
+    for (let k = 0; k < rig.capsules.length; k++) {
+      const other = rig.capsules[k];
+      if (other.arm === side) {
+        continue;
+      }
+      const [ox, oy, oz, most] = balls[k];
+      const reach = most + size;
+      if ((ox - mx) * (ox - mx) + (oy - my) * (oy - my) + (oz - mz) * (oz - mz) >= reach * reach) {
+        continue; // most are nowhere near
+      }
+      let share = own;
+      if (other.arm >= 0) {
+        share = Math.min(own, 1 - across);
+        if (other.kind !== OBSTACLE) { // both give way
+          share = share * (1 - 0.5 * (1 - held[other.arm]));
+        }
+      }
+      if (share <= 0) {
+        continue;
+      }
+      const [x, y, z, s, gap] = apart(ends, 2 * i, 2 * k);
+      const radii = mine.radius + other.radius;
+      if (gap >= radii || gap < 1e-09) {
+        continue;
+      }
+      const depth = radii - gap;
+      let amount = depth > SOFT ? depth - 0.5 * SOFT : depth * depth / (2 * SOFT);
+      const inner = Math.min(1, gap / (DEEP * radii));
+      amount = amount * share * inner * inner * (3 - 2 * inner);
+      const part = mine.kind === FOREARM ? s : 1;
+      const way = [x / gap, y / gap, z / gap];
+      const left = amount - part * _dot(way, shift);
+      if (left > 0) {
+        shift = _plus(shift, _scaled(way, left * part / (part * part + ELBOW * (1 - part))));
+      }
+    }
+  }
+  return shift;
+}
+
+/**
+ * Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, how far along the latter it ends,
+ * 0..1, and its length.
+ * @param {[number, number, number][]} ends
+ * @param {number} i
+ * @param {number} k
+ * @returns {[number, number, number, number, number]}
+ */
+export function apart(ends, i, k) {
+  const a = ends[i];
+  const c = ends[k];
+  const u = _minus(ends[i + 1], a);
+  const v = _minus(ends[k + 1], c);
+  const w = _minus(a, c);
+  const uu = _dot(u, u);
+  const uv = _dot(u, v);
+  const vv = _dot(v, v);
+  const uw = _dot(u, w);
+  const vw = _dot(v, w);
+  let s = 0;
+  let t = 0;
+  if (uu > 1e-12) {
+    const below = uu * vv - uv * uv;
+    if (below > 1e-09 * uu * vv) {
+      s = Math.min(Math.max((uv * vw - vv * uw) / below, 0), 1);
+    }
+    if (vv > 1e-12) {
+      t = (uv * s + vw) / vv;
+      if (t < 0 || t > 1) {
+        t = Math.min(Math.max(t, 0), 1);
+        s = Math.min(Math.max((uv * t - uw) / uu, 0), 1);
+      }
+    } else {
+      s = Math.min(Math.max(-uw / uu, 0), 1);
+    }
+  } else if (vv > 1e-12) {
+    t = Math.min(Math.max(vw / vv, 0), 1);
+  }
+  const [x, y, z] = _minus(_plus(w, _scaled(u, s)), _scaled(v, t));
+  return [x, y, z, s, Math.sqrt(x * x + y * y + z * z)];
+}
+
+// --- arithmetic
+/**
+ * Return the product: rotate by `b`, then by `a`.
+ * @param {[number, number, number, number]} a
+ * @param {[number, number, number, number]} b
+ * @returns {[number, number, number, number]}
+ */
+export function times(a, b) {
+  const [ax, ay, az, aw] = a;
+  const [bx, by, bz, bw] = b;
+  return [
+    aw * bx + ax * bw + ay * bz - az * by,
+    aw * by - ax * bz + ay * bw + az * bx,
+    aw * bz + ax * by - ay * bx + az * bw,
+    aw * bw - ax * bx - ay * by - az * bz,
+  ];
+}
+
+/**
+ * Return a vector rotated.
+ * @param {[number, number, number, number]} q
+ * @param {[number, number, number]} v
+ * @returns {[number, number, number]}
+ */
+export function rotated(q, v) {
+  const [x, y, z, w] = q;
+  const [vx, vy, vz] = v;
+  const tx = 2 * (y * vz - z * vy);
+  const ty = 2 * (z * vx - x * vz);
+  const tz = 2 * (x * vy - y * vx);
+  return [vx + w * tx + y * tz - z * ty, vy + w * ty + z * tx - x * tz, vz + w * tz + x * ty - y * tx];
+}
+
+/**
+ * Return the shortest rotation that takes one direction to another, both of length 1.
+ * @param {[number, number, number]} a
+ * @param {[number, number, number]} b
+ * @returns {[number, number, number, number]}
+ */
+export function between(a, b) {
+  const [ax, ay, az] = a;
+  const [bx, by, bz] = b;
+  const dot = ax * bx + ay * by + az * bz;
+  if (dot < -0.999999999) { // half a turn about any axis across
+    return _unitTurn(Math.abs(ax) < 0.9 ? [0, az, -ay, 0] : [-az, 0, ax, 0]);
+  }
+  return _unitTurn([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx, 1 + dot]);
+}
+
+/**
+ * Return how long a vector is.
+ * @param {[number, number, number]} v
+ * @returns {number}
+ */
+export function length(v) {
+  const [x, y, z] = v;
+  return Math.sqrt(x * x + y * y + z * z);
+}
+
+/**
+ * @param {[number, number, number]} v
+ * @returns {[number, number, number]}
+ */
+function _unit(v) {
+  return _scaled(v, 1 / Math.max(length(v), 1e-12));
+}
+
+/**
+ * @param {[number, number, number, number]} q
+ * @returns {[number, number, number, number]}
+ */
+function _unitTurn(q) {
+  const [x, y, z, w] = q;
+  const k = 1 / Math.max(Math.sqrt(x * x + y * y + z * z + w * w), 1e-12);
+  return [x * k, y * k, z * k, w * k];
+}
+
+/**
+ * @param {[number, number, number, number]} q
+ * @returns {[number, number, number, number]}
+ */
+function _back(q) {
+  const [x, y, z, w] = q;
+  return [-x, -y, -z, w];
+}
+
+/**
+ * @param {[number, number, number]} a
+ * @param {[number, number, number]} b
+ * @returns {[number, number, number]}
+ */
+function _plus(a, b) {
+  const [ax, ay, az] = a;
+  const [bx, by, bz] = b;
+  return [ax + bx, ay + by, az + bz];
+}
+
+/**
+ * @param {[number, number, number]} a
+ * @param {[number, number, number]} b
+ * @returns {[number, number, number]}
+ */
+function _minus(a, b) {
+  const [ax, ay, az] = a;
+  const [bx, by, bz] = b;
+  return [ax - bx, ay - by, az - bz];
+}
+
+/**
+ * @param {[number, number, number]} a
+ * @param {number} k
+ * @returns {[number, number, number]}
+ */
+function _scaled(a, k) {
+  const [x, y, z] = a;
+  return [x * k, y * k, z * k];
+}
+
+/**
+ * @param {[number, number, number]} a
+ * @param {[number, number, number]} b
+ * @returns {number}
+ */
+function _dot(a, b) {
+  const [ax, ay, az] = a;
+  const [bx, by, bz] = b;
+  return ax * bx + ay * by + az * bz;
+}

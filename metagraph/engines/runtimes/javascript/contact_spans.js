@@ -1,0 +1,105 @@
+/**
+ * Contacts of an action: where on the body a hand stays, or goes along, for a while of its clip.
+ *
+ * A contact says where the wrist is in the space of a joint, and how the hand is turned there, so that it holds whatever
+ * else moves that joint: a breathing spine, a layer below, a body of another shape.
+ *
+ * Translated from metagraph/motion/contact_spans.py; change that, and translate anew.
+ */
+
+
+export const HANDS = ["left", "right"];
+export const PLACES = ["palm", "fingertips", "back", "wrist"];
+export const EASE = 0.15; // seconds in which a hand comes to a contact, and leaves it, where nothing else is said
+
+/**
+ * Where a hand is on a joint at a moment. time: clip seconds. at: the wrist in the joint's own space, metres. turn: how the
+ * hand is turned there, xyzw.
+ *
+ * time: number; at: [number, number, number]; turn: [number, number, number, number].
+ */
+export class ContactKey {
+  constructor(time, at, turn) {
+    this.time = time;
+    this.at = at;
+    this.turn = turn;
+  }
+}
+
+/**
+ * A hand kept where it is on the body.
+ *
+ * hand: left or right. place: what of the hand touches: palm, fingertips, back, wrist. to: the name of the joint it stays
+ * with. start, end: clip seconds. keys: one for a hand that stays, more, in order, for one that moves over the body.
+ * ease_in, ease_out: seconds inside the span in which it comes and goes; none where the action begins, or ends, within the
+ * span.
+ *
+ * hand: string; place: string; to: string; start: number; end: number; keys: ContactKey[]; easeIn: number; easeOut: number.
+ */
+export class ContactSpan {
+  constructor(hand, place, to, start, end, keys, easeIn = EASE, easeOut = EASE) {
+    this.hand = hand;
+    this.place = place;
+    this.to = to;
+    this.start = start;
+    this.end = end;
+    this.keys = keys;
+    this.easeIn = easeIn;
+    this.easeOut = easeOut;
+  }
+}
+
+/**
+ * Return how much a hand is held at clip seconds, 0..1. first, last: what of the clip plays.
+ * @param {ContactSpan} span
+ * @param {number} seconds
+ * @param {number} first
+ * @param {number} last
+ * @returns {number}
+ */
+export function contactWeight(span, seconds, first, last) {
+  if (seconds < span.start || seconds > span.end) {
+    return 0;
+  }
+  let shown = 1;
+  if (span.start > first && span.easeIn > 0) {
+    shown = Math.min(shown, (seconds - span.start) / span.easeIn);
+  }
+  if (span.end < last && span.easeOut > 0) {
+    shown = Math.min(shown, (span.end - seconds) / span.easeOut);
+  }
+  return shown * shown * (3 - 2 * shown);
+}
+
+/**
+ * Return where a hand is at clip seconds: between two keys on the straight line.
+ * @param {ContactSpan} span
+ * @param {number} seconds
+ * @returns {ContactKey}
+ */
+export function contactKey(span, seconds) {
+  let before = span.keys[0];
+  for (const after of span.keys) {
+    if (after.time >= seconds) {
+      if (after.time <= before.time) {
+        return after;
+      }
+      const part = (seconds - before.time) / (after.time - before.time);
+      const [ax, ay, az] = before.at;
+      const [bx, by, bz] = after.at;
+      const at = [ax + (bx - ax) * part, ay + (by - ay) * part, az + (bz - az) * part];
+      const [px, py, pz, pw] = before.turn;
+      const [qx, qy, qz, qw] = after.turn;
+      const other = px * qx + py * qy + pz * qz + pw * qw < 0 ? -part : part;
+      const own = 1 - part;
+      const x = px * own + qx * other;
+      const y = py * own + qy * other;
+      const z = pz * own + qz * other;
+      const w = pw * own + qw * other;
+      const size = 1 / Math.max(Math.sqrt(x * x + y * y + z * z + w * w), 1e-12);
+      return new ContactKey(seconds, at, [x * size, y * size, z * size, w * size]);
+    }
+    before = after;
+  }
+  return before;
+}

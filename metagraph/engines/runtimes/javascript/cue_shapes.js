@@ -1,0 +1,173 @@
+/**
+ * How an action would play for a request: from when, for how long, and how late.
+ *
+ * A gesture waits for its stroke or cuts its preparation to catch up with it; its hold is stretched, and its retraction may
+ * be cut (Borer et al., section 6.2).
+ *
+ * Translated from metagraph/playback/cue_shapes.py; change that, and translate anew.
+ */
+
+import { drag } from "./mood.js";
+import { phases } from "./phases.js";
+
+export const FITS = 1e-06; // seconds by which sums of times may be off
+export const HURRY = 2; // a hold is played at most this many times as fast as it was made
+export const RETRACTION = 0.4; // seconds in which an action whose retraction is cut goes back to its stance, at the least
+export const SHARED = 0.25; // seconds within which two strokes may be one
+
+/**
+ * How an action would play: from `start` on, `length` seconds, at least `shortest`; the rest as in a cue.
+ *
+ * start: number; entry: number; length: number; shortest: number; holdFrom: number; holdTo: number; hold: number; tempo:
+ * number.
+ */
+export class CueShape {
+  constructor(start, entry, length, shortest, holdFrom = 0, holdTo = 0, hold = 0, tempo = 1) {
+    this.start = start;
+    this.entry = entry;
+    this.length = length;
+    this.shortest = shortest;
+    this.holdFrom = holdFrom;
+    this.holdTo = holdTo;
+    this.hold = hold;
+    this.tempo = tempo;
+  }
+}
+
+/**
+ * Return how an action would play for a request from `now` on, or as a step on the way to it. speed: a factor of its own.
+ * @param {Project} project
+ * @param {Action} action
+ * @param {?MetaRequest} request
+ * @param {number} now
+ * @param {number} speed
+ * @returns {CueShape}
+ */
+export function shapeOf(project, action, request, now, speed) {
+  const [start, end] = project.span(action);
+  let begin = now;
+  let entry = start;
+  let holdFrom = 0;
+  let holdTo = 0;
+  let hold = 0;
+  if (request !== null
+    && action.kind === "gesture"
+    && (request.hold !== null || request.stroke !== null || !request.prepare)) {
+    const found = phases(project, action);
+    const latest = found.skip(action.timing.blendIn);
+    entry = request.prepare ? start : latest;
+    // Wait for the stroke, or catch up with it by cutting the preparation.
+    if (request.stroke !== null) {
+      begin = Math.max(now, request.stroke - (found.stroke - entry) / speed);
+      const missed = found.stroke - Math.max(0, request.stroke - begin) * speed;
+      entry = Math.min(Math.max(entry, missed), Math.max(entry, latest));
+    }
+    if (request.hold !== null) {
+      holdFrom = found.strokeEnd;
+      holdTo = found.relax;
+      hold = Math.max(request.hold, (holdTo - holdFrom) / HURRY);
+      if (hold <= 0) {
+        holdFrom = 0;
+        holdTo = 0;
+      }
+    }
+  }
+  const natural = holdTo - holdFrom;
+  const length = end - entry + hold - natural + drag(end - entry - natural, speed);
+  let shortest = length;
+  const exitAt = action.timing.earliestExit;
+  if (exitAt !== null) {
+    let left = exitAt - entry + (exitAt >= holdTo ? hold - natural : 0);
+    left += drag(exitAt - entry - (exitAt >= holdTo ? natural : 0), speed);
+    shortest = Math.min(length, Math.max(0, left) + action.timing.blendOut);
+  }
+  return new CueShape(begin, entry, length, shortest, holdFrom, holdTo, hold, speed);
+}
+
+/**
+ * Whether something that plays so is over by a limit.
+ * @param {CueShape} shape
+ * @param {number} limit
+ * @returns {boolean}
+ */
+export function fitsBefore(shape, limit) {
+  return shape.start + shape.shortest <= limit + FITS;
+}
+
+/**
+ * Return by how many seconds an action that plays so comes late, at its stroke where one is asked for; less than 0 before
+ * its time.
+ * @param {Project} project
+ * @param {Action} action
+ * @param {MetaRequest} request
+ * @param {CueShape} shape
+ * @returns {number}
+ */
+export function lateness(project, action, request, shape) {
+  if (request.stroke !== null && action.kind === "gesture") {
+    const found = phases(project, action);
+    const until = found.stroke - shape.entry;
+    return shape.start + found.stroke - shape.entry + drag(until, shape.tempo) - request.stroke;
+  }
+  return shape.start - request.start;
+}
+
+/**
+ * Return by how many seconds a request may come late, 0 where it does not say.
+ * @param {MetaRequest} request
+ * @returns {number}
+ */
+export function slackOf(request) {
+  return request.late === null ? 0 : request.late;
+}
+
+/**
+ * Return the seconds that a gesture takes whose retraction is cut, and whose hold is left out, unless it was asked for.
+ * @param {Project} project
+ * @param {Action} action
+ * @param {CueShape} shape
+ * @returns {number}
+ */
+export function hurried(project, action, shape) {
+  if (action.kind !== "gesture" || action.timing.earliestExit !== null) {
+    return shape.shortest;
+  }
+  const found = phases(project, action);
+  let left = found.relax - shape.entry + shape.hold - (shape.holdTo - shape.holdFrom);
+  let moving = found.relax - shape.entry - (shape.holdTo - shape.holdFrom);
+  if (shape.hold <= 0) {
+    left = found.strokeEnd - shape.entry;
+    moving = left;
+  }
+  left += drag(moving, shape.tempo);
+  return Math.min(shape.length, left + Math.max(action.timing.blendOut, RETRACTION));
+}
+
+/**
+ * Whether two requests may be met by one stroke.
+ * @param {MetaRequest} request
+ * @param {MetaRequest} other
+ * @returns {boolean}
+ */
+export function mayShare(request, other) {
+  if (request.stroke === null || other.stroke === null) {
+    return false;
+  }
+  return request.action === null
+    && other.action === null
+    && request.kind === other.kind
+    && (other.hold === null || other.hold === request.hold)
+    && Math.abs(request.stroke - other.stroke) <= SHARED;
+}
+
+/**
+ * Whether an action is what a request for any asks for.
+ * @param {Action} action
+ * @param {MetaRequest} request
+ * @returns {boolean}
+ */
+export function meets(action, request) {
+  return request.tags.every((tag) => action.tags.includes(tag))
+    && (request.limb === null || action.limb === request.limb)
+    && (request.among.length === 0 || request.among.includes(action.id));
+}

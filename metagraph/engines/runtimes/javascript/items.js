@@ -1,0 +1,285 @@
+/**
+ * What was asked for and lasts: where to look, what to say, which mode to be in, which stance to stay in. Values; times are
+ * seconds.
+ *
+ * Translated from metagraph/playback/life/items.py; change that, and translate anew.
+ */
+
+import { alikeTimings, extended, timedSeconds, toldText } from "./line_timing.js";
+import { sameSpot } from "./spots.js";
+import { but, zip } from "./basics.js";
+
+/**
+ * Look at a point or a named point from `start` until `end`, or until the next look. strict: without averting.
+ *
+ * id: string; start: number; end: number; to: Spot; amount: number; strict: boolean; priority: number.
+ */
+export class LookAt {
+  constructor(id, start, end, to, amount = 1, strict = false, priority = 1) {
+    this.id = id;
+    this.start = start;
+    this.end = end;
+    this.to = to;
+    this.amount = amount;
+    this.strict = strict;
+    this.priority = priority;
+  }
+}
+
+/**
+ * Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts the lower. length:
+ * seconds it would have taken, where something cut it short. timing: when its words and mouth shapes come, where that was
+ * told.
+ *
+ * id: string; start: number; end: number; line: ?string; text: string; priority: number; length: ?number; timing:
+ * ?LineTiming.
+ */
+export class Speech {
+  constructor(id, start, end, line = null, text = "", priority = 1, length = null, timing = null) {
+    this.id = id;
+    this.start = start;
+    this.end = end;
+    this.line = line;
+    this.text = text;
+    this.priority = priority;
+    this.length = length;
+    this.timing = timing;
+  }
+}
+
+/**
+ * The mode from `start` on; None for talking while something is said and idling otherwise.
+ *
+ * id: string; start: number; mode: ?string.
+ */
+export class ModeFrom {
+  constructor(id, start, mode) {
+    this.id = id;
+    this.start = start;
+    this.mode = mode;
+  }
+}
+
+/**
+ * Where a named point is from `start` on.
+ *
+ * id: string; start: number; name: string; point: number[].
+ */
+export class PlaceFrom {
+  constructor(id, start, name, point) {
+    this.id = id;
+    this.start = start;
+    this.name = name;
+    this.point = point;
+  }
+}
+
+/**
+ * A blink asked for.
+ *
+ * id: string; start: number.
+ */
+export class BlinkAt {
+  constructor(id, start) {
+    this.id = id;
+    this.start = start;
+  }
+}
+
+/**
+ * From `start` on the models change no stance of a layer (or, with `on` false, may again), until `end` or the next of these.
+ *
+ * id: string; start: number; layer: string; on: boolean; end: number.
+ */
+export class StayFrom {
+  constructor(id, start, layer, on = true, end = Infinity) {
+    this.id = id;
+    this.start = start;
+    this.layer = layer;
+    this.on = on;
+    this.end = end;
+  }
+}
+
+/**
+ * Return the speech, ending no later than `at`; how long it would have been is remembered.
+ * @param {Speech} speech
+ * @param {number} at
+ * @returns {Speech}
+ */
+export function cut(speech, at) {
+  if (speech.end <= at) {
+    return speech;
+  }
+  return but(speech, { end: at, length: speech.length === null ? speech.end - speech.start : speech.length });
+}
+
+/**
+ * Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, a lesser
+ * one is not said.
+ * @param {Speech[]} speeches
+ * @returns {Speech[]}
+ */
+export function apart(speeches) {
+  const out = [];
+  for (const speech of speeches) {
+    if (out.length > 0 && out[out.length - 1].end > speech.start) {
+      const last = out[out.length - 1];
+      if (speech.priority < last.priority) {
+        continue;
+      }
+      out.pop();
+      if (last.start < speech.start) {
+        out.push(cut(last, speech.start));
+      }
+    }
+    out.push(speech);
+  }
+  return out;
+}
+
+/**
+ * Return a line as it goes on where the last of the same id has begun by `now`, or begins with it: it keeps its start and
+ * what has been said of it. Only lines whose words or shapes were told with their times do.
+ * @param {?Speech} old
+ * @param {Speech} new_
+ * @param {number} now
+ * @returns {Speech}
+ */
+export function goingOn(old, new_, now) {
+  if (old === null || old.timing === null || new_.timing === null || old.length !== null) {
+    return new_;
+  }
+  if (Math.max(old.start, new_.start) > now && old.start !== new_.start) {
+    return new_;
+  }
+  const timing = extended(old.timing, new_.timing, Math.max(now - old.start, 0));
+  const length = Math.max(timedSeconds(timing, null), new_.end - new_.start);
+  const more = new_.text === "" || new_.text === toldText(new_.timing);
+  return but(new_, { start: old.start, end: old.start + length, text: more ? toldText(timing) : new_.text, timing: timing });
+}
+
+/**
+ * Whether two tracks' looks are the same; so for the others below.
+ * @param {LookAt[]} one
+ * @param {LookAt[]} other
+ * @returns {boolean}
+ */
+export function alikeLooks(one, other) {
+  return one.length === other.length && zip(one, other).every(([a, b]) => a === b || _sameLook(a, b));
+}
+
+/**
+ * @param {LookAt} a
+ * @param {LookAt} b
+ * @returns {boolean}
+ */
+function _sameLook(a, b) {
+  if (!sameSpot(a.to, b.to) || a.amount !== b.amount || a.strict !== b.strict) {
+    return false;
+  }
+  return a.id === b.id && a.start === b.start && a.end === b.end && a.priority === b.priority;
+}
+
+/**
+ * @param {Speech[]} one
+ * @param {Speech[]} other
+ * @returns {boolean}
+ */
+export function alikeSpeeches(one, other) {
+  return one.length === other.length && zip(one, other).every(([a, b]) => a === b || _sameSpeech(a, b));
+}
+
+/**
+ * @param {Speech} a
+ * @param {Speech} b
+ * @returns {boolean}
+ */
+function _sameSpeech(a, b) {
+  if (a.line !== b.line || a.text !== b.text || a.length !== b.length || a.priority !== b.priority) {
+    return false;
+  }
+  return a.id === b.id && a.start === b.start && a.end === b.end && alikeTimings(a.timing, b.timing);
+}
+
+/**
+ * @param {ModeFrom[]} one
+ * @param {ModeFrom[]} other
+ * @returns {boolean}
+ */
+export function alikeModes(one, other) {
+  return one.length === other.length
+    && zip(one, other).every(([a, b]) => a === b || (a.id === b.id && a.start === b.start && a.mode === b.mode));
+}
+
+/**
+ * @param {PlaceFrom[]} one
+ * @param {PlaceFrom[]} other
+ * @returns {boolean}
+ */
+export function alikePlaces(one, other) {
+  return one.length === other.length && zip(one, other).every(([a, b]) => a === b || _samePlace(a, b));
+}
+
+/**
+ * @param {PlaceFrom} a
+ * @param {PlaceFrom} b
+ * @returns {boolean}
+ */
+function _samePlace(a, b) {
+  if (a.id !== b.id || a.start !== b.start || a.name !== b.name) {
+    return false;
+  }
+  return zip(a.point, b.point).every(([x, y]) => x === y);
+}
+
+/**
+ * @param {BlinkAt[]} one
+ * @param {BlinkAt[]} other
+ * @returns {boolean}
+ */
+export function alikeBlinks(one, other) {
+  return one.length === other.length && zip(one, other).every(([a, b]) => a === b || (a.id === b.id && a.start === b.start));
+}
+
+/**
+ * @param {StayFrom[]} one
+ * @param {StayFrom[]} other
+ * @returns {boolean}
+ */
+export function alikeStays(one, other) {
+  return one.length === other.length && zip(one, other).every(([a, b]) => a === b || _sameStay(a, b));
+}
+
+/**
+ * @param {StayFrom} a
+ * @param {StayFrom} b
+ * @returns {boolean}
+ */
+function _sameStay(a, b) {
+  if (a.layer !== b.layer || a.on !== b.on || a.end !== b.end) {
+    return false;
+  }
+  return a.id === b.id && a.start === b.start;
+}
+
+/**
+ * @param {MoodFrom[]} one
+ * @param {MoodFrom[]} other
+ * @returns {boolean}
+ */
+export function alikeFelt(one, other) {
+  return one.length === other.length && zip(one, other).every(([a, b]) => a === b || _sameFelt(a, b));
+}
+
+/**
+ * @param {MoodFrom} a
+ * @param {MoodFrom} b
+ * @returns {boolean}
+ */
+function _sameFelt(a, b) {
+  if (a.valence !== b.valence || a.arousal !== b.arousal || a.intensity !== b.intensity) {
+    return false;
+  }
+  return a.id === b.id && a.start === b.start && a.end === b.end;
+}

@@ -1,0 +1,431 @@
+/**
+ * How a mood shows: which actions become likelier, how large and fast they are played, and what it makes of breath, blinks,
+ * gaze, posture and face.
+ *
+ * A mood is a point in Russell's circumplex (1980): valence, how pleasant, and arousal, how excited, both -1..1; beside it
+ * an intensity, 0..2, 1 as made. Neutral (0, 0, 1) changes nothing, to the last digit: every factor is 1 and every offset 0
+ * there. All below rises or falls monotonically with what it depends on.
+ *
+ * What is known and followed here: arousal goes with the speed, acceleration and jerk of movements (Pollick et al. 2001, of
+ * arms that knock and drink); elated joy and hot anger are expansive and full of movement, sadness and boredom neither
+ * (Wallbott 1998); the sad walk slowly, with small movements and bowed heads (Roether et al. 2009). By how much - the
+ * numbers below - is ours, chosen so that every clip still looks as if it was made so.
+ *
+ * Translated from metagraph/playback/mood.py; change that, and translate anew.
+ */
+
+import { uniform } from "./choice.js";
+import { sorted } from "./basics.js";
+
+export const FADE = 1.5; // seconds in which posture and face go from one mood to the next
+export const LEAST_EXTENT = 0.6;
+export const MOST_EXTENT = 1.25;
+export const LEAST_TEMPO = 0.8;
+export const MOST_TEMPO = 1.25;
+export const CLOSE = 0.5; // an action that is tagged with a mood no farther away than this was made for it
+export const PLEASANT = "positive"; // tags
+export const UNPLEASANT = "negative";
+export const HELD = "contact"; // tag of actions that touch something: smaller or larger they would miss it
+// Named moods: valence, arousal. Directions are Russell's (1980, table of 28 words, by circular scaling): calm
+// 316.2, content 323, happy 7.8, excited 48.6, tense 92.8, angry 99, afraid 116, sad 207.5, bored 242 and
+// tired 267.7 degrees, at 0.8 from the middle, which is ours. "warm" is ours.
+export const MOODS = new Map([
+  ["neutral", [0, 0]],
+  ["calm", [0.58, -0.55]],
+  ["content", [0.64, -0.48]],
+  ["warm", [0.6, 0.1]],
+  ["happy", [0.79, 0.11]],
+  ["excited", [0.53, 0.6]],
+  ["tense", [-0.04, 0.8]],
+  ["angry", [-0.13, 0.79]],
+  ["afraid", [-0.35, 0.72]],
+  ["sad", [-0.71, -0.37]],
+  ["bored", [-0.38, -0.71]],
+  ["tired", [-0.03, -0.8]],
+]);
+
+/**
+ * valence, arousal: -1..1. intensity: 0..2, 1 as made.
+ *
+ * valence: number; arousal: number; intensity: number.
+ */
+export class Mood {
+  constructor(valence = 0, arousal = 0, intensity = 1) {
+    this.valence = valence;
+    this.arousal = arousal;
+    this.intensity = intensity;
+  }
+
+  /** Whether it changes nothing. */
+  get neutral() {
+    return this.valence === 0 && this.arousal === 0 && this.intensity === 1;
+  }
+
+  /** Whether it is the same. */
+  like(other) {
+    return this.valence === other.valence && this.arousal === other.arousal && this.intensity === other.intensity;
+  }
+}
+
+/**
+ * A mood told from `start` on, until `end`; what it leaves out stays as it would be without it. Of two that last the later
+ * began counts, and the other again when that is over.
+ *
+ * id: string; start: number; valence: ?number; arousal: ?number; intensity: ?number; end: number.
+ */
+export class MoodFrom {
+  constructor(id, start, valence = null, arousal = null, intensity = null, end = Infinity) {
+    this.id = id;
+    this.start = start;
+    this.valence = valence;
+    this.arousal = arousal;
+    this.intensity = intensity;
+    this.end = end;
+  }
+}
+
+/**
+ * The mood over time. base: where nothing is told; told: by start.
+ *
+ * base: Mood; told: MoodFrom[].
+ */
+export class Moods {
+  constructor(base = new Mood(), told = []) {
+    this.base = base;
+    this.told = told;
+  }
+}
+
+/**
+ * What a mood makes of the life layers' amounts and rates: factors, as those of a manner.
+ *
+ * breathing: number; breathRate: number; aversionRate: number; saccadeRate: number; blinks: number.
+ */
+export class LifeMood {
+  constructor(breathing, breathRate, aversionRate, saccadeRate, blinks) {
+    this.breathing = breathing;
+    this.breathRate = breathRate;
+    this.aversionRate = aversionRate;
+    this.saccadeRate = saccadeRate;
+    this.blinks = blinks;
+  }
+}
+
+/**
+ * Posture and face of a mood. droop: -0.4 upright .. 1 bowed. lift: of the shoulders, in breaths. lids: how far they hang,
+ * 0..1. smile, frown, brow_down, brow_up: weights of the face, 0..1.
+ *
+ * droop: number; lift: number; lids: number; smile: number; frown: number; browDown: number; browUp: number.
+ */
+export class Bearing {
+  constructor(droop = 0, lift = 0, lids = 0, smile = 0, frown = 0, browDown = 0, browUp = 0) {
+    this.droop = droop;
+    this.lift = lift;
+    this.lids = lids;
+    this.smile = smile;
+    this.frown = frown;
+    this.browDown = browDown;
+    this.browUp = browUp;
+  }
+}
+
+/**
+ * Return a mood with what is told of it changed, each within its range.
+ * @param {Mood} mood
+ * @param {?number} valence
+ * @param {?number} arousal
+ * @param {?number} intensity
+ * @returns {Mood}
+ */
+export function changed(mood, valence, arousal, intensity) {
+  return new Mood(
+    valence === null ? mood.valence : within(valence, -1, 1),
+    arousal === null ? mood.arousal : within(arousal, -1, 1),
+    intensity === null ? mood.intensity : within(intensity, 0, 2),
+  );
+}
+
+/**
+ * Return the mood wanted at a time; posture and face take a while to follow (`shown`).
+ * @param {Moods} moods
+ * @param {number} seconds
+ * @returns {Mood}
+ */
+export function moodAt(moods, seconds) {
+  let out = moods.base;
+  for (const told of moods.told) {
+    if (told.start > seconds) {
+      break;
+    }
+    if (seconds < told.end) {
+      out = changed(out, told.valence, told.arousal, told.intensity);
+    }
+  }
+  return out;
+}
+
+/**
+ * Return those that may still show at `seconds` or later: not what is over and has faded, nor what another that lasts for
+ * ever has replaced.
+ * @param {MoodFrom[]} told
+ * @param {number} seconds
+ * @returns {MoodFrom[]}
+ */
+export function lasting(told, seconds) {
+  const out = [];
+  for (const [place, one] of told.entries()) {
+    if (one.end <= seconds - FADE) {
+      continue;
+    }
+    if (!told.slice(place + 1).some((other) => _replaces(other, one, seconds))) {
+      out.push(one);
+    }
+  }
+  return out;
+}
+
+/**
+ * @param {MoodFrom} later
+ * @param {MoodFrom} one
+ * @param {number} seconds
+ * @returns {boolean}
+ */
+function _replaces(later, one, seconds) {
+  return later.end === Infinity
+    && later.start <= seconds - FADE
+    && (one.valence === null || later.valence !== null)
+    && (one.arousal === null || later.arousal !== null)
+    && (one.intensity === null || later.intensity !== null);
+}
+
+/**
+ * Return the times from `start` to before `end` at which the mood may change, ascending, `start` first.
+ * @param {Moods} moods
+ * @param {number} start
+ * @param {number} end
+ * @returns {number[]}
+ */
+export function moodEdges(moods, start, end) {
+  const edges = [start];
+  for (const told of moods.told) {
+    for (const edge of [told.start, told.end]) {
+      if (start < edge && edge < end && !edges.includes(edge)) {
+        edges.push(edge);
+      }
+    }
+  }
+  return sorted(edges);
+}
+
+/**
+ * Return how much of a change shows after `x` of its fade: 3x^2 - 2x^3 of x clamped to 0..1.
+ * @param {number} x
+ * @returns {number}
+ */
+export function faded(x) {
+  const y = within(x, 0, 1);
+  return y * y * (3 - 2 * y);
+}
+
+/**
+ * Return the mood that shows at a time, on its way from those before. starts: when each begins, ascending; values: valence,
+ * arousal, intensity of each. Before the first it is the first.
+ * @param {number[]} starts
+ * @param {number[][]} values
+ * @param {number} seconds
+ * @returns {Mood}
+ */
+export function shown(starts, values, seconds) {
+  let place = starts.length - 1;
+  while (place > 0 && starts[place] > seconds) {
+    place -= 1;
+  }
+  if (place < 0) {
+    return new Mood();
+  }
+  let valence = 0;
+  let arousal = 0;
+  let intensity = 0;
+  let left = 1;
+  while (left > 0) {
+    let share = left;
+    if (place > 0) {
+      share = Math.min(left, faded((seconds - starts[place]) / FADE) - (1 - left));
+    }
+    valence += share * values[place][0];
+    arousal += share * values[place][1];
+    intensity += share * values[place][2];
+    left -= share;
+    place -= 1;
+  }
+  return new Mood(valence, arousal, intensity);
+}
+
+/**
+ * Return a number clamped to a range.
+ * @param {number} x
+ * @param {number} low
+ * @param {number} high
+ * @returns {number}
+ */
+export function within(x, low, high) {
+  return Math.min(Math.max(x, low), high);
+}
+
+/**
+ * Return 1 at 0, `most` at 1 and 1 / `most` at -1, and beyond as there; smooth and rising.
+ * @param {number} x
+ * @param {number} most
+ * @returns {number}
+ */
+export function leaning(x, most) {
+  const y = within(x, -1, 1) * (most - 1) / (most + 1);
+  return (1 + y) / (1 - y);
+}
+
+/**
+ * Return how large gestures and fidgets of arms and head are played: a factor of their turns away from the stance.
+ * @param {Mood} mood
+ * @returns {number}
+ */
+export function extent(mood) {
+  const drive = within(mood.arousal + 0.25 * mood.valence, -1, 1);
+  const byMood = drive > 0 ? 1 + 0.25 * drive : 1 + 0.4 * drive;
+  const dial = mood.intensity - 1;
+  const byDial = dial > 0 ? 1 + 0.25 * dial : 1 + 0.4 * dial;
+  return within(byMood * byDial, LEAST_EXTENT, MOST_EXTENT);
+}
+
+/**
+ * Return how fast actions are played: a factor of their own speed.
+ * @param {Mood} mood
+ * @returns {number}
+ */
+export function tempo(mood) {
+  const byMood = mood.arousal > 0 ? 1 + 0.25 * mood.arousal : 1 + 0.2 * mood.arousal;
+  return within(byMood, LEAST_TEMPO, MOST_TEMPO);
+}
+
+/**
+ * Return how much longer clip seconds take at a speed than at their own, 0 at that, to the last digit.
+ * @param {number} seconds
+ * @param {number} speed
+ * @returns {number}
+ */
+export function drag(seconds, speed) {
+  return seconds * (1 / speed - 1);
+}
+
+/**
+ * Return how far a joint turns away from its stance, a factor, for a cue's extent. real: the real part of the turn as it was
+ * made, a unit quaternion: turns of nearly half a circle, whose short way changes sides, stay as they are.
+ * @param {number} extent
+ * @param {number} real
+ * @returns {number}
+ */
+export function turnExtent(extent, real) {
+  return 1 + (extent - 1) * faded((Math.abs(real) - 0.1) / 0.4);
+}
+
+/**
+ * Whether an action was made for a mood: tagged with one that is near.
+ * @param {Mood} mood
+ * @param {string[]} tags
+ * @returns {boolean}
+ */
+export function madeFor(mood, tags) {
+  return tags.some((tag) => MOODS.has(tag) && distance(mood, tag) <= CLOSE);
+}
+
+/**
+ * Return how far a mood is from a named one, 0..2.8.
+ * @param {Mood} mood
+ * @param {string} name
+ * @returns {number}
+ */
+export function distance(mood, name) {
+  const [valence, arousal] = MOODS.get(name);
+  const x = mood.valence - valence;
+  const y = mood.arousal - arousal;
+  return Math.sqrt(x * x + y * y);
+}
+
+/**
+ * Return how much likelier than usual an action is. vigour: how energetic it is beside others of its layer and kind, -1..1.
+ * Up to 4 times for that, 4 for a tag of valence, 9 for a tag that names a mood; and as much rarer where they are against
+ * it.
+ * @param {Mood} mood
+ * @param {string[]} tags
+ * @param {number} vigour
+ * @returns {number}
+ */
+export function favour(mood, tags, vigour) {
+  let out = leaning(vigour * within(mood.arousal + (mood.intensity - 1), -1, 1), 4);
+  if (tags.includes(PLEASANT)) {
+    out *= leaning(mood.valence, 4);
+  }
+  if (tags.includes(UNPLEASANT)) {
+    out *= leaning(-mood.valence, 4);
+  }
+  const strength = Math.min(1, Math.sqrt(mood.valence * mood.valence + mood.arousal * mood.arousal) / CLOSE);
+  for (const tag of tags) {
+    if (MOODS.has(tag)) {
+      out *= leaning(strength * (1 - distance(mood, tag) / CLOSE), 9);
+    }
+  }
+  return out;
+}
+
+/**
+ * Whether something a model wrote is performed in a mood: the less aroused, the less of it, down to 0.6.
+ * @param {Mood} mood
+ * @param {number} seed
+ * @param {string} key
+ * @returns {boolean}
+ */
+export function stirs(mood, seed, key) {
+  return mood.arousal >= 0 || uniform(seed, key, "mood") < 1 + 0.4 * mood.arousal;
+}
+
+/**
+ * Return what a mood makes of the life layers. Breath quickens and deepens with arousal, eyes dart and blink more; who feels
+ * bad looks away more, who feels well less. The amounts are ours.
+ * @param {Mood} mood
+ * @returns {LifeMood}
+ */
+export function lifeOf(mood) {
+  const a = mood.arousal;
+  const v = mood.valence;
+  return new LifeMood(
+    1 + 0.25 * a,
+    a > 0 ? 1 + 0.4 * a : 1 + 0.25 * a,
+    v < 0 ? 1 - 0.4 * v : 1 - 0.25 * v,
+    1 + 0.4 * a,
+    a > 0 ? 1 + 0.4 * a : 1 + 0.25 * a,
+  );
+}
+
+/**
+ * Return posture and face of a mood, stronger with its intensity. The head bows with sadness (Roether et al. 2009);
+ * shoulders rise with arousal that is not joy; the amounts are ours.
+ * @param {Mood} mood
+ * @returns {Bearing}
+ */
+export function bearing(mood) {
+  const v = mood.valence;
+  const a = mood.arousal;
+  const i = mood.intensity;
+  const up = Math.max(0, a);
+  const down = Math.max(0, -a);
+  const well = Math.max(0, v);
+  const ill = Math.max(0, -v);
+  return new Bearing(
+    within(i * (-0.7 * v - 0.5 * a), -0.4, 1),
+    within(i * (2 * up * (1 - well) - down), -1, 2),
+    within(i * 0.3 * down, 0, 0.5),
+    within(i * well, 0, 1),
+    within(i * ill, 0, 1),
+    within(i * 1.4 * up * Math.max(0, 0.4 - v), 0, 1),
+    within(i * ill * Math.max(0, 0.6 - a), 0, 1),
+  );
+}

@@ -1,0 +1,504 @@
+/**
+ * When the life layers do what: drawn from the seed, event by event, then pure in time.
+ *
+ * Each event depends only on the one before it and on what is asked meanwhile, and its chance on its number. So a schedule
+ * grows as a plan does: what has begun stays, tick by tick gives what one call gives, and what lies behind can be forgotten.
+ *
+ * Translated from metagraph/playback/life/schedule.py; change that, and translate anew.
+ */
+
+import { manner, sameLife } from "./life.js";
+import { MODES } from "./words.js";
+import { uniform } from "./choice.js";
+import { Lane } from "./lane.js";
+import { sameVoices, stressed } from "./voice.js";
+import { modesBetween, moodsBetween, moodsOf, targetsBetween, waysIn } from "./wanted.js";
+import { Mood } from "./mood.js";
+import { bisectLeft, bisectRight, but, minOf, sorted, zip } from "./basics.js";
+
+export const BLOCK = 8; // seconds drawn at a time, so that a running plan need not draw at every tick
+export const RECALL = 4; // seconds of looks kept when the past is forgotten: longer than any turn of the head takes
+// Blinks (Yang et al., section 7.3): on stressed syllables at least so many seconds after the last; of
+// themselves 2 to 5 s after it at 17 a minute: the factors are of the mean gap.
+export const AFTER_BLINK = 1;
+export const BLINK_GAP = 0.57; // the shortest gap
+export const BLINK_CHANCE = 0.845; // and what chance adds to it
+// Saccades: fixations last 0.2 s and more; sizes fall off as in "Eyes Alive", small ones only: the eyes stay
+// with what they look at.
+export const FIXATION = 0.2;
+export const SACCADE = 1.2; // degrees on average
+export const LARGEST_SACCADE = 4; // degrees
+export const UPRIGHT = 0.6; // how much of an offset goes up and down
+// Aversions: at somewhat regular intervals, in a random direction, more often to the sides.
+export const AVERSION_GAP = 0.6;
+export const AVERSION_CHANCE = 0.8;
+export const BETWEEN_AVERSIONS = 0.6; // seconds at least
+export const SHORTEST_AVERSION = 0.25;
+export const BREATH = 0.85; // of the mean length and depth: the least
+export const BREATH_CHANCE = 0.3; // and what chance adds
+
+/**
+ * Everything that happens of itself from 0 to `end` seconds, in lanes; a lane's rows stand in the order given here.
+ *
+ * modes: place among MODES. moods: valence, arousal, intensity. targets: what is looked at. breaths: length s, depth.
+ * aversions: end s, right-to-left and upward part of the offset (of life's angle). saccades: offset to the left and up,
+ * degrees. blinks: 0 of itself, 1 on a stressed syllable, 2 asked for. drawn: seconds up to which the lanes are filled; the
+ * rest is what they were drawn from.
+ *
+ * end: number; drawn: number; modes: Lane; moods: Lane; targets: GazeTarget[]; breaths: Lane; aversions: Lane; saccades:
+ * Lane; blinks: Lane; life: ?Life; track: ?Track; voices: ?Voices; seed: number.
+ */
+export class Schedule {
+  constructor(
+    end = 0,
+    drawn = 0,
+    modes = new Lane([], [], 0, 1),
+    moods = new Lane([], [], 0, 3),
+    targets = [],
+    breaths = new Lane([], [], 0, 2),
+    aversions = new Lane([], [], 0, 3),
+    saccades = new Lane([], [], 0, 2),
+    blinks = new Lane([], [], 0, 1),
+    life = null,
+    track = null,
+    voices = null,
+    seed = 0,
+  ) {
+    this.end = end;
+    this.drawn = drawn;
+    this.modes = modes;
+    this.moods = moods;
+    this.targets = targets;
+    this.breaths = breaths;
+    this.aversions = aversions;
+    this.saccades = saccades;
+    this.blinks = blinks;
+    this.life = life;
+    this.track = track;
+    this.voices = voices;
+    this.seed = seed;
+  }
+
+  /** Return the schedule without what ended before `seconds`; what is drawn on from it stays as it would have been. */
+  since(seconds) {
+    const breaths = this.breaths.since(seconds);
+    const aversions = this.aversions.since(seconds);
+    const saccades = this.saccades.since(seconds);
+    const blinks = this.blinks.since(seconds);
+    let rates = [1, 1, 1, 1];
+    if (this.life !== null) {
+      rates = [this.life.breathRate, this.life.aversionRate, this.life.saccadeRate, this.life.blinks];
+    }
+    // Gaps run in modes' time from the event before, so the modes since then are needed.
+    const lanes = [breaths, aversions, saccades, blinks];
+    const firsts = lanes.filter((kept) => kept.times.length > 0).map((kept) => kept.times[0]);
+    let needed = firsts.length > 0 ? minOf(firsts) : seconds;
+    if (zip(lanes, rates).some(([kept, rate]) => kept.times.length === 0 && rate > 0)) {
+      needed = 0;
+    }
+    const looked = bisectRight(this.targets.map((t) => t.start), Math.min(needed, seconds - RECALL)) - 1;
+    return but(this, { modes: this.modes.since(needed, 0), moods: this.moods.since(
+      Math.min(needed, seconds - RECALL),
+      0,
+    ), targets: this.targets.slice(Math.max(0, looked)), breaths: breaths, aversions: aversions, saccades: saccades, blinks: blinks });
+  }
+}
+
+/**
+ * Return the schedule to `end` seconds. What `before` holds that begins before `now` stays exactly as it was.
+ *
+ * What it holds for later is kept, too, where nothing it was drawn from has changed.
+ * @param {Life} life
+ * @param {Track} track
+ * @param {Voices} voices
+ * @param {number} seed
+ * @param {number} end
+ * @param {Schedule} before
+ * @param {number} now
+ * @returns {Schedule}
+ */
+export function schedule(life, track, voices, seed, end, before, now) {
+  if (!life.on) {
+    return but(before, { end: end, life: life, track: track, voices: voices, seed: seed });
+  }
+  const drawn = Math.max(BLOCK, Math.ceil(end / BLOCK) * BLOCK);
+  const change = _change(before, life, track, voices, seed);
+  if (change === "" && drawn === before.drawn) {
+    return but(before, { end: end });
+  }
+  const cut = Math.max(0, Math.min(before.drawn, change === "" ? drawn : now));
+  const chance = change === "places" ? Math.min(before.drawn, drawn) : cut;
+  const draw = _draw(life, track, voices, seed, cut, drawn, before);
+  let breaths = before.breaths.until(chance);
+  let aversions = before.aversions.until(chance);
+  let saccades = before.saccades.until(chance);
+  let blinks = before.blinks.until(chance);
+  if (chance < drawn) {
+    draw.begin(chance);
+    breaths = draw.breaths(breaths);
+    aversions = draw.aversions(aversions);
+    saccades = draw.saccades(saccades);
+    blinks = draw.blinks(blinks);
+  }
+  return new Schedule(
+    end,
+    drawn,
+    draw.modes,
+    draw.moods,
+    draw.targets,
+    breaths,
+    aversions,
+    saccades,
+    blinks,
+    life,
+    track,
+    voices,
+    seed,
+  );
+}
+
+/**
+ * Return "" where nothing a schedule was drawn from has changed, "places" where only those have, else "all".
+ * @param {Schedule} before
+ * @param {Life} life
+ * @param {Track} track
+ * @param {Voices} voices
+ * @param {number} seed
+ * @returns {string}
+ */
+function _change(before, life, track, voices, seed) {
+  if (before.track === null || before.seed !== seed || !sameLife(before.life, life)) {
+    return "all";
+  }
+  if (!sameVoices(before.voices, voices)) {
+    return "all";
+  }
+  if (before.track === track || before.track.like(track)) {
+    return "";
+  }
+  return before.track.drawsLike(track) ? "places" : "all";
+}
+
+/**
+ * One extension: lanes filled from `cut` to `drawn` seconds. edges: where modes, moods and strict looks change; manners:
+ * what mode and mood make of the amounts from each on; strict: 1 where the look then is, else 0.
+ *
+ * life: Life; track: Track; voices: Voices; seed: number; cut: number; drawn: number; calm: number; modes: Lane; moods:
+ * Lane; targets: GazeTarget[]; edges: number[]; manners: Manner[]; strict: number[].
+ */
+export class LifeDraw {
+  constructor(life, track, voices, seed, cut, drawn, calm, modes, moods, targets, edges = [], manners = [], strict = []) {
+    this.life = life;
+    this.track = track;
+    this.voices = voices;
+    this.seed = seed;
+    this.cut = cut;
+    this.drawn = drawn;
+    this.calm = calm;
+    this.modes = modes;
+    this.moods = moods;
+    this.targets = targets;
+    this.edges = edges;
+    this.manners = manners;
+    this.strict = strict;
+  }
+
+  /** Lay modes, moods and strict looks out in one row of segments. */
+  begin(cut) {
+    this.cut = cut;
+    const edges = [...this.modes.times];
+    edges.push(...this.moods.times);
+    for (const [n, target] of this.targets.entries()) {
+      if (n === 0 || target.strict !== this.targets[n - 1].strict) {
+        edges.push(target.start);
+      }
+    }
+    const begun = this.targets.map((t) => t.start);
+    for (const edge of sorted(edges)) {
+      if (this.edges.length > 0 && this.edges[this.edges.length - 1] === edge) {
+        continue;
+      }
+      const mode = Math.max(0, bisectRight(this.modes.times, edge) - 1);
+      const look = Math.max(0, bisectRight(begun, edge) - 1);
+      this.edges.push(edge);
+      const felt = this.moods.rows[Math.max(0, bisectRight(this.moods.times, edge) - 1)];
+      const ways = manner(this.life, MODES[Math.trunc(this.modes.rows[mode][0])]);
+      this.manners.push(waysIn(ways, new Mood(felt[0], felt[1], felt[2])));
+      this.strict.push(this.targets[look].strict ? 1 : 0);
+    }
+  }
+
+  /** Return the chance of something about an event: 0..1, without the ends. */
+  chance(what, number, purpose) {
+    return uniform(this.seed, what, String(number), purpose);
+  }
+
+  /** Return the place of the segment that a time is in. */
+  placeAt(seconds) {
+    return Math.max(0, bisectRight(this.edges, seconds) - 1);
+  }
+
+  /**
+   * Return when `need` has passed since `seconds`, for a clock that runs at these rates, one for each segment; infinity
+   * where it is not before the end.
+   */
+  after(seconds, need, rates) {
+    let at = seconds;
+    let left = need;
+    let place = this.placeAt(at);
+    while (at < this.drawn) {
+      const end = place + 1 < this.edges.length ? this.edges[place + 1] : this.drawn;
+      const rate = rates[place];
+      if (rate > 0 && at + left / rate < end) {
+        return at + left / rate;
+      }
+      left -= rate * Math.max(0, end - at);
+      at = end;
+      place += 1;
+    }
+    return Infinity;
+  }
+
+  /** Each breath follows the one before; the first began before time 0, so that not everybody breathes alike. */
+  breaths(lane) {
+    const times = [];
+    const rows = [];
+    let number = lane.next;
+    let begun = lane.times.length > 0;
+    let at = begun ? lane.times[lane.times.length - 1] + lane.rows[lane.rows.length - 1][0] : 0;
+    while (true) {
+      if (begun) {
+        at = Math.max(at, this.cut);
+      }
+      const ways = this.manners[this.placeAt(at)];
+      const rate = this.life.breathRate * ways.breathRate / 60;
+      if (rate <= 0) { // no breath until another mode begins
+        const later = bisectRight(this.edges, at);
+        if (this.life.breathRate <= 0 || later === this.edges.length) {
+          break;
+        }
+        at = this.edges[later];
+        begun = true;
+        continue;
+      }
+      let length = (BREATH + BREATH_CHANCE * this.chance("breath", number, "length")) / rate;
+      length *= 1 + 2 * this.life.stillness; // slower, too, but never halting
+      const depth = ways.breathing * (BREATH + BREATH_CHANCE * this.chance("breath", number, "depth"));
+      if (!begun) {
+        at = -length * uniform(this.seed, "breath", "first");
+        begun = true;
+      }
+      if (at >= this.drawn) {
+        break;
+      }
+      times.push(at);
+      rows.push([length, depth]);
+      at += length;
+      number += 1;
+    }
+    return lane.plus(times, rows);
+  }
+
+  /** The eyes' small jumps. */
+  saccades(lane) {
+    if (this.life.saccadeRate <= 0 || this.calm <= 0) {
+      return lane;
+    }
+    const mean = Math.max(60 / this.life.saccadeRate, FIXATION + 0.01);
+    const rates = this.manners.map((ways) => ways.saccadeRate * this.calm);
+    const times = [];
+    const rows = [];
+    let number = lane.next;
+    let last = lane.times.length > 0 ? lane.times[lane.times.length - 1] : 0;
+    while (true) {
+      const need = FIXATION + (mean - FIXATION) * Math.min(4, -Math.log(this.chance("saccade", number, "gap")));
+      last = Math.max(this.cut, this.after(last, need, rates));
+      if (!(last < this.drawn)) {
+        return lane.plus(times, rows);
+      }
+      let size = Math.min(LARGEST_SACCADE, -SACCADE * Math.log(this.chance("saccade", number, "size")));
+      size *= this.manners[this.placeAt(last)].saccades;
+      const turn = 2 * Math.PI * this.chance("saccade", number, "way");
+      times.push(last);
+      rows.push([size * Math.sin(turn + Math.PI / 2), UPRIGHT * size * Math.sin(turn)]);
+      number += 1;
+    }
+  }
+
+  /** Looks away for a moment. */
+  aversions(lane) {
+    const life = this.life;
+    if (life.aversionRate <= 0 || life.aversionLength <= 0 || life.aversionAngle <= 0 || this.calm <= 0) {
+      return lane;
+    }
+    const rates = [];
+    for (const [ways, strict] of zip(this.manners, this.strict)) {
+      const rate = life.aversionRate * ways.aversionRate;
+      if (strict === 1 || rate <= 0) {
+        rates.push(0);
+      } else {
+        const mean = Math.max(BETWEEN_AVERSIONS, 60 / rate - life.aversionLength * ways.aversionLength);
+        rates.push(this.calm / mean);
+      }
+    }
+    const times = [];
+    const rows = [];
+    let number = lane.next;
+    let last = lane.rows.length > 0 ? lane.rows[lane.rows.length - 1][0] : 0;
+    while (true) {
+      const need = AVERSION_GAP + AVERSION_CHANCE * this.chance("aversion", number, "gap");
+      const at = Math.max(this.cut, last + BETWEEN_AVERSIONS, this.after(last, need, rates));
+      if (!(at < this.drawn)) {
+        return lane.plus(times, rows);
+      }
+      const own = this.manners[this.placeAt(at)];
+      let length = life.aversionLength * own.aversionLength;
+      length *= 0.6 + 0.8 * this.chance("aversion", number, "length");
+      last = at + Math.max(SHORTEST_AVERSION, length);
+      const size = own.aversionAngle * (0.7 + 0.6 * this.chance("aversion", number, "size"));
+      const turn = 2 * Math.PI * this.chance("aversion", number, "way");
+      times.push(at);
+      rows.push([last, size * Math.sin(turn + Math.PI / 2), UPRIGHT * size * Math.sin(turn)]);
+      number += 1;
+    }
+  }
+
+  /** Blinks of themselves, on stressed syllables and asked for, whichever comes first. */
+  blinks(lane) {
+    const life = this.life;
+    const shut = life.blinkClose + life.blinkOpen;
+    const mean = (life.blinks > 0 && this.calm > 0) ? 60 / life.blinks : Infinity;
+    const rates = this.manners.map((ways) => ways.blinks * this.calm);
+    let last = -0.5 * Math.min(mean, 10) * uniform(this.seed, "blink", "first");
+    if (lane.times.length > 0) {
+      last = lane.times[lane.times.length - 1];
+    }
+    let accents = [];
+    if (this.calm > 0 && life.accentBlinks > 0) {
+      accents = this.accents(Math.max(0, Math.min(this.cut, last)));
+    }
+    const asked = this.track.blinks.map((b) => b.start);
+    const times = [];
+    const rows = [];
+    let number = lane.next;
+    let place = 0;
+    while (true) {
+      let own = Infinity;
+      if (mean < Infinity) {
+        const need = mean * (BLINK_GAP + BLINK_CHANCE * this.chance("blink", number, "gap"));
+        own = Math.max(this.cut, this.after(last, need, rates));
+      }
+      // A stressed syllable may bring a blink: the first of a speech always, the others some time after
+      // the last blink.
+      while (place < accents.length) {
+        const [accent, first] = accents[place];
+        if (accent >= this.cut && accent >= last + (first ? shut + 0.1 : AFTER_BLINK / this.calm)) {
+          break;
+        }
+        place += 1;
+      }
+      const heard = place < accents.length ? accents[place][0] : Infinity;
+      const wish = bisectLeft(asked, Math.max(this.cut, last + shut));
+      const wanted = wish < asked.length ? asked[wish] : Infinity;
+      const at = Math.min(own, heard, wanted);
+      if (at >= this.drawn) {
+        return lane.plus(times, rows);
+      }
+      times.push(at);
+      const kind = at === heard ? 1 : 0;
+      rows.push([at === wanted ? 2 : kind]);
+      last = at;
+      number += 1;
+    }
+  }
+
+  /** Return the stressed syllables from `start` to the end that may bring blinks, and whether each is a speech's first. */
+  accents(start) {
+    const out = [];
+    for (const speech of this.track.speeches) {
+      if (speech.end <= start || speech.start >= this.drawn) {
+        continue;
+      }
+      const end = Math.min(speech.end, this.drawn);
+      for (const [n, peak] of stressed(this.voices, speech).entries()) {
+        const at = speech.start + peak;
+        if (at < start || at >= end) {
+          continue;
+        }
+        if (uniform(this.seed, speech.id, "accent", String(n)) < this.life.accentBlinks) {
+          out.push([at, n === 0]);
+        }
+      }
+    }
+    return out;
+  }
+}
+
+/**
+ * Return what extends a schedule from `cut` to `drawn` seconds, with modes and looks in place.
+ * @param {Life} life
+ * @param {Track} track
+ * @param {Voices} voices
+ * @param {number} seed
+ * @param {number} cut
+ * @param {number} drawn
+ * @param {Schedule} before
+ * @returns {LifeDraw}
+ */
+function _draw(life, track, voices, seed, cut, drawn, before) {
+  const modes = before.modes.until(cut);
+  const last = modes.rows.length > 0 ? Math.trunc(modes.rows[modes.rows.length - 1][0]) : -1;
+  const times = [];
+  const rows = [];
+  for (const [at, mode] of modesBetween(track, cut, drawn)) {
+    if (times.length > 0 || mode !== last) {
+      times.push(at);
+      rows.push([mode]);
+    }
+  }
+  const moods = before.moods.until(cut);
+  let felt = [];
+  if (moods.rows.length > 0) {
+    felt = [...moods.rows[moods.rows.length - 1]];
+  }
+  const changes = [];
+  const wanted = [];
+  for (const [at, mood] of moodsBetween(moodsOf(life, track), cut, drawn)) {
+    const same = felt.length > 0 && felt[0] === mood.valence && felt[1] === mood.arousal && felt[2] === mood.intensity;
+    if (changes.length > 0 || !same) {
+      changes.push(at);
+      wanted.push([mood.valence, mood.arousal, mood.intensity]);
+    }
+  }
+  const begun = bisectLeft(before.targets.map((t) => t.start), cut);
+  const targets = before.targets.slice(0, begun);
+  for (const target of targetsBetween(track, cut, drawn)) {
+    if (targets.length === 0 || !target.like(targets[targets.length - 1])) {
+      targets.push(target);
+    }
+  }
+  return new LifeDraw(
+    life,
+    track,
+    voices,
+    seed,
+    cut,
+    drawn,
+    1 - life.stillness,
+    modes.plus(times, rows),
+    moods.plus(changes, wanted),
+    [...targets],
+  );
+}
+
+/**
+ * Return events a minute between two times.
+ * @param {Lane} lane
+ * @param {number} start
+ * @param {number} end
+ * @returns {number}
+ */
+export function share(lane, start, end) {
+  const count = bisectLeft(lane.times, end) - bisectLeft(lane.times, start);
+  return count / Math.max(end - start, 1e-09) * 60;
+}

@@ -1,0 +1,757 @@
+// Translated from metagraph/motion/contact_solve.py; change that, and translate anew.
+using System;
+using System.Collections.Generic;
+using System.Linq;
+
+namespace Metagraph
+{
+    /// <summary>Places of an arm's joints, and of all joints from its upper arm on, parents first.</summary>
+    public sealed class ContactArm
+    {
+        public readonly int Upper;
+        public readonly int Lower;
+        public readonly int Hand;
+        public readonly List<int> Below;
+
+        public ContactArm(int upper, int lower, int hand, List<int> below)
+        {
+            Upper = upper;
+            Lower = lower;
+            Hand = hand;
+            Below = below;
+        }
+    }
+
+    /// <summary>
+    /// A part of the body. joint, to: the places its line's ends are fixed to; a, b: where, in those joints' own spaces. arm: 0
+    /// left, 1 right, -1 of neither. kind: whether it is pushed out of others: OBSTACLE is not; FOREARM runs from the elbow to
+    /// the wrist; HAND.
+    /// </summary>
+    public sealed class BodyCapsule
+    {
+        public readonly int Joint;
+        public readonly (double, double, double) A;
+        public readonly int To;
+        public readonly (double, double, double) B;
+        public readonly double Radius;
+        public readonly int Arm;
+        public readonly int Kind;
+
+        public BodyCapsule(
+            int joint,
+            (double, double, double) a,
+            int to,
+            (double, double, double) b,
+            double radius,
+            int arm = -1,
+            int kind = 0
+        )
+        {
+            Joint = joint;
+            A = a;
+            To = to;
+            B = b;
+            Radius = radius;
+            Arm = arm;
+            Kind = kind;
+        }
+    }
+
+    /// <summary>
+    /// What of a skeleton contacts need. joints: theirs, parents first. parents: for each the place of the nearest one above,
+    /// which has to be its parent; -1 for a root. places: names of joints to their places. arms: left, right; hands: the names of
+    /// their hands. contacts, guard: what is on.
+    /// </summary>
+    public sealed class ContactRig
+    {
+        public readonly List<int> Joints;
+        public readonly List<int> Parents;
+        public readonly Dictionary<string, int> Places;
+        public readonly List<ContactArm> Arms;
+        public readonly List<string> Hands;
+        public readonly List<BodyCapsule> Capsules;
+        public readonly bool Contacts;
+        public readonly bool Guard;
+
+        public ContactRig(
+            List<int> joints,
+            List<int> parents,
+            Dictionary<string, int> places,
+            List<ContactArm> arms,
+            List<string> hands,
+            List<BodyCapsule> capsules,
+            bool contacts = true,
+            bool guard = true
+        )
+        {
+            Joints = joints;
+            Parents = parents;
+            Places = places;
+            Arms = arms;
+            Hands = hands;
+            Capsules = capsules;
+            Contacts = contacts;
+            Guard = guard;
+        }
+    }
+
+    /// <summary>
+    /// Where a wrist should be. arm: 0 left, 1 right. to: a place; at, turn: in its space. weight: 0..1.
+    /// </summary>
+    public sealed class HandGoal
+    {
+        public readonly int Arm;
+        public readonly int To;
+        public readonly (double, double, double) At;
+        public readonly (double, double, double, double) Turn;
+        public readonly double Weight;
+
+        public HandGoal(int arm, int to, (double, double, double) at, (double, double, double, double) turn, double weight)
+        {
+            Arm = arm;
+            To = to;
+            At = at;
+            Turn = turn;
+            Weight = weight;
+        }
+    }
+
+    /// <summary>
+    /// A pose of a rig's joints: `local` rotations and `moved` translations in their parents' space, `turned` and `at` in the
+    /// character's, which `spread` works out.
+    /// </summary>
+    public sealed class ContactPose
+    {
+        public List<(double, double, double, double)> Local;
+        public List<(double, double, double)> Moved;
+        public List<(double, double, double, double)> Turned;
+        public List<(double, double, double)> At;
+
+        public ContactPose(
+            List<(double, double, double, double)> local = null,
+            List<(double, double, double)> moved = null,
+            List<(double, double, double, double)> turned = null,
+            List<(double, double, double)> at = null
+        )
+        {
+            Local = local ?? new List<(double, double, double, double)>();
+            Moved = moved ?? new List<(double, double, double)>();
+            Turned = turned ?? new List<(double, double, double, double)>();
+            At = at ?? new List<(double, double, double)>();
+        }
+    }
+
+    public static class ContactSolveRules
+    {
+        public const double Reached = 0.995; // of an arm's length: it does not snap straight
+        public const double Folded = 0.906; // cosine of the least angle inside an elbow, 25 degrees
+        public const double Wrist = 0.819; // cosine of half of how far a contact may turn a hand from where it was, 70 degrees
+        public const double Soft = 0.006; // metres of depth over which the push out of the body sets in
+        public const double Deep = 0.35; // of the radii: nearer than this to a capsule's line it is not pushed all the way
+        public const double Elbow = 0.1; // how little a forearm is pushed near its elbow, which a wrist cannot move
+        public const int Passes = 3; // of the guard
+        public const int Obstacle = 0; // what a capsule is to the guard: others are pushed out of it
+        public const int Forearm = 1; // pushed out, from the elbow to the wrist
+        public const int Hand = 2; // pushed out
+
+        /// <summary>Work out where all joints are.</summary>
+        public static void Spread(ContactRig rig, ContactPose pose)
+        {
+            pose.Turned = new List<(double, double, double, double)>();
+            pose.At = new List<(double, double, double)>();
+            foreach (var one in pose.Local.Select((item, n) => (n, item)))
+            {
+                var place = one.Item1;
+                var turn = one.Item2;
+                pose.Turned.Add(turn);
+                pose.At.Add(pose.Moved[place]);
+            }
+            for (int place = 0; place < rig.Parents.Count; place++)
+            {
+                Join(rig, pose, place);
+            }
+        }
+
+        private static void Join(ContactRig rig, ContactPose pose, int place)
+        {
+            var above = rig.Parents[place];
+            if (above < 0)
+            {
+                pose.Turned[place] = pose.Local[place];
+                pose.At[place] = pose.Moved[place];
+            }
+            else
+            {
+                pose.Turned[place] = Times(pose.Turned[above], pose.Local[place]);
+                pose.At[place] = Plus(pose.At[above], Rotated(pose.Turned[above], pose.Moved[place]));
+            }
+        }
+
+        /// <summary>
+        /// Bring hands to their goals, then hands and forearms out of the body; return whether anything moved. The joints' places
+        /// have to be known (`spread`).
+        /// </summary>
+        public static bool SolveContacts(ContactRig rig, ContactPose pose, List<HandGoal> goals)
+        {
+            var moved = false;
+            var held = new List<double> { 0.0, 0.0 };
+            var across = 0.0; // how much one arm is held on the other
+            foreach (HandGoal goal in goals)
+            {
+                held[goal.Arm] = Math.Min(1.0, held[goal.Arm] + goal.Weight);
+                if (OnArm(rig, goal.To, 1 - goal.Arm))
+                {
+                    across = Math.Max(across, goal.Weight);
+                }
+            }
+            var rounds = goals.Count == 0 ? 0 : across > 0.0 ? 2 : 1;
+            var wrists = rig.Arms.Select(arm => pose.At[arm.Hand]).ToList();
+            var hands = rig.Arms.Select(arm => pose.Turned[arm.Hand]).ToList();
+            while (rounds > 0)
+            {
+                rounds -= 1;
+                for (int side = 0; side < rig.Arms.Count; side++)
+                {
+                    if (held[side] > 0.0)
+                    {
+                        Hold(rig, pose, goals, side, wrists[side], hands[side]);
+                        moved = true;
+                    }
+                }
+            }
+            if (rig.Guard && Guarded(rig, pose, held, across))
+            {
+                moved = true;
+                for (int side = 0; side < rig.Arms.Count; side++)
+                {
+                    if (across > 0.0 && held[side] > 0.0)
+                    {
+                        Hold(rig, pose, goals, side, wrists[side], hands[side]);
+                    }
+                }
+            }
+            return moved;
+        }
+
+        private static bool OnArm(ContactRig rig, int place, int arm)
+        {
+            return rig.Arms[arm].Below.Any(below => place == below);
+        }
+
+        /// <summary>Bring a hand to the weighted mean of its goals. wrist, hand: where and how it was without any.</summary>
+        private static void Hold(
+            ContactRig rig,
+            ContactPose pose,
+            List<HandGoal> goals,
+            int side,
+            (double, double, double) wrist,
+            (double, double, double, double) hand
+        )
+        {
+            var total = 0.0;
+            var x = 0.0;
+            var y = 0.0;
+            var z = 0.0;
+            var a = 0.0;
+            var b = 0.0;
+            var c = 0.0;
+            var d = 0.0;
+            var found = hand;
+            double hx = found.Item1;
+            double hy = found.Item2;
+            double hz = found.Item3;
+            double hw = found.Item4;
+            double k = default(double);
+            foreach (HandGoal goal in goals)
+            {
+                if (goal.Arm == side && goal.Weight > 0.0)
+                {
+                    k = goal.Weight;
+                    var found2 = Plus(pose.At[goal.To], Rotated(pose.Turned[goal.To], goal.At));
+                    double px = found2.Item1;
+                    double py = found2.Item2;
+                    double pz = found2.Item3;
+                    var found3 = Times(pose.Turned[goal.To], goal.Turn);
+                    double qx = found3.Item1;
+                    double qy = found3.Item2;
+                    double qz = found3.Item3;
+                    double qw = found3.Item4;
+                    x = x + k * px;
+                    y = y + k * py;
+                    z = z + k * pz;
+                    total = total + k;
+                    if (qx * hx + qy * hy + qz * hz + qw * hw < 0.0)
+                    {
+                        k = -k;
+                    }
+                    a = a + k * qx;
+                    b = b + k * qy;
+                    c = c + k * qz;
+                    d = d + k * qw;
+                }
+            }
+            var weight = Math.Min(1.0, total);
+            var mean = (x / total, y / total, z / total);
+            var turn = WithinWrist(hand, UnitTurn((a, b, c, d)));
+            var found4 = turn;
+            double tx = found4.Item1;
+            double ty = found4.Item2;
+            double tz = found4.Item3;
+            double tw = found4.Item4;
+            var rest = 1.0 - weight;
+            k = tx * hx + ty * hy + tz * hz + tw * hw < 0.0 ? -weight : weight;
+            turn = UnitTurn((hx * rest + tx * k, hy * rest + ty * k, hz * rest + tz * k, hw * rest + tw * k));
+            Bring(rig, pose, side, Plus(wrist, Scaled(Minus(mean, wrist), weight)), turn);
+        }
+
+        /// <summary>Return a hand's turn, as near to it as the wrist may be turned from how the hand was.</summary>
+        private static (double, double, double, double) WithinWrist(
+            (double, double, double, double) hand,
+            (double, double, double, double) turn
+        )
+        {
+            var found = Times(turn, Back(hand));
+            double x = found.Item1;
+            double y = found.Item2;
+            double z = found.Item3;
+            double w = found.Item4;
+            if (w < 0.0)
+            {
+                x = -x;
+                y = -y;
+                z = -z;
+                w = -w;
+            }
+            if (w >= Wrist)
+            {
+                return turn;
+            }
+            var k = Math.Sqrt(1.0 - Wrist * Wrist) / Math.Max(Math.Sqrt(x * x + y * y + z * z), 1e-12);
+            return Times((x * k, y * k, z * k, Wrist), hand);
+        }
+
+        /// <summary>
+        /// Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it.
+        /// </summary>
+        private static void Bring(
+            ContactRig rig,
+            ContactPose pose,
+            int side,
+            (double, double, double) goal,
+            (double, double, double, double) hand
+        )
+        {
+            var arm = rig.Arms[side];
+            var root = pose.At[arm.Upper];
+            var elbow = pose.At[arm.Lower];
+            var wrist = pose.At[arm.Hand];
+            var bone = Minus(elbow, root);
+            var fore = Minus(wrist, elbow);
+            var aboveElbow = Length(bone);
+            var belowElbow = Length(fore);
+            var now = Length(Minus(wrist, root));
+            if (aboveElbow < 1e-06 || belowElbow < 1e-06 || now < 1e-06)
+            {
+                return;
+            }
+            var way = Minus(goal, root);
+            var most = Math.Max(Reached * (aboveElbow + belowElbow), now);
+            var least = Math.Min(
+                Math.Sqrt(aboveElbow * aboveElbow + belowElbow * belowElbow - 2.0 * Folded * aboveElbow * belowElbow),
+                now
+            );
+            var far = Math.Min(Math.Max(Length(way), least), most);
+            var ahead = Unit(way);
+            var before = Scaled(Minus(wrist, root), 1.0 / now);
+            var aside = Minus(bone, Scaled(before, Dot(bone, before)));
+            // A straight arm has no side: it bends to one that goes with its bone.
+            var spare = Rotated(pose.Turned[arm.Upper], (0.31, 0.52, 0.8));
+            spare = Minus(spare, Scaled(before, Dot(spare, before)));
+            aside = Plus(aside, Scaled(spare, Math.Max(0.0, 0.01 * aboveElbow - Length(aside))));
+            aside = Unit(Rotated(Between(before, ahead), aside));
+            var along = (aboveElbow * aboveElbow + far * far - belowElbow * belowElbow) / (2.0 * far);
+            var high = Math.Sqrt(Math.Max(0.0, aboveElbow * aboveElbow - along * along));
+            var knee = Plus(Scaled(ahead, along), Scaled(aside, high));
+            var swing = Between(Unit(bone), Unit(knee));
+            var fold = Between(Unit(Rotated(swing, fore)), Unit(Minus(Scaled(ahead, far), knee)));
+            var both = Times(fold, swing);
+            var above = Above(rig, pose, arm.Upper);
+            pose.Local[arm.Upper] = Times(Back(above), Times(swing, pose.Turned[arm.Upper]));
+            above = Times(swing, Above(rig, pose, arm.Lower));
+            pose.Local[arm.Lower] = Times(Back(above), Times(both, pose.Turned[arm.Lower]));
+            above = Times(both, Above(rig, pose, arm.Hand));
+            pose.Local[arm.Hand] = Times(Back(above), hand);
+            foreach (int place in arm.Below)
+            {
+                Join(rig, pose, place);
+            }
+        }
+
+        private static (double, double, double, double) Above(ContactRig rig, ContactPose pose, int place)
+        {
+            var above = rig.Parents[place];
+            return above < 0 ? (0.0, 0.0, 0.0, 1.0) : pose.Turned[above];
+        }
+
+        /// <summary>
+        /// Push forearms and hands out of what they are inside of, by the least shift of the wrists; return whether any was.
+        /// held: how much each hand is kept somewhere, and so is not pushed.
+        /// </summary>
+        private static bool Guarded(ContactRig rig, ContactPose pose, List<double> held, double across)
+        {
+            var moved = false;
+            var passes = Passes;
+            while (passes > 0)
+            {
+                passes -= 1;
+                var ends = CapsuleEnds(rig, pose);
+                var balls = Balls(rig, ends);
+                var shifts = PlainNumbers.Range(rig.Arms.Count).Select(side => Shift(
+                    rig,
+                    ends,
+                    balls,
+                    side,
+                    held,
+                    across
+                )).ToList();
+                var found = false;
+                foreach (var one in shifts.Select((item, n) => (n, item)))
+                {
+                    var side = one.Item1;
+                    var shift = one.Item2;
+                    if (Length(shift) > 0.0)
+                    {
+                        var hand = rig.Arms[side].Hand;
+                        Bring(rig, pose, side, Plus(pose.At[hand], shift), pose.Turned[hand]);
+                        found = true;
+                    }
+                }
+                if (!found)
+                {
+                    return moved;
+                }
+                moved = true;
+            }
+            return moved;
+        }
+
+        /// <summary>Return both ends of every capsule's line, one after the other.</summary>
+        public static List<(double, double, double)> CapsuleEnds(ContactRig rig, ContactPose pose)
+        {
+            var out_ = new List<(double, double, double)>();
+            foreach (BodyCapsule capsule in rig.Capsules)
+            {
+                out_.Add(Plus(pose.At[capsule.Joint], Rotated(pose.Turned[capsule.Joint], capsule.A)));
+                out_.Add(Plus(pose.At[capsule.To], Rotated(pose.Turned[capsule.To], capsule.B)));
+            }
+            return out_;
+        }
+
+        /// <summary>Return a ball round each capsule: its middle and radius.</summary>
+        private static List<(double, double, double, double)> Balls(ContactRig rig, List<(double, double, double)> ends)
+        {
+            var out_ = new List<(double, double, double, double)>();
+            foreach (var one in rig.Capsules.Select((item, n) => (n, item)))
+            {
+                var n = one.Item1;
+                var capsule = one.Item2;
+                var found = ends[2 * n];
+                double ax = found.Item1;
+                double ay = found.Item2;
+                double az = found.Item3;
+                var found2 = ends[2 * n + 1];
+                double bx = found2.Item1;
+                double by = found2.Item2;
+                double bz = found2.Item3;
+                var x = bx - ax;
+                var y = by - ay;
+                var z = bz - az;
+                var size = 0.5 * Math.Sqrt(x * x + y * y + z * z) + capsule.Radius;
+                out_.Add((ax + 0.5 * x, ay + 0.5 * y, az + 0.5 * z, size));
+            }
+            return out_;
+        }
+
+        /// <summary>Return by what a wrist has to move, so that its arm is out of all else, or nearer to that.</summary>
+        private static (double, double, double) Shift(
+            ContactRig rig,
+            List<(double, double, double)> ends,
+            List<(double, double, double, double)> balls,
+            int side,
+            List<double> held,
+            double across
+        )
+        {
+            var shift = (0.0, 0.0, 0.0);
+            var own = 1.0 - held[side];
+            if (own <= 0.0)
+            {
+                return shift;
+            }
+            foreach (var one in rig.Capsules.Select((item, n) => (n, item)))
+            {
+                var i = one.Item1;
+                var mine = one.Item2;
+                if (mine.Arm != side || mine.Kind == Obstacle)
+                {
+                    continue;
+                }
+                var found = balls[i];
+                double mx = found.Item1;
+                double my = found.Item2;
+                double mz = found.Item3;
+                double size = found.Item4;
+                for (int k = 0; k < rig.Capsules.Count; k++)
+                {
+                    var other = rig.Capsules[k];
+                    if (other.Arm == side)
+                    {
+                        continue;
+                    }
+                    var found2 = balls[k];
+                    double ox = found2.Item1;
+                    double oy = found2.Item2;
+                    double oz = found2.Item3;
+                    double most = found2.Item4;
+                    var reach = most + size;
+                    if ((ox - mx) * (ox - mx) + (oy - my) * (oy - my) + (oz - mz) * (oz - mz) >= reach * reach)
+                    {
+                        continue; // most are nowhere near
+                    }
+                    var share = own;
+                    if (other.Arm >= 0)
+                    {
+                        share = Math.Min(own, 1.0 - across);
+                        if (other.Kind != Obstacle) // both give way
+                        {
+                            share = share * (1.0 - 0.5 * (1.0 - held[other.Arm]));
+                        }
+                    }
+                    if (share <= 0.0)
+                    {
+                        continue;
+                    }
+                    var found3 = Apart(ends, 2 * i, 2 * k);
+                    double x = found3.Item1;
+                    double y = found3.Item2;
+                    double z = found3.Item3;
+                    double s = found3.Item4;
+                    double gap = found3.Item5;
+                    var radii = mine.Radius + other.Radius;
+                    if (gap >= radii || gap < 1e-09)
+                    {
+                        continue;
+                    }
+                    var depth = radii - gap;
+                    var amount = depth > Soft ? depth - 0.5 * Soft : depth * depth / (2.0 * Soft);
+                    var inner = Math.Min(1.0, gap / (Deep * radii));
+                    amount = amount * share * inner * inner * (3.0 - 2.0 * inner);
+                    var part = mine.Kind == Forearm ? s : 1.0;
+                    var way = (x / gap, y / gap, z / gap);
+                    var left = amount - part * Dot(way, shift);
+                    if (left > 0.0)
+                    {
+                        shift = Plus(shift, Scaled(way, left * part / (part * part + Elbow * (1.0 - part))));
+                    }
+                }
+            }
+            return shift;
+        }
+
+        /// <summary>
+        /// Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, how far along the latter it ends,
+        /// 0..1, and its length.
+        /// </summary>
+        public static (double, double, double, double, double) Apart(List<(double, double, double)> ends, int i, int k)
+        {
+            var a = ends[i];
+            var c = ends[k];
+            var u = Minus(ends[i + 1], a);
+            var v = Minus(ends[k + 1], c);
+            var w = Minus(a, c);
+            var uu = Dot(u, u);
+            var uv = Dot(u, v);
+            var vv = Dot(v, v);
+            var uw = Dot(u, w);
+            var vw = Dot(v, w);
+            var s = 0.0;
+            var t = 0.0;
+            if (uu > 1e-12)
+            {
+                var below = uu * vv - uv * uv;
+                if (below > 1e-09 * uu * vv)
+                {
+                    s = Math.Min(Math.Max((uv * vw - vv * uw) / below, 0.0), 1.0);
+                }
+                if (vv > 1e-12)
+                {
+                    t = (uv * s + vw) / vv;
+                    if (t < 0.0 || t > 1.0)
+                    {
+                        t = Math.Min(Math.Max(t, 0.0), 1.0);
+                        s = Math.Min(Math.Max((uv * t - uw) / uu, 0.0), 1.0);
+                    }
+                }
+                else
+                {
+                    s = Math.Min(Math.Max(-uw / uu, 0.0), 1.0);
+                }
+            }
+            else if (vv > 1e-12)
+            {
+                t = Math.Min(Math.Max(vw / vv, 0.0), 1.0);
+            }
+            var found = Minus(Plus(w, Scaled(u, s)), Scaled(v, t));
+            double x = found.Item1;
+            double y = found.Item2;
+            double z = found.Item3;
+            return (x, y, z, s, Math.Sqrt(x * x + y * y + z * z));
+        }
+
+        // --- arithmetic
+        /// <summary>Return the product: rotate by `b`, then by `a`.</summary>
+        public static (double, double, double, double) Times(
+            (double, double, double, double) a,
+            (double, double, double, double) b
+        )
+        {
+            var found = a;
+            double ax = found.Item1;
+            double ay = found.Item2;
+            double az = found.Item3;
+            double aw = found.Item4;
+            var found2 = b;
+            double bx = found2.Item1;
+            double by = found2.Item2;
+            double bz = found2.Item3;
+            double bw = found2.Item4;
+            return (
+                aw * bx + ax * bw + ay * bz - az * by,
+                aw * by - ax * bz + ay * bw + az * bx,
+                aw * bz + ax * by - ay * bx + az * bw,
+                aw * bw - ax * bx - ay * by - az * bz
+            );
+        }
+
+        /// <summary>Return a vector rotated.</summary>
+        public static (double, double, double) Rotated((double, double, double, double) q, (double, double, double) v)
+        {
+            var found = q;
+            double x = found.Item1;
+            double y = found.Item2;
+            double z = found.Item3;
+            double w = found.Item4;
+            var found2 = v;
+            double vx = found2.Item1;
+            double vy = found2.Item2;
+            double vz = found2.Item3;
+            var tx = 2.0 * (y * vz - z * vy);
+            var ty = 2.0 * (z * vx - x * vz);
+            var tz = 2.0 * (x * vy - y * vx);
+            return (vx + w * tx + y * tz - z * ty, vy + w * ty + z * tx - x * tz, vz + w * tz + x * ty - y * tx);
+        }
+
+        /// <summary>Return the shortest rotation that takes one direction to another, both of length 1.</summary>
+        public static (double, double, double, double) Between((double, double, double) a, (double, double, double) b)
+        {
+            var found = a;
+            double ax = found.Item1;
+            double ay = found.Item2;
+            double az = found.Item3;
+            var found2 = b;
+            double bx = found2.Item1;
+            double by = found2.Item2;
+            double bz = found2.Item3;
+            var dot = ax * bx + ay * by + az * bz;
+            if (dot < -0.999999999) // half a turn about any axis across
+            {
+                return UnitTurn(Math.Abs(ax) < 0.9 ? (0.0, az, -ay, 0.0) : (-az, 0.0, ax, 0.0));
+            }
+            return UnitTurn((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx, 1.0 + dot));
+        }
+
+        /// <summary>Return how long a vector is.</summary>
+        public static double Length((double, double, double) v)
+        {
+            var found = v;
+            double x = found.Item1;
+            double y = found.Item2;
+            double z = found.Item3;
+            return Math.Sqrt(x * x + y * y + z * z);
+        }
+
+        private static (double, double, double) Unit((double, double, double) v)
+        {
+            return Scaled(v, 1.0 / Math.Max(Length(v), 1e-12));
+        }
+
+        private static (double, double, double, double) UnitTurn((double, double, double, double) q)
+        {
+            var found = q;
+            double x = found.Item1;
+            double y = found.Item2;
+            double z = found.Item3;
+            double w = found.Item4;
+            var k = 1.0 / Math.Max(Math.Sqrt(x * x + y * y + z * z + w * w), 1e-12);
+            return (x * k, y * k, z * k, w * k);
+        }
+
+        private static (double, double, double, double) Back((double, double, double, double) q)
+        {
+            var found = q;
+            double x = found.Item1;
+            double y = found.Item2;
+            double z = found.Item3;
+            double w = found.Item4;
+            return (-x, -y, -z, w);
+        }
+
+        private static (double, double, double) Plus((double, double, double) a, (double, double, double) b)
+        {
+            var found = a;
+            double ax = found.Item1;
+            double ay = found.Item2;
+            double az = found.Item3;
+            var found2 = b;
+            double bx = found2.Item1;
+            double by = found2.Item2;
+            double bz = found2.Item3;
+            return (ax + bx, ay + by, az + bz);
+        }
+
+        private static (double, double, double) Minus((double, double, double) a, (double, double, double) b)
+        {
+            var found = a;
+            double ax = found.Item1;
+            double ay = found.Item2;
+            double az = found.Item3;
+            var found2 = b;
+            double bx = found2.Item1;
+            double by = found2.Item2;
+            double bz = found2.Item3;
+            return (ax - bx, ay - by, az - bz);
+        }
+
+        private static (double, double, double) Scaled((double, double, double) a, double k)
+        {
+            var found = a;
+            double x = found.Item1;
+            double y = found.Item2;
+            double z = found.Item3;
+            return (x * k, y * k, z * k);
+        }
+
+        private static double Dot((double, double, double) a, (double, double, double) b)
+        {
+            var found = a;
+            double ax = found.Item1;
+            double ay = found.Item2;
+            double az = found.Item3;
+            var found2 = b;
+            double bx = found2.Item1;
+            double by = found2.Item2;
+            double bz = found2.Item3;
+            return ax * bx + ay * by + az * bz;
+        }
+    }
+}

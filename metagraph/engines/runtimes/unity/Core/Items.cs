@@ -1,0 +1,306 @@
+// Translated from metagraph/playback/life/items.py; change that, and translate anew.
+using System;
+using System.Collections.Generic;
+using System.Linq;
+
+namespace Metagraph
+{
+    /// <summary>
+    /// Look at a point or a named point from `start` until `end`, or until the next look. strict: without averting.
+    /// </summary>
+    public sealed class LookAt
+    {
+        public readonly string Id;
+        public readonly double Start;
+        public readonly double End;
+        public readonly Spot To;
+        public readonly double Amount;
+        public readonly bool Strict;
+        public readonly int Priority;
+
+        public LookAt(string id, double start, double end, Spot to, double amount = 1.0, bool strict = false, int priority = 1)
+        {
+            Id = id;
+            Start = start;
+            End = end;
+            To = to;
+            Amount = amount;
+            Strict = strict;
+            Priority = priority;
+        }
+    }
+
+    /// <summary>
+    /// Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts the lower. length:
+    /// seconds it would have taken, where something cut it short. timing: when its words and mouth shapes come, where that was
+    /// told.
+    /// </summary>
+    public sealed class Speech
+    {
+        public readonly string Id;
+        public readonly double Start;
+        public readonly double End;
+        public readonly string Line;
+        public readonly string Text;
+        public readonly int Priority;
+        public readonly double? Length;
+        public readonly LineTiming Timing;
+
+        public Speech(
+            string id,
+            double start,
+            double end,
+            string line = null,
+            string text = "",
+            int priority = 1,
+            double? length = null,
+            LineTiming timing = null
+        )
+        {
+            Id = id;
+            Start = start;
+            End = end;
+            Line = line;
+            Text = text;
+            Priority = priority;
+            Length = length;
+            Timing = timing;
+        }
+    }
+
+    /// <summary>The mode from `start` on; None for talking while something is said and idling otherwise.</summary>
+    public sealed class ModeFrom
+    {
+        public readonly string Id;
+        public readonly double Start;
+        public readonly string Mode;
+
+        public ModeFrom(string id, double start, string mode)
+        {
+            Id = id;
+            Start = start;
+            Mode = mode;
+        }
+    }
+
+    /// <summary>Where a named point is from `start` on.</summary>
+    public sealed class PlaceFrom
+    {
+        public readonly string Id;
+        public readonly double Start;
+        public readonly string Name;
+        public readonly List<double> Point;
+
+        public PlaceFrom(string id, double start, string name, List<double> point)
+        {
+            Id = id;
+            Start = start;
+            Name = name;
+            Point = point;
+        }
+    }
+
+    /// <summary>A blink asked for.</summary>
+    public sealed class BlinkAt
+    {
+        public readonly string Id;
+        public readonly double Start;
+
+        public BlinkAt(string id, double start)
+        {
+            Id = id;
+            Start = start;
+        }
+    }
+
+    /// <summary>
+    /// From `start` on the models change no stance of a layer (or, with `on` false, may again), until `end` or the next of these.
+    /// </summary>
+    public sealed class StayFrom
+    {
+        public readonly string Id;
+        public readonly double Start;
+        public readonly string Layer;
+        public readonly bool On;
+        public readonly double End;
+
+        public StayFrom(string id, double start, string layer, bool on = true, double end = double.PositiveInfinity)
+        {
+            Id = id;
+            Start = start;
+            Layer = layer;
+            On = on;
+            End = end;
+        }
+    }
+
+    public static class ItemsRules
+    {
+        /// <summary>Return the speech, ending no later than `at`; how long it would have been is remembered.</summary>
+        public static Speech Cut(Speech speech, double at)
+        {
+            if (speech.End <= at)
+            {
+                return speech;
+            }
+            return new Speech(
+                speech.Id,
+                speech.Start,
+                at,
+                speech.Line,
+                speech.Text,
+                speech.Priority,
+                speech.Length == null ? speech.End - speech.Start : speech.Length.Value,
+                speech.Timing
+            );
+        }
+
+        /// <summary>
+        /// Return speeches, which come in order, without overlaps: one that is at least as important cuts the running one, a
+        /// lesser one is not said.
+        /// </summary>
+        public static List<Speech> Apart(List<Speech> speeches)
+        {
+            var out_ = new List<Speech>();
+            foreach (Speech speech in speeches)
+            {
+                if (out_.Count > 0 && out_[out_.Count - 1].End > speech.Start)
+                {
+                    var last = out_[out_.Count - 1];
+                    if (speech.Priority < last.Priority)
+                    {
+                        continue;
+                    }
+                    out_.RemoveAt(out_.Count - 1);
+                    if (last.Start < speech.Start)
+                    {
+                        out_.Add(Cut(last, speech.Start));
+                    }
+                }
+                out_.Add(speech);
+            }
+            return out_;
+        }
+
+        /// <summary>
+        /// Return a line as it goes on where the last of the same id has begun by `now`, or begins with it: it keeps its start
+        /// and what has been said of it. Only lines whose words or shapes were told with their times do.
+        /// </summary>
+        public static Speech GoingOn(Speech old, Speech new_, double now)
+        {
+            if (old == null || old.Timing == null || new_.Timing == null || old.Length != null)
+            {
+                return new_;
+            }
+            if (Math.Max(old.Start, new_.Start) > now && old.Start != new_.Start)
+            {
+                return new_;
+            }
+            var timing = LineTimingRules.Extended(old.Timing, new_.Timing, Math.Max(now - old.Start, 0.0));
+            var length = Math.Max(LineTimingRules.TimedSeconds(timing, null), new_.End - new_.Start);
+            var more = new_.Text == "" || new_.Text == LineTimingRules.ToldText(new_.Timing);
+            return new Speech(
+                new_.Id,
+                old.Start,
+                old.Start + length,
+                new_.Line,
+                more ? LineTimingRules.ToldText(timing) : new_.Text,
+                new_.Priority,
+                new_.Length,
+                timing
+            );
+        }
+
+        /// <summary>Whether two tracks' looks are the same; so for the others below.</summary>
+        public static bool AlikeLooks(List<LookAt> one, List<LookAt> other)
+        {
+            return one.Count == other.Count
+                && PlainLists.Pairs(one, other).All(pair => pair.Item1 == pair.Item2 || SameLook(pair.Item1, pair.Item2));
+        }
+
+        private static bool SameLook(LookAt a, LookAt b)
+        {
+            if (!SpotsRules.SameSpot(a.To, b.To) || a.Amount != b.Amount || a.Strict != b.Strict)
+            {
+                return false;
+            }
+            return a.Id == b.Id && a.Start == b.Start && a.End == b.End && a.Priority == b.Priority;
+        }
+
+        public static bool AlikeSpeeches(List<Speech> one, List<Speech> other)
+        {
+            return one.Count == other.Count
+                && PlainLists.Pairs(one, other).All(pair => pair.Item1 == pair.Item2 || SameSpeech(pair.Item1, pair.Item2));
+        }
+
+        private static bool SameSpeech(Speech a, Speech b)
+        {
+            if (a.Line != b.Line || a.Text != b.Text || a.Length != b.Length || a.Priority != b.Priority)
+            {
+                return false;
+            }
+            return a.Id == b.Id && a.Start == b.Start && a.End == b.End && LineTimingRules.AlikeTimings(a.Timing, b.Timing);
+        }
+
+        public static bool AlikeModes(List<ModeFrom> one, List<ModeFrom> other)
+        {
+            return one.Count == other.Count
+                && PlainLists.Pairs(one, other).All(pair => pair.Item1 == pair.Item2
+                    || (pair.Item1.Id == pair.Item2.Id
+                        && pair.Item1.Start == pair.Item2.Start
+                        && pair.Item1.Mode == pair.Item2.Mode));
+        }
+
+        public static bool AlikePlaces(List<PlaceFrom> one, List<PlaceFrom> other)
+        {
+            return one.Count == other.Count
+                && PlainLists.Pairs(one, other).All(pair => pair.Item1 == pair.Item2 || SamePlace(pair.Item1, pair.Item2));
+        }
+
+        private static bool SamePlace(PlaceFrom a, PlaceFrom b)
+        {
+            if (a.Id != b.Id || a.Start != b.Start || a.Name != b.Name)
+            {
+                return false;
+            }
+            return PlainLists.Pairs(a.Point, b.Point).All(pair => pair.Item1 == pair.Item2);
+        }
+
+        public static bool AlikeBlinks(List<BlinkAt> one, List<BlinkAt> other)
+        {
+            return one.Count == other.Count
+                && PlainLists.Pairs(one, other).All(pair => pair.Item1 == pair.Item2
+                    || (pair.Item1.Id == pair.Item2.Id && pair.Item1.Start == pair.Item2.Start));
+        }
+
+        public static bool AlikeStays(List<StayFrom> one, List<StayFrom> other)
+        {
+            return one.Count == other.Count
+                && PlainLists.Pairs(one, other).All(pair => pair.Item1 == pair.Item2 || SameStay(pair.Item1, pair.Item2));
+        }
+
+        private static bool SameStay(StayFrom a, StayFrom b)
+        {
+            if (a.Layer != b.Layer || a.On != b.On || a.End != b.End)
+            {
+                return false;
+            }
+            return a.Id == b.Id && a.Start == b.Start;
+        }
+
+        public static bool AlikeFelt(List<MoodFrom> one, List<MoodFrom> other)
+        {
+            return one.Count == other.Count
+                && PlainLists.Pairs(one, other).All(pair => pair.Item1 == pair.Item2 || SameFelt(pair.Item1, pair.Item2));
+        }
+
+        private static bool SameFelt(MoodFrom a, MoodFrom b)
+        {
+            if (a.Valence != b.Valence || a.Arousal != b.Arousal || a.Intensity != b.Intensity)
+            {
+                return false;
+            }
+            return a.Id == b.Id && a.Start == b.Start && a.End == b.End;
+        }
+    }
+}

@@ -1,0 +1,427 @@
+// Translated from metagraph/playback/mood.py; change that, and translate anew.
+using System;
+using System.Collections.Generic;
+using System.Linq;
+
+namespace Metagraph
+{
+    /// <summary>valence, arousal: -1..1. intensity: 0..2, 1 as made.</summary>
+    public sealed class Mood
+    {
+        public readonly double Valence;
+        public readonly double Arousal;
+        public readonly double Intensity;
+
+        public Mood(double valence = 0.0, double arousal = 0.0, double intensity = 1.0)
+        {
+            Valence = valence;
+            Arousal = arousal;
+            Intensity = intensity;
+        }
+
+        /// <summary>Whether it changes nothing.</summary>
+        public bool Neutral
+        {
+            get
+            {
+                return Valence == 0 && Arousal == 0 && Intensity == 1;
+            }
+        }
+
+        /// <summary>Whether it is the same.</summary>
+        public bool Like(Mood other)
+        {
+            return Valence == other.Valence && Arousal == other.Arousal && Intensity == other.Intensity;
+        }
+    }
+
+    /// <summary>
+    /// A mood told from `start` on, until `end`; what it leaves out stays as it would be without it. Of two that last the later
+    /// began counts, and the other again when that is over.
+    /// </summary>
+    public sealed class MoodFrom
+    {
+        public readonly string Id;
+        public readonly double Start;
+        public readonly double? Valence;
+        public readonly double? Arousal;
+        public readonly double? Intensity;
+        public readonly double End;
+
+        public MoodFrom(
+            string id,
+            double start,
+            double? valence = null,
+            double? arousal = null,
+            double? intensity = null,
+            double end = double.PositiveInfinity
+        )
+        {
+            Id = id;
+            Start = start;
+            Valence = valence;
+            Arousal = arousal;
+            Intensity = intensity;
+            End = end;
+        }
+    }
+
+    /// <summary>The mood over time. base: where nothing is told; told: by start.</summary>
+    public sealed class Moods
+    {
+        public readonly Mood Base;
+        public readonly List<MoodFrom> Told;
+
+        public Moods(Mood base_ = null, List<MoodFrom> told = null)
+        {
+            Base = base_ ?? new Mood();
+            Told = told ?? new List<MoodFrom>();
+        }
+    }
+
+    /// <summary>What a mood makes of the life layers' amounts and rates: factors, as those of a manner.</summary>
+    public sealed class LifeMood
+    {
+        public readonly double Breathing;
+        public readonly double BreathRate;
+        public readonly double AversionRate;
+        public readonly double SaccadeRate;
+        public readonly double Blinks;
+
+        public LifeMood(double breathing, double breathRate, double aversionRate, double saccadeRate, double blinks)
+        {
+            Breathing = breathing;
+            BreathRate = breathRate;
+            AversionRate = aversionRate;
+            SaccadeRate = saccadeRate;
+            Blinks = blinks;
+        }
+    }
+
+    /// <summary>
+    /// Posture and face of a mood. droop: -0.4 upright .. 1 bowed. lift: of the shoulders, in breaths. lids: how far they hang,
+    /// 0..1. smile, frown, brow_down, brow_up: weights of the face, 0..1.
+    /// </summary>
+    public sealed class Bearing
+    {
+        public readonly double Droop;
+        public readonly double Lift;
+        public readonly double Lids;
+        public readonly double Smile;
+        public readonly double Frown;
+        public readonly double BrowDown;
+        public readonly double BrowUp;
+
+        public Bearing(
+            double droop = 0.0,
+            double lift = 0.0,
+            double lids = 0.0,
+            double smile = 0.0,
+            double frown = 0.0,
+            double browDown = 0.0,
+            double browUp = 0.0
+        )
+        {
+            Droop = droop;
+            Lift = lift;
+            Lids = lids;
+            Smile = smile;
+            Frown = frown;
+            BrowDown = browDown;
+            BrowUp = browUp;
+        }
+    }
+
+    public static class MoodRules
+    {
+        public const double Fade = 1.5; // seconds in which posture and face go from one mood to the next
+        public const double LeastExtent = 0.6;
+        public const double MostExtent = 1.25;
+        public const double LeastTempo = 0.8;
+        public const double MostTempo = 1.25;
+        public const double Close = 0.5; // an action that is tagged with a mood no farther away than this was made for it
+        public const string Pleasant = "positive"; // tags
+        public const string Unpleasant = "negative";
+        public const string Held = "contact"; // tag of actions that touch something: smaller or larger they would miss it
+        // Named moods: valence, arousal. Directions are Russell's (1980, table of 28 words, by circular scaling): calm
+        // 316.2, content 323, happy 7.8, excited 48.6, tense 92.8, angry 99, afraid 116, sad 207.5, bored 242 and
+        // tired 267.7 degrees, at 0.8 from the middle, which is ours. "warm" is ours.
+        public static readonly Dictionary<string, (double, double)> Moods = new Dictionary<string, (double, double)> {
+            { "neutral", (0.0, 0.0) },
+            { "calm", (0.58, -0.55) },
+            { "content", (0.64, -0.48) },
+            { "warm", (0.6, 0.1) },
+            { "happy", (0.79, 0.11) },
+            { "excited", (0.53, 0.6) },
+            { "tense", (-0.04, 0.8) },
+            { "angry", (-0.13, 0.79) },
+            { "afraid", (-0.35, 0.72) },
+            { "sad", (-0.71, -0.37) },
+            { "bored", (-0.38, -0.71) },
+            { "tired", (-0.03, -0.8) }
+         };
+
+        /// <summary>Return a mood with what is told of it changed, each within its range.</summary>
+        public static Mood Changed(Mood mood, double? valence, double? arousal, double? intensity)
+        {
+            return new Mood(
+                valence == null ? mood.Valence : Within(valence.Value, -1.0, 1.0),
+                arousal == null ? mood.Arousal : Within(arousal.Value, -1.0, 1.0),
+                intensity == null ? mood.Intensity : Within(intensity.Value, 0.0, 2.0)
+            );
+        }
+
+        /// <summary>Return the mood wanted at a time; posture and face take a while to follow (`shown`).</summary>
+        public static Mood MoodAt(Moods moods, double seconds)
+        {
+            var out_ = moods.Base;
+            foreach (MoodFrom told in moods.Told)
+            {
+                if (told.Start > seconds)
+                {
+                    break;
+                }
+                if (seconds < told.End)
+                {
+                    out_ = Changed(out_, told.Valence, told.Arousal, told.Intensity);
+                }
+            }
+            return out_;
+        }
+
+        /// <summary>
+        /// Return those that may still show at `seconds` or later: not what is over and has faded, nor what another that lasts
+        /// for ever has replaced.
+        /// </summary>
+        public static List<MoodFrom> Lasting(List<MoodFrom> told, double seconds)
+        {
+            var out_ = new List<MoodFrom>();
+            foreach (var pair in told.Select((item, n) => (n, item)))
+            {
+                var place = pair.Item1;
+                var one = pair.Item2;
+                if (one.End <= seconds - Fade)
+                {
+                    continue;
+                }
+                if (!PlainLists.Part(told, place + 1).Any(other => Replaces(other, one, seconds)))
+                {
+                    out_.Add(one);
+                }
+            }
+            return out_;
+        }
+
+        private static bool Replaces(MoodFrom later, MoodFrom one, double seconds)
+        {
+            return later.End == double.PositiveInfinity
+                && later.Start <= seconds - Fade
+                && (one.Valence == null || later.Valence != null)
+                && (one.Arousal == null || later.Arousal != null)
+                && (one.Intensity == null || later.Intensity != null);
+        }
+
+        /// <summary>
+        /// Return the times from `start` to before `end` at which the mood may change, ascending, `start` first.
+        /// </summary>
+        public static List<double> MoodEdges(Moods moods, double start, double end)
+        {
+            var edges = new List<double> { start };
+            foreach (MoodFrom told in moods.Told)
+            {
+                foreach (double edge in new List<double> { told.Start, told.End })
+                {
+                    if (start < edge && edge < end && !edges.Contains(edge))
+                    {
+                        edges.Add(edge);
+                    }
+                }
+            }
+            return edges.OrderBy(x => x).ToList();
+        }
+
+        /// <summary>Return how much of a change shows after `x` of its fade: 3x^2 - 2x^3 of x clamped to 0..1.</summary>
+        public static double Faded(double x)
+        {
+            var y = Within(x, 0.0, 1.0);
+            return y * y * (3 - 2 * y);
+        }
+
+        /// <summary>
+        /// Return the mood that shows at a time, on its way from those before. starts: when each begins, ascending; values:
+        /// valence, arousal, intensity of each. Before the first it is the first.
+        /// </summary>
+        public static Mood Shown(List<double> starts, List<List<double>> values, double seconds)
+        {
+            var place = starts.Count - 1;
+            while (place > 0 && starts[place] > seconds)
+            {
+                place -= 1;
+            }
+            if (place < 0)
+            {
+                return new Mood();
+            }
+            var valence = 0.0;
+            var arousal = 0.0;
+            var intensity = 0.0;
+            var left = 1.0;
+            while (left > 0)
+            {
+                var share = left;
+                if (place > 0)
+                {
+                    share = Math.Min(left, Faded((seconds - starts[place]) / Fade) - (1 - left));
+                }
+                valence += share * values[place][0];
+                arousal += share * values[place][1];
+                intensity += share * values[place][2];
+                left -= share;
+                place -= 1;
+            }
+            return new Mood(valence, arousal, intensity);
+        }
+
+        /// <summary>Return a number clamped to a range.</summary>
+        public static double Within(double x, double low, double high)
+        {
+            return Math.Min(Math.Max(x, low), high);
+        }
+
+        /// <summary>Return 1 at 0, `most` at 1 and 1 / `most` at -1, and beyond as there; smooth and rising.</summary>
+        public static double Leaning(double x, double most)
+        {
+            var y = Within(x, -1.0, 1.0) * (most - 1) / (most + 1);
+            return (1 + y) / (1 - y);
+        }
+
+        /// <summary>
+        /// Return how large gestures and fidgets of arms and head are played: a factor of their turns away from the stance.
+        /// </summary>
+        public static double Extent(Mood mood)
+        {
+            var drive = Within(mood.Arousal + 0.25 * mood.Valence, -1.0, 1.0);
+            var byMood = drive > 0 ? 1 + 0.25 * drive : 1 + 0.4 * drive;
+            var dial = mood.Intensity - 1;
+            var byDial = dial > 0 ? 1 + 0.25 * dial : 1 + 0.4 * dial;
+            return Within(byMood * byDial, LeastExtent, MostExtent);
+        }
+
+        /// <summary>Return how fast actions are played: a factor of their own speed.</summary>
+        public static double Tempo(Mood mood)
+        {
+            var byMood = mood.Arousal > 0 ? 1 + 0.25 * mood.Arousal : 1 + 0.2 * mood.Arousal;
+            return Within(byMood, LeastTempo, MostTempo);
+        }
+
+        /// <summary>
+        /// Return how much longer clip seconds take at a speed than at their own, 0 at that, to the last digit.
+        /// </summary>
+        public static double Drag(double seconds, double speed)
+        {
+            return seconds * (((double)1 / speed) - 1);
+        }
+
+        /// <summary>
+        /// Return how far a joint turns away from its stance, a factor, for a cue's extent. real: the real part of the turn as it
+        /// was made, a unit quaternion: turns of nearly half a circle, whose short way changes sides, stay as they are.
+        /// </summary>
+        public static double TurnExtent(double extent, double real)
+        {
+            return 1 + (extent - 1) * Faded((Math.Abs(real) - 0.1) / 0.4);
+        }
+
+        /// <summary>Whether an action was made for a mood: tagged with one that is near.</summary>
+        public static bool MadeFor(Mood mood, List<string> tags)
+        {
+            return tags.Any(tag => Moods.ContainsKey(tag) && Distance(mood, tag) <= Close);
+        }
+
+        /// <summary>Return how far a mood is from a named one, 0..2.8.</summary>
+        public static double Distance(Mood mood, string name)
+        {
+            var found = Moods[name];
+            double valence = found.Item1;
+            double arousal = found.Item2;
+            var x = mood.Valence - valence;
+            var y = mood.Arousal - arousal;
+            return Math.Sqrt(x * x + y * y);
+        }
+
+        /// <summary>
+        /// Return how much likelier than usual an action is. vigour: how energetic it is beside others of its layer and kind,
+        /// -1..1. Up to 4 times for that, 4 for a tag of valence, 9 for a tag that names a mood; and as much rarer where they are
+        /// against it.
+        /// </summary>
+        public static double Favour(Mood mood, List<string> tags, double vigour)
+        {
+            var out_ = Leaning(vigour * Within(mood.Arousal + (mood.Intensity - 1), -1.0, 1.0), 4.0);
+            if (tags.Contains(Pleasant))
+            {
+                out_ *= Leaning(mood.Valence, 4.0);
+            }
+            if (tags.Contains(Unpleasant))
+            {
+                out_ *= Leaning(-mood.Valence, 4.0);
+            }
+            var strength = Math.Min(1.0, Math.Sqrt(mood.Valence * mood.Valence + mood.Arousal * mood.Arousal) / Close);
+            foreach (string tag in tags)
+            {
+                if (Moods.ContainsKey(tag))
+                {
+                    out_ *= Leaning(strength * (1 - Distance(mood, tag) / Close), 9.0);
+                }
+            }
+            return out_;
+        }
+
+        /// <summary>
+        /// Whether something a model wrote is performed in a mood: the less aroused, the less of it, down to 0.6.
+        /// </summary>
+        public static bool Stirs(Mood mood, uint seed, string key)
+        {
+            return mood.Arousal >= 0 || ChoiceRules.Uniform(seed, key, "mood") < 1 + 0.4 * mood.Arousal;
+        }
+
+        /// <summary>
+        /// Return what a mood makes of the life layers. Breath quickens and deepens with arousal, eyes dart and blink more; who
+        /// feels bad looks away more, who feels well less. The amounts are ours.
+        /// </summary>
+        public static LifeMood LifeOf(Mood mood)
+        {
+            var a = mood.Arousal;
+            var v = mood.Valence;
+            return new LifeMood(
+                1 + 0.25 * a,
+                a > 0 ? 1 + 0.4 * a : 1 + 0.25 * a,
+                v < 0 ? 1 - 0.4 * v : 1 - 0.25 * v,
+                1 + 0.4 * a,
+                a > 0 ? 1 + 0.4 * a : 1 + 0.25 * a
+            );
+        }
+
+        /// <summary>
+        /// Return posture and face of a mood, stronger with its intensity. The head bows with sadness (Roether et al. 2009);
+        /// shoulders rise with arousal that is not joy; the amounts are ours.
+        /// </summary>
+        public static Bearing Bearing(Mood mood)
+        {
+            var v = mood.Valence;
+            var a = mood.Arousal;
+            var i = mood.Intensity;
+            var up = Math.Max(0.0, a);
+            var down = Math.Max(0.0, -a);
+            var well = Math.Max(0.0, v);
+            var ill = Math.Max(0.0, -v);
+            return new Bearing(
+                Within(i * (-0.7 * v - 0.5 * a), -0.4, 1.0),
+                Within(i * (2.0 * up * (1 - well) - down), -1.0, 2.0),
+                Within(i * 0.3 * down, 0.0, 0.5),
+                Within(i * well, 0.0, 1.0),
+                Within(i * ill, 0.0, 1.0),
+                Within(i * 1.4 * up * Math.Max(0.0, 0.4 - v), 0.0, 1.0),
+                Within(i * ill * Math.Max(0.0, 0.6 - a), 0.0, 1.0)
+            );
+        }
+    }
+}

@@ -1,0 +1,657 @@
+// Translated from metagraph/playback/life/schedule.py; change that, and translate anew.
+using System;
+using System.Collections.Generic;
+using System.Linq;
+
+namespace Metagraph
+{
+    /// <summary>
+    /// Everything that happens of itself from 0 to `end` seconds, in lanes; a lane's rows stand in the order given here.
+    ///
+    /// modes: place among MODES. moods: valence, arousal, intensity. targets: what is looked at. breaths: length s, depth.
+    /// aversions: end s, right-to-left and upward part of the offset (of life's angle). saccades: offset to the left and up,
+    /// degrees. blinks: 0 of itself, 1 on a stressed syllable, 2 asked for. drawn: seconds up to which the lanes are filled; the
+    /// rest is what they were drawn from.
+    /// </summary>
+    public sealed class Schedule
+    {
+        public readonly double End;
+        public readonly double Drawn;
+        public readonly Lane Modes;
+        public readonly Lane Moods;
+        public readonly List<GazeTarget> Targets;
+        public readonly Lane Breaths;
+        public readonly Lane Aversions;
+        public readonly Lane Saccades;
+        public readonly Lane Blinks;
+        public readonly LifeSettings Life;
+        public readonly Track Track;
+        public readonly Voices Voices;
+        public readonly uint Seed;
+
+        public Schedule(
+            double end = 0.0,
+            double drawn = 0.0,
+            Lane modes = null,
+            Lane moods = null,
+            List<GazeTarget> targets = null,
+            Lane breaths = null,
+            Lane aversions = null,
+            Lane saccades = null,
+            Lane blinks = null,
+            LifeSettings life = null,
+            Track track = null,
+            Voices voices = null,
+            uint seed = 0
+        )
+        {
+            End = end;
+            Drawn = drawn;
+            Modes = modes ?? new Lane(new List<double>(), new List<List<double>>(), 0, 1);
+            Moods = moods ?? new Lane(new List<double>(), new List<List<double>>(), 0, 3);
+            Targets = targets ?? new List<GazeTarget>();
+            Breaths = breaths ?? new Lane(new List<double>(), new List<List<double>>(), 0, 2);
+            Aversions = aversions ?? new Lane(new List<double>(), new List<List<double>>(), 0, 3);
+            Saccades = saccades ?? new Lane(new List<double>(), new List<List<double>>(), 0, 2);
+            Blinks = blinks ?? new Lane(new List<double>(), new List<List<double>>(), 0, 1);
+            Life = life;
+            Track = track;
+            Voices = voices;
+            Seed = seed;
+        }
+
+        /// <summary>
+        /// Return the schedule without what ended before `seconds`; what is drawn on from it stays as it would have been.
+        /// </summary>
+        public Schedule Since(double seconds)
+        {
+            var breaths = Breaths.Since(seconds);
+            var aversions = Aversions.Since(seconds);
+            var saccades = Saccades.Since(seconds);
+            var blinks = Blinks.Since(seconds);
+            var rates = new List<double> { 1.0, 1.0, 1.0, 1.0 };
+            if (Life != null)
+            {
+                rates = new List<double> { Life.BreathRate, Life.AversionRate, Life.SaccadeRate, Life.Blinks };
+            }
+            // Gaps run in modes' time from the event before, so the modes since then are needed.
+            var lanes = new List<Lane> { breaths, aversions, saccades, blinks };
+            var firsts = lanes.Where(kept => kept.Times.Count > 0).Select(kept => kept.Times[0]).ToList();
+            var needed = firsts.Count > 0 ? PlainNumbers.MinOf(firsts) : seconds;
+            if (PlainLists.Pairs(lanes, rates).Any(pair => pair.Item1.Times.Count == 0 && pair.Item2 > 0))
+            {
+                needed = 0.0;
+            }
+            var looked = PlainLists.Right(Targets.Select(t => t.Start).ToList(), Math.Min(needed, seconds - ScheduleRules.Recall))
+                - 1;
+            return new Schedule(
+                this.End,
+                this.Drawn,
+                Modes.Since(needed, 0),
+                Moods.Since(Math.Min(needed, seconds - ScheduleRules.Recall), 0),
+                PlainLists.Part(Targets, Math.Max(0, looked)),
+                breaths,
+                aversions,
+                saccades,
+                blinks,
+                this.Life,
+                this.Track,
+                this.Voices,
+                this.Seed
+            );
+        }
+    }
+
+    /// <summary>
+    /// One extension: lanes filled from `cut` to `drawn` seconds. edges: where modes, moods and strict looks change; manners:
+    /// what mode and mood make of the amounts from each on; strict: 1 where the look then is, else 0.
+    /// </summary>
+    public sealed class LifeDraw
+    {
+        public LifeSettings Life;
+        public Track Track;
+        public Voices Voices;
+        public uint Seed;
+        public double Cut;
+        public double Drawn;
+        public double Calm;
+        public Lane Modes;
+        public Lane Moods;
+        public List<GazeTarget> Targets;
+        public List<double> Edges;
+        public List<Manner> Manners;
+        public List<int> Strict;
+
+        public LifeDraw(
+            LifeSettings life,
+            Track track,
+            Voices voices,
+            uint seed,
+            double cut,
+            double drawn,
+            double calm,
+            Lane modes,
+            Lane moods,
+            List<GazeTarget> targets,
+            List<double> edges = null,
+            List<Manner> manners = null,
+            List<int> strict = null
+        )
+        {
+            Life = life;
+            Track = track;
+            Voices = voices;
+            Seed = seed;
+            Cut = cut;
+            Drawn = drawn;
+            Calm = calm;
+            Modes = modes;
+            Moods = moods;
+            Targets = targets;
+            Edges = edges ?? new List<double>();
+            Manners = manners ?? new List<Manner>();
+            Strict = strict ?? new List<int>();
+        }
+
+        /// <summary>Lay modes, moods and strict looks out in one row of segments.</summary>
+        public void Begin(double cut)
+        {
+            Cut = cut;
+            var edges = Modes.Times.ToList();
+            edges.AddRange(Moods.Times);
+            foreach (var one in Targets.Select((item, n) => (n, item)))
+            {
+                var n = one.Item1;
+                var target = one.Item2;
+                if (n == 0 || target.Strict != Targets[n - 1].Strict)
+                {
+                    edges.Add(target.Start);
+                }
+            }
+            var begun = Targets.Select(t => t.Start).ToList();
+            foreach (double edge in edges.OrderBy(x => x).ToList())
+            {
+                if (Edges.Count > 0 && Edges[Edges.Count - 1] == edge)
+                {
+                    continue;
+                }
+                var mode = Math.Max(0, PlainLists.Right(Modes.Times, edge) - 1);
+                var look = Math.Max(0, PlainLists.Right(begun, edge) - 1);
+                Edges.Add(edge);
+                var felt = Moods.Rows[Math.Max(0, PlainLists.Right(Moods.Times, edge) - 1)];
+                var ways = LifeRules.Manner(Life, WordsRules.Modes[(int)(Modes.Rows[mode][0])]);
+                Manners.Add(WantedRules.WaysIn(ways, new Mood(felt[0], felt[1], felt[2])));
+                Strict.Add(Targets[look].Strict ? 1 : 0);
+            }
+        }
+
+        /// <summary>Return the chance of something about an event: 0..1, without the ends.</summary>
+        public double Chance(string what, int number, string purpose)
+        {
+            return ChoiceRules.Uniform(Seed, what, PlainText.Of(number), purpose);
+        }
+
+        /// <summary>Return the place of the segment that a time is in.</summary>
+        public int PlaceAt(double seconds)
+        {
+            return Math.Max(0, PlainLists.Right(Edges, seconds) - 1);
+        }
+
+        /// <summary>
+        /// Return when `need` has passed since `seconds`, for a clock that runs at these rates, one for each segment; infinity
+        /// where it is not before the end.
+        /// </summary>
+        public double After(double seconds, double need, List<double> rates)
+        {
+            var at = seconds;
+            var left = need;
+            var place = PlaceAt(at);
+            while (at < Drawn)
+            {
+                var end = place + 1 < Edges.Count ? Edges[place + 1] : Drawn;
+                var rate = rates[place];
+                if (rate > 0 && at + left / rate < end)
+                {
+                    return at + left / rate;
+                }
+                left -= rate * Math.Max(0.0, end - at);
+                at = end;
+                place += 1;
+            }
+            return double.PositiveInfinity;
+        }
+
+        /// <summary>
+        /// Each breath follows the one before; the first began before time 0, so that not everybody breathes alike.
+        /// </summary>
+        public Lane Breaths(Lane lane)
+        {
+            var times = new List<double>();
+            var rows = new List<List<double>>();
+            var number = lane.Next;
+            var begun = lane.Times.Count > 0;
+            var at = begun ? lane.Times[lane.Times.Count - 1] + lane.Rows[lane.Rows.Count - 1][0] : 0.0;
+            while (true)
+            {
+                if (begun)
+                {
+                    at = Math.Max(at, Cut);
+                }
+                var ways = Manners[PlaceAt(at)];
+                var rate = Life.BreathRate * ways.BreathRate / 60.0;
+                if (rate <= 0) // no breath until another mode begins
+                {
+                    var later = PlainLists.Right(Edges, at);
+                    if (Life.BreathRate <= 0 || later == Edges.Count)
+                    {
+                        break;
+                    }
+                    at = Edges[later];
+                    begun = true;
+                    continue;
+                }
+                var length = (ScheduleRules.Breath + ScheduleRules.BreathChance * Chance("breath", number, "length")) / rate;
+                length *= 1.0 + 2.0 * Life.Stillness; // slower, too, but never halting
+                var depth = ways.Breathing
+                    * (ScheduleRules.Breath + ScheduleRules.BreathChance * Chance("breath", number, "depth"));
+                if (!begun)
+                {
+                    at = -length * ChoiceRules.Uniform(Seed, "breath", "first");
+                    begun = true;
+                }
+                if (at >= Drawn)
+                {
+                    break;
+                }
+                times.Add(at);
+                rows.Add(new List<double> { length, depth });
+                at += length;
+                number += 1;
+            }
+            return lane.Plus(times, rows);
+        }
+
+        /// <summary>The eyes' small jumps.</summary>
+        public Lane Saccades(Lane lane)
+        {
+            if (Life.SaccadeRate <= 0 || Calm <= 0)
+            {
+                return lane;
+            }
+            var mean = Math.Max(60.0 / Life.SaccadeRate, ScheduleRules.Fixation + 0.01);
+            var rates = Manners.Select(ways => ways.SaccadeRate * Calm).ToList();
+            var times = new List<double>();
+            var rows = new List<List<double>>();
+            var number = lane.Next;
+            var last = lane.Times.Count > 0 ? lane.Times[lane.Times.Count - 1] : 0.0;
+            while (true)
+            {
+                var need = ScheduleRules.Fixation
+                    + (mean - ScheduleRules.Fixation) * Math.Min(4.0, -Math.Log(Chance("saccade", number, "gap")));
+                last = Math.Max(Cut, After(last, need, rates));
+                if (!(last < Drawn))
+                {
+                    return lane.Plus(times, rows);
+                }
+                var size = Math.Min(
+                    ScheduleRules.LargestSaccade,
+                    -ScheduleRules.Saccade * Math.Log(Chance("saccade", number, "size"))
+                );
+                size *= Manners[PlaceAt(last)].Saccades;
+                var turn = 2.0 * Math.PI * Chance("saccade", number, "way");
+                times.Add(last);
+                rows.Add(new List<double> {
+                    size * Math.Sin(turn + Math.PI / 2.0),
+                    ScheduleRules.Upright * size * Math.Sin(turn)
+                 });
+                number += 1;
+            }
+        }
+
+        /// <summary>Looks away for a moment.</summary>
+        public Lane Aversions(Lane lane)
+        {
+            var life = Life;
+            if (life.AversionRate <= 0 || life.AversionLength <= 0 || life.AversionAngle <= 0 || Calm <= 0)
+            {
+                return lane;
+            }
+            var rates = new List<double>();
+            foreach (var one in PlainLists.Pairs(Manners, Strict))
+            {
+                var ways = one.Item1;
+                var strict = one.Item2;
+                var rate = life.AversionRate * ways.AversionRate;
+                if (strict == 1 || rate <= 0)
+                {
+                    rates.Add(0.0);
+                }
+                else
+                {
+                    var mean = Math.Max(ScheduleRules.BetweenAversions, 60.0 / rate - life.AversionLength * ways.AversionLength);
+                    rates.Add(Calm / mean);
+                }
+            }
+            var times = new List<double>();
+            var rows = new List<List<double>>();
+            var number = lane.Next;
+            var last = lane.Rows.Count > 0 ? lane.Rows[lane.Rows.Count - 1][0] : 0.0;
+            while (true)
+            {
+                var need = ScheduleRules.AversionGap + ScheduleRules.AversionChance * Chance("aversion", number, "gap");
+                var at = Math.Max(Cut, Math.Max(last + ScheduleRules.BetweenAversions, After(last, need, rates)));
+                if (!(at < Drawn))
+                {
+                    return lane.Plus(times, rows);
+                }
+                var own = Manners[PlaceAt(at)];
+                var length = life.AversionLength * own.AversionLength;
+                length *= 0.6 + 0.8 * Chance("aversion", number, "length");
+                last = at + Math.Max(ScheduleRules.ShortestAversion, length);
+                var size = own.AversionAngle * (0.7 + 0.6 * Chance("aversion", number, "size"));
+                var turn = 2.0 * Math.PI * Chance("aversion", number, "way");
+                times.Add(at);
+                rows.Add(new List<double> {
+                    last,
+                    size * Math.Sin(turn + Math.PI / 2.0),
+                    ScheduleRules.Upright * size * Math.Sin(turn)
+                 });
+                number += 1;
+            }
+        }
+
+        /// <summary>Blinks of themselves, on stressed syllables and asked for, whichever comes first.</summary>
+        public Lane Blinks(Lane lane)
+        {
+            var life = Life;
+            var shut = life.BlinkClose + life.BlinkOpen;
+            var mean = (life.Blinks > 0 && Calm > 0) ? 60.0 / life.Blinks : double.PositiveInfinity;
+            var rates = Manners.Select(ways => ways.Blinks * Calm).ToList();
+            var last = -0.5 * Math.Min(mean, 10.0) * ChoiceRules.Uniform(Seed, "blink", "first");
+            if (lane.Times.Count > 0)
+            {
+                last = lane.Times[lane.Times.Count - 1];
+            }
+            var accents = new List<(double, bool)>();
+            if (Calm > 0 && life.AccentBlinks > 0)
+            {
+                accents = Accents(Math.Max(0.0, Math.Min(Cut, last)));
+            }
+            var asked = Track.Blinks.Select(b => b.Start).ToList();
+            var times = new List<double>();
+            var rows = new List<List<double>>();
+            var number = lane.Next;
+            var place = 0;
+            while (true)
+            {
+                var own = double.PositiveInfinity;
+                if (mean < double.PositiveInfinity)
+                {
+                    var need = mean * (ScheduleRules.BlinkGap + ScheduleRules.BlinkChance * Chance("blink", number, "gap"));
+                    own = Math.Max(Cut, After(last, need, rates));
+                }
+                // A stressed syllable may bring a blink: the first of a speech always, the others some time after
+                // the last blink.
+                while (place < accents.Count)
+                {
+                    var found = accents[place];
+                    double accent = found.Item1;
+                    bool first = found.Item2;
+                    if (accent >= Cut && accent >= last + (first ? shut + 0.1 : ScheduleRules.AfterBlink / Calm))
+                    {
+                        break;
+                    }
+                    place += 1;
+                }
+                var heard = place < accents.Count ? accents[place].Item1 : double.PositiveInfinity;
+                var wish = PlainLists.Left(asked, Math.Max(Cut, last + shut));
+                var wanted = wish < asked.Count ? asked[wish] : double.PositiveInfinity;
+                var at = Math.Min(own, Math.Min(heard, wanted));
+                if (at >= Drawn)
+                {
+                    return lane.Plus(times, rows);
+                }
+                times.Add(at);
+                var kind = at == heard ? 1.0 : 0.0;
+                rows.Add(new List<double> { at == wanted ? 2.0 : kind });
+                last = at;
+                number += 1;
+            }
+        }
+
+        /// <summary>
+        /// Return the stressed syllables from `start` to the end that may bring blinks, and whether each is a speech's first.
+        /// </summary>
+        public List<(double, bool)> Accents(double start)
+        {
+            var out_ = new List<(double, bool)>();
+            foreach (Speech speech in Track.Speeches)
+            {
+                if (speech.End <= start || speech.Start >= Drawn)
+                {
+                    continue;
+                }
+                var end = Math.Min(speech.End, Drawn);
+                foreach (var one in VoiceRules.Stressed(Voices, speech).Select((item, n) => (n, item)))
+                {
+                    var n = one.Item1;
+                    var peak = one.Item2;
+                    var at = speech.Start + peak;
+                    if (at < start || at >= end)
+                    {
+                        continue;
+                    }
+                    if (ChoiceRules.Uniform(Seed, speech.Id, "accent", PlainText.Of(n)) < Life.AccentBlinks)
+                    {
+                        out_.Add((at, n == 0));
+                    }
+                }
+            }
+            return out_;
+        }
+    }
+
+    public static class ScheduleRules
+    {
+        public const double Block = 8.0; // seconds drawn at a time, so that a running plan need not draw at every tick
+        // seconds of looks kept when the past is forgotten: longer than any turn of the head takes
+        public const double Recall = 4.0;
+        // Blinks (Yang et al., section 7.3): on stressed syllables at least so many seconds after the last; of
+        // themselves 2 to 5 s after it at 17 a minute: the factors are of the mean gap.
+        public const double AfterBlink = 1.0;
+        public const double BlinkGap = 0.57; // the shortest gap
+        public const double BlinkChance = 0.845; // and what chance adds to it
+        // Saccades: fixations last 0.2 s and more; sizes fall off as in "Eyes Alive", small ones only: the eyes stay
+        // with what they look at.
+        public const double Fixation = 0.2;
+        public const double Saccade = 1.2; // degrees on average
+        public const double LargestSaccade = 4.0; // degrees
+        public const double Upright = 0.6; // how much of an offset goes up and down
+        // Aversions: at somewhat regular intervals, in a random direction, more often to the sides.
+        public const double AversionGap = 0.6;
+        public const double AversionChance = 0.8;
+        public const double BetweenAversions = 0.6; // seconds at least
+        public const double ShortestAversion = 0.25;
+        public const double Breath = 0.85; // of the mean length and depth: the least
+        public const double BreathChance = 0.3; // and what chance adds
+
+        /// <summary>
+        /// Return the schedule to `end` seconds. What `before` holds that begins before `now` stays exactly as it was.
+        ///
+        /// What it holds for later is kept, too, where nothing it was drawn from has changed.
+        /// </summary>
+        public static Schedule Schedule(
+            LifeSettings life,
+            Track track,
+            Voices voices,
+            uint seed,
+            double end,
+            Schedule before,
+            double now
+        )
+        {
+            if (!life.On)
+            {
+                return new Schedule(
+                    end,
+                    before.Drawn,
+                    before.Modes,
+                    before.Moods,
+                    before.Targets,
+                    before.Breaths,
+                    before.Aversions,
+                    before.Saccades,
+                    before.Blinks,
+                    life,
+                    track,
+                    voices,
+                    seed
+                );
+            }
+            var drawn = Math.Max(Block, (int)Math.Ceiling(end / Block) * Block);
+            var change = Change(before, life, track, voices, seed);
+            if (change == "" && drawn == before.Drawn)
+            {
+                return new Schedule(
+                    end,
+                    before.Drawn,
+                    before.Modes,
+                    before.Moods,
+                    before.Targets,
+                    before.Breaths,
+                    before.Aversions,
+                    before.Saccades,
+                    before.Blinks,
+                    before.Life,
+                    before.Track,
+                    before.Voices,
+                    before.Seed
+                );
+            }
+            var cut = Math.Max(0.0, Math.Min(before.Drawn, change == "" ? drawn : now));
+            var chance = change == "places" ? Math.Min(before.Drawn, drawn) : cut;
+            var draw = Draw(life, track, voices, seed, cut, drawn, before);
+            var breaths = before.Breaths.Until(chance);
+            var aversions = before.Aversions.Until(chance);
+            var saccades = before.Saccades.Until(chance);
+            var blinks = before.Blinks.Until(chance);
+            if (chance < drawn)
+            {
+                draw.Begin(chance);
+                breaths = draw.Breaths(breaths);
+                aversions = draw.Aversions(aversions);
+                saccades = draw.Saccades(saccades);
+                blinks = draw.Blinks(blinks);
+            }
+            return new Schedule(
+                end,
+                drawn,
+                draw.Modes,
+                draw.Moods,
+                draw.Targets,
+                breaths,
+                aversions,
+                saccades,
+                blinks,
+                life,
+                track,
+                voices,
+                seed
+            );
+        }
+
+        /// <summary>
+        /// Return "" where nothing a schedule was drawn from has changed, "places" where only those have, else "all".
+        /// </summary>
+        private static string Change(Schedule before, LifeSettings life, Track track, Voices voices, uint seed)
+        {
+            if (before.Track == null || before.Seed != seed || !LifeRules.SameLife(before.Life, life))
+            {
+                return "all";
+            }
+            if (!VoiceRules.SameVoices(before.Voices, voices))
+            {
+                return "all";
+            }
+            if (before.Track == track || before.Track.Like(track))
+            {
+                return "";
+            }
+            return before.Track.DrawsLike(track) ? "places" : "all";
+        }
+
+        /// <summary>Return what extends a schedule from `cut` to `drawn` seconds, with modes and looks in place.</summary>
+        private static LifeDraw Draw(
+            LifeSettings life,
+            Track track,
+            Voices voices,
+            uint seed,
+            double cut,
+            double drawn,
+            Schedule before
+        )
+        {
+            var modes = before.Modes.Until(cut);
+            var last = modes.Rows.Count > 0 ? (int)(modes.Rows[modes.Rows.Count - 1][0]) : -1;
+            var times = new List<double>();
+            var rows = new List<List<double>>();
+            foreach (var one in WantedRules.ModesBetween(track, cut, drawn))
+            {
+                var at = one.Item1;
+                var mode = one.Item2;
+                if (times.Count > 0 || mode != last)
+                {
+                    times.Add(at);
+                    rows.Add(new List<double> { mode });
+                }
+            }
+            var moods = before.Moods.Until(cut);
+            var felt = new List<double>();
+            if (moods.Rows.Count > 0)
+            {
+                felt = moods.Rows[moods.Rows.Count - 1].ToList();
+            }
+            var changes = new List<double>();
+            var wanted = new List<List<double>>();
+            foreach (var one in WantedRules.MoodsBetween(WantedRules.MoodsOf(life, track), cut, drawn))
+            {
+                var at = one.Item1;
+                var mood = one.Item2;
+                var same = felt.Count > 0 && felt[0] == mood.Valence && felt[1] == mood.Arousal && felt[2] == mood.Intensity;
+                if (changes.Count > 0 || !same)
+                {
+                    changes.Add(at);
+                    wanted.Add(new List<double> { mood.Valence, mood.Arousal, mood.Intensity });
+                }
+            }
+            var begun = PlainLists.Left(before.Targets.Select(t => t.Start).ToList(), cut);
+            var targets = PlainLists.Part(before.Targets, 0, begun);
+            foreach (GazeTarget target in WantedRules.TargetsBetween(track, cut, drawn))
+            {
+                if (targets.Count == 0 || !target.Like(targets[targets.Count - 1]))
+                {
+                    targets.Add(target);
+                }
+            }
+            return new LifeDraw(
+                life,
+                track,
+                voices,
+                seed,
+                cut,
+                drawn,
+                1.0 - life.Stillness,
+                modes.Plus(times, rows),
+                moods.Plus(changes, wanted),
+                targets.ToList()
+            );
+        }
+
+        /// <summary>Return events a minute between two times.</summary>
+        public static double Share(Lane lane, double start, double end)
+        {
+            var count = PlainLists.Left(lane.Times, end) - PlainLists.Left(lane.Times, start);
+            return ((double)count / Math.Max(end - start, 1e-09)) * 60.0;
+        }
+    }
+}

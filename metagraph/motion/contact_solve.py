@@ -1,0 +1,426 @@
+"""Keeping hands in contact with the body, and out of it: two-bone arms brought to where they should be.
+
+The body's parts are capsules, each fixed to a joint. Rotations are quaternions xyzw, lengths metres; places
+are those in a rig's list of joints. Worked out one pose at a time, in plain numbers, the same in all
+languages.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import sqrt
+
+from metagraph.motion.contact_spans import Quaternion, Vector
+
+REACHED = 0.995  # of an arm's length: it does not snap straight
+FOLDED = 0.906  # cosine of the least angle inside an elbow, 25 degrees
+WRIST = 0.819  # cosine of half of how far a contact may turn a hand from where it was, 70 degrees
+SOFT = 0.006  # metres of depth over which the push out of the body sets in
+DEEP = 0.35  # of the radii: nearer than this to a capsule's line it is not pushed all the way
+ELBOW = 0.1  # how little a forearm is pushed near its elbow, which a wrist cannot move
+PASSES = 3  # of the guard
+OBSTACLE = 0  # what a capsule is to the guard: others are pushed out of it
+FOREARM = 1  # pushed out, from the elbow to the wrist
+HAND = 2  # pushed out
+
+
+@dataclass(frozen=True)
+class ContactArm:
+    """Places of an arm's joints, and of all joints from its upper arm on, parents first."""
+
+    upper: int
+    lower: int
+    hand: int
+    below: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class BodyCapsule:
+    """A part of the body. joint, to: the places its line's ends are fixed to; a, b: where, in those joints'
+    own spaces. arm: 0 left, 1 right, -1 of neither. kind: whether it is pushed out of others: OBSTACLE is
+    not; FOREARM runs from the elbow to the wrist; HAND.
+    """
+
+    joint: int
+    a: Vector
+    to: int
+    b: Vector
+    radius: float
+    arm: int = -1
+    kind: int = 0
+
+
+@dataclass(frozen=True)
+class ContactRig:
+    """What of a skeleton contacts need. joints: theirs, parents first. parents: for each the place of the
+    nearest one above, which has to be its parent; -1 for a root. places: names of joints to their places.
+    arms: left, right; hands: the names of their hands. contacts, guard: what is on.
+    """
+
+    joints: tuple[int, ...]
+    parents: tuple[int, ...]
+    places: Mapping[str, int]
+    arms: tuple[ContactArm, ...]
+    hands: tuple[str, ...]
+    capsules: tuple[BodyCapsule, ...]
+    contacts: bool = True
+    guard: bool = True
+
+
+@dataclass(frozen=True)
+class HandGoal:
+    """Where a wrist should be. arm: 0 left, 1 right. to: a place; at, turn: in its space. weight: 0..1."""
+
+    arm: int
+    to: int
+    at: Vector
+    turn: Quaternion
+    weight: float
+
+
+@dataclass
+class ContactPose:
+    """A pose of a rig's joints: `local` rotations and `moved` translations in their parents' space, `turned`
+    and `at` in the character's, which `spread` works out.
+    """
+
+    local: list[Quaternion] = field(default_factory=list)
+    moved: list[Vector] = field(default_factory=list)
+    turned: list[Quaternion] = field(default_factory=list)
+    at: list[Vector] = field(default_factory=list)
+
+
+def spread(rig: ContactRig, pose: ContactPose) -> None:
+    """Work out where all joints are."""
+    pose.turned = []
+    pose.at = []
+    for place, turn in enumerate(pose.local):
+        pose.turned.append(turn)
+        pose.at.append(pose.moved[place])
+    for place in range(len(rig.parents)):
+        _join(rig, pose, place)
+
+
+def _join(rig: ContactRig, pose: ContactPose, place: int) -> None:
+    above = rig.parents[place]
+    if above < 0:
+        pose.turned[place] = pose.local[place]
+        pose.at[place] = pose.moved[place]
+    else:
+        pose.turned[place] = times(pose.turned[above], pose.local[place])
+        pose.at[place] = _plus(pose.at[above], rotated(pose.turned[above], pose.moved[place]))
+
+
+def solve_contacts(rig: ContactRig, pose: ContactPose, goals: Sequence[HandGoal]) -> bool:
+    """Bring hands to their goals, then hands and forearms out of the body; return whether anything moved. The
+    joints' places have to be known (`spread`).
+    """
+    moved = False
+    held = [0.0, 0.0]
+    across = 0.0  # how much one arm is held on the other
+    for goal in goals:
+        held[goal.arm] = min(1.0, held[goal.arm] + goal.weight)
+        if _on_arm(rig, goal.to, 1 - goal.arm):
+            across = max(across, goal.weight)
+    rounds = 0 if len(goals) == 0 else 2 if across > 0.0 else 1
+    wrists = [pose.at[arm.hand] for arm in rig.arms]
+    hands = [pose.turned[arm.hand] for arm in rig.arms]
+    while rounds > 0:
+        rounds -= 1
+        for side in range(len(rig.arms)):
+            if held[side] > 0.0:
+                _hold(rig, pose, goals, side, wrists[side], hands[side])
+                moved = True
+    if rig.guard and _guarded(rig, pose, held, across):
+        moved = True
+        for side in range(len(rig.arms)):
+            if across > 0.0 and held[side] > 0.0:
+                _hold(rig, pose, goals, side, wrists[side], hands[side])
+    return moved
+
+
+def _on_arm(rig: ContactRig, place: int, arm: int) -> bool:
+    return any(place == below for below in rig.arms[arm].below)
+
+
+def _hold(
+    rig: ContactRig, pose: ContactPose, goals: Sequence[HandGoal], side: int, wrist: Vector, hand: Quaternion
+) -> None:
+    """Bring a hand to the weighted mean of its goals. wrist, hand: where and how it was without any."""
+    total = 0.0
+    x, y, z = 0.0, 0.0, 0.0
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    hx, hy, hz, hw = hand
+    for goal in goals:
+        if goal.arm == side and goal.weight > 0.0:
+            k = goal.weight
+            px, py, pz = _plus(pose.at[goal.to], rotated(pose.turned[goal.to], goal.at))
+            qx, qy, qz, qw = times(pose.turned[goal.to], goal.turn)
+            x, y, z, total = x + k * px, y + k * py, z + k * pz, total + k
+            if qx * hx + qy * hy + qz * hz + qw * hw < 0.0:
+                k = -k
+            a, b, c, d = a + k * qx, b + k * qy, c + k * qz, d + k * qw
+    weight = min(1.0, total)
+    mean = (x / total, y / total, z / total)
+    turn = _within_wrist(hand, _unit_turn((a, b, c, d)))
+    tx, ty, tz, tw = turn
+    rest = 1.0 - weight
+    k = -weight if tx * hx + ty * hy + tz * hz + tw * hw < 0.0 else weight
+    turn = _unit_turn((hx * rest + tx * k, hy * rest + ty * k, hz * rest + tz * k, hw * rest + tw * k))
+    _bring(rig, pose, side, _plus(wrist, _scaled(_minus(mean, wrist), weight)), turn)
+
+
+def _within_wrist(hand: Quaternion, turn: Quaternion) -> Quaternion:
+    """Return a hand's turn, as near to it as the wrist may be turned from how the hand was."""
+    x, y, z, w = times(turn, _back(hand))
+    if w < 0.0:
+        x, y, z, w = -x, -y, -z, -w
+    if w >= WRIST:
+        return turn
+    k = sqrt(1.0 - WRIST * WRIST) / max(sqrt(x * x + y * y + z * z), 1e-12)
+    return times((x * k, y * k, z * k, WRIST), hand)
+
+
+def _bring(rig: ContactRig, pose: ContactPose, side: int, goal: Vector, hand: Quaternion) -> None:
+    """Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it."""
+    arm = rig.arms[side]
+    root, elbow, wrist = pose.at[arm.upper], pose.at[arm.lower], pose.at[arm.hand]
+    bone, fore = _minus(elbow, root), _minus(wrist, elbow)
+    above_elbow, below_elbow = length(bone), length(fore)
+    now = length(_minus(wrist, root))
+    if above_elbow < 1e-6 or below_elbow < 1e-6 or now < 1e-6:
+        return
+    way = _minus(goal, root)
+    most = max(REACHED * (above_elbow + below_elbow), now)
+    least = min(
+        sqrt(
+            above_elbow * above_elbow + below_elbow * below_elbow - 2.0 * FOLDED * above_elbow * below_elbow
+        ),
+        now,
+    )
+    far = min(max(length(way), least), most)
+    ahead, before = _unit(way), _scaled(_minus(wrist, root), 1.0 / now)
+    aside = _minus(bone, _scaled(before, _dot(bone, before)))
+    # A straight arm has no side: it bends to one that goes with its bone.
+    spare = rotated(pose.turned[arm.upper], (0.31, 0.52, 0.8))
+    spare = _minus(spare, _scaled(before, _dot(spare, before)))
+    aside = _plus(aside, _scaled(spare, max(0.0, 0.01 * above_elbow - length(aside))))
+    aside = _unit(rotated(between(before, ahead), aside))
+    along = (above_elbow * above_elbow + far * far - below_elbow * below_elbow) / (2.0 * far)
+    high = sqrt(max(0.0, above_elbow * above_elbow - along * along))
+    knee = _plus(_scaled(ahead, along), _scaled(aside, high))
+    swing = between(_unit(bone), _unit(knee))
+    fold = between(_unit(rotated(swing, fore)), _unit(_minus(_scaled(ahead, far), knee)))
+    both = times(fold, swing)
+    above = _above(rig, pose, arm.upper)
+    pose.local[arm.upper] = times(_back(above), times(swing, pose.turned[arm.upper]))
+    above = times(swing, _above(rig, pose, arm.lower))
+    pose.local[arm.lower] = times(_back(above), times(both, pose.turned[arm.lower]))
+    above = times(both, _above(rig, pose, arm.hand))
+    pose.local[arm.hand] = times(_back(above), hand)
+    for place in arm.below:
+        _join(rig, pose, place)
+
+
+def _above(rig: ContactRig, pose: ContactPose, place: int) -> Quaternion:
+    above = rig.parents[place]
+    return (0.0, 0.0, 0.0, 1.0) if above < 0 else pose.turned[above]
+
+
+def _guarded(rig: ContactRig, pose: ContactPose, held: Sequence[float], across: float) -> bool:
+    """Push forearms and hands out of what they are inside of, by the least shift of the wrists; return
+    whether any was. held: how much each hand is kept somewhere, and so is not pushed.
+    """
+    moved = False
+    passes = PASSES
+    while passes > 0:
+        passes -= 1
+        ends = capsule_ends(rig, pose)
+        balls = _balls(rig, ends)
+        shifts = [_shift(rig, ends, balls, side, held, across) for side in range(len(rig.arms))]
+        found = False
+        for side, shift in enumerate(shifts):
+            if length(shift) > 0.0:
+                hand = rig.arms[side].hand
+                _bring(rig, pose, side, _plus(pose.at[hand], shift), pose.turned[hand])
+                found = True
+        if not found:
+            return moved
+        moved = True
+    return moved
+
+
+def capsule_ends(rig: ContactRig, pose: ContactPose) -> list[Vector]:
+    """Return both ends of every capsule's line, one after the other."""
+    out: list[Vector] = []
+    for capsule in rig.capsules:
+        out.append(_plus(pose.at[capsule.joint], rotated(pose.turned[capsule.joint], capsule.a)))
+        out.append(_plus(pose.at[capsule.to], rotated(pose.turned[capsule.to], capsule.b)))
+    return out
+
+
+def _balls(rig: ContactRig, ends: Sequence[Vector]) -> list[Quaternion]:
+    """Return a ball round each capsule: its middle and radius."""
+    out: list[Quaternion] = []
+    for n, capsule in enumerate(rig.capsules):
+        ax, ay, az = ends[2 * n]
+        bx, by, bz = ends[2 * n + 1]
+        x, y, z = bx - ax, by - ay, bz - az
+        size = 0.5 * sqrt(x * x + y * y + z * z) + capsule.radius
+        out.append((ax + 0.5 * x, ay + 0.5 * y, az + 0.5 * z, size))
+    return out
+
+
+def _shift(
+    rig: ContactRig,
+    ends: Sequence[Vector],
+    balls: Sequence[Quaternion],
+    side: int,
+    held: Sequence[float],
+    across: float,
+) -> Vector:
+    """Return by what a wrist has to move, so that its arm is out of all else, or nearer to that."""
+    shift = (0.0, 0.0, 0.0)
+    own = 1.0 - held[side]
+    if own <= 0.0:
+        return shift
+    for i, mine in enumerate(rig.capsules):
+        if mine.arm != side or mine.kind == OBSTACLE:
+            continue
+        mx, my, mz, size = balls[i]
+        for k in range(len(rig.capsules)):
+            other = rig.capsules[k]
+            if other.arm == side:
+                continue
+            ox, oy, oz, most = balls[k]
+            reach = most + size
+            if (ox - mx) * (ox - mx) + (oy - my) * (oy - my) + (oz - mz) * (oz - mz) >= reach * reach:
+                continue  # most are nowhere near
+            share = own
+            if other.arm >= 0:
+                share = min(own, 1.0 - across)
+                if other.kind != OBSTACLE:  # both give way
+                    share = share * (1.0 - 0.5 * (1.0 - held[other.arm]))
+            if share <= 0.0:
+                continue
+            x, y, z, s, gap = apart(ends, 2 * i, 2 * k)
+            radii = mine.radius + other.radius
+            if gap >= radii or gap < 1e-9:
+                continue
+            depth = radii - gap
+            amount = depth - 0.5 * SOFT if depth > SOFT else depth * depth / (2.0 * SOFT)
+            inner = min(1.0, gap / (DEEP * radii))
+            amount = amount * share * inner * inner * (3.0 - 2.0 * inner)
+            part = s if mine.kind == FOREARM else 1.0
+            way = (x / gap, y / gap, z / gap)
+            left = amount - part * _dot(way, shift)
+            if left > 0.0:
+                shift = _plus(shift, _scaled(way, left * part / (part * part + ELBOW * (1.0 - part))))
+    return shift
+
+
+def apart(ends: Sequence[Vector], i: int, k: int) -> tuple[float, float, float, float, float]:
+    """Return the shortest way from the line that begins at `ends[k]` to that at `ends[i]`, how far along the
+    latter it ends, 0..1, and its length.
+    """
+    a, c = ends[i], ends[k]
+    u, v, w = _minus(ends[i + 1], a), _minus(ends[k + 1], c), _minus(a, c)
+    uu, uv, vv, uw, vw = _dot(u, u), _dot(u, v), _dot(v, v), _dot(u, w), _dot(v, w)
+    s, t = 0.0, 0.0
+    if uu > 1e-12:
+        below = uu * vv - uv * uv
+        if below > 1e-9 * uu * vv:
+            s = min(max((uv * vw - vv * uw) / below, 0.0), 1.0)
+        if vv > 1e-12:
+            t = (uv * s + vw) / vv
+            if t < 0.0 or t > 1.0:
+                t = min(max(t, 0.0), 1.0)
+                s = min(max((uv * t - uw) / uu, 0.0), 1.0)
+        else:
+            s = min(max(-uw / uu, 0.0), 1.0)
+    elif vv > 1e-12:
+        t = min(max(vw / vv, 0.0), 1.0)
+    x, y, z = _minus(_plus(w, _scaled(u, s)), _scaled(v, t))
+    return x, y, z, s, sqrt(x * x + y * y + z * z)
+
+
+# --- arithmetic
+
+
+def times(a: Quaternion, b: Quaternion) -> Quaternion:
+    """Return the product: rotate by `b`, then by `a`."""
+    ax, ay, az, aw = a
+    bx, by, bz, bw = b
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
+
+
+def rotated(q: Quaternion, v: Vector) -> Vector:
+    """Return a vector rotated."""
+    x, y, z, w = q
+    vx, vy, vz = v
+    tx, ty, tz = 2.0 * (y * vz - z * vy), 2.0 * (z * vx - x * vz), 2.0 * (x * vy - y * vx)
+    return (
+        vx + w * tx + y * tz - z * ty,
+        vy + w * ty + z * tx - x * tz,
+        vz + w * tz + x * ty - y * tx,
+    )
+
+
+def between(a: Vector, b: Vector) -> Quaternion:
+    """Return the shortest rotation that takes one direction to another, both of length 1."""
+    ax, ay, az = a
+    bx, by, bz = b
+    dot = ax * bx + ay * by + az * bz
+    if dot < -0.999999999:  # half a turn about any axis across
+        return _unit_turn((0.0, az, -ay, 0.0) if abs(ax) < 0.9 else (-az, 0.0, ax, 0.0))
+    return _unit_turn((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx, 1.0 + dot))
+
+
+def length(v: Vector) -> float:
+    """Return how long a vector is."""
+    x, y, z = v
+    return sqrt(x * x + y * y + z * z)
+
+
+def _unit(v: Vector) -> Vector:
+    return _scaled(v, 1.0 / max(length(v), 1e-12))
+
+
+def _unit_turn(q: Quaternion) -> Quaternion:
+    x, y, z, w = q
+    k = 1.0 / max(sqrt(x * x + y * y + z * z + w * w), 1e-12)
+    return (x * k, y * k, z * k, w * k)
+
+
+def _back(q: Quaternion) -> Quaternion:
+    x, y, z, w = q
+    return (-x, -y, -z, w)
+
+
+def _plus(a: Vector, b: Vector) -> Vector:
+    ax, ay, az = a
+    bx, by, bz = b
+    return (ax + bx, ay + by, az + bz)
+
+
+def _minus(a: Vector, b: Vector) -> Vector:
+    ax, ay, az = a
+    bx, by, bz = b
+    return (ax - bx, ay - by, az - bz)
+
+
+def _scaled(a: Vector, k: float) -> Vector:
+    x, y, z = a
+    return (x * k, y * k, z * k)
+
+
+def _dot(a: Vector, b: Vector) -> float:
+    ax, ay, az = a
+    bx, by, bz = b
+    return ax * bx + ay * by + az * bz

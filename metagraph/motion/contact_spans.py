@@ -1,0 +1,87 @@
+"""Contacts of an action: where on the body a hand stays, or goes along, for a while of its clip.
+
+A contact says where the wrist is in the space of a joint, and how the hand is turned there, so that it holds
+whatever else moves that joint: a breathing spine, a layer below, a body of another shape.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt
+
+Vector = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+
+HANDS: tuple[str, ...] = ("left", "right")
+PLACES: tuple[str, ...] = ("palm", "fingertips", "back", "wrist")
+EASE = 0.15  # seconds in which a hand comes to a contact, and leaves it, where nothing else is said
+
+
+@dataclass(frozen=True, slots=True)
+class ContactKey:
+    """Where a hand is on a joint at a moment. time: clip seconds. at: the wrist in the joint's own space,
+    metres. turn: how the hand is turned there, xyzw.
+    """
+
+    time: float
+    at: Vector
+    turn: Quaternion
+
+
+@dataclass(frozen=True, slots=True)
+class ContactSpan:
+    """A hand kept where it is on the body.
+
+    hand: left or right. place: what of the hand touches: palm, fingertips, back, wrist. to: the name of the
+    joint it stays with. start, end: clip seconds. keys: one for a hand that stays, more, in order, for one
+    that moves over the body. ease_in, ease_out: seconds inside the span in which it comes and goes; none
+    where the action begins, or ends, within the span.
+    """
+
+    hand: str
+    place: str
+    to: str
+    start: float
+    end: float
+    keys: tuple[ContactKey, ...]
+    ease_in: float = EASE
+    ease_out: float = EASE
+
+
+def contact_weight(span: ContactSpan, seconds: float, first: float, last: float) -> float:
+    """Return how much a hand is held at clip seconds, 0..1. first, last: what of the clip plays."""
+    if seconds < span.start or seconds > span.end:
+        return 0.0
+    shown = 1.0
+    if span.start > first and span.ease_in > 0.0:
+        shown = min(shown, (seconds - span.start) / span.ease_in)
+    if span.end < last and span.ease_out > 0.0:
+        shown = min(shown, (span.end - seconds) / span.ease_out)
+    return shown * shown * (3.0 - 2.0 * shown)
+
+
+def contact_key(span: ContactSpan, seconds: float) -> ContactKey:
+    """Return where a hand is at clip seconds: between two keys on the straight line."""
+    before = span.keys[0]
+    for after in span.keys:
+        if after.time >= seconds:
+            if after.time <= before.time:
+                return after
+            part = (seconds - before.time) / (after.time - before.time)
+            ax, ay, az = before.at
+            bx, by, bz = after.at
+            at = (ax + (bx - ax) * part, ay + (by - ay) * part, az + (bz - az) * part)
+            px, py, pz, pw = before.turn
+            qx, qy, qz, qw = after.turn
+            other = -part if px * qx + py * qy + pz * qz + pw * qw < 0.0 else part
+            own = 1.0 - part
+            x, y, z, w = (
+                px * own + qx * other,
+                py * own + qy * other,
+                pz * own + qz * other,
+                pw * own + qw * other,
+            )
+            size = 1.0 / max(sqrt(x * x + y * y + z * z + w * w), 1e-12)
+            return ContactKey(seconds, at, (x * size, y * size, z * size, w * size))
+        before = after
+    return before

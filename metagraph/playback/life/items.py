@@ -1,0 +1,205 @@
+"""What was asked for and lasts: where to look, what to say, which mode to be in, which stance to stay in.
+Values; times are seconds.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from metagraph.graph.requests import Point
+from metagraph.graph.words import Layer, Mode
+from metagraph.playback.life.line_timing import LineTiming, alike_timings, extended, timed_seconds, told_text
+from metagraph.playback.life.spots import Spot, same_spot
+from metagraph.playback.mood import MoodFrom
+
+
+@dataclass(frozen=True, slots=True)
+class LookAt:
+    """Look at a point or a named point from `start` until `end`, or until the next look. strict: without
+    averting.
+    """
+
+    id: str
+    start: float
+    end: float
+    to: Spot
+    amount: float = 1.0
+    strict: bool = False
+    priority: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Speech:
+    """Something said. line: id of the project's line, None for `text` alone. priority: the higher interrupts
+    the lower. length: seconds it would have taken, where something cut it short. timing: when its words and
+    mouth shapes come, where that was told.
+    """
+
+    id: str
+    start: float
+    end: float
+    line: str | None = None
+    text: str = ""
+    priority: int = 1
+    length: float | None = None
+    timing: LineTiming | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ModeFrom:
+    """The mode from `start` on; None for talking while something is said and idling otherwise."""
+
+    id: str
+    start: float
+    mode: Mode | None
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceFrom:
+    """Where a named point is from `start` on."""
+
+    id: str
+    start: float
+    name: str
+    point: Point
+
+
+@dataclass(frozen=True, slots=True)
+class BlinkAt:
+    """A blink asked for."""
+
+    id: str
+    start: float
+
+
+@dataclass(frozen=True, slots=True)
+class StayFrom:
+    """From `start` on the models change no stance of a layer (or, with `on` false, may again), until `end` or
+    the next of these.
+    """
+
+    id: str
+    start: float
+    layer: Layer
+    on: bool = True
+    end: float = math.inf
+
+
+Item = LookAt | Speech | ModeFrom | PlaceFrom | BlinkAt | StayFrom | MoodFrom
+
+
+def cut(speech: Speech, at: float) -> Speech:
+    """Return the speech, ending no later than `at`; how long it would have been is remembered."""
+    if speech.end <= at:
+        return speech
+    return replace(
+        speech, end=at, length=speech.end - speech.start if speech.length is None else speech.length
+    )
+
+
+def apart(speeches: Sequence[Speech]) -> list[Speech]:
+    """Return speeches, which come in order, without overlaps: one that is at least as important cuts the
+    running one, a lesser one is not said.
+    """
+    out: list[Speech] = []
+    for speech in speeches:
+        if len(out) > 0 and out[-1].end > speech.start:
+            last = out[-1]
+            if speech.priority < last.priority:
+                continue
+            out.pop()
+            if last.start < speech.start:
+                out.append(cut(last, speech.start))
+        out.append(speech)
+    return out
+
+
+def going_on(old: Speech | None, new: Speech, now: float) -> Speech:
+    """Return a line as it goes on where the last of the same id has begun by `now`, or begins with it: it
+    keeps its start and what has been said of it. Only lines whose words or shapes were told with their times
+    do.
+    """
+    if old is None or old.timing is None or new.timing is None or old.length is not None:
+        return new
+    if max(old.start, new.start) > now and old.start != new.start:
+        return new
+    timing = extended(old.timing, new.timing, max(now - old.start, 0.0))
+    length = max(timed_seconds(timing, None), new.end - new.start)
+    more = new.text == "" or new.text == told_text(new.timing)
+    return replace(
+        new,
+        start=old.start,
+        end=old.start + length,
+        text=told_text(timing) if more else new.text,
+        timing=timing,
+    )
+
+
+def alike_looks(one: Sequence[LookAt], other: Sequence[LookAt]) -> bool:
+    """Whether two tracks' looks are the same; so for the others below."""
+    return len(one) == len(other) and all(a is b or _same_look(a, b) for a, b in zip(one, other, strict=True))
+
+
+def _same_look(a: LookAt, b: LookAt) -> bool:
+    if not same_spot(a.to, b.to) or a.amount != b.amount or a.strict != b.strict:
+        return False
+    return a.id == b.id and a.start == b.start and a.end == b.end and a.priority == b.priority
+
+
+def alike_speeches(one: Sequence[Speech], other: Sequence[Speech]) -> bool:
+    return len(one) == len(other) and all(
+        a is b or _same_speech(a, b) for a, b in zip(one, other, strict=True)
+    )
+
+
+def _same_speech(a: Speech, b: Speech) -> bool:
+    if a.line != b.line or a.text != b.text or a.length != b.length or a.priority != b.priority:
+        return False
+    return a.id == b.id and a.start == b.start and a.end == b.end and alike_timings(a.timing, b.timing)
+
+
+def alike_modes(one: Sequence[ModeFrom], other: Sequence[ModeFrom]) -> bool:
+    return len(one) == len(other) and all(
+        a is b or (a.id == b.id and a.start == b.start and a.mode == b.mode)
+        for a, b in zip(one, other, strict=True)
+    )
+
+
+def alike_places(one: Sequence[PlaceFrom], other: Sequence[PlaceFrom]) -> bool:
+    return len(one) == len(other) and all(
+        a is b or _same_place(a, b) for a, b in zip(one, other, strict=True)
+    )
+
+
+def _same_place(a: PlaceFrom, b: PlaceFrom) -> bool:
+    if a.id != b.id or a.start != b.start or a.name != b.name:
+        return False
+    return all(x == y for x, y in zip(a.point, b.point, strict=True))
+
+
+def alike_blinks(one: Sequence[BlinkAt], other: Sequence[BlinkAt]) -> bool:
+    return len(one) == len(other) and all(
+        a is b or (a.id == b.id and a.start == b.start) for a, b in zip(one, other, strict=True)
+    )
+
+
+def alike_stays(one: Sequence[StayFrom], other: Sequence[StayFrom]) -> bool:
+    return len(one) == len(other) and all(a is b or _same_stay(a, b) for a, b in zip(one, other, strict=True))
+
+
+def _same_stay(a: StayFrom, b: StayFrom) -> bool:
+    if a.layer != b.layer or a.on != b.on or a.end != b.end:
+        return False
+    return a.id == b.id and a.start == b.start
+
+
+def alike_felt(one: Sequence[MoodFrom], other: Sequence[MoodFrom]) -> bool:
+    return len(one) == len(other) and all(a is b or _same_felt(a, b) for a, b in zip(one, other, strict=True))
+
+
+def _same_felt(a: MoodFrom, b: MoodFrom) -> bool:
+    if a.valence != b.valence or a.arousal != b.arousal or a.intensity != b.intensity:
+        return False
+    return a.id == b.id and a.start == b.start and a.end == b.end
