@@ -80,6 +80,10 @@ class Renderer:
         self._buffers: dict[str, moderngl.Buffer] = {}
         self._size = (0, 0)
         self._targets: list[Any] = []
+        self._seen: tuple[Camera, tuple[int, int], Theme, bool] | None = (
+            None  # how ground and sky were drawn last
+        )
+        self._kept, self._sky_from = False, 0  # whether they are kept, and the row the sky begins at
         self._resize(1, 1)
         self._shadow_map = ctx.depth_texture((SHADOW_SIZE, SHADOW_SIZE))
         self._shadow_map.compare_func = "<="
@@ -240,7 +244,29 @@ class Renderer:
         self._bodies(frame, which)
 
     def _backdrop(self, frame: _Frame, target: Any, casters: Sequence[Actor]) -> None:
-        """Ground with its shadows up to its far edge, sky above: no point is painted twice."""
+        """Ground with its shadows up to its far edge, sky above. While the camera stands they are kept: from
+        the second picture on only the shadows are drawn anew.
+        """
+        key = frame.camera, frame.size, frame.theme, frame.scene.ground
+        if key != self._seen:
+            self._seen, self._kept = key, False
+            sky_from = self._empty_stage(frame, target)
+        else:
+            if not self._kept:
+                self._state(self._stage, (0, 0, *frame.size), moderngl.NOTHING)
+                self._sky_from = self._empty_stage(frame, self._stage)
+                self._kept = True
+                self._state(target, (0, 0, *frame.size), moderngl.NOTHING)
+            sky_from = self._sky_from
+            self.ctx.copy_framebuffer(target, self._stage)
+            target.use()
+        if sky_from > 0 and casters:
+            target.scissor = (0, 0, frame.size[0], sky_from)
+            self._shadows(frame, casters)
+            target.scissor = None
+
+    def _empty_stage(self, frame: _Frame, target: Any) -> int:
+        """Draw ground and sky: no point is painted twice. Return the row at which the sky begins."""
         camera, (width, height) = frame.camera, frame.size
         sky_from = 0
         if frame.scene.ground and camera.eye[1] > 0:
@@ -254,13 +280,12 @@ class Renderer:
             # Wide enough to reach both sides of the picture at its far edge.
             wide = 4 * reach * max(1.0, 2 * math.tan(camera.fov / 2) * width / height)
             self._ground(frame, (x, z, wide, 4 * reach), (right[0], right[2]), reach)
-            if casters:
-                self._shadows(frame, casters)
         if sky_from < height:
             self.ctx.enable_only(moderngl.NOTHING)
             target.scissor = (0, sky_from, width, height - sky_from)
             self._sky("sky", self._program("sky", shaders.COVER, shaders.SKY), frame, moderngl.TRIANGLES, 3)
             target.scissor = None
+        return sky_from
 
     def _ground(
         self, frame: _Frame, patch: tuple[float, ...], turn: tuple[float, float], reach: float
@@ -373,6 +398,10 @@ class Renderer:
             depth = ctx.depth_renderbuffer(size)
             self._main = ctx.framebuffer([self._picture], depth)
             self._targets = [self._picture, depth, self._main]
+        ground = ctx.texture(size, 4)
+        self._stage = ctx.framebuffer([ground])
+        self._targets += [ground, self._stage]
+        self._seen = None
         self._size = size
 
     def _triangles(self, mesh: Mesh, actor: Actor, program: moderngl.Program, kind: str) -> None:

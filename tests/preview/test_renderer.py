@@ -200,6 +200,31 @@ def test_size_can_change_between_frames(offscreen):
         assert offscreen.render(scene, whole(scene, size), DARK, size).shape == (size[1], size[0], 4)
 
 
+@pytest.mark.parametrize("pitch", [-0.4, 0.0, 0.5, 1.5])
+def test_while_the_camera_stands_pictures_are_as_if_it_had_just_come(offscreen, pitch):
+    figure = StickFigure(chain("a", "b", "c"))
+    still = Scene((resting(figure),))
+    moved = Scene((posed(figure, [(figure.skeleton.names[1], (0, 0, 1), 50)]),))
+    camera = Camera((0.0, 0.6, 0.0), 0.3, pitch, 4.0)
+    other = Camera((0.4, 0.6, 0.0), 0.3, pitch, 3.0)
+    first = [offscreen.render(scene, camera, DARK, SIZE) for scene in (moved, still, still, moved)]
+    afresh = []
+    for scene in (moved, still):
+        offscreen.render(scene, other, DARK, SIZE)
+        afresh.append(offscreen.render(scene, camera, DARK, SIZE))
+    for picture, of in zip(first, (0, 1, 1, 0), strict=True):
+        np.testing.assert_array_equal(picture, afresh[of])
+    empty = [
+        offscreen.render(Scene(ground=g), camera, theme, SIZE) for theme in (DARK, LIGHT) for g in (0, 1)
+    ]
+    again = [
+        offscreen.render(Scene(ground=g), camera, theme, SIZE) for theme in (DARK, LIGHT) for g in (0, 1)
+    ]
+    for before, after in zip(empty, again, strict=True):
+        np.testing.assert_array_equal(before, after)
+    assert not np.array_equal(empty[0], empty[2])
+
+
 def test_state_others_leave_behind_does_not_matter(offscreen):
     scene = Scene((resting(StickFigure(mannequin_skeleton())),))
     first = offscreen.render(scene, whole(scene), DARK, SIZE)
