@@ -9,7 +9,9 @@ import os
 import re
 import time
 import uuid
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
 
 from metagraph.errors import FileError
@@ -21,6 +23,8 @@ _UNFINISHED = re.compile(
     r"\.saving-(?P<mark>[0-9a-f]{8}-\d{1,10}-[0-9A-Za-z]*)-[0-9a-f]{12}|\.saving-[0-9a-f]{32}"
     r"|\.clock-\w{8}|\..+\.lock\.[0-9a-f]{12}|\..+\.[0-9a-f]{12}\.journal\.new"
 )
+WAITING = 8  # threads that wait for the disk: it takes what is for one no longer than for some
+_LATER: ContextVar[list[Path] | None] = ContextVar("files that are synced later", default=None)
 _SWEPT: set[str] = set()  # folders this process has looked through
 
 
@@ -38,14 +42,53 @@ def write_atomically(path: Path, content: bytes) -> None:
         path = path.resolve()
         if path.exists() and not os.access(path, os.W_OK):
             raise PermissionError(errno.EACCES, "it is read-only")
-        replace_file(path, content)
+        later = _LATER.get()
+        replace_file(path, content, sync=later is None)
+        if later is not None:
+            later.append(path)
     except OSError as error:
-        raise FileError(
-            path,
-            f"cannot be written ({error.strerror or error})",
-            "on saving it",
-            "Choose a place you may write to, with space left.",
-        ) from None
+        raise _unwritable(path, error) from None
+
+
+def _unwritable(path: Path, error: OSError) -> FileError:
+    return FileError(
+        path,
+        f"cannot be written ({error.strerror or error})",
+        "on saving it",
+        "Choose a place you may write to, with space left.",
+    )
+
+
+@contextmanager
+def synced_together() -> Iterator[None]:
+    """Have what is written atomically inside wait for the disk at the end, several files at once: for folders
+    that nobody looks into before. Raises FileError.
+    """
+    later: list[Path] = []
+    token = _LATER.set(later)
+    try:
+        yield
+    finally:
+        _LATER.reset(token)
+    from concurrent.futures import ThreadPoolExecutor  # for exports alone
+
+    with ThreadPoolExecutor(WAITING) as pool:
+        list(pool.map(_sync, dict.fromkeys(later)))
+    for folder in {path.parent for path in later}:
+        sync_folder(folder)
+
+
+def _sync(path: Path) -> None:
+    try:
+        handle = os.open(path, os.O_RDWR | getattr(os, "O_BINARY", 0))
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+    except FileNotFoundError:  # it was taken away again
+        return
+    except OSError as error:
+        raise _unwritable(path, error) from None
 
 
 def replace_file(path: Path, content: bytes, sync: bool = True) -> None:

@@ -11,8 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from metagraph.errors import FileError
 from metagraph.formats import atomic
-from metagraph.formats.atomic import FORSAKEN, append_line, sweep, write_atomically
+from metagraph.formats.atomic import FORSAKEN, append_line, sweep, synced_together, write_atomically
 from metagraph.formats.locking import process_mark
 from tests.processes import started
 from tests.sittings import ended
@@ -124,3 +125,33 @@ def test_a_line_is_added_whole_whatever_a_crash_left_before_it(
         path.write_bytes(before.encode())
     append_line(path, '{"a": "é"}')
     assert path.read_bytes().decode() == after
+
+
+def test_what_is_synced_together_is_whole_synced_and_tells_what_cannot_be(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    synced: list[str] = []
+    real = os.fsync
+
+    def told(handle: int) -> None:
+        synced.append(Path(f"/proc/self/fd/{handle}").readlink().name)
+        real(handle)
+
+    if Path("/proc/self/fd").exists():
+        monkeypatch.setattr(os, "fsync", told)
+    with synced_together():
+        for n in range(20):
+            write_atomically(tmp_path / "some" / f"{n}.txt", b"x" * n)
+        (tmp_path / "some" / "3.txt").unlink()
+        assert synced == []
+    assert [(tmp_path / "some" / f"{n}.txt").stat().st_size for n in range(20) if n != 3] == [
+        n for n in range(20) if n != 3
+    ]
+    if Path("/proc/self/fd").exists():
+        assert sorted(synced) == sorted([*(f"{n}.txt" for n in range(20) if n != 3), "some"])
+    write_atomically(tmp_path / "later.txt", b"")
+    assert not synced or "later.txt" in synced or any(".saving" in name for name in synced), (
+        "one by one again"
+    )
+    with pytest.raises(FileError), synced_together():
+        write_atomically(tmp_path / "later.txt" / "inside.txt", b"")

@@ -12,6 +12,7 @@ from metagraph.engines.export import Chosen, ExportError, nothing_chosen, sound,
 from metagraph.engines.targets.placing import Staging
 from metagraph.engines.targets.placing import place as move
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Report, Tell
+from metagraph.formats.atomic import synced_together
 from metagraph.formats.store import writable
 from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import Character
@@ -94,7 +95,8 @@ def write(
             base,
             chosen_by_hand,
         )
-        made = chosen.write(order)
+        with synced_together():
+            made = chosen.write(order)
         names = tuple(path.relative_to(staged.path).as_posix() for path in made.files)
         move(staged, place, names, name, project.name, overwrite)
     clips = len(project.uses.keys() | {project.base.clip} - {None})
