@@ -21,7 +21,7 @@ from metagraph.formats.atomic import write_atomically
 from metagraph.formats.store import writable
 from metagraph.graph import anatomy
 from metagraph.graph.check import check
-from metagraph.graph.expand import connections
+from metagraph.graph.expand import columns
 from metagraph.graph.model import (
     KINDS,
     LAYERS,
@@ -400,16 +400,8 @@ def _phases(project: Project, action: Action) -> tuple[list[float], list[float |
 
 
 def _expanded(project: Project, graph: MetaGraph) -> c.Expanded:
-    states = list(graph.actions)
-    place = {ident: n for n, ident in enumerate(states)}
-    rows = list(connections(project, graph))
-    return c.Expanded(
-        states,
-        [place[r.source] for r in rows],
-        [place[r.target] for r in rows],
-        [-1.0 if r.leave is None else r.leave for r in rows],
-        [r.blend for r in rows],
-    )
+    found = columns(project, graph)
+    return c.Expanded(list(graph.actions), found.sources, found.targets, found.leave, found.blend)
 
 
 def schema_text() -> bytes:

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from metagraph.graph.model import LAYERS, Action, Layer, MetaGraph, Project
+from metagraph.graph.model import KINDS, LAYERS, Action, Layer, MetaGraph, Project
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,27 +72,56 @@ def size(project: Project, layer: Layer | None = None, stance: str | None = None
     return Size(len(clips), states, connections)
 
 
-def connections(project: Project, graph: MetaGraph) -> Iterator[Connection]:
-    """Yield every connection of a layer: sources in the order they were placed, each with its targets in that
-    order.
+@dataclass(slots=True)
+class Columns:
+    """Connections in columns: number n leads from action `sources[n]` to `targets[n]`, places in
+    `MetaGraph.actions`. leave: as of `Connection`, -1 for at any time.
     """
-    for source in graph.actions.values():
+
+    sources: list[int] = field(default_factory=list)
+    targets: list[int] = field(default_factory=list)
+    leave: list[float] = field(default_factory=list)
+    blend: list[float] = field(default_factory=list)
+
+
+def columns(project: Project, graph: MetaGraph) -> Columns:
+    """Return every connection of a layer: sources in the order they were placed, each with its targets in
+    that order. Nodes are gone through, not single connections: of those there may be millions.
+    """
+    out = Columns()
+    place = {ident: n for n, ident in enumerate(graph.actions)}
+    nodes: dict[str, tuple[list[int], list[float], int]] = {}  # stance -> targets, blends, how many are loops
+    for number, source in enumerate(graph.actions.values()):
         end = ends_in(source)
         if end is None or end not in graph.stances:
             continue
-        _, last = project.span(source)
-        leave = (
-            None
-            if source.kind == "stance"
-            else source.timing.earliest_exit
-            if source.timing.earliest_exit is not None
-            else last
-        )
-        for kind in ("stance", "gesture", "fidget", "transition"):
-            for target in graph.of(end, kind):
-                if target.id != source.id:
-                    blend = source.timing.blend_out if target.kind == "stance" else target.timing.blend_in
-                    yield Connection(source.id, target.id, leave, blend)
+        if end not in nodes:
+            node = [t for kind in KINDS for t in graph.of(end, kind)]
+            loops = len(graph.of(end, "stance"))
+            nodes[end] = [place[t.id] for t in node], [t.timing.blend_in for t in node], loops
+        targets, blends, loops = nodes[end]
+        targets, blends = targets[:], [source.timing.blend_out] * loops + blends[loops:]
+        if source.stance == end:
+            itself = targets.index(number)
+            del targets[itself], blends[itself]
+        leave = -1.0
+        if source.kind != "stance":
+            exit_at = source.timing.earliest_exit
+            leave = project.span(source)[1] if exit_at is None else exit_at
+        out.sources += [number] * len(targets)
+        out.targets += targets
+        out.leave += [leave] * len(targets)
+        out.blend += blends
+    return out
+
+
+def connections(project: Project, graph: MetaGraph) -> Iterator[Connection]:
+    """Yield every connection of a layer, in the order of `columns`."""
+    idents, found = list(graph.actions), columns(project, graph)
+    for source, target, leave, blend in zip(
+        found.sources, found.targets, found.leave, found.blend, strict=True
+    ):
+        yield Connection(idents[source], idents[target], None if leave < 0 else leave, blend)
 
 
 def chain(graph: MetaGraph, start: str, goal: str) -> tuple[str, ...] | None:
