@@ -93,9 +93,9 @@ class PreviewPanel(QWidget):
         self._timer = QTimer(self, interval=FRAME)
         self._timer.setTimerType(Qt.TimerType.PreciseTimer)
         self._timer.timeout.connect(self._tick)
-        self._timer.start()
         session.transport.moved.connect(lambda _: self.view.update())
         session.transport.playing_changed.connect(self._show_state)
+        session.transport.playing_changed.connect(self._run_or_rest)
         session.transport.show_changed.connect(self._show_state)
         session.selection.changed.connect(self.view.update)
         session.look.changed.connect(self._restyle)
@@ -105,6 +105,7 @@ class PreviewPanel(QWidget):
         figures.changed.connect(self.view.update)
         self._restyle()
         self._show_state()
+        self._run_or_rest()
 
     # --- building
 
@@ -247,6 +248,14 @@ class PreviewPanel(QWidget):
             if moved is None
             else {int(j): (color.redF(), color.greenF(), color.blueF()) for j in np.flatnonzero(moved)}
         )
+
+    def _run_or_rest(self) -> None:
+        """Count the time while it plays; what is paused costs nothing."""
+        if not self.session.transport.playing:
+            self._timer.stop()
+        elif not self._timer.isActive():
+            self._clock.restart()
+            self._timer.start()
 
     def _tick(self) -> None:
         elapsed = self._clock.restart() / 1000

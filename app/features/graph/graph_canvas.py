@@ -93,6 +93,9 @@ class Canvas(QWidget):
         self.setMinimumSize(int(LEAST_WIDTH), int(LEAST_HEIGHT))  # its height follows its width
         self.setAccessibleName("Meta-graph")
         self._beat = Beat(self._next_beat, self)
+        self._beat.run(session.transport.playing)
+        session.transport.playing_changed.connect(lambda: self._beat.run(session.transport.playing))
+        session.transport.moved.connect(lambda _: None if session.transport.playing else self._next_beat())
         document.changed.connect(self._edited)
         document.loaded.connect(lambda: self.reveal(()))
         for signal in (session.place.stance_changed, session.place.layer_changed):

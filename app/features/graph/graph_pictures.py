@@ -52,7 +52,11 @@ class Beat:
         self._rest = 0  # beats to leave out
         self._timer = QTimer(parent, interval=1000 // RATE)
         self._timer.timeout.connect(self._next)
-        self._timer.start()
+
+    def run(self, on: bool) -> None:
+        """Begin, or rest."""
+        if on != self._timer.isActive():
+            self._timer.start() if on else self._timer.stop()
 
     def drawn(self, seconds: float) -> None:
         """Tell how long drawing has taken."""
