@@ -11,7 +11,7 @@ the same.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf, isfinite
 from pathlib import Path
@@ -25,11 +25,14 @@ from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.offered import offered, tools
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.extend_performance import Answer, answer, answers
+from metagraph.playback.life.line_timing import VisemeMark
+from metagraph.playback.life.streamed_voice import StreamedVoice
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import morphs_at, pose_at
 from metagraph.playback.running_plan import CUT, RunningPlan
 
 LEAP = 3600.0  # seconds an update may move on: all that lies between is planned
+SOUNDS = 16  # lines whose sound is remembered
 REMEMBERED = (
     1000  # answers that are kept after what they tell of was forgotten, and happenings nobody asked for
 )
@@ -72,6 +75,7 @@ class Character:
         self._asked: set[str] = set()  # ids that the plan can tell of
         self._settled: dict[str, Answer] = {}  # answers of those it has forgotten or never heard of
         self._happened: list[Happening] = []
+        self._sounds: dict[str, StreamedVoice] = {}  # of lines that are heard
         self._count = 0
         self._cut = 0.0
         self._seen = -inf  # when the update before was
@@ -125,6 +129,31 @@ class Character:
             return self._take(a.request_from(data))
         except a.RequestError as error:
             return self._refuse(ident, str(error))
+
+    def say_sound(self, ident: str, samples: Sequence[float], rate: float) -> str:
+        """Say a line whose sound comes in while it is said: with each call its next samples, -1..1, of which
+        the lips do what is heard. An id is one line's; return it, as `ask` does. rate: samples a second, 8000
+        to 48000.
+        """
+        if not 8000 <= rate <= 48000:
+            return self._refuse(ident, "rate: should be a number from 8000 to 48000")
+        begun = self.plan.track.last_speech(ident)
+        waiting = next((x for x in self._queue if isinstance(x, a.Say) and x.id == ident), None)
+        voice = self._sounds.pop(ident, None)
+        if voice is None or voice.rate != rate or (begun is None and waiting is None):
+            voice = StreamedVoice(float(rate))
+        if begun is not None:
+            voice.follow(self.now + self.project.settings.lookahead - begun.start)
+        self._sounds[ident] = voice
+        if len(self._sounds) > SOUNDS:
+            del self._sounds[next(iter(self._sounds))]
+        before = waiting.visemes if waiting is not None else ()
+        self._queue = [x for x in self._queue if x is not waiting]
+        start = voice.seconds
+        # Where no shape begins the one before goes on.
+        marks = voice.hear(samples) or [VisemeMark(start, voice.shape, voice.weight)]
+        told = [[mark.at, mark.viseme, mark.weight] for mark in marks]
+        return self.ask({"do": "say", "id": ident, "visemes": [*before, *told], "set": "oculus"})
 
     def _take(self, ask: a.AnyRequest) -> str:
         self._settled.pop(ask.id, None)

@@ -21,6 +21,7 @@ from metagraph.engines.reading import read_export
 from metagraph.engines.script import cases
 from metagraph.engines.script_boundaries import boundary_cases
 from metagraph.engines.script_parts import Case, ScriptStep
+from metagraph.engines.script_sounds import heard, streamed
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph.model import LAYERS, Project
@@ -89,6 +90,9 @@ def write_vectors(export: Path, chosen: Iterable[Case] | None = None) -> Path:
         "tolerance": {"metres": METRES, "degrees": DEGREES, "seconds": SECONDS, "weight": WEIGHT},
         "hashes": [[seed, list(words), key32(seed, *words)] for seed, words in HASHES],
         "described": offered(project),
+        "heard": [
+            {"rate": rate, "pieces": pieces, "marks": heard(rate, pieces)} for rate, pieces in streamed()
+        ],
     }
     lines = ",\n".join(json.dumps(case, ensure_ascii=False, separators=(",", ":")) for case in found)
     text = json.dumps(head, ensure_ascii=False)[:-1] + f', "cases": [\n{lines}\n]}}\n'
@@ -295,6 +299,9 @@ def check_vectors(folder: Path, project: Project | None = None) -> Outcome:
             out.failures.append(("hashes", f"{seed} {words}"))
     wrong = _unlike(offered(project), data["described"], "described") if "described" in data else []
     out.failures += [("described", what) for what in wrong]
+    for n, sound in enumerate(data.get("heard", ())):
+        wrong = _unlike(heard(sound["rate"], sound["pieces"]), sound["marks"], f"heard[{n}]")
+        out.failures += [("heard", what) for what in wrong]
     for case in data["cases"]:
         wrong = differences(project, case)
         out.failures += [(case["name"], what) for what in wrong]

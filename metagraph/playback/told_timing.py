@@ -20,7 +20,9 @@ def told_timing(ask: Say) -> LineTiming | None:
     entry.
     """
     if ask.audio is not None:
-        raise RequestError("audio: is heard in live sessions alone; tell words or visemes, or say a line")
+        raise RequestError(
+            "audio: is heard in live sessions alone; tell words or visemes, say a line, or use say_sound"
+        )
     words: list[SpokenWord] = []
     marks: list[VisemeMark] = []
     for n, entry in enumerate(ask.words):

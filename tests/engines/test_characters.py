@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from metagraph import Character, engines
+from metagraph.engines.script_sounds import streamed
 from metagraph.motion import rotation
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
@@ -90,6 +91,25 @@ ASKED: dict[int, list[Any]] = {
 }
 
 
+# Frames before which a piece of a line's sound comes in, some of them two at once; one of no length.
+HEARD: dict[int, list[tuple[str, int, int]]] = {
+    352: [("voice", 0, 900)],
+    353: [("voice", 900, 2100), ("voice", 2100, 2500)],
+    354: [("voice", 2500, 2500)],
+    355: [("voice", 2500, 5000)],
+    357: [("voice", 5000, 7200)],
+}
+
+
+def sounds(frame: int) -> list[dict[str, Any]]:
+    """Return what is streamed before a frame's update."""
+    rate, pieces = streamed()[1]
+    whole = [x / 128 for piece in pieces for x in piece]
+    return [
+        {"id": ident, "samples": whole[start:end], "rate": rate} for ident, start, end in HEARD.get(frame, ())
+    ]
+
+
 def script() -> list[dict[str, Any]]:
     """Return the steps: now (null for NaN), what is asked before that update, whether events are asked for
     and all is shown after it.
@@ -107,16 +127,17 @@ def script() -> list[dict[str, Any]]:
             {
                 "now": told,
                 "ask": [*ASKED.get(frame, []), *looks],
+                "sounds": sounds(frame),
                 "hear": frame % 7 == 6,
                 "show": frame in SHOWN,
             }
         )
         now += STEPS[frame % len(STEPS)]
     unheard = [
-        {"now": now + 15.0 * n, "ask": [], "hear": n == UNHEARD, "show": n == UNHEARD}
+        {"now": now + 15.0 * n, "ask": [], "sounds": [], "hear": n == UNHEARD, "show": n == UNHEARD}
         for n in range(1, UNHEARD + 1)
     ]
-    leap = {"now": 1e9, "ask": [], "hear": True, "show": True}
+    leap = {"now": 1e9, "ask": [], "sounds": [], "hear": True, "show": True}
     return [*out, *unheard, leap, leap]
 
 
@@ -125,6 +146,7 @@ def in_python(export: Path, steps: list[dict[str, Any]], folder: Path) -> dict[s
     out: dict[str, Any] = {"ids": [], "events": [], "shown": []}
     for step in steps:
         out["ids"] += [character.ask(request) for request in step["ask"]]
+        out["ids"] += [character.say_sound(s["id"], s["samples"], s["rate"]) for s in step["sounds"]]
         character.update(math.nan if step["now"] is None else step["now"])
         if step["hear"]:
             out["events"] += [[e.kind, e.at, e.layer, e.action, e.meta] for e in character.events()]
@@ -155,6 +177,7 @@ const out = { ids: [], events: [], shown: [] };
 const rows = (flat, n) => graph.joints.map((_, j) => [...flat.subarray(n * j, n * j + n)]);
 for (const step of JSON.parse(readFileSync(stepsFile, "utf8"))) {
   for (const request of step.ask) out.ids.push(character.ask(request));
+  for (const { id, samples, rate } of step.sounds) out.ids.push(character.saySound(id, samples, rate));
   character.update(step.now ?? NaN);
   if (step.hear) for (const e of character.events()) out.events.push([e.kind, e.at, e.layer, e.action, e.meta]);
   if (!step.show) continue;
@@ -224,6 +247,11 @@ public static class Game
         foreach (JsonObject step in (List<object>)Json.Parse(File.ReadAllText(args[1])))
         {
             foreach (object request in (List<object>)step["ask"]) { ids.Add(character.Ask(request as string)); }
+            foreach (JsonObject sound in (List<object>)step["sounds"])
+            {
+                IEnumerable<float> samples = ((List<object>)sound["samples"]).Select(x => (float)Convert.ToDouble(x, CultureInfo.InvariantCulture));
+                ids.Add(character.SaySound((string)sound["id"], samples, Convert.ToDouble(sound["rate"], CultureInfo.InvariantCulture)));
+            }
             character.Update(step["now"] == null ? double.NaN : Convert.ToDouble(step["now"], CultureInfo.InvariantCulture));
             if ((bool)step["hear"])
             {
@@ -290,6 +318,8 @@ func _init():
 	for step in args.steps:
 		for request in step.ask:
 			out.ids.append(character.ask(request))
+		for sound in step.sounds:
+			out.ids.append(character.say_sound(sound.id, sound.samples, sound.rate))
 		character.update(NAN if step.now == null else step.now)
 		if step.hear:
 			for e in character.events():
@@ -363,6 +393,8 @@ def test_the_script_has_something_of_everything(wanted: Made) -> None:
     _, found = wanted
     states = {state for shown in found["shown"] for state, *_ in shown["answers"]}
     assert states == {"planned", "late", "refused", "done"}
+    spoken = [e for e in found["events"] if e[2] == "speech" and e[4] == "voice"]
+    assert [e[0] for e in spoken] == ["begin", "end"] and 0.5 < spoken[1][1] - spoken[0][1] < 1.0
     assert {layer for _, _, layer, _, _ in found["events"]} == {"body", "arms", "head", "speech"}
     assert found["ids"][:5] == ["#1", "#2", "#3", "#4", "g"]
     *times, heard, once, twice = [shown["now"] for shown in found["shown"]]

@@ -843,12 +843,13 @@ def test_characters_of_the_same_assets_read_them_once(scene: Path) -> None:
 
 def test_what_the_readme_shows_compiles(scene: Path) -> None:
     shown = [block.split("```")[0] for block in (RUNTIME / "README.md").read_text().split("```csharp")[1:]]
-    assert len(shown) == 3
+    assert len(shown) == 4
     source = scene.with_name("readme.cs")
     inner = (
         "public static class Shown { public static void Main() { float seconds = 0; "
         + shown[1]
         + shown[2]
+        + shown[3]
         + " System.Console.Write(pose); } }"
     )
     source.write_text("using UnityEngine; using System.IO; using Metagraph;\n" + shown[0] + inner)

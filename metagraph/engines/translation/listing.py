@@ -73,6 +73,7 @@ LISTING = (
     Translated("metagraph.playback.life.mouth", "mouth"),
     Translated("metagraph.playback.life.graphemes", "graphemes"),
     Translated("metagraph.playback.life.line_timing", "line_timing"),
+    Translated("metagraph.playback.life.streamed_voice", "streamed_voice"),
     Translated("metagraph.playback.life.lane", "lane", ("Lane",), without=("Lane.starts", "Lane.values")),
     Translated("metagraph.playback.life.items", "items"),
     Translated("metagraph.playback.life.track", "track", ("Track",), without=("Track.items", "Track.plus")),

@@ -4,6 +4,7 @@
 #include "describe.hpp"
 #include "hear.hpp"
 #include "pose.hpp"
+#include "streamed_voice.hpp"
 
 namespace metagraph {
 
@@ -74,6 +75,34 @@ public:
     std::string say_line(const std::string& line) { return ask(Json::object({{"do", "say"}, {"line", line}})); }
     std::string say(const std::string& text) { return ask(Json::object({{"do", "say"}, {"text", text}})); }
 
+    /// Say a line whose sound comes in while it is said: with each call its next samples, -1..1. The lips do what is heard in
+    /// them. An id is one line's; returns it, as `ask` does. rate: samples a second, 8000 to 48000.
+    std::string say_sound(const std::string& id, const List<double>& samples, double rate) {
+        if (!(rate >= 8000 && rate <= 48000)) return refuse(id, "rate: should be a number from 8000 to 48000");
+        auto waits = [&id](const Json& one) { return one.find("id")->text == id && one.find("do")->text == "say"; };
+        const auto waiting = std::find_if(queue_.begin(), queue_.end(), waits); // of the same update
+        auto same = [&id](const auto& one) { return one.first == id; };
+        auto place = std::find_if(sounds_.begin(), sounds_.end(), same);
+        const auto begun = plan_->track->last_speech(id);
+        const bool goes_on = place != sounds_.end() && place->second.rate == rate && (begun || waiting != queue_.end());
+        StreamedVoice voice = goes_on ? place->second : StreamedVoice(rate);
+        if (begun) voice.follow(now_ + graph_->project->settings->lookahead - begun->start);
+        if (place != sounds_.end()) sounds_.erase(place);
+        if (sounds_.size() == SOUNDS) sounds_.erase(sounds_.begin());
+        const double from = voice.seconds;
+        Json visemes = Json::list({});
+        if (waiting != queue_.end()) {
+            const Json* told = waiting->find("visemes");
+            if (told != nullptr) visemes = *told;
+            queue_.erase(waiting);
+        }
+        const List<Ref<VisemeMark>> marks = voice.hear(samples);
+        for (const Ref<VisemeMark>& mark : marks) visemes.items.push_back(Json::list({mark->at, mark->viseme, mark->weight}));
+        if (marks.empty()) visemes.items.push_back(Json::list({from, voice.shape, voice.weight})); // what goes on
+        sounds_.push_back({id, voice});
+        return ask(Json::object({{"do", "say"}, {"id", id}, {"visemes", visemes}, {"set", "oculus"}}));
+    }
+
     /// Look at a named point, or at one in metres of the character's space, until the next look.
     std::string look(const std::string& name) { return ask(Json::object({{"do", "look"}, {"to", name}})); }
     std::string look(const Vec& at) { return ask(Json::object({{"do", "look"}, {"to", Json::list({at.x, at.y, at.z})}})); }
@@ -124,6 +153,7 @@ private:
     static constexpr double SLACK = 2; // seconds the horizon may fall behind before it is moved on
     static constexpr double FORGETTING = 15; // seconds between forgetting what is over
     static constexpr double LEAP = 3600; // seconds an update may move on: all that lies between is planned
+    static constexpr std::size_t SOUNDS = 16; // lines whose sound is remembered
     static constexpr std::size_t REMEMBERED = 1000; // answers kept after that, and happenings nobody asked for
 
     Ref<const Graph> graph_;
@@ -133,6 +163,7 @@ private:
     Player player_;
     List<Json> queue_;
     Set<std::string> asked_; // ids that the plan can tell of
+    List<std::pair<std::string, StreamedVoice>> sounds_; // of lines that are heard, the oldest first
     List<Answer> settled_; // of those it has forgotten or never heard of
     List<double> weights_;
     List<Happening> happened_;

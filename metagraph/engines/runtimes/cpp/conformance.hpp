@@ -229,6 +229,25 @@ inline Verdict run(const std::string& folder) {
         if (!told.empty()) failed("described", told);
         done(before);
     }
+    if (vectors.find("heard") != nullptr) {
+        before = out.failures.size();
+        for (const Json& sound : vectors.find("heard")->items) {
+            StreamedVoice voice(sound.find("rate")->number);
+            Json found = Json::list({});
+            for (const Json& piece : sound.find("pieces")->items) {
+                List<double> samples;
+                for (const Json& sample : piece.items) samples.push_back(sample.number / 128.0);
+                Json marks = Json::list({});
+                for (const Ref<VisemeMark>& mark : voice.hear(samples)) {
+                    marks.items.push_back(Json::list({mark->at, mark->viseme, mark->weight}));
+                }
+                found.items.push_back(marks);
+            }
+            const std::string told = difference(found, *sound.find("marks"), tolerance.find("seconds")->number, "heard");
+            if (!told.empty()) failed("heard", told);
+        }
+        done(before);
+    }
     for (const Json& one : vectors.find("cases")->items) {
         before = out.failures.size();
         const std::string& own = one.find("name")->text;

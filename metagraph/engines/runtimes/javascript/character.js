@@ -5,11 +5,13 @@ import { describe } from "./describe.js";
 import { answers, hear, since } from "./hear.js";
 import { emptyPlan } from "./plan.js";
 import { Player } from "./pose.js";
+import { StreamedVoice } from "./streamed_voice.js";
 import { LAYERS } from "./words.js";
 
 const SLACK = 2; // seconds the horizon may fall behind before it is moved on
 const FORGETTING = 15; // seconds between forgetting what is over
 const LEAP = 3600; // seconds an update may move on: all that lies between is planned
+const SOUNDS = 16; // lines whose sound is remembered
 const REMEMBERED = 1000; // answers kept after that, and happenings nobody asked for
 
 export class Character {
@@ -33,6 +35,7 @@ export class Character {
     this.queue = [];
     this.asked = new Set(); // ids that the plan can tell of
     this.settled = new Map(); // answers of those it has forgotten or never heard of
+    this.sounds = new Map(); // of lines that are heard, by their ids
     this.count = 0;
     this.seen = -Infinity; // when the update before was
     this.forgot = 0;
@@ -65,6 +68,29 @@ export class Character {
     this.asked.add(id);
     this.queue.push(data);
     return id;
+  }
+
+  /**
+   * Say a line whose sound comes in while it is said: with each call its next samples, -1..1. The lips do what is heard in them. An
+   * id is one line's; returns it, as `ask` does. rate: samples a second, 8000 to 48000.
+   * @param {string} id @param {ArrayLike<number>} samples @param {number} rate
+   */
+  saySound(id, samples, rate) {
+    if (!(rate >= 8000 && rate <= 48000)) return this.refuse(id, "rate: should be a number from 8000 to 48000");
+    const begun = this.plan.track.lastSpeech(id);
+    const waiting = this.queue.findIndex((ask) => ask.id === id && ask.do === "say"); // of the same update
+    let voice = this.sounds.get(id);
+    if (voice?.rate !== rate || (begun === null && waiting < 0)) voice = new StreamedVoice(rate);
+    if (begun !== null) voice.follow(this.now + this.graph.settings.lookahead - begun.start);
+    this.sounds.delete(id);
+    this.sounds.set(id, voice);
+    if (this.sounds.size > SOUNDS) this.sounds.delete(this.sounds.keys().next().value);
+    const from = voice.seconds;
+    const marks = voice.hear(Array.from(samples));
+    const visemes = marks.map(({ at, viseme, weight }) => [at, viseme, weight]);
+    if (!marks.length) visemes.push([from, voice.shape, voice.weight]); // what goes on
+    const before = waiting < 0 ? [] : this.queue.splice(waiting, 1)[0].visemes ?? [];
+    return this.ask({ do: "say", id, visemes: [...before, ...visemes], set: "oculus" });
   }
 
   refuse(id, why) {

@@ -3,7 +3,7 @@
  * export it names. Ends with 1 and a line for each failure where something differs. A page runs them with `runVectors`.
  */
 
-import { LAYERS, describe, emptyPlan, hear, key32, keyOf, load, morphsAt, poseAt, since } from "./index.js";
+import { LAYERS, StreamedVoice, describe, emptyPlan, hear, key32, keyOf, load, morphsAt, poseAt, since } from "./index.js";
 import { positions } from "./rotation.js";
 
 /**
@@ -30,6 +30,15 @@ export function runVectors(vectors, exportJson, glbBytes) {
     }
   });
   if (vectors.described) run("described", (fail) => compare("described", describe(graph), vectors.described, vectors.tolerance.seconds, fail));
+  if (vectors.heard) {
+    run("heard", (fail) => {
+      for (const { rate, pieces, marks } of vectors.heard) {
+        const voice = new StreamedVoice(rate);
+        const found = pieces.map((piece) => voice.hear(piece.map((x) => x / 128)).map(({ at, viseme, weight }) => [at, viseme, weight]));
+        compare("heard", found, marks, vectors.tolerance.seconds, fail);
+      }
+    });
+  }
   for (const each of vectors.cases) run(each.name, (fail) => runCase(graph, each, vectors.tolerance, fail));
   return { passed, failures };
 }
@@ -133,7 +142,7 @@ if (typeof process !== "undefined" && process.argv[1] && import.meta.url.endsWit
     const json = readFileSync(join(folder, vectors.export), "utf8");
     const { passed, failures } = runVectors(vectors, json, readFileSync(join(folder, JSON.parse(json).glb)));
     for (const { case: name, what } of failures) console.log(`${folder}: ${name}: ${what}`);
-    console.log(`${folder}: ${passed} of ${vectors.cases.length + 1 + ("described" in vectors)} cases pass`);
+    console.log(`${folder}: ${passed} of ${vectors.cases.length + 1 + ("described" in vectors) + ("heard" in vectors)} cases pass`);
     failed += failures.length;
   }
   process.exit(failed ? 1 : 0);

@@ -252,6 +252,21 @@ export interface Happening {
 }
 
 /** One character of a game. Nothing here throws. */
+/** A mouth shape from `at` seconds on. viseme: of the set "oculus"; weight: 0..1. */
+export interface VisemeMark {
+  readonly at: number;
+  readonly viseme: string;
+  readonly weight: number;
+}
+/** A voice that is heard as it comes in. */
+export class StreamedVoice {
+  constructor(rate: number);
+  readonly rate: number;
+  /** Up to which it was heard. */
+  readonly seconds: number;
+  /** Take in the next samples, -1..1; return the shapes that begin in them. */
+  hear(samples: ArrayLike<number> & Iterable<number>): VisemeMark[];
+}
 export class Character {
   constructor(graph: Graph, options?: CharacterOptions);
   readonly graph: Graph;
@@ -262,6 +277,8 @@ export class Character {
   describe(): Description;
   /** Ask for something; returns its id. It is taken up at the next update. */
   ask(request: Ask): string;
+  /** Say a line whose sound comes in while it is said, a piece with each call: samples -1..1, `rate` a second, 8000 to 48000. Returns its id. */
+  saySound(id: string, samples: ArrayLike<number>, rate: number): string;
   /** Move on to `now`, seconds of the character's own time, which begins at 0. */
   update(now: number): void;
   answer(id: string): Answer;

@@ -7,4 +7,5 @@ export { FORMAT, Graph, MetagraphError, load } from "./graph.js";
 export { answers, hear, since } from "./hear.js";
 export { emptyPlan, keyOf } from "./plan.js";
 export { Player, morphsAt, poseAt } from "./pose.js";
+export { StreamedVoice } from "./streamed_voice.js";
 export { LAYERS } from "./words.js";

@@ -8,6 +8,8 @@ export class MetagraphObject {
   /** Joints and morph targets that the scene lacks. */
   readonly missing: readonly string[];
   ask(request: Ask): string;
+  /** Say a line whose sound comes in, as `Character.saySound`. */
+  saySound(id: string, samples: ArrayLike<number>, rate: number): string;
   answer(id: string): Answer;
   events(): readonly Happening[];
   /** Move on by `delta` seconds and pose the scene; once a frame. */

@@ -29,6 +29,10 @@ export class MetagraphObject {
   }
 
   /** As of a Character: the request's id. @param {object} request */
+  saySound(id, samples, rate) {
+    return this.character.saySound(id, samples, rate);
+  }
+
   ask(request) {
     return this.character.ask(request);
   }

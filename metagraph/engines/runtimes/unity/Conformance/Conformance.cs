@@ -63,6 +63,17 @@ public static class Conformance
         {
             Compare(folder + ", described", Json.Parse(graph.Describe()), vectors["described"]);
         }
+        foreach (JsonObject sound in vectors.Has("heard") ? List(vectors["heard"]) : new List<object>())
+        {
+            var voice = new StreamedVoice(Number(sound["rate"]));
+            var found = new List<object>();
+            foreach (List<object> piece in List(sound["pieces"]))
+            {
+                List<VisemeMark> marks = voice.Hear(piece.Select(x => Number(x) / 128.0).ToList());
+                found.Add(marks.Select(m => (object)new List<object> { m.At, m.Viseme, m.Weight }).ToList());
+            }
+            Compare(folder + ", heard", found, sound["marks"]);
+        }
         foreach (JsonObject one in List(vectors["cases"]))
         {
             Case(folder + ", " + (string)one["name"], graph, one);

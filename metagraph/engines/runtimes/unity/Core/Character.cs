@@ -35,6 +35,7 @@ namespace Metagraph
         private const double Slack = 2.0; // seconds by which the plan may fall behind its horizon before it is extended
         private const double Cut = 15.0; // seconds between two cuts
         private const double Leap = 3600.0; // seconds an update may move on: all that lies between is planned
+        private const int Sounds = 16; // lines whose sound is remembered
         private const int Remembered = 1000; // answers kept after that, and events nobody asked for
         private static readonly CharacterEvent[] Nothing = new CharacterEvent[0];
 
@@ -46,6 +47,8 @@ namespace Metagraph
         private readonly HashSet<string> asked = new HashSet<string>(); // ids that the plan can tell of
         private readonly Dictionary<string, Answer> settled = new Dictionary<string, Answer>(); // of what it forgot or never heard of
         private readonly List<string> settling = new List<string>(); // their ids, the oldest first
+        private readonly List<KeyValuePair<string, StreamedVoice>> sounds = new List<KeyValuePair<string, StreamedVoice>>(); // the oldest first
+        private readonly Dictionary<string, List<object>> streaming = new Dictionary<string, List<object>>(); // shapes of this update
         private List<CharacterEvent> events = new List<CharacterEvent>();
         private int count;
         private double seen = double.NegativeInfinity, cutAt;
@@ -101,6 +104,57 @@ namespace Metagraph
             return id;
         }
 
+        /// <summary>
+        /// Say a line whose sound comes in while it is said: with each call its next samples, -1..1. The lips do what is heard in them.
+        /// An id is one line's; returns it, as Ask does. rate: samples a second, 8000 to 48000.
+        /// </summary>
+        public string SaySound(string id, IEnumerable<float> samples, double rate)
+        {
+            if (!(rate >= 8000 && rate <= 48000))
+            {
+                Settle(new Answer { Id = id, State = "refused", Why = "rate: should be a number from 8000 to 48000" });
+                return id;
+            }
+            count++;
+            Speech begun = Plan.Track.LastSpeech(id);
+            int place = sounds.FindIndex(one => one.Key == id && one.Value.Rate == rate);
+            bool goesOn = place >= 0 && (begun != null || streaming.ContainsKey(id));
+            StreamedVoice voice = goesOn ? sounds[place].Value : new StreamedVoice(rate);
+            if (begun != null)
+            {
+                voice.Follow(Now + Graph.Settings.Lookahead - begun.Start);
+            }
+            sounds.RemoveAll(one => one.Key == id);
+            sounds.Add(new KeyValuePair<string, StreamedVoice>(id, voice));
+            if (sounds.Count > Sounds)
+            {
+                sounds.RemoveAt(0);
+            }
+            double from = voice.Seconds;
+            List<VisemeMark> marks = voice.Hear(samples.Select(x => (double)x).ToList());
+            if (marks.Count == 0)
+            {
+                marks.Add(new VisemeMark(from, voice.Shape, voice.Weight)); // what goes on
+            }
+            List<object> visemes;
+            if (!streaming.TryGetValue(id, out visemes))
+            {
+                visemes = streaming[id] = new List<object>();
+            }
+            visemes.AddRange(marks.Select(mark => (object)new List<object> { mark.At, mark.Viseme, mark.Weight }));
+            var said = new JsonObject();
+            said["do"] = "say";
+            said["id"] = id;
+            said["visemes"] = new List<object>(visemes);
+            said["set"] = "oculus";
+            queue.RemoveAll(ask => ask.Id == id);
+            queue.Add(Metagraph.Ask.From(said));
+            settled.Remove(id);
+            settling.Remove(id);
+            asked.Add(id);
+            return id;
+        }
+
         /// <summary>The request with its id, and with "at" for "after".</summary>
         private JsonObject Named(JsonObject fields, string id)
         {
@@ -146,6 +200,7 @@ namespace Metagraph
             {
                 queue.ForEach(ask => Settle(new Answer { Id = ask.Id, State = "refused", Why = "the runtime failed: " + error.Message }));
                 queue.Clear();
+                streaming.Clear();
             }
             Listen();
         }
@@ -159,6 +214,7 @@ namespace Metagraph
                 Plan = Hearing.Hear(Graph, Plan, Now, queue, end, options.Stances, options.Idle);
                 queue.FindAll(ask => ask.Do == "withdraw").ForEach(ask => Settle(new Answer { Id = ask.Id, State = "done" }));
                 queue.Clear();
+                streaming.Clear();
             }
             if (seen - cutAt >= Cut)
             {

@@ -213,6 +213,15 @@ namespace Metagraph
             return Ask("{\"do\":\"say\",\"" + (line ? "line" : "text") + "\":" + Json.Quote(lineOrText) + "}");
         }
 
+        /// <summary>
+        /// Say a line whose sound comes in while it is said: with each call its next samples, -1..1; the lips do what is heard. An id is
+        /// one line's; returns it. rate: samples a second, 8000 to 48000.
+        /// </summary>
+        public string SaySound(string id, float[] samples, double rate)
+        {
+            return character == null ? null : character.SaySound(id, samples, rate);
+        }
+
         /// <summary>A point of the world in the character's space, right-handed again.</summary>
         private string Point(Vector3 world)
         {

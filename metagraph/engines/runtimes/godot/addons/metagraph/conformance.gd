@@ -14,6 +14,7 @@ const Describe = preload("core/describe.gd")
 const Hear = preload("core/hear.gd")
 const Planner = preload("core/planner.gd")
 const Pose = preload("core/pose.gd")
+const StreamedVoice = preload("core/streamed_voice.gd")
 const Util = preload("core/util.gd")
 const Turns = preload("core/turns.gd")
 
@@ -85,6 +86,20 @@ func _check(folder, only):
 		var unlike = _unlike(Describe.describe(graph), data.described, "described", data.tolerance.seconds)
 		if unlike != "":
 			_fail("described", unlike)
+	for sound in data.get("heard", []):
+		var voice = StreamedVoice.StreamedVoice.new(float(sound.rate))
+		var marks = []
+		for piece in sound.pieces:
+			var samples = []
+			for sample in piece:
+				samples.append(sample / 128.0)
+			var told = []
+			for mark in voice.hear(samples):
+				told.append([mark.at, mark.viseme, mark.weight])
+			marks.append(told)
+		var apart = _unlike(marks, sound.marks, "heard", data.tolerance.seconds)
+		if apart != "":
+			_fail("heard", apart)
 	for case in data.cases:
 		if only != "" and case.name.find(only) < 0:
 			continue

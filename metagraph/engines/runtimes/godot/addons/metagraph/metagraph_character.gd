@@ -126,6 +126,12 @@ func say(words: String, more := {}) -> String:
 	return _ask("say", {"line" if known else "text": words}, more)
 
 
+## Says a line whose sound comes in while it is said: with each call its next samples, -1..1; the lips do what is heard. An id is one
+## line's. rate: samples a second, 8000 to 48000.
+func say_sound(ident: String, samples, rate: float) -> String:
+	return character.say_sound(ident, samples, rate) if character != null else ""
+
+
 func _ask(what: String, fields: Dictionary, more: Dictionary) -> String:
 	var request := {"do": what}
 	request.merge(fields)

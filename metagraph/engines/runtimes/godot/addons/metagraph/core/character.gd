@@ -8,9 +8,11 @@ const Answers = preload("answers.gd")
 const Hear = preload("hear.gd")
 const Planner = preload("planner.gd")
 const Pose = preload("pose.gd")
+const StreamedVoice = preload("streamed_voice.gd")
 const SLACK = 2.0  # seconds by which the horizon may fall behind before it is moved
 const FORGET_EVERY = 15.0  # seconds
 const LEAP = 3600.0  # seconds an update may move on: all that lies between is planned
+const SOUNDS = 16  # lines whose sound is remembered
 const REMEMBERED = 1000  # answers kept of what is over or was never understood, and happenings nobody asked for
 
 var graph
@@ -24,6 +26,7 @@ var stances
 var _queue = []
 var _asked = {}  # ids that the plan can tell of
 var _settled = {}  # answers of those it has forgotten or never heard of
+var _sounds = {}  # of lines that are heard, by their ids
 var _count = 0
 var _forgot_at = 0.0
 var _seen = -1.0  # when the update before was
@@ -75,6 +78,38 @@ func ask(request):
 	_asked[ident] = true
 	_queue.append(found[0])
 	return ident
+
+
+# Says a line whose sound comes in while it is said: with each call its next samples, -1..1. The lips do what is heard in them. An id
+# is one line's; returns it, as `ask` does. rate: samples a second, 8000 to 48000.
+func say_sound(ident, samples, rate):
+	if not Util.is_finite_number(rate) or rate < 8000 or rate > 48000:
+		return _refuse(ident, "rate: should be a number from 8000 to 48000")
+	var begun = plan.track.last_speech(ident)
+	var before = null
+	for waiting in _queue:  # of the same update
+		if waiting.id == ident and waiting["do"] == "say":
+			before = waiting
+	var voice = _sounds.get(ident)
+	if voice == null or voice.rate != float(rate) or (begun == null and before == null):
+		voice = StreamedVoice.StreamedVoice.new(float(rate))
+	if begun != null:
+		voice.follow(now + graph.settings.lookahead - begun.start)
+	_sounds.erase(ident)
+	_sounds[ident] = voice
+	if _sounds.size() > SOUNDS:
+		_sounds.erase(_sounds.keys()[0])
+	var visemes = []
+	if before != null:
+		visemes = before.visemes.duplicate()
+		_queue.erase(before)
+	var from = voice.seconds
+	var marks = voice.hear(samples)
+	for mark in marks:
+		visemes.append([mark.at, mark.viseme, mark.weight])
+	if marks.size() == 0:
+		visemes.append([from, voice.shape, voice.weight])  # what goes on
+	return ask({"do": "say", "id": ident, "visemes": visemes, "set": "oculus"})
 
 
 func _refuse(ident, why):

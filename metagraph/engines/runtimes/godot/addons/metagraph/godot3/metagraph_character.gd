@@ -104,6 +104,10 @@ func say(words, more = {}):
 	return _ask("say", "line" if known else "text", words, more)
 
 
+func say_sound(ident, samples, rate):
+	return character.say_sound(ident, samples, rate) if character != null else ""
+
+
 func _ask(what, field, value, more):
 	var request = {"do": what}
 	request[field] = value

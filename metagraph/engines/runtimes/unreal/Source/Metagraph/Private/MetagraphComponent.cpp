@@ -116,6 +116,20 @@ FString UMetagraphComponent::SayLine(const FString& Line)
 	return Begin() ? MetagraphText::Unreal(Character->Character.say_line(MetagraphText::Plain(Line))) : FString();
 }
 
+FString UMetagraphComponent::SaySound(const FString& Id, const TArray<float>& Samples, float Rate)
+{
+	if (!Begin())
+	{
+		return FString();
+	}
+	metagraph::List<double> Plain;
+	for (float Sample : Samples)
+	{
+		Plain.push_back(Sample);
+	}
+	return MetagraphText::Unreal(Character->Character.say_sound(MetagraphText::Plain(Id), Plain, Rate));
+}
+
 FString UMetagraphComponent::LookAt(FVector Place)
 {
 	if (!Begin())

@@ -94,6 +94,11 @@ public:
 	UFUNCTION(BlueprintCallable, Category = "Metagraph")
 	FString SayLine(const FString& Line);
 
+	/** Say a line whose sound comes in while it is said: with each call its next samples, -1..1; the lips do what is heard. An id
+	 *  is one line's. Rate: samples a second, 8000 to 48000. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	FString SaySound(const FString& Id, const TArray<float>& Samples, float Rate);
+
 	/** Look at a place in the world, until the next look. */
 	UFUNCTION(BlueprintCallable, Category = "Metagraph")
 	FString LookAt(FVector Place);
