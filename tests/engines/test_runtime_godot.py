@@ -618,7 +618,7 @@ def test_the_readme_names_files_that_its_export_writes_and_calls_the_node_has(
     """Godot 4 is not here to run it: it is parsed, and what it names is looked up."""
     text = (ADDON.parent / "README.md").read_text(encoding="utf-8")
     examples = [block.split("```")[0] for block in text.split("```gdscript\n")[1:]]
-    assert len(examples) == 2
+    assert len(examples) == 3
     parser = pytest.importorskip("gdtoolkit.parser", reason="gdtoolkit is not here").parser
     for each in examples:
         parser.parse(each, gather_metadata=False)
