@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from sample_clips.make.hands import SHAPES, Finger
 from sample_clips.make.key_poses import Hand
 from sample_clips.make.phrases import arms_clip
@@ -29,21 +31,23 @@ def both(up: float, forwards: float) -> dict[str, Hand]:
     return {"lf": CLASP_UNDER.moved(0, up, forwards), "rt": CLASP_OVER.moved(0, up, forwards)}
 
 
-def rubbing(slide: float, up: float = 0.035) -> dict[str, Hand]:
-    """Return flat hands, palm on palm, one slid forwards by metres and the other back."""
+def rubbing(slide: float, apart: float = 0.0) -> dict[str, Hand]:
+    """Return flat hands, palm on palm with the fingers a little crossed, the right one slid forwards by metres
+    and the left one back; each so many metres out of the middle.
+    """
     left = Hand(
-        at=(0.099, 1.05 + up, 0.215 - slide),
-        fingers=(-0.62, 0.10, 0.78),
-        palm=(-0.78, -0.05, -0.62),
+        at=(0.030 + apart, 1.082, 0.212 - slide),
+        fingers=(-0.178, 0.205, 0.962),
+        palm=(-0.978, 0.067, -0.196),
         shape="flat",
-        elbow=LOW,
+        elbow=(0.605, -0.727, -0.324),
     )
     right = Hand(
-        at=(0.099, 1.056 + up, 0.222 + slide),
-        fingers=(-0.62, 0.14, 0.78),
-        palm=(-0.78, -0.05, -0.62),
+        at=(0.030 + apart, 1.106, 0.218 + slide),
+        fingers=(-0.171, -0.114, 0.979),
+        palm=(-0.980, 0.122, -0.157),
         shape="flat",
-        elbow=LOW,
+        elbow=(0.619, -0.722, -0.309),
     )
     return {"lf": left, "rt": right}
 
@@ -51,17 +55,44 @@ def rubbing(slide: float, up: float = 0.035) -> dict[str, Hand]:
 UNCLASP = go(
     0.20, rt=CLASP_OVER.moved(0.016, 0.014, 0.040, shape="open"), overshoot=0.0, flow=0.5
 )  # the hand on top lifts first
-THUMB_ROUND = (  # the thumbs chase each other
-    ((44, -12, 14, 10), (20, 22, 4, 4)),
-    ((34, 8, 4, 2), (44, 2, 22, 20)),
-    ((16, 14, 4, 6), (46, -8, 20, 22)),
-    ((20, -6, 18, 20), (26, 14, 6, 6)),
+
+# Fingers over fingers, the thumbs free above them.
+TWIDDLE_UNDER = Hand(
+    at=(0.102, 1.053, 0.233),
+    fingers=(-0.862, -0.498, 0.097),
+    palm=(-0.242, 0.236, -0.941),
+    shape=((29, 7, 9, 10), (17, 19, 11, 0), (24, 26, 15, 0), (36, 38, 20, -1), (28, 28, 15, -2)),
+    elbow=(0.856, -0.376, -0.355),
 )
+TWIDDLE_OVER = Hand(
+    at=(0.101, 1.062, 0.252),
+    fingers=(-0.903, -0.430, 0.008),
+    palm=(0.129, -0.290, -0.948),
+    shape=((30, 6, 10, 10), (27, 29, 17, 0), (24, 26, 15, 0), (18, 20, 11, -1), (28, 28, 15, -2)),
+    elbow=(0.910, -0.313, -0.272),
+)
+
+
+def twiddled(turn: float) -> dict[str, Hand]:
+    """Return hands whose thumbs chase each other round, at `turn` of a round."""
+    out = {}
+    for side, hand, sign in (("lf", TWIDDLE_UNDER, 1), ("rt", TWIDDLE_OVER, -1)):
+        oppose, abduct, middle, tip = hand.shape[0]
+        angle = 2 * math.pi * turn
+        thumb = (
+            oppose - sign * 11 * math.cos(angle),
+            abduct + (3 if side == "lf" else 7) + sign * 14 * math.sin(angle),
+            middle + sign * 14 * math.cos(angle),
+            tip,
+        )
+        out[side] = with_thumb(hand, thumb)
+    return out
 
 
 def with_thumb(hand: Hand, thumb: Finger) -> Hand:
     """Return the hand with its thumb elsewhere."""
-    return hand.moved(shape=(thumb, *SHAPES[str(hand.shape)][1:]))
+    rows = SHAPES[hand.shape] if isinstance(hand.shape, str) else hand.shape
+    return hand.moved(shape=(thumb, *rows[1:]))
 
 
 CLIPS = (
@@ -207,47 +238,72 @@ CLIPS = (
         "fidget",
         "rub_hands",
         "bt",
+        UNCLASP,
         go(
-            0.24, lf=CLOSE.moved(0.02, 0.0, -0.01), rt=CLOSE.moved(0.02, 0.02, 0.02), flow=0.35, overshoot=0.0
+            0.20,
+            lf=CLOSE.moved(0.012, 0.0, -0.014),
+            rt=CLOSE.moved(0.016, 0.034, 0.030),
+            flow=0.3,
+            overshoot=0.0,
         ),
-        go(0.34, **rubbing(0.0), head=(2, 0, 0), overshoot=0.0, flow=0.05),
-        go(0.22, **rubbing(0.030), overshoot=0.0, flow=0.04),
-        go(0.24, **rubbing(-0.028), head=(3, 1, 1), overshoot=0.0, flow=0.04),
-        go(0.23, **rubbing(0.026), overshoot=0.0, flow=0.04),
-        go(0.24, **rubbing(-0.018), head=(1, 0, 0), overshoot=0.0, flow=0.04),
+        go(0.26, **rubbing(0.0, 0.045), head=(1, 0, 0), flow=0.2, overshoot=0.0),
+        go(0.22, **rubbing(0.0), head=(3, 0, 0), spine=(2, 0, 0), overshoot=0.0, flow=0.04),
+        go(0.22, **rubbing(0.028), overshoot=0.0, flow=0.04),
+        go(0.24, **rubbing(-0.024), head=(4, 1, 1), overshoot=0.0, flow=0.04),
+        go(0.22, **rubbing(0.026), overshoot=0.0, flow=0.04),
+        go(0.24, **rubbing(-0.016), head=(2, 0, 0), overshoot=0.0, flow=0.04),
+        go(0.18, **rubbing(0.0, 0.045), head=(1, 0, 0), overshoot=0.0, flow=0.3),
         go(
-            0.26,
-            lf=CLOSE.moved(0.018, -0.016, -0.026),
-            rt=CLOSE.moved(0.020, 0.026, 0.036),
+            0.28,
+            lf=CLOSE.moved(0.022, -0.010, -0.022),
+            rt=CLOSE.moved(0.024, 0.030, 0.036),
             head=(0, 0, 0),
+            spine=(1, 0, 0),
             overshoot=0.0,
             flow=0.25,
         ),
         home(0.44),
         tags="eager positive",
         together=True,
-        drag=0.3,
+        drag=0.2,
     ),
     arms_clip(
         S,
         "fidget",
         "twiddle_thumbs",
         "bt",
-        *(
-            go(
-                0.21,
-                lf=with_thumb(CLASP_UNDER, left),
-                rt=with_thumb(CLASP_OVER, right),
-                head=(4, 0, 0),
-                overshoot=0.0,
-                flow=0.07,
-            )
-            for left, right in (*THUMB_ROUND, *THUMB_ROUND[:2])
+        UNCLASP,
+        go(
+            0.24,
+            lf=CLOSE.moved(0.010, 0.0, -0.016),
+            rt=CLOSE.moved(0.012, 0.030, 0.030),
+            head=(3, 0, 0),
+            flow=0.3,
+            overshoot=0.0,
         ),
-        home(0.45),
+        go(
+            0.22,
+            lf=TWIDDLE_UNDER.moved(0.030, 0.0, -0.010),
+            rt=TWIDDLE_OVER.moved(0.030, 0.006, 0.014),
+            head=(5, 0, 0),
+            flow=0.25,
+            overshoot=0.0,
+        ),
+        go(0.20, **twiddled(0.0), head=(6, 0, 0), overshoot=0.0, flow=0.06),
+        *(go(0.14, **twiddled(n / 4), head=(7, 0.5, 0), overshoot=0.0, flow=0.05) for n in range(1, 9)),
+        go(
+            0.26,
+            lf=CLOSE.moved(0.012, -0.012, -0.026),
+            rt=CLOSE.moved(0.014, 0.026, 0.036),
+            head=(1, 0, 0),
+            flow=0.25,
+            overshoot=0.0,
+        ),
+        home(0.44),
         tags="bored",
         together=True,
         likelihood=0.6,
+        drag=0.2,
     ),
     arms_clip(
         S,

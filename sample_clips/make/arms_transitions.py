@@ -25,8 +25,8 @@ NEAR: dict[str, tuple[Hand, Hand]] = {
         arms_chin.over_elbow(0.0, 0.62, 0.78, bend=4, shape="relaxed"),
     ),
     "hands_clasped": (
-        arms_clasped.CLOSE.moved(0.015, -0.014, -0.026),
-        arms_clasped.CLOSE.moved(0.018, 0.022, 0.034),
+        arms_clasped.CLOSE.moved(0.022, -0.014, -0.030),
+        arms_clasped.CLOSE.moved(0.026, 0.026, 0.040),
     ),
 }
 # (leaves, arrives): seconds out, across, in; and how the head goes along (pitch, turn, lean).

@@ -21,53 +21,53 @@ HIP = Hand(
     elbow=(0.9, -0.05, -0.55),
 )
 
-# Right forearm above and in front, its hand on the left upper arm; left forearm beneath, its hand under the
-# right arm.
+# The forearms cross before the chest: the right one in front, its hand on the left upper arm; the left hand is
+# tucked between the right upper arm and the ribs.
 CROSS_OVER = Hand(
-    at=(-0.071, 1.227, 0.167),
-    fingers=(-0.893, 0.163, -0.421),
-    palm=(-0.365, -0.135, -0.921),
+    at=(-0.088, 1.222, 0.228),
+    fingers=(-0.764, 0.173, -0.622),
+    palm=(0.626, 0.437, -0.646),
     shape="hold_arm",
-    elbow=(0.230, -0.928, 0.294),
-    reach=14,
+    elbow=(0.363, -0.762, 0.536),
+    reach=20,
 )
 CROSS_UNDER = Hand(
-    at=(0.006, 1.103, 0.125),
-    fingers=(-0.896, 0.163, -0.413),
-    palm=(-0.131, 0.066, -0.989),
+    at=(-0.053, 1.195, 0.137),
+    fingers=(-0.820, 0.382, -0.426),
+    palm=(0.307, -0.334, -0.891),
     shape="tucked",
-    elbow=(-0.028, -0.935, 0.355),
-    reach=12,
+    elbow=(0.370, -0.838, 0.400),
+    reach=18,
 )
 
 CHIN = Hand(
-    at=(0.034, 1.398, 0.134),
-    fingers=(-0.595, 0.801, -0.072),
-    palm=(-0.326, -0.281, -0.903),
+    at=(0.030, 1.409, 0.143),
+    fingers=(-0.581, 0.814, 0.025),
+    palm=(-0.324, -0.202, -0.924),
     shape="chin",
-    elbow=(0.3, -0.95, 0.1),
+    elbow=(0.186, -0.982, -0.002),
 )
 SUPPORT = Hand(
-    at=(-0.026, 1.124, 0.165),
-    fingers=(-0.951, 0.111, 0.288),
-    palm=(-0.168, 0.377, -0.911),
+    at=(-0.017, 1.113, 0.140),
+    fingers=(-1.0, -0.028, -0.005),
+    palm=(-0.021, 0.849, -0.528),
     shape="cradle",
-    elbow=(0.75, -0.65, -0.1),
+    elbow=(0.789, -0.614, 0.007),
 )
 
 CLASP_OVER = Hand(
-    at=(0.080, 1.017, 0.223),
-    fingers=(-0.663, -0.739, 0.124),
-    palm=(-0.371, 0.034, -0.928),
+    at=(0.082, 1.018, 0.225),
+    fingers=(-0.657, -0.741, 0.138),
+    palm=(-0.313, 0.101, -0.945),
     shape="clasp_over",
-    elbow=(0.8, -0.3, -0.5),
+    elbow=(0.808, -0.303, -0.505),
 )
 CLASP_UNDER = Hand(
-    at=(0.071, 1.010, 0.178),
-    fingers=(-0.671, -0.644, 0.368),
-    palm=(-0.415, 0.146, -0.898),
+    at=(0.073, 1.009, 0.176),
+    fingers=(-0.668, -0.660, 0.343),
+    palm=(-0.498, 0.055, -0.866),
     shape="clasp_under",
-    elbow=(0.8, -0.3, -0.5),
+    elbow=(0.808, -0.303, -0.505),
 )
 
 ARMS = {
