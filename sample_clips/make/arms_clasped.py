@@ -9,7 +9,7 @@ from sample_clips.make.key_poses import Hand
 from sample_clips.make.phrases import arms_clip
 from sample_clips.make.recipe import Recipe, go, home
 from sample_clips.make.stage_places import BEAT, LOW, OFFERING, OPEN_PALM, READY, SHRUGGED
-from sample_clips.make.stance_clips import CLASP_OVER, CLASP_UNDER
+from sample_clips.make.stance_clips import CLASP_OVER, CLASP_UNDER, FOLD_OVER, FOLD_UNDER
 
 S = "hands_clasped"
 APART = Hand(at=(0.130, 1.035, 0.245), turn=-14, bend=6, shape="relaxed", elbow=(0.6, -0.6, -0.4))
@@ -56,27 +56,11 @@ UNCLASP = go(
     0.20, rt=CLASP_OVER.moved(0.016, 0.014, 0.040, shape="open"), overshoot=0.0, flow=0.5
 )  # the hand on top lifts first
 
-# Fingers over fingers, the thumbs free above them.
-TWIDDLE_UNDER = Hand(
-    at=(0.102, 1.053, 0.233),
-    fingers=(-0.862, -0.498, 0.097),
-    palm=(-0.242, 0.236, -0.941),
-    shape=((29, 7, 9, 10), (17, 19, 11, 0), (24, 26, 15, 0), (36, 38, 20, -1), (28, 28, 15, -2)),
-    elbow=(0.856, -0.376, -0.355),
-)
-TWIDDLE_OVER = Hand(
-    at=(0.101, 1.062, 0.252),
-    fingers=(-0.903, -0.430, 0.008),
-    palm=(0.129, -0.290, -0.948),
-    shape=((30, 6, 10, 10), (27, 29, 17, 0), (24, 26, 15, 0), (18, 20, 11, -1), (28, 28, 15, -2)),
-    elbow=(0.910, -0.313, -0.272),
-)
 
-
-def twiddled(turn: float) -> dict[str, Hand]:
-    """Return hands whose thumbs chase each other round, at `turn` of a round."""
+def twiddled(turn: float, up: float = 0.0) -> dict[str, Hand]:
+    """Return hands whose thumbs chase each other round, at `turn` of a round, raised by metres."""
     out = {}
-    for side, hand, sign in (("lf", TWIDDLE_UNDER, 1), ("rt", TWIDDLE_OVER, -1)):
+    for side, hand, sign in (("lf", FOLD_UNDER, 1), ("rt", FOLD_OVER, -1)):
         oppose, abduct, middle, tip = hand.shape[0]
         angle = 2 * math.pi * turn
         thumb = (
@@ -85,7 +69,7 @@ def twiddled(turn: float) -> dict[str, Hand]:
             middle + sign * 14 * math.cos(angle),
             tip,
         )
-        out[side] = with_thumb(hand, thumb)
+        out[side] = with_thumb(hand, thumb).moved(up=up)
     return out
 
 
@@ -283,8 +267,8 @@ CLIPS = (
         ),
         go(
             0.22,
-            lf=TWIDDLE_UNDER.moved(0.030, 0.0, -0.010),
-            rt=TWIDDLE_OVER.moved(0.030, 0.006, 0.014),
+            lf=FOLD_UNDER.moved(0.030, 0.0, -0.010),
+            rt=FOLD_OVER.moved(0.030, 0.006, 0.014),
             head=(5, 0, 0),
             flow=0.25,
             overshoot=0.0,
