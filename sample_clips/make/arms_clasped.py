@@ -8,7 +8,7 @@ from sample_clips.make.hands import SHAPES, Finger
 from sample_clips.make.key_poses import Hand
 from sample_clips.make.phrases import arms_clip
 from sample_clips.make.recipe import Recipe, go, home
-from sample_clips.make.stage_places import BEAT, LOW, OFFERING, OPEN_PALM, READY, SHRUGGED
+from sample_clips.make.stage_places import BEAT, OFFERING, OPEN_PALM, READY, SHRUGGED
 from sample_clips.make.stance_clips import CLASP_OVER, CLASP_UNDER, FOLD_OVER, FOLD_UNDER
 
 S = "hands_clasped"
@@ -32,8 +32,8 @@ def both(up: float, forwards: float) -> dict[str, Hand]:
 
 
 def rubbing(slide: float, apart: float = 0.0) -> dict[str, Hand]:
-    """Return flat hands, palm on palm with the fingers a little crossed, the right one slid forwards by metres
-    and the left one back; each so many metres out of the middle.
+    """Return flat hands, palm on palm with the fingers a little crossed, the right one slid forwards by
+    metres and the left one back; each so many metres out of the middle.
     """
     left = Hand(
         at=(0.030 + apart, 1.082, 0.212 - slide),

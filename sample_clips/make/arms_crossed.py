@@ -1,4 +1,4 @@
-"""The arms layer with crossed arms: the right forearm lies in front, so it leaves first and comes back last."""
+"""The arms layer with crossed arms: the right forearm lies in front, leaves first and comes back last."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from typing import Any
 from sample_clips.make.key_poses import Hand
 from sample_clips.make.motion_tracks import Step
 from sample_clips.make.phrases import arms_clip, beat
-from sample_clips.make.recipe import HOME, Recipe, go, home
+from sample_clips.make.recipe import Recipe, go, home
 from sample_clips.make.stage_places import (
     BEAT,
     BIG_BEAT,

@@ -61,8 +61,8 @@ WAYS: dict[tuple[str, str], tuple[float, float, float, tuple[float, float, float
 def way(
     leaves: str, arrives: str, timing: tuple[float, float, float, tuple[float, float, float]], over: str = ""
 ) -> Recipe:
-    """Return the transition between two stances. timing: seconds out, across, in, and how the head goes. over:
-    as in `Recipe`.
+    """Return the transition between two stances. timing: seconds out, across, in, and how the head goes.
+    over: as in `Recipe`.
     """
     out, across, into, head = timing
     first, last = NEAR[leaves], NEAR[arrives]

@@ -1,9 +1,9 @@
-"""Sheets of a clip before and after it was made anew: drawn as a character plays it, hands kept in contact and
-out of the body.
+"""Sheets of a clip before and after it was made anew: drawn as a character plays it, hands kept in contact
+and out of the body.
 
-python -m sample_clips.make.before_after FOLDER --before OLD NAME ...    write FOLDER/NAME.png, rows of the clip
-    in the folder OLD above those of the same times in sample_clips/clips
-python -m sample_clips.make.before_after FOLDER NAME ...                 only the clips as they are
+python -m sample_clips.make.before_after FOLDER --before OLD NAME    write FOLDER/NAME.png: the clip in
+    the folder OLD, above those of sample_clips/clips; without a name, of all clips that changed
+python -m sample_clips.make.before_after FOLDER NAME                 only the clip as it is
 """
 
 from __future__ import annotations
@@ -51,8 +51,8 @@ def base_project() -> Project:
 
 
 def played(project: Project, clip: Clip, times: Array, below: Clip | None = None) -> Pose:
-    """Return how a clip plays at times `[T]`, with the contacts found in it and the guard. below: a clip of the
-    body layer it plays over.
+    """Return how a clip plays at times `[T]`, with the contacts found in it and the guard. below: a clip of
+    the body layer it plays over.
     """
     layer: Layer = layer_of(clip.name)
     clips, rests = dict(project.clips), {}
@@ -82,7 +82,7 @@ def played(project: Project, clip: Clip, times: Array, below: Clip | None = None
 
 
 def moving(pose: Pose) -> list[int]:
-    """Return which hands, 0 left and 1 right, a close-up is of: the one that moves, or both where they meet."""
+    """Return which hands, 0 left and 1 right, a close-up is of: those that move, both where none does."""
     _, places = SKELETON.globals(pose)
     ways = [float(np.ptp(places[:, hand], axis=0).sum()) for hand in HANDS]
     if max(ways) < 0.02:

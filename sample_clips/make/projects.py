@@ -109,7 +109,7 @@ def seated() -> Project:
 
 
 def _finished(name: str, project: Project, entries: Sequence[Entry], starts: Mapping[str, str]) -> Project:
-    """Return a project of placed clips with lines to say. starts: the stance of each layer that comes first."""
+    """Return a project of placed clips with lines to say. starts: each layer's first stance."""
     project = edits.set_character(edits.rename_project(project, name), "ada.glb")
     clips = {c.name: c.id for c in project.clips.values()}
     ids: dict[tuple[str, str], str] = {}

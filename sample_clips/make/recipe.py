@@ -25,8 +25,9 @@ class Recipe:
 
     limb: left, right or both. tags: what it means. seconds: a stance's length. drag: how loosely the hands
     follow. life: how much the holds move. later: the arm that is a little late. together: neither is. pins:
-    (side, joint) pairs, hands kept where they lie on a joint, in place of the stance's. sway: how much of the usual the hips wander
-    in a stance of the body. over: the body's stance whose legs an arms clip has, where hands touch them.
+    (side, joint) pairs, hands kept where they lie on a joint, in place of the stance's. sway: how much of the
+    usual the hips wander in a stance of the body. over: the body's stance whose legs an arms clip has, where
+    hands touch them.
     """
 
     name: str

@@ -1,5 +1,5 @@
-"""The arms layer of one who sits: hands on the lap, or folded above it. Twenty clips; their legs are those of one
-who sits, so that where the hands touch them can be found.
+"""The arms layer of one who sits: hands on the lap, or folded above it. Twenty clips; their legs are those
+of one who sits, so that where the hands touch them can be found.
 """
 
 from __future__ import annotations

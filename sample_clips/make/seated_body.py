@@ -1,5 +1,5 @@
-"""The body layer of one who sits on a stool as high as most chairs, and how he sits down and gets up. Thirteen
-clips; the feet stay where they stand, the hips on the seat.
+"""The body layer of one who sits on a stool as high as most chairs, and the ways down and up. Fifteen clips;
+the feet stay where they stand, the hips on the seat.
 """
 
 from __future__ import annotations
@@ -37,6 +37,20 @@ def bounced(size: float) -> list[Step]:
     return [
         go(0.15, right_foot=up, **off(UPRIGHT, hips=(0, 0.6 * size, 0)), overshoot=0.0, flow=0.02),
         go(0.15, right_foot=down, **off(UPRIGHT), overshoot=0.0, flow=0.02),
+    ]
+
+
+def set_foot(side: str, leaves: float, arrives: float, heel: float, hold: float = 0.0) -> list[Step]:
+    """Return steps that lift a foot, carry it and set it down, metres forwards; its heel stays raised by
+    degrees.
+    """
+    far = arrives - leaves
+    up = Foot(forwards=leaves + 0.06 * far, lift=0.024, heel=10.0)
+    over = Foot(forwards=arrives - 0.04 * far, lift=0.022, heel=max(8.0, heel))
+    return [
+        go(0.13, **{f"{side}_foot": up}, overshoot=0.0),
+        go(0.22, **{f"{side}_foot": over}, overshoot=0.0),
+        go(0.15, hold=hold, **{f"{side}_foot": Foot(forwards=arrives, heel=heel)}, overshoot=0.0),
     ]
 
 
@@ -110,14 +124,10 @@ CLIPS = (
         UPRIGHT,
         "fidget",
         "tuck_feet",
-        go(0.26, right_foot=Foot(forwards=-0.07, lift=0.020, heel=18), overshoot=0.0, flow=0.06),
-        go(0.24, hold=0.06, right_foot=Foot(forwards=-0.13, heel=26), overshoot=0.0),
-        go(0.26, left_foot=Foot(forwards=-0.06, lift=0.018, heel=18), overshoot=0.0, flow=0.06),
-        go(0.24, hold=0.50, left_foot=Foot(forwards=-0.11, heel=24), overshoot=0.0),
-        go(0.24, left_foot=Foot(forwards=-0.05, lift=0.018, heel=14), overshoot=0.0, flow=0.06),
-        go(0.24, left_foot=Foot(), overshoot=0.0),
-        go(0.26, right_foot=Foot(forwards=-0.06, lift=0.020, heel=14), overshoot=0.0, flow=0.06),
-        go(0.24, right_foot=Foot(), overshoot=0.0),
+        *set_foot("right", 0.0, -0.13, 26.0, hold=0.06),
+        *set_foot("left", 0.0, -0.11, 24.0, hold=0.50),
+        *set_foot("left", -0.11, 0.0, 0.0),
+        *set_foot("right", -0.13, 0.0, 0.0),
         home(0.40),
         likelihood=0.6,
     ),
@@ -233,7 +243,7 @@ CLIPS = (
             flow=0.36,
         ),
         home(0.66, overshoot=0.02),
-        likelihood=0.01,
+        likelihood=0.0001,
     ),
     way(UPRIGHT, FORWARD, go(0.30, **off(UPRIGHT, spine=(-2, 0, 0)), overshoot=0.0, flow=0.2), home(0.62)),
     way(FORWARD, UPRIGHT, go(0.28, **off(FORWARD, spine=(2, 0, 0)), overshoot=0.0, flow=0.2), home(0.66)),

@@ -21,8 +21,8 @@ HIP = Hand(
     elbow=(0.9, -0.05, -0.55),
 )
 
-# The forearms cross before the chest: the right one in front, its hand on the left upper arm; the left hand is
-# tucked between the right upper arm and the ribs.
+# The forearms cross before the chest: the right one in front, its hand on the left upper arm; the left hand
+# is tucked between the right upper arm and the ribs.
 CROSS_OVER = Hand(
     at=(-0.088, 1.222, 0.228),
     fingers=(-0.764, 0.173, -0.622),
