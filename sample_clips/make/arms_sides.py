@@ -387,6 +387,7 @@ NECK = Hand(
     shape="on_neck",
     elbow=(0.450, -0.601, 0.661),
 )
+NECK_OUT = NECK.moved(0.060, 0.0, 0.012)  # before it and after it, clear of the head
 BESIDE_NECK = Hand(  # on the way there and back: the fingers upwards, clear of the shoulder
     at=(0.165, 1.475, 0.165),
     fingers=(-0.38, 0.88, -0.28),
@@ -535,10 +536,12 @@ FIDGETS = (
             flow=0.3,
             overshoot=0.0,
         ),
-        go(0.24, hold=0.05, rt=NECK, head=(7, 8.4, -9.3), spine=(1, 0.5, 2.9), overshoot=0.0),
+        go(0.24, rt=NECK_OUT, spine=(1, 0.5, 2.9), flow=0.2, overshoot=0.0),
+        go(0.20, hold=0.05, rt=NECK, head=(7, 8.4, -9.3), overshoot=0.0),
         go(0.24, rt=NECK.moved(0.007, -0.004, 0.022), head=(8, 9.4, -10.3), overshoot=0.0, flow=0.04),
         go(0.24, rt=NECK, head=(7, 8.4, -9.3), overshoot=0.0, flow=0.04),
         go(0.22, hold=0.06, rt=NECK.moved(0.005, -0.003, 0.015), head=(7, 7.4, -9), overshoot=0.0),
+        go(0.18, rt=NECK_OUT, overshoot=0.0, flow=0.2),
         go(
             0.20,
             rt=BESIDE_NECK.moved(-0.02, 0.0, -0.02),
