@@ -381,13 +381,13 @@ GESTURES = (
 )
 
 NECK = Hand(
-    at=(0.080, 1.475, 0.068),
+    at=(0.080, 1.483, 0.068),
     fingers=(-0.266, 0.300, -0.916),
     palm=(-0.958, -0.186, 0.217),
     shape="on_neck",
     elbow=(0.450, -0.601, 0.661),
 )
-NECK_OUT = NECK.moved(0.060, 0.0, 0.012)  # before it and after it, clear of the head
+NECK_OUT = NECK.moved(0.060, 0.030, 0.012)  # before it and after it, clear of the head
 BESIDE_NECK = Hand(  # on the way there and back: the fingers upwards, clear of the shoulder
     at=(0.165, 1.475, 0.165),
     fingers=(-0.38, 0.88, -0.28),

@@ -152,7 +152,7 @@ def main() -> None:
     parser.add_argument(
         "--numbered", action="store_true", help="keep the names out of pictures and file names"
     )
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()  # names may follow options
     options.folder.mkdir(parents=True, exist_ok=True)
     folders = [f for f in (options.before, options.after) if f is not None]
     names = sorted(p.stem for p in options.after.glob("*.glb"))
