@@ -25,8 +25,8 @@ NEAR: dict[str, tuple[Hand, Hand]] = {
         arms_chin.over_elbow(0.0, 0.62, 0.78, bend=4, shape="relaxed"),
     ),
     "on_lap": (
-        LAP.moved(0.004, 0.060, 0.0, shape="relaxed"),
-        LAP.moved(0.008, 0.070, 0.020, shape="relaxed"),
+        LAP.moved(0.006, 0.100, 0.015, shape="relaxed"),
+        LAP.moved(0.010, 0.110, 0.035, shape="relaxed"),
     ),
     "hands_folded": (
         FOLD_UNDER.moved(0.034, 0.022, -0.010, shape="relaxed"),
