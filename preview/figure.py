@@ -193,7 +193,7 @@ class StickFigure(Figure):
         self._above_of[self.lines] = self.line_starts
         self.sources[count:] = self._above_of  # a bone is moved by the joint it starts at
         self._build(rest_p)
-        self.mesh = _joined(self._parts, 2 * count)
+        self.mesh = joined(self._parts, 2 * count)
 
     def palette(self, rotations: Array, positions: Array) -> Array:
         rotations, positions = np.asarray(rotations, np.float32), np.asarray(positions, np.float32)
@@ -287,7 +287,7 @@ class StickFigure(Figure):
         )
 
 
-def _joined(parts: list[Any], matrices: int) -> Mesh:
+def joined(parts: list[Any], matrices: int) -> Mesh:
     """Put rigid parts into one mesh."""
     vertices, triangles, count = [], [], 0
     for (positions, normals, corners), matrix, _, color in parts:

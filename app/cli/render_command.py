@@ -72,17 +72,19 @@ def pictures(
     seen: Sequence[Seen], times: np.ndarray, size: tuple[int, int], look: str, camera: Any = None
 ) -> Iterator[np.ndarray]:
     """Yield one picture `[H, W, 4]` for each time. The camera holds still; by default it sees all."""
+    from app.stage.stools import stools
     from preview.camera import whole_figure
     from preview.offscreen import Offscreen
     from preview.scene import THEMES, Scene
 
+    seats = tuple(seat for _, shown in seen for seat in stools(shown))
     if camera is None:
         box = bounds_of(seen, times)
         camera = whole_figure(box, size[0] / size[1], ASIDE if len(seen) > 1 else 0.0)
     with Offscreen(*size) as offscreen:
         for at in times:
             yield offscreen.render(
-                Scene(tuple(_actor(figure, shown, at) for figure, shown in seen)), camera, THEMES[look]
+                Scene((*(_actor(figure, shown, at) for figure, shown in seen), *seats)), camera, THEMES[look]
             )
 
 

@@ -30,7 +30,7 @@ CARRIER: Layer = "arms"  # the layer that moves the whole body where all of it w
 SCALE: Mapping[Layer, float] = {layer: TYPICAL[CARRIER] / TYPICAL[layer] for layer in LAYERS}
 # Of the clips that do not move a layer, the share that is in another than its usual pose: arms that gesture
 # while the weight is on the other leg, a nod with crossed arms
-TOGETHER = 0.25
+TOGETHER = 0.28
 # Which clips tell that of a layer: those of others. A head goes along with arms, and with a trunk that leans.
 BESIDE: Mapping[Layer, tuple[Layer, ...]] = {"body": ("arms", "head"), "arms": ("body", "head")}
 CLEAR = 0.7  # how sure the layer is that a clip moves, from which on it says something

@@ -33,7 +33,7 @@ STROKED = over_elbow(
     palm=CHIN.palm,
     shape="cupped",
 )
-BACK = go(0.38, rt=OUT, spine=(3, -2, 1.5), head=(3, 2, 2), flow=0.17, overshoot=0.0)
+BACK = go(0.38, rt=OUT, spine=(3, -2, 1.5), head=(3, 2, 2), flow=0.32, overshoot=0.0)
 
 CLIPS = (
     Recipe("hand_to_chin__stance", "arms", "stance", S, S, seconds=7.0),
@@ -156,10 +156,10 @@ CLIPS = (
         ),
         go(
             0.22,
-            hold=0.14,
+            hold=0.24,
             rt=over_elbow(0.07, 0.68, 0.73, turn=-50, bend=20, shape="spread"),
             head=(2, 0, 4),
-            overshoot=0.08,
+            overshoot=0.03,
         ),
         BACK,
         home(0.46),

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 from sample_clips.make.hands import SHAPES, Finger
 from sample_clips.make.key_poses import Hand
 from sample_clips.make.phrases import arms_clip
 from sample_clips.make.recipe import Recipe, go, home
-from sample_clips.make.stage_places import BEAT, LOW, OFFERING, OPEN_PALM, READY, SHRUGGED
-from sample_clips.make.stance_clips import CLASP_OVER, CLASP_UNDER
+from sample_clips.make.stage_places import BEAT, OFFERING, OPEN_PALM, READY, SHRUGGED
+from sample_clips.make.stance_clips import CLASP_OVER, CLASP_UNDER, FOLD_OVER, FOLD_UNDER
 
 S = "hands_clasped"
 APART = Hand(at=(0.130, 1.035, 0.245), turn=-14, bend=6, shape="relaxed", elbow=(0.6, -0.6, -0.4))
@@ -29,21 +31,23 @@ def both(up: float, forwards: float) -> dict[str, Hand]:
     return {"lf": CLASP_UNDER.moved(0, up, forwards), "rt": CLASP_OVER.moved(0, up, forwards)}
 
 
-def rubbing(slide: float, up: float = 0.035) -> dict[str, Hand]:
-    """Return flat hands, palm on palm, one slid forwards by metres and the other back."""
+def rubbing(slide: float, apart: float = 0.0) -> dict[str, Hand]:
+    """Return flat hands, palm on palm with the fingers a little crossed, the right one slid forwards by
+    metres and the left one back; each so many metres out of the middle.
+    """
     left = Hand(
-        at=(0.099, 1.05 + up, 0.215 - slide),
-        fingers=(-0.62, 0.10, 0.78),
-        palm=(-0.78, -0.05, -0.62),
+        at=(0.030 + apart, 1.082, 0.212 - slide),
+        fingers=(-0.178, 0.205, 0.962),
+        palm=(-0.978, 0.067, -0.196),
         shape="flat",
-        elbow=LOW,
+        elbow=(0.605, -0.727, -0.324),
     )
     right = Hand(
-        at=(0.099, 1.056 + up, 0.222 + slide),
-        fingers=(-0.62, 0.14, 0.78),
-        palm=(-0.78, -0.05, -0.62),
+        at=(0.030 + apart, 1.106, 0.218 + slide),
+        fingers=(-0.171, -0.114, 0.979),
+        palm=(-0.980, 0.122, -0.157),
         shape="flat",
-        elbow=LOW,
+        elbow=(0.619, -0.722, -0.309),
     )
     return {"lf": left, "rt": right}
 
@@ -51,17 +55,28 @@ def rubbing(slide: float, up: float = 0.035) -> dict[str, Hand]:
 UNCLASP = go(
     0.20, rt=CLASP_OVER.moved(0.016, 0.014, 0.040, shape="open"), overshoot=0.0, flow=0.5
 )  # the hand on top lifts first
-THUMB_ROUND = (  # the thumbs chase each other
-    ((44, -12, 14, 10), (20, 22, 4, 4)),
-    ((34, 8, 4, 2), (44, 2, 22, 20)),
-    ((16, 14, 4, 6), (46, -8, 20, 22)),
-    ((20, -6, 18, 20), (26, 14, 6, 6)),
-)
+
+
+def twiddled(turn: float, up: float = 0.0) -> dict[str, Hand]:
+    """Return hands whose thumbs chase each other round, at `turn` of a round, raised by metres."""
+    out = {}
+    for side, hand, sign in (("lf", FOLD_UNDER, 1), ("rt", FOLD_OVER, -1)):
+        oppose, abduct, middle, tip = hand.shape[0]
+        angle = 2 * math.pi * turn
+        thumb = (
+            oppose - sign * 11 * math.cos(angle),
+            abduct + (3 if side == "lf" else 7) + sign * 14 * math.sin(angle),
+            middle + sign * 14 * math.cos(angle),
+            tip,
+        )
+        out[side] = with_thumb(hand, thumb).moved(up=up)
+    return out
 
 
 def with_thumb(hand: Hand, thumb: Finger) -> Hand:
     """Return the hand with its thumb elsewhere."""
-    return hand.moved(shape=(thumb, *SHAPES[str(hand.shape)][1:]))
+    rows = SHAPES[hand.shape] if isinstance(hand.shape, str) else hand.shape
+    return hand.moved(shape=(thumb, *rows[1:]))
 
 
 CLIPS = (
@@ -207,47 +222,72 @@ CLIPS = (
         "fidget",
         "rub_hands",
         "bt",
+        UNCLASP,
         go(
-            0.24, lf=CLOSE.moved(0.02, 0.0, -0.01), rt=CLOSE.moved(0.02, 0.02, 0.02), flow=0.35, overshoot=0.0
+            0.20,
+            lf=CLOSE.moved(0.012, 0.0, -0.014),
+            rt=CLOSE.moved(0.016, 0.034, 0.030),
+            flow=0.3,
+            overshoot=0.0,
         ),
-        go(0.34, **rubbing(0.0), head=(2, 0, 0), overshoot=0.0, flow=0.05),
-        go(0.22, **rubbing(0.030), overshoot=0.0, flow=0.04),
-        go(0.24, **rubbing(-0.028), head=(3, 1, 1), overshoot=0.0, flow=0.04),
-        go(0.23, **rubbing(0.026), overshoot=0.0, flow=0.04),
-        go(0.24, **rubbing(-0.018), head=(1, 0, 0), overshoot=0.0, flow=0.04),
+        go(0.26, **rubbing(0.0, 0.045), head=(1, 0, 0), flow=0.2, overshoot=0.0),
+        go(0.22, **rubbing(0.0), head=(3, 0, 0), spine=(2, 0, 0), overshoot=0.0, flow=0.04),
+        go(0.22, **rubbing(0.028), overshoot=0.0, flow=0.04),
+        go(0.24, **rubbing(-0.024), head=(4, 1, 1), overshoot=0.0, flow=0.04),
+        go(0.22, **rubbing(0.026), overshoot=0.0, flow=0.04),
+        go(0.24, **rubbing(-0.016), head=(2, 0, 0), overshoot=0.0, flow=0.04),
+        go(0.18, **rubbing(0.0, 0.045), head=(1, 0, 0), overshoot=0.0, flow=0.3),
         go(
-            0.26,
-            lf=CLOSE.moved(0.018, -0.016, -0.026),
-            rt=CLOSE.moved(0.020, 0.026, 0.036),
+            0.28,
+            lf=CLOSE.moved(0.022, -0.010, -0.022),
+            rt=CLOSE.moved(0.024, 0.030, 0.036),
             head=(0, 0, 0),
+            spine=(1, 0, 0),
             overshoot=0.0,
             flow=0.25,
         ),
         home(0.44),
         tags="eager positive",
         together=True,
-        drag=0.3,
+        drag=0.2,
     ),
     arms_clip(
         S,
         "fidget",
         "twiddle_thumbs",
         "bt",
-        *(
-            go(
-                0.21,
-                lf=with_thumb(CLASP_UNDER, left),
-                rt=with_thumb(CLASP_OVER, right),
-                head=(4, 0, 0),
-                overshoot=0.0,
-                flow=0.07,
-            )
-            for left, right in (*THUMB_ROUND, *THUMB_ROUND[:2])
+        UNCLASP,
+        go(
+            0.24,
+            lf=CLOSE.moved(0.010, 0.0, -0.016),
+            rt=CLOSE.moved(0.012, 0.030, 0.030),
+            head=(3, 0, 0),
+            flow=0.3,
+            overshoot=0.0,
         ),
-        home(0.45),
+        go(
+            0.22,
+            lf=FOLD_UNDER.moved(0.030, 0.0, -0.010),
+            rt=FOLD_OVER.moved(0.030, 0.006, 0.014),
+            head=(5, 0, 0),
+            flow=0.25,
+            overshoot=0.0,
+        ),
+        go(0.20, **twiddled(0.0), head=(6, 0, 0), overshoot=0.0, flow=0.06),
+        *(go(0.14, **twiddled(n / 4), head=(7, 0.5, 0), overshoot=0.0, flow=0.05) for n in range(1, 9)),
+        go(
+            0.26,
+            lf=CLOSE.moved(0.012, -0.012, -0.026),
+            rt=CLOSE.moved(0.014, 0.026, 0.036),
+            head=(1, 0, 0),
+            flow=0.25,
+            overshoot=0.0,
+        ),
+        home(0.44),
         tags="bored",
         together=True,
         likelihood=0.6,
+        drag=0.2,
     ),
     arms_clip(
         S,

@@ -1,4 +1,4 @@
-"""The arms layer with crossed arms: the right forearm lies on top, so it leaves first and comes back last."""
+"""The arms layer with crossed arms: the right forearm lies in front, leaves first and comes back last."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from sample_clips.make.stage_places import OPEN_PALM, POINT_COCKED, POINT_YOU, R
 from sample_clips.make.stance_clips import CROSS_OVER, CROSS_UNDER
 
 S = "arms_crossed"
-OUT = Hand(
-    at=(0.060, 1.225, 0.300), turn=8, bend=4, shape="relaxed", elbow=WIDE, reach=5
-)  # the right hand lifted off the left arm
+OUT = Hand(  # the right hand lifted off the left arm, its elbow still before the other hand
+    at=(0.050, 1.245, 0.315), turn=8, bend=4, shape="relaxed", elbow=(0.75, -0.45, 0.35), reach=12
+)
 LEFT_OUT = Hand(at=(0.060, 1.135, 0.235), turn=2, bend=4, shape="relaxed", elbow=WIDE, reach=5)
-ABOVE = CROSS_OVER.moved(0.062, 0.006, 0.030)  # about to slip between the left arm and the ribs
+ABOVE = CROSS_OVER.moved(0.040, 0.014, 0.046)  # about to come down on the left arm
 BACK = go(0.40, rt=OUT, spine=(1, -1, 0.5), head=(-1, 1, 0), flow=0.18, overshoot=0.0)
 LANDING = go(0.26, rt=ABOVE, flow=0.3, overshoot=0.0)
 
@@ -89,7 +89,13 @@ CLIPS = (
         "gesture",
         "point_you",
         "rt",
-        go(0.40, rt=POINT_COCKED.moved(-0.05, -0.02, 0.04), spine=(0, -2, 0.5), flow=0.14, overshoot=0.0),
+        go(
+            0.40,
+            rt=POINT_COCKED.moved(-0.03, -0.01, 0.05, elbow=(0.75, -0.5, 0.25), reach=8),
+            spine=(0, -2, 0.5),
+            flow=0.14,
+            overshoot=0.0,
+        ),
         go(0.25, hold=0.40, rt=POINT_YOU, spine=(3, 1, 0), head=(3, 0, 1), peak=0.55, overshoot=0.06),
         BACK,
         LANDING,

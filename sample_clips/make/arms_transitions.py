@@ -10,7 +10,7 @@ from sample_clips.make import arms_chin, arms_clasped, arms_crossed, arms_hips
 from sample_clips.make.key_poses import Hand
 from sample_clips.make.motion_tracks import Step
 from sample_clips.make.recipe import HOME, Recipe, go, home
-from sample_clips.make.stance_clips import ARMS, SIDE, SUPPORT
+from sample_clips.make.stance_clips import FOLD_OVER, FOLD_UNDER, LAP, SIDE, STANCES, SUPPORT
 
 # Where both hands (left, right) are just before they arrive in a stance and just after they leave it.
 NEAR: dict[str, tuple[Hand, Hand]] = {
@@ -24,9 +24,17 @@ NEAR: dict[str, tuple[Hand, Hand]] = {
         SUPPORT.moved(0.03, -0.045, 0.03, shape="relaxed"),
         arms_chin.over_elbow(0.0, 0.62, 0.78, bend=4, shape="relaxed"),
     ),
+    "on_lap": (
+        LAP.moved(0.006, 0.100, 0.015, shape="relaxed"),
+        LAP.moved(0.010, 0.110, 0.035, shape="relaxed"),
+    ),
+    "hands_folded": (
+        FOLD_UNDER.moved(0.034, 0.022, -0.010, shape="relaxed"),
+        FOLD_OVER.moved(0.036, 0.034, 0.016, shape="relaxed"),
+    ),
     "hands_clasped": (
-        arms_clasped.CLOSE.moved(0.015, -0.014, -0.026),
-        arms_clasped.CLOSE.moved(0.018, 0.022, 0.034),
+        arms_clasped.CLOSE.moved(0.022, -0.014, -0.030),
+        arms_clasped.CLOSE.moved(0.026, 0.026, 0.040),
     ),
 }
 # (leaves, arrives): seconds out, across, in; and how the head goes along (pitch, turn, lean).
@@ -50,13 +58,19 @@ WAYS: dict[tuple[str, str], tuple[float, float, float, tuple[float, float, float
 }
 
 
-def way(leaves: str, arrives: str) -> Recipe:
-    """Return the transition between two stances."""
-    out, across, into, head = WAYS[leaves, arrives]
+def way(
+    leaves: str, arrives: str, timing: tuple[float, float, float, tuple[float, float, float]], over: str = ""
+) -> Recipe:
+    """Return the transition between two stances. timing: seconds out, across, in, and how the head goes.
+    over: as in `Recipe`.
+    """
+    out, across, into, head = timing
     first, last = NEAR[leaves], NEAR[arrives]
     spine = tuple(
         (a + b) / 2 - 1.0 * (i == 0)
-        for i, (a, b) in enumerate(zip(ARMS[leaves].spine, ARMS[arrives].spine, strict=True))
+        for i, (a, b) in enumerate(
+            zip(STANCES["arms"][leaves].spine, STANCES["arms"][arrives].spine, strict=True)
+        )
     )
     steps: list[Step] = []
     if leaves == "hands_at_sides":
@@ -87,8 +101,15 @@ def way(leaves: str, arrives: str) -> Recipe:
         steps.append(go(into * 0.8, rt=HOME, overshoot=0.0, flow=0.5))
     steps.append(home(into * (1.25 if arrives == "hands_at_sides" else 1.0), overshoot=0.025))
     return Recipe(
-        f"{leaves}__to__{arrives}", "arms", "transition", leaves, arrives, tuple(steps), later="Left"
+        f"{leaves}__to__{arrives}",
+        "arms",
+        "transition",
+        leaves,
+        arrives,
+        tuple(steps),
+        later="Left",
+        over=over,
     )
 
 
-CLIPS = tuple(way(*pair) for pair in WAYS)
+CLIPS = tuple(way(*pair, timing) for pair, timing in WAYS.items())

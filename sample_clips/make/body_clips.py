@@ -13,7 +13,7 @@ from sample_clips.make.key_poses import Foot, Posture
 from sample_clips.make.mannequin_rig import Angles
 from sample_clips.make.motion_tracks import Step
 from sample_clips.make.recipe import HOME, Recipe, go, home
-from sample_clips.make.stance_clips import BODY
+from sample_clips.make.stance_clips import BODY, STANCES
 
 NONE: Angles = (0.0, 0.0, 0.0)
 
@@ -29,7 +29,7 @@ def off(
     """Return the fields of a posture that differs from the stance's by metres (left, up, forwards) and
     degrees.
     """
-    posture = BODY[stance]
+    posture = STANCES["body"][stance]
     added = {"shift": shift, "hips": hips, "spine": spine, "head": head}
     return {k: tuple(np.array(getattr(posture, k)) + v) for k, v in added.items()} | feet
 

@@ -1,13 +1,14 @@
-"""What every clip is for: the list from which the sample project is made."""
+"""What every clip is for: the lists from which the sample projects are made."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sample_clips.make import arms, body_clips, head, motion_tracks
+from sample_clips.make import arms, body_clips, head, motion_tracks, seated_arms, seated_body
 from sample_clips.make.recipe import Recipe
 
 RECIPES: tuple[Recipe, ...] = (*body_clips.CLIPS, *arms.CLIPS, *head.CLIPS)
+SEATED: tuple[Recipe, ...] = (*seated_body.CLIPS, *seated_arms.CLIPS)
 
 BASE = ("hands_at_sides__stance", 0)
 """The base pose: a clip's name and a frame."""
@@ -43,9 +44,9 @@ BLENDS = {"stance": (0.30, 0.30), "gesture": (0.20, 0.25), "fidget": (0.25, 0.30
 MOTION_STARTS = motion_tracks.LEAD_IN  # every clip but a stance rests so long before anything moves
 
 
-def catalogue() -> tuple[Entry, ...]:
-    """Return the entries of all clips, body first, then arms and head; the stances' names carry no layer."""
-    return tuple(_entry(recipe) for recipe in RECIPES)
+def catalogue(recipes: tuple[Recipe, ...] = RECIPES) -> tuple[Entry, ...]:
+    """Return the entries of clips, body first, then arms and head; the stances' names carry no layer."""
+    return tuple(_entry(recipe) for recipe in recipes)
 
 
 def _entry(recipe: Recipe) -> Entry:

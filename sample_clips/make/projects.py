@@ -1,9 +1,10 @@
-"""The two sample projects: a finished one, and one whose clips wait to be labelled. `python -m
-sample_clips.make.projects`.
+"""The sample projects: a finished one, one whose clips wait to be labelled, and one of somebody who sits.
+`python -m sample_clips.make.projects`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import cast
@@ -21,10 +22,11 @@ from metagraph.graph.conversation_edits import add_conversation
 from metagraph.graph.model import LAYERS, Kind, Layer, Limb, Project, Timing
 from metagraph.suggest.find_contacts import measured, with_contacts
 from sample_clips.make.babble import sample_lines
-from sample_clips.make.catalogue import BASE, Entry, catalogue
+from sample_clips.make.catalogue import BASE, RECIPES, SEATED, Entry, catalogue
 
 HERE = Path(__file__).resolve().parents[1]
 STARTS = {"body": "weight both", "arms": "hands at sides", "head": "straight"}
+SITS = {**STARTS, "body": "sitting", "arms": "on lap"}
 
 
 # What goes with a line, seconds from its start.
@@ -57,8 +59,12 @@ def practice() -> Project:
     """Return a project of all clips, none of them placed; its base pose is chosen, since practice is about
     dropping.
     """
-    empty = Project(name="practice")
-    imported = import_files(empty, HERE, [HERE / "clips"])
+    return _imported("practice", [HERE / "clips"])
+
+
+def _imported(name: str, paths: Sequence[Path]) -> Project:
+    empty = Project(name=name)
+    imported = import_files(empty, HERE, paths)
     if imported.failures:
         raise RuntimeError("\n".join(imported.failures))
     project = imported.into(empty)
@@ -71,13 +77,45 @@ def sample() -> Project:
     """Return the finished project: every clip of the catalogue placed with its timing, tags and likelihood,
     and a few lines to say.
     """
-    project = edits.set_character(edits.rename_project(practice(), "sample"), "ada.glb")
+    project = performance_edits.add_performance(
+        _finished("sample", practice(), catalogue(), STARTS), GREETING
+    )[0]
+    return add_conversation(project, conversation())[0]
+
+
+def seated() -> Project:
+    """Return the project of somebody who sits on a stool, and gets up when asked."""
+    kept = {
+        "body": {"sitting", "sitting_forward", "weight_both"},
+        "arms": {"on_lap", "hands_folded", "hands_at_sides", "arms_crossed", "hand_to_chin"},
+        "head": {"head_straight", "head_tilt_left", "head_tilt_right"},
+    }
+    # From the sides hands go to the lap first: any other way leads through the thighs.
+    entries = [
+        e
+        for e in catalogue((*RECIPES, *SEATED))
+        if {e.stance, e.end_stance} <= kept[e.layer]
+        and (e.kind != "transition" or "hands_at_sides" not in (e.stance, e.end_stance) or "on_lap" in e.name)
+    ]
+    files = [HERE / ("seated" if e.name in {r.name for r in SEATED} else "clips") / e.file for e in entries]
+    project = _finished("seated", _imported("seated", files), entries, SITS)
+    # Again and again, so that nobody gets up for want of another way to sit.
+    again = {
+        a.id: {"spacing": 0}
+        for a in project.graphs["body"].actions.values()
+        if a.name == "to sitting forward"
+    }
+    return edits.set_character(edits.update_each(project, again), "ben.glb")
+
+
+def _finished(name: str, project: Project, entries: Sequence[Entry], starts: Mapping[str, str]) -> Project:
+    """Return a project of placed clips with lines to say. starts: each layer's first stance."""
+    project = edits.set_character(edits.rename_project(project, name), "ada.glb")
     clips = {c.name: c.id for c in project.clips.values()}
-    entries = catalogue()
     ids: dict[tuple[str, str], str] = {}
     for layer in LAYERS:
         loops = [e for e in entries if e.layer == layer and e.kind == "stance"]
-        names = sorted(dict.fromkeys(_words(e.stance) for e in loops), key=lambda n: (n != STARTS[layer], 0))
+        names = sorted(dict.fromkeys(_words(e.stance) for e in loops), key=lambda n: (n != starts[layer], 0))
         for name in names:
             project = edits.add_stance(project, layer, name)
             ids[(layer, name)] = list(project.graphs[layer].stances)[-1]
@@ -91,8 +129,7 @@ def sample() -> Project:
         name: msgspec.structs.replace(line, asks=WITH_LINES.get(name, ()))
         for name, line in sample_lines().items()
     }
-    project = performance_edits.add_performance(replace(project, lines=lines), GREETING)[0]
-    return add_conversation(project, conversation())[0]
+    return replace(project, lines=lines)
 
 
 def conversation() -> Conversation:
@@ -136,7 +173,7 @@ def _place(project: Project, entry: Entry, clip: str, ids: dict[tuple[str, str],
 
 
 def main() -> None:
-    for name, project in (("practice", practice()), ("sample", sample())):
+    for name, project in (("practice", practice()), ("sample", sample()), ("seated", seated())):
         path = HERE / f"{name}{SUFFIX}"
         save_project(project, path, path)
         print(path.name, f"{path.stat().st_size / 1e3:.0f} kB")

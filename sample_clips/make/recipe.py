@@ -25,7 +25,9 @@ class Recipe:
 
     limb: left, right or both. tags: what it means. seconds: a stance's length. drag: how loosely the hands
     follow. life: how much the holds move. later: the arm that is a little late. together: neither is. pins:
-    (side, joint) pairs, hands kept where they lie on a joint, in place of the stance's.
+    (side, joint) pairs, hands kept where they lie on a joint, in place of the stance's. sway: how much of the
+    usual the hips wander in a stance of the body. over: the body's stance whose legs an arms clip has, where
+    hands touch them.
     """
 
     name: str
@@ -43,6 +45,8 @@ class Recipe:
     later: str = ""
     together: bool = False
     pins: tuple[tuple[str, str], ...] | None = None
+    sway: float = 1.0
+    over: str = ""
 
 
 def go(seconds: float, hold: float = 0.0, **change: Any) -> Step:
@@ -115,7 +119,14 @@ FINGER_LIFE = {
     for f in ("Thumb", "Index", "Middle", "Ring", "Little")
     for b, d in (("1", 1.2), ("2", 1.6))
 }
-STILL_HANDS = {"arms_crossed", "hands_clasped", "hand_to_chin", "on_hips"}  # hands that rest on something
+STILL_HANDS = {
+    "arms_crossed",
+    "hands_clasped",
+    "hand_to_chin",
+    "on_hips",
+    "on_lap",
+    "hands_folded",
+}  # hands that rest on something
 
 
 def drifts(recipe: Recipe) -> dict[str, float]:
@@ -160,12 +171,14 @@ def animate(recipe: Recipe) -> Clip:
     rotations = secondary.life(rotations, seed, drifts(recipe), recipe.kind == "stance")
     if recipe.layer == "arms":
         rotations = _arms(recipe, rotations)
-    base, _ = key_poses.legs(key_poses.solve(BASE)[None], key_poses.channels(BASE)[None])
-    root = np.broadcast_to(REST[0] + key_poses.channels(BASE)[:3], (frames, 3))
+    # The legs as they are beneath hips that are upright: the arms' layer knows no other.
+    under = replace(STANCES["body"][recipe.over], hips=BASE.hips) if recipe.over else BASE
+    base, _ = key_poses.legs(key_poses.solve(BASE)[None], key_poses.channels(under)[None])
+    root = np.broadcast_to(REST[0] + key_poses.channels(under)[:3], (frames, 3))
     if recipe.layer == "body":
         if recipe.kind == "stance":
             sway = motion_tracks.wander(np.random.default_rng(seed + 1), frames, 0.9, 3, True)
-            numbers[:, :3] += sway * (0.0065, 0.0012, 0.0045) * recipe.life
+            numbers[:, :3] += sway * (0.0065, 0.0012, 0.0045) * (recipe.life * recipe.sway)
         rotations, root = key_poses.legs(rotations, numbers)
     only = [at(name) for name in REACH[recipe.layer]]
     out = np.broadcast_to(base, (frames, len(SKELETON), 4)).copy()

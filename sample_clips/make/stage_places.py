@@ -27,11 +27,11 @@ POINT_ME = Hand(
 )
 POINT_ASIDE = Hand(at=(0.475, 1.255, 0.185), turn=-22, bend=-5, shape="point", elbow=(0.3, -0.85, -0.4))
 ON_HEART = Hand(
-    at=(0.039, 1.244, 0.121),
-    fingers=(-0.915, 0.38, -0.133),
-    palm=(-0.106, 0.013, -0.994),
+    at=(0.027, 1.282, 0.107),
+    fingers=(-0.822, 0.544, -0.171),
+    palm=(0.152, -0.079, -0.985),
     shape="flat",
-    elbow=WIDE,
+    elbow=(0.930, -0.354, 0.102),
 )
 COUNTING = Hand(at=(0.225, 1.360, 0.195), turn=-58, bend=-6, shape="fist", elbow=(0.45, -0.85, -0.1))
 WAVING = Hand(at=(0.325, 1.480, 0.150), turn=-74, bend=-10, shape="spread", elbow=(0.75, -0.65, -0.1))
@@ -43,12 +43,20 @@ SWEEP_OUT = Hand(at=(0.365, 1.125, 0.265), turn=-66, bend=-14, side=-10, shape="
 FLICK_READY = Hand(at=(0.205, 1.225, 0.225), turn=-46, bend=34, shape="relaxed", elbow=(0.6, -0.75, -0.2))
 FLICKED = Hand(at=(0.330, 1.240, 0.300), turn=-58, bend=-22, side=-8, shape="spread", elbow=(0.7, -0.7, -0.2))
 THUMB_UP = Hand(at=(0.155, 1.185, 0.335), turn=4, bend=2, side=6, shape="thumbs_up", elbow=LOW)
-PRECISE = Hand(at=(0.195, 1.240, 0.275), turn=-34, bend=-12, shape="pinch", elbow=(0.55, -0.8, -0.2))
+PRECISE = Hand(at=(0.190, 1.275, 0.290), turn=-46, bend=-24, side=6, shape="ring", elbow=(0.5, -0.85, -0.1))
 WIDE_APART = Hand(at=(0.400, 1.165, 0.255), turn=4, bend=-14, shape="spread", elbow=WIDE)
 CLOSE_TOGETHER = Hand(at=(0.105, 1.165, 0.290), turn=2, bend=4, shape="flat", elbow=WIDE)
 WEIGHED = Hand(at=(0.330, 1.155, 0.250), turn=72, bend=-14, shape="cupped", elbow=LOW)
 QUOTING = Hand(at=(0.265, 1.425, 0.150), turn=-70, bend=-8, shape="quotes", elbow=(0.7, -0.7, -0.1))
-WATCHED = Hand(at=(0.005, 1.195, 0.270), turn=-48, bend=-6, shape="soft_fist", elbow=WIDE)
+WATCHED = Hand(
+    at=(0.030, 1.225, 0.285),
+    turn=-64,
+    bend=-20,
+    side=3,
+    shape="firm_fist",
+    elbow=(0.85, -0.5, 0.05),
+    shrug=2,
+)
 
 
 def lifted(shape: str, fingers: dict[int, float]) -> tuple[hands.Finger, ...]:

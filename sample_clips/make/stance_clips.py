@@ -21,53 +21,69 @@ HIP = Hand(
     elbow=(0.9, -0.05, -0.55),
 )
 
-# Right forearm above and in front, its hand on the left upper arm; left forearm beneath, its hand under the
-# right arm.
+# The forearms cross before the chest: the right one in front, its hand on the left upper arm; the left hand
+# is tucked between the right upper arm and the ribs.
 CROSS_OVER = Hand(
-    at=(-0.071, 1.227, 0.167),
-    fingers=(-0.893, 0.163, -0.421),
-    palm=(-0.365, -0.135, -0.921),
+    at=(-0.088, 1.222, 0.228),
+    fingers=(-0.764, 0.173, -0.622),
+    palm=(0.626, 0.437, -0.646),
     shape="hold_arm",
-    elbow=(0.230, -0.928, 0.294),
-    reach=14,
+    elbow=(0.363, -0.762, 0.536),
+    reach=20,
 )
 CROSS_UNDER = Hand(
-    at=(0.006, 1.103, 0.125),
-    fingers=(-0.896, 0.163, -0.413),
-    palm=(-0.131, 0.066, -0.989),
+    at=(-0.053, 1.195, 0.137),
+    fingers=(-0.820, 0.382, -0.426),
+    palm=(0.307, -0.334, -0.891),
     shape="tucked",
-    elbow=(-0.028, -0.935, 0.355),
-    reach=12,
+    elbow=(0.370, -0.838, 0.400),
+    reach=18,
 )
 
 CHIN = Hand(
-    at=(0.034, 1.398, 0.134),
-    fingers=(-0.595, 0.801, -0.072),
-    palm=(-0.326, -0.281, -0.903),
+    at=(0.029, 1.413, 0.143),
+    fingers=(-0.580, 0.815, 0.016),
+    palm=(-0.321, -0.210, -0.924),
     shape="chin",
-    elbow=(0.3, -0.95, 0.1),
+    elbow=(0.197, -0.980, 0.008),
 )
 SUPPORT = Hand(
-    at=(-0.026, 1.124, 0.165),
-    fingers=(-0.951, 0.111, 0.288),
-    palm=(-0.168, 0.377, -0.911),
+    at=(-0.019, 1.117, 0.151),
+    fingers=(-0.999, -0.023, -0.035),
+    palm=(0.0, 0.837, -0.547),
     shape="cradle",
-    elbow=(0.75, -0.65, -0.1),
+    elbow=(0.812, -0.576, 0.091),
 )
 
 CLASP_OVER = Hand(
-    at=(0.080, 1.017, 0.223),
-    fingers=(-0.663, -0.739, 0.124),
-    palm=(-0.371, 0.034, -0.928),
+    at=(0.082, 1.018, 0.225),
+    fingers=(-0.657, -0.741, 0.138),
+    palm=(-0.313, 0.101, -0.945),
     shape="clasp_over",
-    elbow=(0.8, -0.3, -0.5),
+    elbow=(0.808, -0.303, -0.505),
 )
 CLASP_UNDER = Hand(
-    at=(0.071, 1.010, 0.178),
-    fingers=(-0.671, -0.644, 0.368),
-    palm=(-0.415, 0.146, -0.898),
+    at=(0.073, 1.009, 0.176),
+    fingers=(-0.668, -0.660, 0.343),
+    palm=(-0.498, 0.055, -0.866),
     shape="clasp_under",
-    elbow=(0.8, -0.3, -0.5),
+    elbow=(0.808, -0.303, -0.505),
+)
+
+# Fingers over fingers, the thumbs free above them.
+FOLD_UNDER = Hand(
+    at=(0.102, 1.053, 0.233),
+    fingers=(-0.862, -0.498, 0.097),
+    palm=(-0.242, 0.236, -0.941),
+    shape=((29, 7, 9, 10), (17, 19, 11, 0), (24, 26, 15, 0), (36, 38, 20, -1), (28, 28, 15, -2)),
+    elbow=(0.856, -0.376, -0.355),
+)
+FOLD_OVER = Hand(
+    at=(0.101, 1.062, 0.252),
+    fingers=(-0.903, -0.430, 0.008),
+    palm=(0.129, -0.290, -0.948),
+    shape=((30, 6, 10, 10), (27, 29, 17, 0), (24, 26, 15, 0), (18, 20, 11, -1), (28, 28, 15, -2)),
+    elbow=(0.910, -0.313, -0.272),
 )
 
 ARMS = {
@@ -119,10 +135,38 @@ HEAD = {
     "head_tilt_right": replace(BASE, head=(1.5, -2.5, 9.5), spine=(0.0, -0.5, 1.5)),
 }
 
-STANCES = {"body": BODY, "arms": ARMS, "head": HEAD}
+# On a stool: metres the hips are shifted (left, up, forwards), so that thighs lie on a seat 0.45 m high; the
+# feet are where they stand.
+SEAT = (0.0, -0.385, -0.390)
+SEATED_BODY = {
+    "sitting": replace(BASE, shift=SEAT, hips=(-5.0, 0.0, 0.0), spine=(5.0, 0.0, 0.0), head=(1.0, 0.0, 0.0)),
+    "sitting_forward": replace(
+        BASE,
+        shift=(0.0, -0.383, -0.380),
+        hips=(8.0, 0.0, 0.0),
+        spine=(6.0, 0.0, 0.0),
+        head=(-10.0, 0.0, 0.0),
+    ),
+}
+LAP = Hand(  # on the thigh of one who sits
+    at=(0.169, 0.984, 0.127),
+    fingers=(-0.399, 0.014, 0.917),
+    palm=(0.047, -0.998, 0.036),
+    shape="on_lap",
+    elbow=(0.70, -0.40, -0.60),
+)
+SEATED_ARMS = {
+    "on_lap": replace(BASE, left=LAP, right=LAP.moved(0.003, -0.001, 0.017)),
+    "hands_folded": replace(  # clear of the thighs
+        BASE, left=FOLD_UNDER.moved(up=0.025), right=FOLD_OVER.moved(up=0.025), spine=(1.0, 0.0, 0.0)
+    ),
+}
+
+STANCES = {"body": BODY | SEATED_BODY, "arms": ARMS | SEATED_ARMS, "head": HEAD}
 
 # Hands that stay where they are when the torso moves beneath them, while their arm does nothing else.
 PINS: dict[str, tuple[tuple[str, str], ...]] = {
     "on_hips": (("Left", "Hips"), ("Right", "Hips")),
+    "on_lap": (("Left", "Hips"), ("Right", "Hips")),
     "hand_to_chin": (("Right", "Head"),),
 }

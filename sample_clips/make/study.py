@@ -9,6 +9,7 @@ from dataclasses import replace
 from metagraph.formats.store import SUFFIX, save_project
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.touch import Touch
 from sample_clips.make.projects import HERE, sample
 
 FOLDER = HERE / "study"
@@ -154,7 +155,10 @@ def main() -> None:
     FOLDER.mkdir(exist_ok=True)
     (FOLDER / "study.yaml").write_text(text(), encoding="utf-8")
     whole = sample()
-    whole = replace(whole, lines={}, performances={}, conversations={})
+    whole = replace(whole, lines={}, performances={}, conversations={}, touch=Touch())
+    # A participant wires what is there to be wired: no lines, no contacts, and the plain mannequin.
+    bare = {a.id: {"contacts": ()} for layer in LAYERS for a in whole.graphs[layer].actions.values()}
+    whole = edits.set_character(edits.update_each(whole, bare), "mannequin.glb")
     for task in TASKS:
         path = FOLDER / f"{task}{SUFFIX}"
         save_project(reference(task, whole), path, HERE / f"sample{SUFFIX}")

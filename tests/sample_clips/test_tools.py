@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from metagraph.formats.gltf import read_gltf_clips
 from metagraph.motion import rotation
-from sample_clips.make import ik, key_poses, motion_tracks, secondary
+from metagraph.playback.contacts import contact_rig, depths
+from sample_clips.make import before_after, ik, key_poses, motion_tracks, secondary
 from sample_clips.make.hands import SHAPES, finger_rotations
 from sample_clips.make.mannequin_rig import REST, SIDES, SKELETON, at
 from sample_clips.make.motion_tracks import Move, Step
 from sample_clips.make.recipe import Recipe, animate, go, home
 from sample_clips.make.stance_clips import BASE, HIP
+
+CLIPS = Path(__file__).resolve().parents[2] / "sample_clips" / "clips"
 
 
 def ends(first: np.ndarray, second: np.ndarray, upper: float, lower: float) -> np.ndarray:
@@ -121,3 +127,27 @@ def test_a_pinned_hand_stays_where_it_was_while_the_torso_bends() -> None:
     _, held = secondary.globals_of(secondary.pin(turns, "Left", "Hips"))
     assert np.ptp(loose[:, at("LeftHand")], axis=0).max() > 0.005
     assert np.ptp(held[:, at("LeftHand")], axis=0).max() < 1e-6
+
+
+def test_a_clip_is_drawn_before_and_after_a_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for folder in ("old", "new"):
+        (tmp_path / folder).mkdir()
+    name = "hands_at_sides__flick_fingers_rt_01"
+    shutil.copy(CLIPS / f"{name}.glb", tmp_path / "new")
+    shutil.copy(CLIPS / "on_hips__stance.glb", tmp_path / "new")
+    for other in (f"{name}.glb", "on_hips__stance.glb"):
+        shutil.copy(CLIPS / "on_hips__stance.glb", tmp_path / "old" / other)
+    said = ["x", str(tmp_path / "out"), "--before", str(tmp_path / "old"), "--after", str(tmp_path / "new")]
+    monkeypatch.setattr("sys.argv", [*said, "--columns", "2"])
+    before_after.main()
+    assert [p.stem for p in (tmp_path / "out").iterdir()] == [name]  # the other did not change
+
+
+def test_a_transition_plays_to_its_end_with_its_hands_where_they_touch() -> None:
+    (clip,) = read_gltf_clips(CLIPS / "hands_at_sides__to__arms_crossed.glb")
+    project = before_after.base_project()
+    pose = before_after.played(project, clip, np.array([0.0, clip.duration]))
+    rig = contact_rig(project)
+    assert rig is not None
+    assert depths(rig, pose).max() < 0.004
+    assert np.linalg.norm(np.diff(SKELETON.globals(pose)[1][:, at("RightHand")], axis=0)) > 0.3

@@ -19,6 +19,7 @@ from app.stage.performance import Performance
 from app.stage.playback_source import ASIDE
 from app.stage.playhead import Playhead
 from app.stage.session import Session
+from app.stage.stools import stools
 from app.widgets.making import make_widget
 from app.widgets.one_stop import OneStop
 from app.widgets.quiet_fields import ComboBox, Scrub
@@ -207,7 +208,7 @@ class PreviewPanel(QWidget):
             actors.append(Actor(figure, rotations, positions, morphs, marks, self.bones))
             if one is shown:
                 actors += self._ghosts(figure, seconds)
-        scene = Scene(tuple(actors))
+        scene = Scene((*actors, *(seat for one in shown.everyone for seat in stools(one))))
         shape = round(self.view.width() / max(1, self.view.height()), 1)  # it is framed anew for another room
         solid = Scene(tuple(actor for actor in actors if actor.opacity >= 1))  # ghosts do not move the camera
         framed = (*(actor.figure for actor in solid.actors), *(one.stand for one in shown.everyone), shape)

@@ -1,0 +1,68 @@
+"""A plain stool for who sits: a round seat on four legs that stand a little apart."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.motion import rotation
+from metagraph.motion.skeleton import Skeleton
+from preview.figure import Figure, joined
+from preview.mesh import capsule, lathe
+from preview.scene import Actor
+
+Array = NDArray[Any]
+
+SEAT_COLOR, LEG_COLOR = (116, 119, 126), (84, 87, 94)  # neutral: in the window colour means kind
+
+
+class Stool(Figure):
+    """A stool of a height and a radius, metres; its one joint is the middle of the top of its seat."""
+
+    def __init__(self, height: float, radius: float) -> None:
+        one = Skeleton(("Seat",), np.array([-1]), np.array([[0.0, 0, 0, 1]]), np.zeros((1, 3)))
+        thick, edge = 0.07 * height, 0.02 * height
+        rim = [
+            (-thick, 0.0),
+            (-thick, radius - edge),
+            (-thick + edge, radius),
+            (-edge, radius),
+            (0.0, radius - edge),
+            (0.0, 0.0),
+        ]
+        parts: list[Any] = [(lathe(rim, 36), 0, np.zeros(3), SEAT_COLOR)]
+        for angle in np.radians([45, 135, 225, 315]):
+            way = np.array([np.cos(angle), 0.0, np.sin(angle)])
+            top, foot = way * 0.62 * radius - [0, thick, 0], way * 0.95 * radius - [0, height, 0]
+            length, width = float(np.linalg.norm(top - foot)), 0.035 * height
+            positions, normals, triangles = capsule(length - width, width, width, 10, 3)
+            turn = rotation.between(np.array([0.0, 1, 0]), top - foot)
+            shape = (
+                rotation.rotate(turn, positions) + foot + [0, width, 0],
+                rotation.rotate(turn, normals),
+                triangles,
+            )
+            parts.append((shape, 0, foot, LEG_COLOR))
+        super().__init__(one, joined(parts, 1), np.zeros(1, int))
+        self.height = height
+
+    def palette(self, rotations: Array, positions: Array) -> Array:
+        turn = np.asarray(rotations, np.float32)
+        out = np.empty((*turn.shape[:-1], 3, 4), np.float32)
+        out[..., :3] = rotation.to_matrix(turn)
+        out[..., 3] = positions
+        return out
+
+
+@lru_cache(maxsize=8)
+def _stool(height: float, radius: float) -> Stool:
+    return Stool(height, radius)
+
+
+def stool(at: tuple[float, float, float], radius: float) -> Actor:
+    """Return a stool that stands on the ground. at: the middle of the top of its seat, metres."""
+    figure = _stool(round(max(at[1], 0.05), 3), round(radius, 3))
+    return Actor(figure, np.array([[0.0, 0, 0, 1]], np.float32), np.array([at], np.float32))
