@@ -1,9 +1,9 @@
 """docs/format.md alone is enough: an evaluator written from its words, without a line of ours, poses
 characters as the conformance vectors say.
 
-`reading`, `posing`, `weighing`, `enlivening`, `drawing` and `planning`, beside this file, are that evaluator; each
-function names the heading or the bold words of the page whose rule it follows. Where a case fails after a
-change of the page or the player, mend whichever is wrong; never teach the evaluator what the page does not
+`reading`, `posing`, `weighing`, `enlivening`, `drawing` and `planning`, beside this file, are that evaluator;
+each function names the heading or the bold words of the page whose rule it follows. Where a case fails after
+a change of the page or the player, mend whichever is wrong; never teach the evaluator what the page does not
 say.
 """
 
