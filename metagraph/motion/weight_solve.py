@@ -28,7 +28,7 @@ from metagraph.motion.contact_spans import Quaternion, Vector
 
 BALANCE = 1.4  # of how far the arms carry the centre of mass away, the hips give way
 HASTE = 0.12  # seconds of the arms' speed that add to that
-DIP = 0.12  # seconds: arms that rise this fast press the body down
+DIP = 0.05  # seconds: arms that rise this fast press the body down, half as far at most
 SPIN = 30.0  # seconds: how far the pelvis turns against what arms turn about the vertical
 ROLL = 3.0  # radians that the pelvis rolls for a shift to a side of its own height, and
 PITCH = 2.0  # bends for one ahead or back
@@ -36,7 +36,7 @@ MOST_SHIFT = 0.02  # of the height
 MOST_TURN = 0.1  # radians
 SITTING = 0.8  # how far hip and ankle are apart, of the leg's length: below this it does not stand
 STANDING = 0.12  # and this much above it stands altogether
-GIVE = 0.25  # of a shift: over so much a leg's full length makes itself felt
+GIVE = 0.5  # of a shift: over so much a leg's full length makes itself felt
 
 
 @dataclass(frozen=True)
@@ -134,7 +134,7 @@ def _give_way(rig: WeightRig, pose: ContactPose, drive: Sequence[float], follow:
         spin += lz * drive[8 + 3 * side] - lx * drive[10 + 3 * side]
     most = MOST_SHIFT * rig.height
     x = _soft(-follow * BALANCE * (drive[0] + drive[3] + HASTE * vx), most)
-    y = _soft(-follow * DIP * vy, most)
+    y = _soft(-follow * DIP * vy, 0.5 * most)
     z = _soft(-follow * BALANCE * (drive[2] + drive[5] + HASTE * vz), most)
     yaw = _soft(-follow * SPIN * spin / (rig.height * rig.height), MOST_TURN)
     roll = ROLL * x / rig.height

@@ -175,6 +175,7 @@ def test_collar_bones_rise_only_where_the_clip_leaves_them() -> None:
     )
     assert np.array(rows_of(lifted, entry.id))[:, 6].max() > np.array(rows_of(project, entry.id))[:, 6].max()
     up = rotation.from_axis_angle(np.array([0.0, 0.0, 1.0]), np.radians(25))
+    rotations = np.array(rotations)
     rotations[:, collar] = rotation.multiply(up, rotations[:, collar])
     own = replace(
         lifted, clips={**lifted.clips, entry.id: replace(entry, motion=replace(clip, rotations=rotations))}

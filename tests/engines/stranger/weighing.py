@@ -163,7 +163,7 @@ def answered(character: Character, layers: dict[str, Any], made: Pose, t: float)
         ahead * slope[3 * n] - left * slope[3 * n + 2] for n, (left, ahead) in enumerate(rig["levers"])
     )
     x = soft(-1.4 * f * (m[0] + 0.12 * v[0]), 0.02 * h)
-    y = soft(-0.12 * f * v[1], 0.02 * h)
+    y = soft(-0.05 * f * v[1], 0.01 * h)
     z = soft(-1.4 * f * (m[2] + 0.12 * v[2]), 0.02 * h)
     yaw, roll, pitch = soft(-30 * f * spin / h**2, 0.1), 3 * x / h, -2 * z / h
     first = rig["bends"][0]
@@ -177,7 +177,7 @@ def answered(character: Character, layers: dict[str, Any], made: Pose, t: float)
         turn = about(bend["share"] * (pitch * left + yaw * up + roll * ahead))
         rotations[joint] = times(rotations[joint], turn)
     worlds, places = spread()
-    s = 0.25 * (np.linalg.norm([x, y, z]) + 0.1 * h * np.linalg.norm([yaw, roll, pitch]))
+    s = 0.5 * (np.linalg.norm([x, y, z]) + 0.1 * h * np.linalg.norm([yaw, roll, pitch]))
     reaches = [max(0.995 * whole, n) for whole, n in zip(bones, apart, strict=True)]
     sinks = [0.0]
     for (a, _, _), (foot, _), reach in zip(legs, feet, reaches, strict=True):

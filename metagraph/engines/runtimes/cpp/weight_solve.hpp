@@ -23,7 +23,7 @@ namespace weight_solve {
 
 inline constexpr double BALANCE = 1.4; // of how far the arms carry the centre of mass away, the hips give way
 inline constexpr double HASTE = 0.12; // seconds of the arms' speed that add to that
-inline constexpr double DIP = 0.12; // seconds: arms that rise this fast press the body down
+inline constexpr double DIP = 0.05; // seconds: arms that rise this fast press the body down, half as far at most
 inline constexpr double SPIN = 30.0; // seconds: how far the pelvis turns against what arms turn about the vertical
 inline constexpr double ROLL = 3.0; // radians that the pelvis rolls for a shift to a side of its own height, and
 inline constexpr double PITCH = 2.0; // bends for one ahead or back
@@ -32,7 +32,7 @@ inline constexpr double MOST_TURN = 0.1; // radians
 // how far hip and ankle are apart, of the leg's length: below this it does not stand
 inline constexpr double SITTING = 0.8;
 inline constexpr double STANDING = 0.12; // and this much above it stands altogether
-inline constexpr double GIVE = 0.25; // of a shift: over so much a leg's full length makes itself felt
+inline constexpr double GIVE = 0.5; // of a shift: over so much a leg's full length makes itself felt
 inline bool moves_body(const List<double>& drive);
 inline bool answer_arms(
     const Ref<WeightRig>& rig,
@@ -227,7 +227,7 @@ inline void _give_way(
         -follow * weight_solve::BALANCE * (lang::at(drive, 0) + lang::at(drive, 3) + weight_solve::HASTE * vx),
         most
     );
-    double y = weight_solve::_soft(-follow * weight_solve::DIP * vy, most);
+    double y = weight_solve::_soft(-follow * weight_solve::DIP * vy, 0.5 * most);
     double z = weight_solve::_soft(
         -follow * weight_solve::BALANCE * (lang::at(drive, 2) + lang::at(drive, 5) + weight_solve::HASTE * vz),
         most

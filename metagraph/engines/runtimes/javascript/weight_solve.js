@@ -15,7 +15,7 @@ import { REACHED, bring, length, rotated, spread, times } from "./contact_solve.
 
 export const BALANCE = 1.4; // of how far the arms carry the centre of mass away, the hips give way
 export const HASTE = 0.12; // seconds of the arms' speed that add to that
-export const DIP = 0.12; // seconds: arms that rise this fast press the body down
+export const DIP = 0.05; // seconds: arms that rise this fast press the body down, half as far at most
 export const SPIN = 30; // seconds: how far the pelvis turns against what arms turn about the vertical
 export const ROLL = 3; // radians that the pelvis rolls for a shift to a side of its own height, and
 export const PITCH = 2; // bends for one ahead or back
@@ -23,7 +23,7 @@ export const MOST_SHIFT = 0.02; // of the height
 export const MOST_TURN = 0.1; // radians
 export const SITTING = 0.8; // how far hip and ankle are apart, of the leg's length: below this it does not stand
 export const STANDING = 0.12; // and this much above it stands altogether
-export const GIVE = 0.25; // of a shift: over so much a leg's full length makes itself felt
+export const GIVE = 0.5; // of a shift: over so much a leg's full length makes itself felt
 
 /**
  * A joint that turns. left, up, ahead: the character's directions in its own space. share: of the hips' turn, below 0
@@ -161,7 +161,7 @@ function _giveWay(rig, pose, drive, follow) {
   }
   const most = MOST_SHIFT * rig.height;
   const x = _soft(-follow * BALANCE * (drive[0] + drive[3] + HASTE * vx), most);
-  const y = _soft(-follow * DIP * vy, most);
+  const y = _soft(-follow * DIP * vy, 0.5 * most);
   const z = _soft(-follow * BALANCE * (drive[2] + drive[5] + HASTE * vz), most);
   const yaw = _soft(-follow * SPIN * spin / (rig.height * rig.height), MOST_TURN);
   const roll = ROLL * x / rig.height;

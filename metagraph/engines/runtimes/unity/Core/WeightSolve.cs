@@ -95,7 +95,7 @@ namespace Metagraph
     {
         public const double Balance = 1.4; // of how far the arms carry the centre of mass away, the hips give way
         public const double Haste = 0.12; // seconds of the arms' speed that add to that
-        public const double Dip = 0.12; // seconds: arms that rise this fast press the body down
+        public const double Dip = 0.05; // seconds: arms that rise this fast press the body down, half as far at most
         public const double Spin = 30.0; // seconds: how far the pelvis turns against what arms turn about the vertical
         public const double Roll = 3.0; // radians that the pelvis rolls for a shift to a side of its own height, and
         public const double Pitch = 2.0; // bends for one ahead or back
@@ -103,7 +103,7 @@ namespace Metagraph
         public const double MostTurn = 0.1; // radians
         public const double Sitting = 0.8; // how far hip and ankle are apart, of the leg's length: below this it does not stand
         public const double Standing = 0.12; // and this much above it stands altogether
-        public const double Give = 0.25; // of a shift: over so much a leg's full length makes itself felt
+        public const double Give = 0.5; // of a shift: over so much a leg's full length makes itself felt
 
         /// <summary>Whether there is anything to answer.</summary>
         public static bool MovesBody(List<double> drive)
@@ -184,7 +184,7 @@ namespace Metagraph
             }
             var most = MostShift * rig.Height;
             var x = Soft(-follow * Balance * (drive[0] + drive[3] + Haste * vx), most);
-            var y = Soft(-follow * Dip * vy, most);
+            var y = Soft(-follow * Dip * vy, 0.5 * most);
             var z = Soft(-follow * Balance * (drive[2] + drive[5] + Haste * vz), most);
             var yaw = Soft(-follow * Spin * spin / (rig.Height * rig.Height), MostTurn);
             var roll = Roll * x / rig.Height;

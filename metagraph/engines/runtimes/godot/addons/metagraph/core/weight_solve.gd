@@ -13,7 +13,7 @@ const ContactSolve = preload("contact_solve.gd")
 const Util = preload("util.gd")
 const BALANCE = 1.4  # of how far the arms carry the centre of mass away, the hips give way
 const HASTE = 0.12  # seconds of the arms' speed that add to that
-const DIP = 0.12  # seconds: arms that rise this fast press the body down
+const DIP = 0.05  # seconds: arms that rise this fast press the body down, half as far at most
 const SPIN = 30.0  # seconds: how far the pelvis turns against what arms turn about the vertical
 const ROLL = 3.0  # radians that the pelvis rolls for a shift to a side of its own height, and
 const PITCH = 2.0  # bends for one ahead or back
@@ -21,7 +21,7 @@ const MOST_SHIFT = 0.02  # of the height
 const MOST_TURN = 0.1  # radians
 const SITTING = 0.8  # how far hip and ankle are apart, of the leg's length: below this it does not stand
 const STANDING = 0.12  # and this much above it stands altogether
-const GIVE = 0.25  # of a shift: over so much a leg's full length makes itself felt
+const GIVE = 0.5  # of a shift: over so much a leg's full length makes itself felt
 
 
 # A joint that turns. left, up, ahead: the character's directions in its own space. share: of the hips' turn, below 0 against it.
@@ -140,7 +140,7 @@ static func _give_way(rig, pose, drive, follow):
 		spin += lz * drive[8 + 3 * side] - lx * drive[10 + 3 * side]
 	var most = MOST_SHIFT * rig.height
 	var x = _soft(-follow * BALANCE * (drive[0] + drive[3] + HASTE * vx), most)
-	var y = _soft(-follow * DIP * vy, most)
+	var y = _soft(-follow * DIP * vy, 0.5 * most)
 	var z = _soft(-follow * BALANCE * (drive[2] + drive[5] + HASTE * vz), most)
 	var yaw = _soft(-follow * SPIN * spin / (rig.height * rig.height), MOST_TURN)
 	var roll = ROLL * x / rig.height
