@@ -29,6 +29,7 @@ from metagraph.playback.follow_through import (
     KNOTS,
     NUMBERS,
     RATE,
+    STEP,
     UNIT,
     ArmTrack,
     arm_sway,
@@ -53,6 +54,7 @@ FARTHER = 0.35
 # blade, which skeletons of characters do not have (Inman et al. 1944); how much of it looks right is ours.
 RISES_FROM, RISES_TO, LIFT = np.radians(30.0), np.radians(150.0), np.radians(14.0)
 REACH_AHEAD = 0.1  # of the height: how far ahead of the shoulders gestures are made
+LOOKS_BACK = KNOTS * STEP  # seconds before it that a pose depends on
 KEPT = 4096  # times that are remembered of a plan
 
 
