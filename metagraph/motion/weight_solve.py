@@ -34,8 +34,8 @@ ROLL = 3.0  # radians that the pelvis rolls for a shift to a side of its own hei
 PITCH = 2.0  # bends for one ahead or back
 MOST_SHIFT = 0.02  # of the height
 MOST_TURN = 0.1  # radians
-SITTING = 0.8  # how far hip and ankle are apart, of the leg's length: below this it does not stand
-STANDING = 0.12  # and this much above it stands altogether
+SITTING = 0.75  # how high a hip is above its ankle, of the leg's length: below this it does not stand
+STANDING = 0.15  # and this much above it stands altogether
 GIVE = 0.5  # of a shift: over so much a leg's full length makes itself felt
 
 
@@ -113,13 +113,13 @@ def answer_arms(
 
 
 def _stands(rig: WeightRig, pose: ContactPose) -> float:
-    """Return how much a figure stands, 0 for one that sits, 1 on straight legs."""
+    """Return how much a figure stands, 0 for one that sits or lies, 1 on straight legs."""
     least = 1.0
     for leg in rig.body.arms:
         hip, knee, ankle = pose.at[leg.upper], pose.at[leg.lower], pose.at[leg.hand]
         whole = length(_minus(knee, hip)) + length(_minus(ankle, knee))
         if whole > 1e-6:
-            least = min(least, length(_minus(ankle, hip)) / whole)
+            least = min(least, _dot(_minus(hip, ankle), rig.up) / whole)
     x = min(max((least - SITTING) / STANDING, 0.0), 1.0)
     return x * x * (3.0 - 2.0 * x)
 

@@ -197,7 +197,7 @@ def shared(name: str) -> None:
         print(f"{name}: not there")
         return
     project = import_files(Project(), None, files).into(Project())
-    still = {}
+    roles, still, high = anatomy.roles(project), {}, {}
     for entry in [*project.clips.values()][:MOST]:
         if (
             entry.motion is not None
@@ -205,8 +205,10 @@ def shared(name: str) -> None:
             and entry.motion.frames > 20
         ):
             _, at = entry.motion.skeleton.globals(entry.motion.poses())
+            high[entry.id] = float(at[:, roles["hips"], 1].mean()) if "hips" in roles else 0.0
             still[entry.id] = float(np.abs(np.diff(at, axis=0)).mean() * entry.motion.fps)
-    calm, *others = sorted(still, key=lambda c: still[c])
+    # Of those that stand: some lie still.
+    calm, *others = sorted(still, key=lambda c: (high[c] < 0.9 * max(high.values()), still[c]))
     for layer in ("body", "arms"):
         project = edits.add_stance(project, layer, "stance", [calm])
         some = others if layer == "arms" else others[:6]

@@ -154,7 +154,8 @@ def answered(character: Character, layers: dict[str, Any], made: Pose, t: float)
     worlds, places = spread()
     bones = [far(places, a, b) + far(places, b, c) for a, b, c in legs]
     apart = [far(places, a, c) for a, _, c in legs]
-    f *= ease((min(n / whole for n, whole in zip(apart, bones, strict=True)) - 0.8) / 0.12)
+    heights = [float((places[a] - places[c]) @ np.array(rig["up"])) for a, _, c in legs]
+    f *= ease((min(n / whole for n, whole in zip(heights, bones, strict=True)) - 0.75) / 0.15)
     if f <= 0.0:
         return rotations, translations
     feet = [(np.array(places[c]), np.array(worlds[c])) for _, _, c in legs]

@@ -29,9 +29,9 @@ inline constexpr double ROLL = 3.0; // radians that the pelvis rolls for a shift
 inline constexpr double PITCH = 2.0; // bends for one ahead or back
 inline constexpr double MOST_SHIFT = 0.02; // of the height
 inline constexpr double MOST_TURN = 0.1; // radians
-// how far hip and ankle are apart, of the leg's length: below this it does not stand
-inline constexpr double SITTING = 0.8;
-inline constexpr double STANDING = 0.12; // and this much above it stands altogether
+// how high a hip is above its ankle, of the leg's length: below this it does not stand
+inline constexpr double SITTING = 0.75;
+inline constexpr double STANDING = 0.15; // and this much above it stands altogether
 inline constexpr double GIVE = 0.5; // of a shift: over so much a leg's full length makes itself felt
 inline bool moves_body(const List<double>& drive);
 inline bool answer_arms(
@@ -188,7 +188,7 @@ inline bool answer_arms(
     return true;
 }
 
-/// Return how much a figure stands, 0 for one that sits, 1 on straight legs.
+/// Return how much a figure stands, 0 for one that sits or lies, 1 on straight legs.
 inline double _stands(const Ref<WeightRig>& rig, const Ref<ContactPose>& pose) {
     double least = 1.0;
     for (const auto& leg : rig->body->arms) {
@@ -198,7 +198,7 @@ inline double _stands(const Ref<WeightRig>& rig, const Ref<ContactPose>& pose) {
         double whole = contact_solve::length(weight_solve::_minus(knee, hip))
             + contact_solve::length(weight_solve::_minus(ankle, knee));
         if (whole > 1e-06) {
-            least = std::min(least, contact_solve::length(weight_solve::_minus(ankle, hip)) / whole);
+            least = std::min(least, weight_solve::_dot(weight_solve::_minus(hip, ankle), rig->up) / whole);
         }
     }
     double x = std::min(std::max((least - weight_solve::SITTING) / weight_solve::STANDING, 0.0), 1.0);

@@ -21,8 +21,8 @@ export const ROLL = 3; // radians that the pelvis rolls for a shift to a side of
 export const PITCH = 2; // bends for one ahead or back
 export const MOST_SHIFT = 0.02; // of the height
 export const MOST_TURN = 0.1; // radians
-export const SITTING = 0.8; // how far hip and ankle are apart, of the leg's length: below this it does not stand
-export const STANDING = 0.12; // and this much above it stands altogether
+export const SITTING = 0.75; // how high a hip is above its ankle, of the leg's length: below this it does not stand
+export const STANDING = 0.15; // and this much above it stands altogether
 export const GIVE = 0.5; // of a shift: over so much a leg's full length makes itself felt
 
 /**
@@ -122,7 +122,7 @@ export function answerArms(rig, pose, drive, follow, lift) {
 }
 
 /**
- * Return how much a figure stands, 0 for one that sits, 1 on straight legs.
+ * Return how much a figure stands, 0 for one that sits or lies, 1 on straight legs.
  * @param {WeightRig} rig
  * @param {ContactPose} pose
  * @returns {number}
@@ -135,7 +135,7 @@ function _stands(rig, pose) {
     const ankle = pose.at[leg.hand];
     const whole = length(_minus(knee, hip)) + length(_minus(ankle, knee));
     if (whole > 1e-06) {
-      least = Math.min(least, length(_minus(ankle, hip)) / whole);
+      least = Math.min(least, _dot(_minus(hip, ankle), rig.up) / whole);
     }
   }
   const x = Math.min(Math.max((least - SITTING) / STANDING, 0), 1);

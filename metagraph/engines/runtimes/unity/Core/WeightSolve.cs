@@ -101,8 +101,9 @@ namespace Metagraph
         public const double Pitch = 2.0; // bends for one ahead or back
         public const double MostShift = 0.02; // of the height
         public const double MostTurn = 0.1; // radians
-        public const double Sitting = 0.8; // how far hip and ankle are apart, of the leg's length: below this it does not stand
-        public const double Standing = 0.12; // and this much above it stands altogether
+        // how high a hip is above its ankle, of the leg's length: below this it does not stand
+        public const double Sitting = 0.75;
+        public const double Standing = 0.15; // and this much above it stands altogether
         public const double Give = 0.5; // of a shift: over so much a leg's full length makes itself felt
 
         /// <summary>Whether there is anything to answer.</summary>
@@ -144,7 +145,7 @@ namespace Metagraph
             return true;
         }
 
-        /// <summary>Return how much a figure stands, 0 for one that sits, 1 on straight legs.</summary>
+        /// <summary>Return how much a figure stands, 0 for one that sits or lies, 1 on straight legs.</summary>
         private static double Stands(WeightRig rig, ContactPose pose)
         {
             var least = 1.0;
@@ -156,7 +157,7 @@ namespace Metagraph
                 var whole = ContactSolveRules.Length(Minus(knee, hip)) + ContactSolveRules.Length(Minus(ankle, knee));
                 if (whole > 1e-06)
                 {
-                    least = Math.Min(least, ContactSolveRules.Length(Minus(ankle, hip)) / whole);
+                    least = Math.Min(least, Dot(Minus(hip, ankle), rig.Up) / whole);
                 }
             }
             var x = Math.Min(Math.Max((least - Sitting) / Standing, 0.0), 1.0);

@@ -19,8 +19,8 @@ const ROLL = 3.0  # radians that the pelvis rolls for a shift to a side of its o
 const PITCH = 2.0  # bends for one ahead or back
 const MOST_SHIFT = 0.02  # of the height
 const MOST_TURN = 0.1  # radians
-const SITTING = 0.8  # how far hip and ankle are apart, of the leg's length: below this it does not stand
-const STANDING = 0.12  # and this much above it stands altogether
+const SITTING = 0.75  # how high a hip is above its ankle, of the leg's length: below this it does not stand
+const STANDING = 0.15  # and this much above it stands altogether
 const GIVE = 0.5  # of a shift: over so much a leg's full length makes itself felt
 
 
@@ -111,7 +111,7 @@ static func answer_arms(rig, pose, drive, follow, lift):
 	return true
 
 
-# Return how much a figure stands, 0 for one that sits, 1 on straight legs.
+# Return how much a figure stands, 0 for one that sits or lies, 1 on straight legs.
 static func _stands(rig, pose):
 	var least = 1.0
 	for leg in rig.body.arms:
@@ -120,7 +120,7 @@ static func _stands(rig, pose):
 		var ankle = pose.at[leg.hand]
 		var whole = ContactSolve.length(_minus(knee, hip)) + ContactSolve.length(_minus(ankle, knee))
 		if whole > 1e-06:
-			least = Util.least(least, ContactSolve.length(_minus(ankle, hip)) / whole)
+			least = Util.least(least, _dot(_minus(hip, ankle), rig.up) / whole)
 	var x = Util.least(Util.most((least - SITTING) / STANDING, 0.0), 1.0)
 	return x * x * (3.0 - 2.0 * x)
 
