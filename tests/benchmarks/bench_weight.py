@@ -191,6 +191,20 @@ def hour(minutes: float) -> None:
     reported(project, plan, minutes)
 
 
+def upright(at: Array, roles: dict[str, int]) -> float:
+    """Return how high hips are above ankles, of the legs' length, on average."""
+    parts = [[roles.get(f"{s}_{p}") for p in ("upper_leg", "lower_leg", "foot")] for s in SIDES]
+    if any(j is None for leg in parts for j in leg):
+        return 0.0
+    found = []
+    for hip, knee, foot in parts:
+        bones = np.linalg.norm(at[:, hip] - at[:, knee], axis=-1) + np.linalg.norm(
+            at[:, knee] - at[:, foot], axis=-1
+        )
+        found.append(float(((at[:, hip, 1] - at[:, foot, 1]) / bones).mean()))
+    return min(found)
+
+
 def shared(name: str) -> None:
     files = gather([SHARED / name])[:MOST] if (SHARED / name).exists() else []
     if not files:
@@ -205,10 +219,10 @@ def shared(name: str) -> None:
             and entry.motion.frames > 20
         ):
             _, at = entry.motion.skeleton.globals(entry.motion.poses())
-            high[entry.id] = float(at[:, roles["hips"], 1].mean()) if "hips" in roles else 0.0
+            high[entry.id] = upright(at, roles)
             still[entry.id] = float(np.abs(np.diff(at, axis=0)).mean() * entry.motion.fps)
-    # Of those that stand: some lie still.
-    calm, *others = sorted(still, key=lambda c: (high[c] < 0.9 * max(high.values()), still[c]))
+    # Of those that stand: some sit or lie still.
+    calm, *others = sorted(still, key=lambda c: (high[c] < 0.85, still[c]))
     for layer in ("body", "arms"):
         project = edits.add_stance(project, layer, "stance", [calm])
         some = others if layer == "arms" else others[:6]
