@@ -53,7 +53,8 @@ class Joint(Struct, omit_defaults=True, forbid_unknown_fields=True):
 class ExportedClip(Struct, omit_defaults=True, forbid_unknown_fields=True):
     """A clip. animation: its place in the GLB's list of animations, where it bears the same name. sha256: of
     the file it came from. made_by, made_seed: the learned model that generated it, and its seed; left out of
-    others.
+    others. arms: what its arms weigh, a row of eight numbers for each tenth of a second; left out where the
+    arms' layer does not play it, or no body answers its arms.
     """
 
     id: Id
@@ -65,6 +66,7 @@ class ExportedClip(Struct, omit_defaults=True, forbid_unknown_fields=True):
     sha256: str
     made_by: str = ""
     made_seed: Annotated[int, Meta(ge=0)] = 0
+    arms: list[Annotated[list[int], Meta(min_length=8, max_length=8)]] = []
 
 
 class ExportedStance(Struct, forbid_unknown_fields=True):
@@ -355,6 +357,54 @@ class ExportedContactRig(Struct, forbid_unknown_fields=True):
     capsules: list[ExportedCapsule]
 
 
+class ExportedWeightBend(Struct, forbid_unknown_fields=True):
+    """A joint that turns with the weight of the arms. place: in the weight rig's joints. left, up, ahead: the
+    character's directions in its own space. share: of the hips' turn, below 0 against it.
+    """
+
+    place: Count
+    left: Direction
+    up: Direction
+    ahead: Direction
+    share: Number
+
+
+class ExportedWeightCollar(Struct, forbid_unknown_fields=True):
+    """A collar bone that rises with its arm. place, upper: places of it and of the upper arm. axis: what
+    lifts it, in its own space. side: 0 left, 1 right.
+    """
+
+    place: Count
+    upper: Count
+    axis: Direction
+    side: Annotated[int, Meta(ge=0, le=1)]
+
+
+class ExportedWeightRig(Struct, forbid_unknown_fields=True):
+    """What of the body answers its arms. joints: those that matter, parents first; parents: of each, the
+    place of its parent among them, -1 for one whose parent does not matter. legs: left, right: places of
+    upper leg, lower leg, foot. hands: names of the hands' joints. bends: the hips first. knees: where
+    straight legs bend to, in the upper legs' own spaces. levers: how far to the left and ahead of the hips
+    each arm is, metres. height: of the figure. strength: how much of what the arms' layer plays counts.
+    """
+
+    joints: list[Count]
+    parents: list[Place]
+    legs: Annotated[
+        list[Annotated[list[Count], Meta(min_length=3, max_length=3)]], Meta(min_length=2, max_length=2)
+    ]
+    hands: Annotated[list[str], Meta(min_length=2, max_length=2)]
+    bends: Annotated[list[ExportedWeightBend], Meta(min_length=1)]
+    collars: list[ExportedWeightCollar]
+    knees: Annotated[list[Direction], Meta(min_length=2, max_length=2)]
+    levers: Annotated[
+        list[Annotated[list[Number], Meta(min_length=2, max_length=2)]], Meta(min_length=2, max_length=2)
+    ]
+    up: Direction
+    height: Annotated[float, Meta(gt=0)]
+    strength: Annotated[float, Meta(ge=0, le=1)]
+
+
 class ExportedVoice(Struct, forbid_unknown_fields=True):
     """A line's analysed sound. accents: times of its stressed syllables. weights: how much of each of the 15
     visemes (sil, PP, FF, TH, DD, kk, CH, SS, nn, RR, aa, E, I, O, U) the mouth shows, rows evenly spaced from
@@ -398,6 +448,7 @@ class Export(Struct, omit_defaults=True, forbid_unknown_fields=True):
     voices: dict[str, ExportedVoice] = {}
     touch: Touch = Touch()
     contact_rig: ExportedContactRig | None = None
+    weight_rig: ExportedWeightRig | None = None
 
 
 def schema() -> dict[str, Any]:

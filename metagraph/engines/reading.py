@@ -13,6 +13,7 @@ from metagraph.budgets import TEXT_FILE
 from metagraph.engines import contract as c
 from metagraph.engines.export_contacts import read_contact_rig, read_contacts
 from metagraph.engines.export_rig import LIFELESS, read_rig, read_voices
+from metagraph.engines.export_weight import read_weight
 from metagraph.errors import FileError
 from metagraph.files import guarded, read_file
 from metagraph.formats.data import above, markov_from, skeleton_from
@@ -109,12 +110,13 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         )
     p = document.planner
     base = BasePose(document.base.clip, document.base.frame)
-    body, contact_rig, touch = None, None, document.touch
+    body, contact_rig, touch, weight = None, None, document.touch, None
     if resolved:
         clips[BASE] = _base(document, skeleton)
         base = BasePose(BASE)
         body = _body(document.rig, skeleton) if document.rig is not None else LIFELESS
         touch = Touch(False, False)
+        weight = read_weight(document.weight_rig, document.clips, skeleton)
         if document.contact_rig is not None:
             contact_rig = read_contact_rig(document.contact_rig, skeleton)
             touch = Touch(contact_rig.contacts, contact_rig.guard)
@@ -140,6 +142,7 @@ def _project(path: Path, document: c.Export, motions: bool, resolved: bool) -> P
         body=body,
         touch=touch,
         contact_rig=contact_rig,
+        weight=weight,
         face=document.face,
         points=dict(document.points),
         lines=dict(document.lines),

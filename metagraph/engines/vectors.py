@@ -34,6 +34,7 @@ from metagraph.playback.extend_performance import hear, since
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.plan import LayerPlan, Plan, Report
 from metagraph.playback.player import morphs_at, pose_at
+from metagraph.playback.weight import weighs, weight_of
 
 Array = NDArray[Any]
 
@@ -104,7 +105,8 @@ def write_vectors(export: Path, chosen: Iterable[Case] | None = None) -> Path:
 def _expected(project: Project, case: Case) -> dict[str, Any]:
     plan = follow(project, case)
     times = case.times or _telling(plan)
-    living = (*times, *_living(plan)) if len(case.steps) + case.idle > 1 else times
+    answers = weighs(project) and weight_of(project).rig is not None
+    living = (*times, *_living(plan, answers)) if len(case.steps) + case.idle > 1 else times
     return {
         "name": case.name,
         "about": case.about,
@@ -231,9 +233,9 @@ def _telling(plan: Plan) -> tuple[float, ...]:
     return tuple(round(x, 3) for x in (*chosen, *held[:2], 0.37 * plan.end, plan.end + 1.5))
 
 
-def _living(plan: Plan) -> tuple[float, ...]:
+def _living(plan: Plan, answers: bool) -> tuple[float, ...]:
     """Return times amid what the life layers do of themselves: a dart of the eyes, a look away and back, a
-    blink, a breath.
+    blink, a breath. answers: and while the body answers its arms, up to a moment after they have come back.
     """
     life = plan.life
     found = [t.start + 0.1 for t in life.targets[1:3]]
@@ -251,6 +253,10 @@ def _living(plan: Plan) -> tuple[float, ...]:
             if starts
         ]
     found += [float(values[0]) + 0.06 for values in life.aversions.rows[1:3]]
+    if answers:
+        cues = plan.layers["arms"].cues
+        for cue in cues[:: max(1, len(cues) // 6)]:
+            found += [cue.start + 0.5 * cue.blend_in, cue.start + 0.6 * (cue.end - cue.start), cue.end + 0.1]
     return tuple(round(x, 4) for x in sorted(found) if x >= 0)
 
 

@@ -240,6 +240,7 @@ _PROJECT_FIELDS = ({f.name for f in fields(Project)} | {"metagraph", "layers"}) 
     "graphs",
     "voices",
     "contact_rig",
+    "weight",
 }
 
 

@@ -71,6 +71,8 @@ class Life(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
     blink_open: Annotated[float, Meta(ge=0.02, le=1)] = 0.10
     lips: Annotated[float, Meta(ge=0, le=2)] = 1.0
     lip_smoothing: Annotated[float, Meta(ge=0, le=0.2)] = 0.03
+    follow_through: Annotated[float, Meta(ge=0, le=2)] = 1.0
+    shoulder_lift: Annotated[float, Meta(ge=0, le=2)] = 1.0
     valence: Annotated[float, Meta(ge=-1, le=1)] = 0.0
     arousal: Annotated[float, Meta(ge=-1, le=1)] = 0.0
     intensity: Annotated[float, Meta(ge=0, le=2)] = 1.0
@@ -200,6 +202,28 @@ DIALS: tuple[Dial, ...] = (
         "lips", "Lips", "Lip sync", "×", 0, 2, 0.05, 0, "How far the mouth opens and shapes itself in speech."
     ),
     Dial("lip_smoothing", "Lips", "Smoothing", "s", 0, 0.2, 0.005, 0, "More is softer; too much mumbles."),
+    Dial(
+        "follow_through",
+        "Weight",
+        "Follow-through",
+        "×",
+        0,
+        2,
+        0.05,
+        0,
+        "How far hips, spine and legs answer the arms' weight; feet stay where they are.",
+    ),
+    Dial(
+        "shoulder_lift",
+        "Weight",
+        "Shoulders",
+        "×",
+        0,
+        2,
+        0.05,
+        0,
+        "How far collar bones that a clip leaves still rise with raised arms.",
+    ),
 )
 MANNER_DIALS: tuple[Dial, ...] = (
     Dial("breathing", "Breathing", "Depth", "×", 0, 4, 0.05, 0, "Depth of breath in this mode."),

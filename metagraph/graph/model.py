@@ -370,7 +370,8 @@ class Project:
     read; never saved. body: what of it breathes and looks (`playback.life.body.Body`) as an export says; None
     to find it. Never saved. touch: whether contacts hold and hands
     are kept out of the body. contact_rig: what contacts need of it (`motion.contact_solve.ContactRig`) as an
-    export says; None to find it. Never saved.
+    export says; None to find it. Never saved. weight: what of it answers its arms (`playback.weight.Weight`)
+    as an export says; None to find it. Never saved.
     """
 
     name: str = "untitled"
@@ -400,6 +401,7 @@ class Project:
     body: Any = field(default=None, compare=False, repr=False)
     touch: Touch = field(default_factory=Touch)
     contact_rig: Any = field(default=None, compare=False, repr=False)
+    weight: Any = field(default=None, compare=False, repr=False)
     next_id: int = 1
 
     def actions(self) -> Iterable[Action]:

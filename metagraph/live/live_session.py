@@ -65,6 +65,7 @@ from metagraph.playback.overlay import Overlay, overlaid
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan
 from metagraph.playback.running_plan import CUT, RECENT, RunningPlan
+from metagraph.playback.weight import LOOKS_BACK
 
 AGAIN = 0.25  # seconds for which a layer without room is not tried again
 TIDY = 0.25  # seconds between two looks at what is over
@@ -549,9 +550,10 @@ class LiveSession:
         """Return the plan that knows what was shown at a time: the running one, or for the past one of
         before.
         """
-        if seconds >= self._begin or not self._past:
+        whole = seconds - LOOKS_BACK  # the body still answers what the arms did then
+        if whole >= self._begin or not self._past:
             return self.plan
-        return next((plan for begin, plan in reversed(self._past) if begin <= seconds), self._past[0][1])
+        return next((plan for begin, plan in reversed(self._past) if begin <= whole), self._past[0][1])
 
     def performance(self, name: str) -> a.Performance:
         """Return the session so far, to be kept: `perform` plays it as it was played. It ends before now

@@ -18,6 +18,7 @@ FOLDED = 0.906  # cosine of the least angle inside an elbow, 25 degrees
 WRIST = 0.819  # cosine of half of how far a contact may turn a hand from where it was, 70 degrees
 SOFT = 0.006  # metres of depth over which the push out of the body sets in
 DEEP = 0.35  # of the radii: nearer than this to a capsule's line it is not pushed all the way
+STRAIGHT = (0.31, 0.52, 0.8)  # where a straight arm bends to: no side in particular, but always one
 ELBOW = 0.1  # how little a forearm is pushed near its elbow, which a wrist cannot move
 PASSES = 3  # of the guard
 OBSTACLE = 0  # what a capsule is to the guard: others are pushed out of it
@@ -168,7 +169,7 @@ def _hold(
     rest = 1.0 - weight
     k = -weight if tx * hx + ty * hy + tz * hz + tw * hw < 0.0 else weight
     turn = _unit_turn((hx * rest + tx * k, hy * rest + ty * k, hz * rest + tz * k, hw * rest + tw * k))
-    _bring(rig, pose, side, _plus(wrist, _scaled(_minus(mean, wrist), weight)), turn)
+    bring(rig, pose, side, _plus(wrist, _scaled(_minus(mean, wrist), weight)), turn, STRAIGHT)
 
 
 def _within_wrist(hand: Quaternion, turn: Quaternion) -> Quaternion:
@@ -182,8 +183,12 @@ def _within_wrist(hand: Quaternion, turn: Quaternion) -> Quaternion:
     return times((x * k, y * k, z * k, WRIST), hand)
 
 
-def _bring(rig: ContactRig, pose: ContactPose, side: int, goal: Vector, hand: Quaternion) -> None:
-    """Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it."""
+def bring(
+    rig: ContactRig, pose: ContactPose, side: int, goal: Vector, hand: Quaternion, side_of: Vector
+) -> None:
+    """Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it.
+    side_of: where a straight arm bends to, in the upper arm's own space.
+    """
     arm = rig.arms[side]
     root, elbow, wrist = pose.at[arm.upper], pose.at[arm.lower], pose.at[arm.hand]
     bone, fore = _minus(elbow, root), _minus(wrist, elbow)
@@ -203,7 +208,7 @@ def _bring(rig: ContactRig, pose: ContactPose, side: int, goal: Vector, hand: Qu
     ahead, before = _unit(way), _scaled(_minus(wrist, root), 1.0 / now)
     aside = _minus(bone, _scaled(before, _dot(bone, before)))
     # A straight arm has no side: it bends to one that goes with its bone.
-    spare = rotated(pose.turned[arm.upper], (0.31, 0.52, 0.8))
+    spare = rotated(pose.turned[arm.upper], side_of)
     spare = _minus(spare, _scaled(before, _dot(spare, before)))
     aside = _plus(aside, _scaled(spare, max(0.0, 0.01 * above_elbow - length(aside))))
     aside = _unit(rotated(between(before, ahead), aside))
@@ -243,7 +248,7 @@ def _guarded(rig: ContactRig, pose: ContactPose, held: Sequence[float], across: 
         for side, shift in enumerate(shifts):
             if length(shift) > 0.0:
                 hand = rig.arms[side].hand
-                _bring(rig, pose, side, _plus(pose.at[hand], shift), pose.turned[hand])
+                bring(rig, pose, side, _plus(pose.at[hand], shift), pose.turned[hand], STRAIGHT)
                 found = True
         if not found:
             return moved

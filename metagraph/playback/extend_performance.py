@@ -157,7 +157,8 @@ def since(plan: Plan, seconds: float) -> Plan:
     """Return a running plan without what ended before `seconds`; what is planned on from it stays as it would
     have been.
 
-    Poses before `seconds` are lost. What must not be forgotten are the settings' memory (600 s at most) and
+    Poses before `seconds` are lost, and those soon after it (`weight.LOOKS_BACK`) may have lost what the body
+    answers. What must not be forgotten are the settings' memory (600 s at most) and
     the last draws.
     """
     layers = {layer: _since(of, seconds) for layer, of in plan.layers.items()}

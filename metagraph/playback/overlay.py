@@ -24,6 +24,7 @@ from metagraph.playback.contacts import touched
 from metagraph.playback.life.evaluate import enliven
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import ease, layers_at, sample
+from metagraph.playback.weight import weighed
 
 Array = NDArray[Any]
 
@@ -58,9 +59,10 @@ def overlaid(plan: Plan, project: Project, seconds: Any, overlay: Overlay | None
     else:
         body: dict[Layer, Any] = {"body": layers.pop("body")} if "body" in layers else {}
         pose = _over(frame.compose(body, len(times)), project, layers, overlay)
-    if alive and project.life.on and plan.life.end > 0 and len(times):
-        pose = enliven(pose, project, plan.life, plan.track, times)
     shown = None if overlay is None else 1 - overlay.weight * (1 - overlay.arms)
+    if alive and project.life.on and plan.life.end > 0 and len(times):
+        pose = weighed(pose, plan, project, times, shown)
+        pose = enliven(pose, project, plan.life, plan.track, times)
     pose = touched(pose, plan, project, times, shown)
     shape = (*at.shape, len(frame.ground.skeleton))
     return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))

@@ -20,6 +20,7 @@ from metagraph.playback.contacts import touched
 from metagraph.playback.life.body import body_of
 from metagraph.playback.life.evaluate import enliven, face_weights
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Rest
+from metagraph.playback.weight import weighed
 
 Array = NDArray[Any]
 
@@ -43,10 +44,18 @@ def pose_at(plan: Plan, project: Project, seconds: Any, alive: bool = True) -> P
     frame = rig(project)
     pose = frame.compose(layers_at(plan, project, times), len(times))
     if alive and project.life.on and plan.life.end > 0 and len(times):
+        pose = weighed(pose, plan, project, times)
         pose = enliven(pose, project, plan.life, plan.track, times)
     pose = touched(pose, plan, project, times)
     shape = (*at.shape, len(frame.ground.skeleton))
     return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
+
+
+def _weighed_at(plan: Plan, project: Project, seconds: float) -> Pose:
+    """Return the pose `[J]` at one time that the other life layers are added to."""
+    times = np.array([float(seconds)])
+    pose = weighed(rig(project).compose(layers_at(plan, project, times), 1), plan, project, times)
+    return Pose(pose.rotations[0], pose.translations[0])
 
 
 def layers_at(plan: Plan, project: Project, times: Array) -> dict[Layer, Sample]:
@@ -264,7 +273,7 @@ def morphs_at(
     plan: Plan, project: Project, seconds: float, alive: bool = True, composed: Pose | None = None
 ) -> dict[str, float]:
     """Return morph target weights, 0..1, at one time: the layers' sums, and with `alive` the life layers' on
-    top. composed: the pose `[J]` without life, where it is not the plan's alone.
+    top. composed: the pose `[J]` before `enliven`, where it is not the plan's alone.
     """
     out: dict[str, float] = {}
     for layer in LAYERS:
@@ -293,7 +302,7 @@ def morphs_at(
     if alive and project.life.on and plan.life.end > 0:
         by_morphs = project.skeleton is not None and bool(body_of(project).face.morphs)
         if by_morphs and composed is None:  # what the eyes hold against
-            composed = pose_at(plan, project, seconds, alive=False)
+            composed = _weighed_at(plan, project, seconds)
         for name, value in face_weights(project, plan.life, plan.track, seconds, composed).items():
             out[name] = out.get(name, 0.0) + value
     return {name: min(1.0, max(0.0, value)) for name, value in out.items()}

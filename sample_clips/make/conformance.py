@@ -14,7 +14,15 @@ from metagraph.engines.export import write
 from metagraph.engines.vectors import every_case, write_vectors
 from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import Character, Material, Surface
-from sample_clips.make.conformance_projects import BOTH_EYES, sparse, stick, still, touching, varied
+from sample_clips.make.conformance_projects import (
+    BOTH_EYES,
+    sparse,
+    standing,
+    stick,
+    still,
+    touching,
+    varied,
+)
 from sample_clips.make.randomised_projects import randomised
 
 LIVING = (
@@ -25,6 +33,18 @@ LIVING = (
     "stressed syllables",
     "the models in four moods",
     "moods over moods",
+)
+STANDING = (
+    "the models alone",
+    "two minutes",
+    "body: to a stance and back",
+    "arms: to a stance and back",
+    "arms: holds and preparations",
+    "arms: strokes in a mood",
+    "chatter 1",
+    "chatter 2",
+    "arms that weigh",
+    "one clip on both",
 )
 FOLDER = Path(engines.__file__).with_name("conformance")
 
@@ -68,7 +88,7 @@ def without_authors(path: Path) -> None:
 
 def main() -> None:
     touched = touching(randomised(1)), touching(randomised(2, BOTH_EYES))
-    for project in (stick(), varied(), sparse(), *touched, *still()):
+    for project in (stick(), varied(), sparse(), standing(), *touched, *still()):
         folder = FOLDER / project.name
         shutil.rmtree(folder, ignore_errors=True)
         made = write(
@@ -79,6 +99,8 @@ def main() -> None:
         chosen = None
         if project.life.on and not project.graphs["body"].actions:  # all else stands in "sparse"
             chosen = [case for case in every_case(project) if case.name in LIVING]
+        if project.name == "standing":  # all else in "stick"
+            chosen = [case for case in every_case(project) if case.name.startswith(STANDING)]
         path = write_vectors(made.json, chosen)
         print(
             f"{path.parent.name}: {path.stat().st_size / 1e3:.0f} kB of vectors, "

@@ -71,13 +71,14 @@ MORPHS = (  # of faces that have no joints
 )
 
 
-def stick_skeleton(more: tuple[str, ...] = ()) -> Skeleton:
+def stick_skeleton(more: tuple[str, ...] = (), legs: bool = False) -> Skeleton:
     """Return the mannequin's skeleton with few joints, each turned some way, so that no rest rotation is the
-    identity. more: parts of the names of joints that are left out as well.
+    identity. more: parts of the names of joints that are left out as well. legs: those are there.
     """
+    without = [word for word in (*LEFT_OUT, *more) if not (legs and word in ("Leg", "Foot"))]
     whole = mannequin_skeleton()
     _, at = whole.globals(whole.rest)
-    kept = [i for i, name in enumerate(whole.names) if not any(word in name for word in (*LEFT_OUT, *more))]
+    kept = [i for i, name in enumerate(whole.names) if not any(word in name for word in without)]
     names = [whole.names[i] for i in kept]
     parents = []
     for i in kept:
@@ -172,9 +173,11 @@ SHARED = (
 class Builder:
     """A project being built."""
 
-    def __init__(self, name: str, morphs: tuple[str, ...] = (), size: float = 1.0) -> None:
+    def __init__(
+        self, name: str, morphs: tuple[str, ...] = (), size: float = 1.0, legs: bool = False
+    ) -> None:
         # A face of morph targets has no joints.
-        self.moves = Moves(stick_skeleton(("Eye", "Lid", "Jaw") if morphs else ()), size)
+        self.moves = Moves(stick_skeleton(("Eye", "Lid", "Jaw") if morphs else (), legs), size)
         self.moves.morphs = morphs
         self.project = Project(name=name)
 
@@ -210,12 +213,14 @@ class Builder:
         return ident
 
 
-def stick(name: str = "stick", morphs: tuple[str, ...] = (), size: float = 1.0) -> Project:
+def stick(
+    name: str = "stick", morphs: tuple[str, ...] = (), size: float = 1.0, legs: bool = False
+) -> Project:
     """Return a project of three layers, chains of stances, several loops, masks, exits, phases and lines.
 
-    size: of the stances' turns, times the usual ones.
+    size: of the stances' turns, times the usual ones. legs: whether it has any.
     """
-    b = Builder(name, morphs, size)
+    b = Builder(name, morphs, size, legs)
     m = b.moves
     stand, lean, sway = m.stance(1, TRUNK, 0.08), m.stance(2, TRUNK, 0.2), ("Hips", "Spine")
     s_stand = b.stance(
@@ -485,6 +490,35 @@ def varied() -> Project:
         modes={"idle": Manner(aversion_rate=0.5, blinks=2.0, breathing=0.5)},
     )
     return replace(edits.set_base(project, None), life=life)
+
+
+def standing() -> Project:
+    """Return a project whose body has legs, and answers its arms: some of them moved by what the body plays,
+    too, one on knees that bend, in loops with a seam.
+    """
+    project = stick("standing", legs=True)
+    body, arms = project.graphs["body"], project.graphs["arms"]
+    stand, lean = body.stances
+    shared = [a.clip for a in arms.actions.values() if a.kind == "gesture"]
+    project = edits.place(project, [shared[0], shared[2]], "body", "fidget", stand)
+    project = edits.place(project, [shared[1]], "body", "stance", stand)
+    project = edits.update_actions(project, [[*project.graphs["body"].actions][-1]], likelihood=4.0)
+    loops = {a.id: {"timing": replace(a.timing, blend_in=0.3)} for a in arms.of(arms.start or "", "stance")}
+    project = edits.update_each(project, loops)
+    project = edits.set_weight(project, "arms", "legs", 0.15)
+    crouch = {"LeftUpperLeg": -0.5, "LeftLowerLeg": 1.0, "RightUpperLeg": -0.4, "RightLowerLeg": 0.8}
+    for action in project.graphs["body"].of(lean, "stance"):
+        entry = project.clips[action.clip]
+        clip = entry.motion
+        assert clip is not None
+        turns = np.array(clip.rotations)
+        for name, angle in crouch.items():
+            turn = rotation.exp(np.array([angle, 0.0, 0.0]))
+            turns[:, clip.skeleton.index(name)] = rotation.multiply(turns[:, clip.skeleton.index(name)], turn)
+        bent = replace(clip, rotations=turns)
+        project = replace(project, clips={**project.clips, entry.id: replace(entry, motion=bent)})
+    life = Life(stillness=0.1, breath_rate=18.0, follow_through=1.6, shoulder_lift=1.8)
+    return replace(project, life=life)
 
 
 def sparse() -> Project:

@@ -29,6 +29,8 @@ LISTING = (
     Translated("metagraph.motion.contact_spans", "contact_spans"),
     Translated("metagraph.motion.contact_solve", "contact_solve"),
     Translated("metagraph.playback.contact_goals", "contact_goals"),
+    Translated("metagraph.motion.weight_solve", "weight_solve"),
+    Translated("metagraph.playback.follow_through", "follow_through"),
     Translated("metagraph.playback.choice", "choice"),
     Translated(
         "metagraph.playback.plan",

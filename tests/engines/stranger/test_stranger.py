@@ -1,9 +1,9 @@
 """docs/format.md alone is enough: an evaluator written from its words, without a line of ours, poses
 characters as the conformance vectors say.
 
-`reading`, `posing`, `enlivening`, `drawing` and `planning`, beside this file, are that evaluator; each
-function names the heading or the bold words of the page whose rule it follows. Where a case fails after a
-change of the page or the player, mend whichever is wrong; never teach the evaluator what the page does not
+`reading`, `posing`, `weighing`, `enlivening`, `drawing` and `planning`, beside this file, are that evaluator;
+each function names the heading or the bold words of the page whose rule it follows. Where a case fails after
+a change of the page or the player, mend whichever is wrong; never teach the evaluator what the page does not
 say.
 """
 
@@ -30,6 +30,7 @@ SEEN = {
     "stances", "a loop takes over", "a loop's seam", "blending in", "blending out", "between the blends",
     "a stretched hold", "limited to a limb", "limited to joints", "with life",
 }  # fmt: skip
+WEIGHT = "the arms' weight"
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +48,8 @@ def test_the_pages_words_pose_a_character_as_its_vectors_say(shipped: dict[str, 
             plays,
             off,
         )
-    assert seen == SEEN or name == "sparse"
+    assert seen - {WEIGHT} == SEEN or name == "sparse"
+    assert (WEIGHT in seen) == (name == "standing")
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -63,7 +65,7 @@ def test_the_pages_words_say_when_a_new_loop_takes_over(shipped: dict[str, Vecto
                 assert mine[2:] == pytest.approx(wanted[2:], abs=vectors["tolerance"]["seconds"])
 
 
-@pytest.mark.parametrize(("name", "least"), [*zip(NAMES, (49, 24, 49), strict=True)])
+@pytest.mark.parametrize(("name", "least"), [*zip(NAMES, (49, 24, 49, 4), strict=True)])
 def test_the_pages_words_plan_what_is_asked_once(shipped: dict[str, Vectors], name: str, least: int) -> None:
     character, vectors = shipped[name]
     planned = [case for case in vectors["cases"] if can_plan(character, case)]

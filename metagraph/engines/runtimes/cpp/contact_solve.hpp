@@ -24,6 +24,8 @@ inline constexpr double FOLDED = 0.906; // cosine of the least angle inside an e
 inline constexpr double WRIST = 0.819;
 inline constexpr double SOFT = 0.006; // metres of depth over which the push out of the body sets in
 inline constexpr double DEEP = 0.35; // of the radii: nearer than this to a capsule's line it is not pushed all the way
+// where a straight arm bends to: no side in particular, but always one
+inline const std::tuple<double, double, double> STRAIGHT = std::tuple<double, double, double>{0.31, 0.52, 0.8};
 inline constexpr double ELBOW = 0.1; // how little a forearm is pushed near its elbow, which a wrist cannot move
 inline constexpr int PASSES = 3; // of the guard
 inline constexpr int OBSTACLE = 0; // what a capsule is to the guard: others are pushed out of it
@@ -45,12 +47,13 @@ inline std::tuple<double, double, double, double> _within_wrist(
     const std::tuple<double, double, double, double>& hand,
     const std::tuple<double, double, double, double>& turn
 );
-inline void _bring(
+inline void bring(
     const Ref<ContactRig>& rig,
     const Ref<ContactPose>& pose,
     int side,
     const std::tuple<double, double, double>& goal,
-    const std::tuple<double, double, double, double>& hand
+    const std::tuple<double, double, double, double>& hand,
+    const std::tuple<double, double, double>& side_of
 );
 inline std::tuple<double, double, double, double> _above(
     const Ref<ContactRig>& rig,
@@ -350,12 +353,13 @@ inline void _hold(
             hw * rest + tw * k
         }
     );
-    contact_solve::_bring(
+    contact_solve::bring(
         rig,
         pose,
         side,
         contact_solve::_plus(wrist, contact_solve::_scaled(contact_solve::_minus(mean, wrist), weight)),
-        turn
+        turn,
+        contact_solve::STRAIGHT
     );
 }
 
@@ -382,13 +386,15 @@ inline std::tuple<double, double, double, double> _within_wrist(
     );
 }
 
-/// Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it.
-inline void _bring(
+/// Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it. side_of: where a
+/// straight arm bends to, in the upper arm's own space.
+inline void bring(
     const Ref<ContactRig>& rig,
     const Ref<ContactPose>& pose,
     int side,
     const std::tuple<double, double, double>& goal,
-    const std::tuple<double, double, double, double>& hand
+    const std::tuple<double, double, double, double>& hand,
+    const std::tuple<double, double, double>& side_of
 ) {
     Ref<ContactArm> arm = lang::at(rig->arms, side);
     std::tuple<double, double, double> root = lang::at(pose->at, arm->upper);
@@ -417,10 +423,7 @@ inline void _bring(
         contact_solve::_scaled(before, contact_solve::_dot(bone, before))
     );
     // A straight arm has no side: it bends to one that goes with its bone.
-    std::tuple<double, double, double> spare = contact_solve::rotated(
-        lang::at(pose->turned, arm->upper),
-        std::tuple<double, double, double>{0.31, 0.52, 0.8}
-    );
+    std::tuple<double, double, double> spare = contact_solve::rotated(lang::at(pose->turned, arm->upper), side_of);
     spare = contact_solve::_minus(spare, contact_solve::_scaled(before, contact_solve::_dot(spare, before)));
     aside = contact_solve::_plus(
         aside,
@@ -491,12 +494,13 @@ inline bool _guarded(
             const auto& shift = lang::at(shifts, side);
             if (contact_solve::length(shift) > 0.0) {
                 int hand = lang::at(rig->arms, side)->hand;
-                contact_solve::_bring(
+                contact_solve::bring(
                     rig,
                     pose,
                     side,
                     contact_solve::_plus(lang::at(pose->at, hand), shift),
-                    lang::at(pose->turned, hand)
+                    lang::at(pose->turned, hand),
+                    contact_solve::STRAIGHT
                 );
                 found = true;
             }

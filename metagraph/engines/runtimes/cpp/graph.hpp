@@ -3,8 +3,10 @@
 
 #include "body.hpp"
 #include "contact_solve.hpp"
+#include "follow_through.hpp"
 #include "project.hpp"
 #include "voice.hpp"
+#include "weight_solve.hpp"
 
 namespace metagraph {
 
@@ -77,6 +79,8 @@ struct Graph {
     Ref<Voices> voices = lang::made<Voices>();
     std::optional<Body> body;
     Ref<ContactRig> contact_rig;
+    Ref<WeightRig> weight_rig;
+    Map<std::string, Ref<ArmTrack>> arm_tracks;
 
     const LayerGraph& layer(const std::string& word) const { return *layers.at(word); }
 };

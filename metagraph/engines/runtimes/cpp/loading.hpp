@@ -5,6 +5,7 @@
 #include "clip.hpp"
 #include "contacts.hpp"
 #include "layer_planning.hpp"
+#include "weight.hpp"
 
 namespace metagraph {
 
@@ -286,6 +287,8 @@ inline Ref<const Graph> read(const Node& root, const std::uint8_t* glb, std::siz
     read_clips(*out, root, file);
     if (!root.maybe("rig").empty()) out->body = body::read(root["rig"], lang::len(out->joints), out->morphs);
     if (!root.maybe("contact_rig").empty()) out->contact_rig = contacts::read_rig(root["contact_rig"], out->joints);
+    if (!root.maybe("weight_rig").empty()) out->weight_rig = weight::read_rig(root["weight_rig"], lang::len(out->joints));
+    out->arm_tracks = weight::read_tracks(*out, root["clips"]);
     return trouble.found() ? nullptr : out;
 }
 

@@ -1,10 +1,12 @@
 // The one evaluator: what pose a plan gives at a time. Layers add their offsets from the base pose (Borer et al., section 5):
-// a joint's rotation is `base * body^w * arms^w * head^w`, its translation a sum; then the life layers are added.
+// a joint's rotation is `base * body^w * arms^w * head^w`, its translation a sum; then the body answers its arms, and the other
+// life layers are added.
 #pragma once
 
 #include "contacts.hpp"
 #include "enliven.hpp"
 #include "plan.hpp"
+#include "weight.hpp"
 
 namespace metagraph {
 
@@ -53,6 +55,7 @@ public:
         if (plan_ == plan) return;
         const bool same = plan_ != nullptr && plan_->life == plan->life;
         plan_ = std::move(plan);
+        sways_ = Map<int, List<double>>();
         for (std::size_t n = 0; n < 3; n++) layers_[n].plan = plan_->layers.at(graph::LAYERS[n]).get();
         if (same || life_ == nullptr) return;
         const bool looks = !graph_->body->lookers.empty() && !plan_->life->targets.empty();
@@ -64,6 +67,7 @@ public:
     /// is missing show their stance.
     const List<Joined>& pose(double time, bool alive = true) {
         compose(time);
+        if (alive) weigh(time);
         if (alive && lives()) {
             life_->find(pose_, *plan_->life, *plan_->track, gaze_.get(), time);
             life_->apply(pose_);
@@ -87,6 +91,7 @@ public:
         }
         if (alive && lives() && !graph_->body->face.morphs.empty()) {
             compose(time); // eyes made of morph targets hold while the head moves
+            weigh(time);
             life_->find(pose_, *plan_->life, *plan_->track, gaze_.get(), time);
             life_->morphs(out);
         }
@@ -107,6 +112,7 @@ private:
     Ref<Enlivener> life_;
     Ref<Gaze> gaze_;
     std::array<Layer, 3> layers_;
+    Map<int, List<double>> sways_; // what the arms do at the times that are looked at
 
     bool lives() const { return graph_->life->on && life_ != nullptr && plan_->life->end > 0; }
 
@@ -118,14 +124,49 @@ private:
             const LayerGraph& own = graph_->layer(graph::LAYERS[n]);
             const Ref<LayerPlan>& plan = plan_->layers.at(graph::LAYERS[n]);
             if (own.strength <= 0) continue;
-            const bool playing = cue_at(layers_[n], time) != nullptr;
-            Ref<Cue> cue = playing ? lang::at(plan->cues, layers_[n].cue - 1) : nullptr;
-            if (cue != nullptr && placed(*cue->action).offsets == nullptr) cue = nullptr;
-            const int place = plan->rests.empty() ? -1 : rest_at(layers_[n], time);
+            const auto [cue, place] = playing(n, time);
             for (auto& goal : contact_goals::layer_goals(graph_->contact_rig, graph_->project, plan, cue, place, time, own.strength)) {
                 out.push_back(std::move(goal));
             }
         }
+        return out;
+    }
+
+    /// The cue with motion that plays in a layer, or none, and the place of the rest in force, -1 for none.
+    std::tuple<Ref<Cue>, int> playing(std::size_t n, double time) {
+        const Ref<LayerPlan>& plan = plan_->layers.at(graph::LAYERS[n]);
+        const bool plays = cue_at(layers_[n], time) != nullptr;
+        Ref<Cue> cue = plays ? lang::at(plan->cues, layers_[n].cue - 1) : nullptr;
+        if (cue != nullptr && placed(*cue->action).offsets == nullptr) cue = nullptr;
+        return {cue, plan->rests.empty() ? -1 : rest_at(layers_[n], time)};
+    }
+
+    /// Let the body in the composed pose answer its arms.
+    void weigh(double time) {
+        const Life& life = *graph_->life;
+        const double calm = 1 - life.stillness;
+        if (graph_->weight_rig == nullptr || !life.on || plan_->life->end <= 0 || calm <= 0) return;
+        if (life.follow_through <= 0 && life.shoulder_lift <= 0) return;
+        if (plan_->layers.at(graph::LAYERS[1])->cues.empty()) return;
+        const int last = follow_through::knot_before(time);
+        List<List<double>> sways;
+        for (int n = last - follow_through::KNOTS + 1; n <= last; n++) sways.push_back(sway(n));
+        const List<double> drive = follow_through::driven(sways, time);
+        if (weight_solve::moves_body(drive)) weight::answer(graph_->weight_rig, drive, life.follow_through * calm, life.shoulder_lift * calm, pose_);
+    }
+
+    List<double> sway(int number) {
+        const auto found = sways_.find(number);
+        if (found != nullptr) return *found;
+        const double time = follow_through::knot_time(number);
+        const auto [cue, place] = playing(1, time);
+        const auto [body_cue, body_place] = playing(0, time);
+        const List<double> out = follow_through::arm_sway(
+            graph_->project, graph_->arm_tracks, graph_->weight_rig->body->hands, plan_->layers.at(graph::LAYERS[1]), cue, place,
+            plan_->layers.at(graph::LAYERS[0]), body_cue, body_place, time
+        );
+        if (sways_.size() >= weight::KEPT) sways_ = Map<int, List<double>>();
+        sways_[number] = out;
         return out;
     }
 

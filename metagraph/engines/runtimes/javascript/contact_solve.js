@@ -14,6 +14,7 @@ export const FOLDED = 0.906; // cosine of the least angle inside an elbow, 25 de
 export const WRIST = 0.819; // cosine of half of how far a contact may turn a hand from where it was, 70 degrees
 export const SOFT = 0.006; // metres of depth over which the push out of the body sets in
 export const DEEP = 0.35; // of the radii: nearer than this to a capsule's line it is not pushed all the way
+export const STRAIGHT = [0.31, 0.52, 0.8]; // where a straight arm bends to: no side in particular, but always one
 export const ELBOW = 0.1; // how little a forearm is pushed near its elbow, which a wrist cannot move
 export const PASSES = 3; // of the guard
 export const OBSTACLE = 0; // what a capsule is to the guard: others are pushed out of it
@@ -235,7 +236,7 @@ function _hold(rig, pose, goals, side, wrist, hand) {
   const rest = 1 - weight;
   k = tx * hx + ty * hy + tz * hz + tw * hw < 0 ? -weight : weight;
   turn = _unitTurn([hx * rest + tx * k, hy * rest + ty * k, hz * rest + tz * k, hw * rest + tw * k]);
-  _bring(rig, pose, side, _plus(wrist, _scaled(_minus(mean, wrist), weight)), turn);
+  bring(rig, pose, side, _plus(wrist, _scaled(_minus(mean, wrist), weight)), turn, STRAIGHT);
 }
 
 /**
@@ -260,14 +261,16 @@ function _withinWrist(hand, turn) {
 }
 
 /**
- * Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it.
+ * Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it. side_of: where a straight
+ * arm bends to, in the upper arm's own space.
  * @param {ContactRig} rig
  * @param {ContactPose} pose
  * @param {number} side
  * @param {[number, number, number]} goal
  * @param {[number, number, number, number]} hand
+ * @param {[number, number, number]} sideOf
  */
-function _bring(rig, pose, side, goal, hand) {
+export function bring(rig, pose, side, goal, hand, sideOf) {
   const arm = rig.arms[side];
   const root = pose.at[arm.upper];
   const elbow = pose.at[arm.lower];
@@ -291,7 +294,7 @@ function _bring(rig, pose, side, goal, hand) {
   const before = _scaled(_minus(wrist, root), 1 / now);
   let aside = _minus(bone, _scaled(before, _dot(bone, before)));
   // A straight arm has no side: it bends to one that goes with its bone.
-  let spare = rotated(pose.turned[arm.upper], [0.31, 0.52, 0.8]);
+  let spare = rotated(pose.turned[arm.upper], sideOf);
   spare = _minus(spare, _scaled(before, _dot(spare, before)));
   aside = _plus(aside, _scaled(spare, Math.max(0, 0.01 * aboveElbow - length(aside))));
   aside = _unit(rotated(between(before, ahead), aside));
@@ -344,7 +347,7 @@ function _guarded(rig, pose, held, across) {
     for (const [side, shift] of shifts.entries()) {
       if (length(shift) > 0) {
         const hand = rig.arms[side].hand;
-        _bring(rig, pose, side, _plus(pose.at[hand], shift), pose.turned[hand]);
+        bring(rig, pose, side, _plus(pose.at[hand], shift), pose.turned[hand], STRAIGHT);
         found = true;
       }
     }

@@ -1,7 +1,7 @@
 /**
  * The one evaluator: what pose a plan gives at a time. Layers add their offsets from the base pose (Borer et al., section 5): a joint's
- * rotation is `base * body^w * arms^w * head^w`, its translation a sum; then the life layers are added, and
- * hands kept in contact and out of the body.
+ * rotation is `base * body^w * arms^w * head^w`, its translation a sum; then the body answers its arms, the other life layers are
+ * added, and hands kept in contact and out of the body.
  */
 
 import { ease } from "./life/gaze.js";
@@ -10,6 +10,7 @@ import { touch } from "./contacts.js";
 import { turnExtent } from "./mood.js";
 import { clipSeconds } from "./plan.js";
 import { multiply, nlerp, normalize, power } from "./rotation.js";
+import { Swaying } from "./weight.js";
 import { LAYERS } from "./words.js";
 
 /** Room for working in, one for each graph: a pose is worked out whole before the next is begun. */
@@ -46,6 +47,7 @@ export class Player {
     this.graph = graph;
     this.room = roomOf(graph);
     this.cursors = LAYERS.map(() => ({ cue: 0, rest: 0 }));
+    this.swaying = graph.weightRig ? new Swaying(graph) : null;
     this.setPlan(plan);
   }
 
@@ -54,6 +56,7 @@ export class Player {
     if (this.plan === plan) return;
     if (this.plan?.life !== plan.life) this.gaze = this.room.life?.gazeOf(plan.life) ?? null;
     this.plan = plan;
+    this.swaying?.clear();
   }
 
   /**
@@ -66,6 +69,7 @@ export class Player {
   pose(time, rotations, translations, alive = true) {
     const { pose, life } = this.room;
     this.compose(time);
+    if (alive) this.weigh(time);
     if (alive && this.lives) {
       life.find(pose.rotations, pose.translations, this.plan, this.gaze, time);
       life.apply(pose.rotations, pose.translations);
@@ -90,6 +94,7 @@ export class Player {
     if (alive && this.lives && this.graph.body.face.morphs.length) {
       const { pose, life } = this.room;
       this.compose(time); // eyes made of morph targets hold while the head moves
+      this.weigh(time);
       life.find(pose.rotations, pose.translations, this.plan, this.gaze, time);
       life.morphs(out);
     }
@@ -98,11 +103,22 @@ export class Player {
 
   /** Return what plays at a time: of each layer its name, plan, cue with motion or null, and the place of its rest. */
   playing(time) {
-    return LAYERS.map((name, n) => {
-      const layer = this.plan.layers[name];
-      const cue = this.cueAt(n, layer, time);
-      return [name, layer, cue?.action.offsets ? cue : null, layer.rests.length ? this.restAt(n, layer, time) : -1];
-    });
+    return LAYERS.map((name) => [name, this.plan.layers[name], ...this.playingIn(time, name)]);
+  }
+
+  /** Return the cue with motion that plays in a layer, or null, and the place of its rest, -1 for none. */
+  playingIn(time, name) {
+    const n = LAYERS.indexOf(name);
+    const layer = this.plan.layers[name];
+    const cue = this.cueAt(n, layer, time);
+    return [cue?.action.offsets ? cue : null, layer.rests.length ? this.restAt(n, layer, time) : -1];
+  }
+
+  /** Let the body in the composed pose answer its arms. */
+  weigh(time) {
+    const { rotations, translations } = this.room.pose;
+    if (!this.swaying || !this.graph.life.on || this.plan.life.end <= 0) return;
+    this.swaying.answer(this.plan, (at, name) => this.playingIn(at, name), time, rotations, translations);
   }
 
   get lives() {

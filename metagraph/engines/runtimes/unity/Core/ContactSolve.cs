@@ -148,6 +148,8 @@ namespace Metagraph
         public const double Wrist = 0.819; // cosine of half of how far a contact may turn a hand from where it was, 70 degrees
         public const double Soft = 0.006; // metres of depth over which the push out of the body sets in
         public const double Deep = 0.35; // of the radii: nearer than this to a capsule's line it is not pushed all the way
+        // where a straight arm bends to: no side in particular, but always one
+        public static readonly (double, double, double) Straight = (0.31, 0.52, 0.8);
         public const double Elbow = 0.1; // how little a forearm is pushed near its elbow, which a wrist cannot move
         public const int Passes = 3; // of the guard
         public const int Obstacle = 0; // what a capsule is to the guard: others are pushed out of it
@@ -301,7 +303,7 @@ namespace Metagraph
             var rest = 1.0 - weight;
             k = tx * hx + ty * hy + tz * hz + tw * hw < 0.0 ? -weight : weight;
             turn = UnitTurn((hx * rest + tx * k, hy * rest + ty * k, hz * rest + tz * k, hw * rest + tw * k));
-            Bring(rig, pose, side, Plus(wrist, Scaled(Minus(mean, wrist), weight)), turn);
+            Bring(rig, pose, side, Plus(wrist, Scaled(Minus(mean, wrist), weight)), turn, Straight);
         }
 
         /// <summary>Return a hand's turn, as near to it as the wrist may be turned from how the hand was.</summary>
@@ -331,14 +333,16 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it.
+        /// Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it. side_of: where a
+        /// straight arm bends to, in the upper arm's own space.
         /// </summary>
-        private static void Bring(
+        public static void Bring(
             ContactRig rig,
             ContactPose pose,
             int side,
             (double, double, double) goal,
-            (double, double, double, double) hand
+            (double, double, double, double) hand,
+            (double, double, double) sideOf
         )
         {
             var arm = rig.Arms[side];
@@ -365,7 +369,7 @@ namespace Metagraph
             var before = Scaled(Minus(wrist, root), 1.0 / now);
             var aside = Minus(bone, Scaled(before, Dot(bone, before)));
             // A straight arm has no side: it bends to one that goes with its bone.
-            var spare = Rotated(pose.Turned[arm.Upper], (0.31, 0.52, 0.8));
+            var spare = Rotated(pose.Turned[arm.Upper], sideOf);
             spare = Minus(spare, Scaled(before, Dot(spare, before)));
             aside = Plus(aside, Scaled(spare, Math.Max(0.0, 0.01 * aboveElbow - Length(aside))));
             aside = Unit(Rotated(Between(before, ahead), aside));
@@ -422,7 +426,7 @@ namespace Metagraph
                     if (Length(shift) > 0.0)
                     {
                         var hand = rig.Arms[side].Hand;
-                        Bring(rig, pose, side, Plus(pose.At[hand], shift), pose.Turned[hand]);
+                        Bring(rig, pose, side, Plus(pose.At[hand], shift), pose.Turned[hand], Straight);
                         found = true;
                     }
                 }

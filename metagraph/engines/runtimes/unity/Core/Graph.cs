@@ -156,6 +156,10 @@ namespace Metagraph
         public Body Body;
         /// <summary>What keeps hands on the body, and out of it; null where the export does not say.</summary>
         public ContactRig ContactRig;
+        /// <summary>What answers the arms; null where the export does not say.</summary>
+        public WeightRig WeightRig;
+        /// <summary>What the actions of arms and body weigh, by action.</summary>
+        public Dictionary<string, ArmTrack> ArmTracks;
         public readonly Dictionary<string, double[]> Points = new Dictionary<string, double[]>();
         public readonly Dictionary<string, Line> Lines = new Dictionary<string, Line>();
         public readonly Voices Voices = new Voices();

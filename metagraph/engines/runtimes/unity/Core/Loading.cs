@@ -84,6 +84,8 @@ namespace Metagraph
             }
             Body = root.Maybe("rig", out found) && !found.IsNull ? ReadBody(found) : null;
             ContactRig = root.Maybe("contact_rig", out found) && !found.IsNull ? Contacts.ReadRig(found, Joints) : null;
+            WeightRig = root.Maybe("weight_rig", out found) && !found.IsNull ? Weight.ReadRig(found, Joints.Length) : null;
+            ArmTracks = Weight.ReadTracks(this, root["clips"]);
         }
 
         private void ReadJoints(Node root)

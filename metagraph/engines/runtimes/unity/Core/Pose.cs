@@ -56,6 +56,7 @@ namespace Metagraph
         private readonly Graph graph;
         private readonly Enliven life;
         private readonly Contacts contacts;
+        private readonly Weight weight;
         private readonly Quat[] composed;
         private readonly Vec[] places;
         private readonly Sample shown, stance, edge, before, seam;
@@ -73,6 +74,7 @@ namespace Metagraph
             seam = new Sample(count);
             life = graph.Body != null ? new Enliven(graph) : null;
             contacts = graph.ContactRig != null ? new Contacts(graph) : null;
+            weight = graph.WeightRig != null ? new Weight(graph) : null;
         }
 
         /// <summary>
@@ -101,6 +103,10 @@ namespace Metagraph
                 pose.Translations[3 * j] = (float)places[j].X;
                 pose.Translations[3 * j + 1] = (float)places[j].Y;
                 pose.Translations[3 * j + 2] = (float)places[j].Z;
+            }
+            if (alive && weight != null && graph.Life.On && plan.Life.End > 0)
+            {
+                weight.Answer(plan, time, pose);
             }
             if (alive && life != null && graph.Life.On && plan.Life.End > 0)
             {

@@ -3,11 +3,14 @@
 const Util = preload("util.gd")
 # Field -> what it is: a text, a number, a switch, a record, a list, or so many numbers; "?": null, or not there, which is made null.
 const EXPORT = {joints = "list", base = "record", clips = "list", layers = "record", planner = "record"}
-const OPTIONAL = {life = "record?", face = "record?", points = "record?", lines = "record?", voices = "record?", rig = "record?", contact_rig = "record?"}
+const OPTIONAL = {
+	life = "record?", face = "record?", points = "record?", lines = "record?", voices = "record?", rig = "record?", contact_rig = "record?",
+	weight_rig = "record?"
+}
 const EMPTY = ["life", "face", "points", "lines", "voices"]  # where these are not there
 const BASE = {rotations = "list", translations = "list"}
 const JOINT = {name = "text", parent = "text?", part = "text", side = "text", translation = "3", rotation = "4", scales = "text?"}
-const CLIP = {id = "text", name = "text", animation = "number", fps = "number", frames = "number"}
+const CLIP = {id = "text", name = "text", animation = "number", fps = "number", frames = "number", arms = "list?"}
 const LAYER = {start = "text?", weights = "record", stances = "list", actions = "list", markov = "record"}
 const STANCE = {id = "text", name = "text"}
 const ACTION = {
@@ -32,6 +35,12 @@ const LOOKER = {place = "number", share = "number"}
 const FACE = {joints = "list", turns = "list", shifts = "list", follows = "4", lid_joints = "4", shut_by = "list", morphs = "record"}
 const CONTACT_RIG = {contacts = "switch", guard = "switch", joints = "list", parents = "list", arms = "list", capsules = "list"}
 const CAPSULE = {joint = "number", a = "3", to = "number", b = "3", radius = "number", arm = "number", kind = "number"}
+const WEIGHT_RIG = {
+	joints = "list", parents = "list", legs = "list", hands = "list", bends = "list", collars = "list", knees = "list", levers = "list",
+	up = "3", height = "number", strength = "number"
+}
+const BEND = {place = "number", left = "3", up = "3", ahead = "3", share = "number"}
+const COLLAR = {place = "number", upper = "number", axis = "3", side = "number"}
 const CONTACT = {
 	hand = "text", place = "text", to = "text", start = "number", end = "number", ease_in = "number", ease_out = "number", keys = "list"
 }
@@ -66,6 +75,11 @@ static func wrong(data):
 	if typeof(touching) == TYPE_DICTIONARY:
 		checks.append([[touching], CONTACT_RIG, "$.contact_rig"])
 		checks.append([touching.get("capsules"), CAPSULE, "$.contact_rig.capsules"])
+	var weighing = data.get("weight_rig")
+	if typeof(weighing) == TYPE_DICTIONARY:
+		checks.append([[weighing], WEIGHT_RIG, "$.weight_rig"])
+		checks.append([weighing.get("bends"), BEND, "$.weight_rig.bends"])
+		checks.append([weighing.get("collars"), COLLAR, "$.weight_rig.collars"])
 	if typeof(data.voices) == TYPE_DICTIONARY:
 		checks.append([data.voices.values(), VOICE, "$.voices"])
 	for check in checks:
@@ -101,6 +115,14 @@ static func _unlike(data):
 		var out = _stray_places(data.contact_rig, data.joints.size())
 		if out != "":
 			return out
+	if data.weight_rig != null:
+		var out = _stray_weights(data.weight_rig, data.joints.size())
+		if out != "":
+			return out
+	for clip in data.clips:
+		for row in clip.arms if clip.arms != null else []:
+			if not _is(row, "8"):
+				return "$.clips.arms: should be rows of eight numbers"
 	return "" if data.rig == null else _strays(data.rig, data.joints.size())
 
 
@@ -136,6 +158,30 @@ static func _stray_places(rig, count):
 	for n in range(rig.parents.size()):
 		if not Util.is_number(rig.parents[n]) or rig.parents[n] >= n or rig.parents[n] < -1:
 			return "$.contact_rig: parents should come before their children"
+	return ""
+
+
+# Returns what of a weight rig names a joint, or a place among its joints, that is not there, and what it lacks.
+static func _stray_weights(rig, count):
+	for each in [[rig.legs, "3"], [rig.knees, "3"], [rig.levers, "2"]]:
+		if each[0].size() != 2 or not _is(each[0][0], each[1]) or not _is(each[0][1], each[1]):
+			return "$.weight_rig: legs, knees and levers should be two each, of numbers"
+	if rig.hands.size() != 2 or rig.bends.size() == 0 or rig.parents.size() != rig.joints.size():
+		return "$.weight_rig: should have two hands, hips, and a parent for each joint"
+	var places = rig.legs[0] + rig.legs[1]
+	for bend in rig.bends:
+		places.append(bend.place)
+	for collar in rig.collars:
+		places += [collar.place, collar.upper]
+	for joint in rig.joints:
+		if not Util.is_number(joint) or joint < 0 or joint >= count:
+			return "$.weight_rig: there is no joint %s" % str(joint)
+	for place in places:
+		if place < 0 or place >= rig.joints.size():
+			return "$.weight_rig: there is no place %s" % str(place)
+	for n in range(rig.parents.size()):
+		if not Util.is_number(rig.parents[n]) or rig.parents[n] >= n or rig.parents[n] < -1:
+			return "$.weight_rig: parents should come before their children"
 	return ""
 
 

@@ -11,6 +11,7 @@ const FOLDED = 0.906  # cosine of the least angle inside an elbow, 25 degrees
 const WRIST = 0.819  # cosine of half of how far a contact may turn a hand from where it was, 70 degrees
 const SOFT = 0.006  # metres of depth over which the push out of the body sets in
 const DEEP = 0.35  # of the radii: nearer than this to a capsule's line it is not pushed all the way
+const STRAIGHT = [0.31, 0.52, 0.8]  # where a straight arm bends to: no side in particular, but always one
 const ELBOW = 0.1  # how little a forearm is pushed near its elbow, which a wrist cannot move
 const PASSES = 3  # of the guard
 const OBSTACLE = 0  # what a capsule is to the guard: others are pushed out of it
@@ -219,7 +220,7 @@ static func _hold(rig, pose, goals, side, wrist, hand):
 	var rest = 1.0 - weight
 	k = -weight if tx * hx + ty * hy + tz * hz + tw * hw < 0.0 else weight
 	turn = _unit_turn([hx * rest + tx * k, hy * rest + ty * k, hz * rest + tz * k, hw * rest + tw * k])
-	_bring(rig, pose, side, _plus(wrist, _scaled(_minus(mean, wrist), weight)), turn)
+	bring(rig, pose, side, _plus(wrist, _scaled(_minus(mean, wrist), weight)), turn, STRAIGHT)
 
 
 # Return a hand's turn, as near to it as the wrist may be turned from how the hand was.
@@ -240,8 +241,9 @@ static func _within_wrist(hand, turn):
 	return times([x * k, y * k, z * k, WRIST], hand)
 
 
-# Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it.
-static func _bring(rig, pose, side, goal, hand):
+# Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it. side_of: where a straight arm
+# bends to, in the upper arm's own space.
+static func bring(rig, pose, side, goal, hand, side_of):
 	var arm = rig.arms[side]
 	var root = pose.at[arm.upper]
 	var elbow = pose.at[arm.lower]
@@ -264,7 +266,7 @@ static func _bring(rig, pose, side, goal, hand):
 	var before = _scaled(_minus(wrist, root), 1.0 / now)
 	var aside = _minus(bone, _scaled(before, _dot(bone, before)))
 	# A straight arm has no side: it bends to one that goes with its bone.
-	var spare = rotated(pose.turned[arm.upper], [0.31, 0.52, 0.8])
+	var spare = rotated(pose.turned[arm.upper], side_of)
 	spare = _minus(spare, _scaled(before, _dot(spare, before)))
 	aside = _plus(aside, _scaled(spare, Util.most(0.0, 0.01 * above_elbow - length(aside))))
 	aside = _unit(rotated(between(before, ahead), aside))
@@ -306,7 +308,7 @@ static func _guarded(rig, pose, held, across):
 			var shift = shifts[side]
 			if length(shift) > 0.0:
 				var hand = rig.arms[side].hand
-				_bring(rig, pose, side, _plus(pose.at[hand], shift), pose.turned[hand])
+				bring(rig, pose, side, _plus(pose.at[hand], shift), pose.turned[hand], STRAIGHT)
 				found = true
 		if not found:
 			return moved

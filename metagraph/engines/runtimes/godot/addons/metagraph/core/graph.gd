@@ -11,6 +11,7 @@ const Glb = preload("glb.gd")
 const Life = preload("life.gd")
 const Rig = preload("rig.gd")
 const Contacts = preload("contacts.gd")
+const Weight = preload("weight.gd")
 const Alphabet = preload("alphabet.gd")
 const FORMAT = 1  # the newest version of exports that is understood
 const CORE = "res://addons/metagraph/core/"
@@ -36,6 +37,8 @@ var settings = {}
 var life = {}
 var rig = null  # see rig.gd; null where nothing lives
 var contact_rig = null  # see contacts.gd; null where the export has none
+var weight_rig = null  # see weight.gd; null where the export has none
+var arm_tracks = {}  # action -> what it weighs
 var name = ""  # of the project
 var points = {}  # name -> Vector3
 var spots = {}  # name -> [x, y, z], as the export has them
@@ -87,6 +90,9 @@ func _read(json, bytes):
 		rig = Rig.rig_of(data.rig, shim)
 	if data.contact_rig != null:
 		contact_rig = Contacts.rig_of(data.contact_rig, names)
+	if data.weight_rig != null:
+		weight_rig = Weight.rig_of(data.weight_rig)
+		arm_tracks = Weight.tracks_of(layers, data.clips)
 	if not shim.are_bytes(bytes):
 		return "the GLB cannot be read; check that '%s' is beside the JSON" % str(data.get("glb", "it"))
 	var glb = Glb.new(bytes, shim)

@@ -6,6 +6,7 @@ const Turns = preload("turns.gd")
 const Mood = preload("mood.gd")
 const Evaluate = preload("evaluate.gd")
 const Contacts = preload("contacts.gd")
+const Weight = preload("weight.gd")
 
 
 # Returns {rotations [J] local quaternions, translations [J] local, metres, morphs {name: weight 0..1}} at a time. alive: with the life
@@ -13,6 +14,8 @@ const Contacts = preload("contacts.gd")
 static func pose_at(graph, plan, time, alive = true):
 	var composed = _compose(graph, plan, time)
 	var morphs = _layers_morphs(graph, plan, time)
+	if alive and plan.life.end > 0 and Weight.is_on(graph) and plan.layers.arms.cues.size() > 0:
+		_weigh(graph, plan, time, composed)
 	if alive and graph.life.on and graph.rig != null and not graph.rig.empty and plan.life.end > 0:
 		composed = Evaluate.enliven(graph, plan, time, composed)
 		for name in composed.morphs:
@@ -36,6 +39,15 @@ static func _playing(graph, plan, time):
 		var place = Util.most(Util.after(of.rests, "fade_start", time) - 1, 0) if of.rests.size() > 0 else -1
 		out.append([of, cue, int(place), graph.layers[layer].strength])
 	return out
+
+
+# Lets the body in a composed pose answer its arms.
+static func _weigh(graph, plan, time, composed):
+	var playing = []
+	for at in Weight.knots(time):
+		var found = _playing(graph, plan, at)
+		playing.append([found[Util.LAYERS.find("arms")], found[Util.LAYERS.find("body")]])
+	Weight.answer(graph, playing, time, composed)
 
 
 static func _compose(graph, plan, time):

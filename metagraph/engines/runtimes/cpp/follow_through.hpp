@@ -1,0 +1,338 @@
+// What the arms of a plan weigh at a time: how far a gesture has carried their mass away from its stance.
+//
+// The body answers with some delay, so what moves it is not the arms' place at one time but a cubic B-spline through
+// their places at four fixed times before it: smooth, and a function of plan and time alone.
+//
+// Translated from metagraph/playback/follow_through.py; change that, and translate anew.
+#pragma once
+
+#include "model.hpp"
+#include "meta_plan.hpp"
+#include "project.hpp"
+#include "language.hpp"
+
+namespace metagraph {
+
+struct ArmTrack;
+
+namespace follow_through {
+
+inline constexpr double STEP = 0.08; // seconds between the times that are looked at; the answer comes two of them late
+inline constexpr double OFFSET = 0.0111; // seconds that they lie beside whole steps, where cues begin and end
+inline constexpr int KNOTS = 4;
+inline constexpr double RATE = 10.0; // rows of a track in a second of its clip
+inline constexpr double UNIT = 1e-05; // metres, or radians, that 1 in a row stands for
+inline constexpr int NUMBERS = 8; // in a row
+inline int knot_before(double time);
+inline double knot_time(int number);
+inline List<double> arm_sway(
+    const Ref<Project>& project,
+    const Map<std::string, Ref<ArmTrack>>& tracks,
+    const List<std::string>& hands,
+    const Ref<LayerPlan>& arms,
+    const Ref<Cue>& cue,
+    int place,
+    const Ref<LayerPlan>& body,
+    const Ref<Cue>& body_cue,
+    int body_place,
+    double time
+);
+inline List<double> driven(const List<List<double>>& sways, double time);
+inline bool _moves(const Ref<Action>& action, const std::string& side, const std::string& hand);
+inline double _shown(
+    const Map<std::string, Ref<ArmTrack>>& tracks,
+    const Ref<LayerPlan>& plan,
+    const Ref<Cue>& cue,
+    int place,
+    const std::string& clip,
+    double time
+);
+inline bool _is_of(const Map<std::string, Ref<ArmTrack>>& tracks, const Ref<Action>& action, const std::string& clip);
+inline List<double> _stance(
+    const Ref<Project>& project,
+    const Map<std::string, Ref<ArmTrack>>& tracks,
+    const Ref<LayerPlan>& plan,
+    int place,
+    double time
+);
+inline List<double> _loop(
+    const Ref<Project>& project,
+    const Map<std::string, Ref<ArmTrack>>& tracks,
+    const Ref<Rest>& rest,
+    double time
+);
+inline List<double> _row(const Ref<ArmTrack>& track, double seconds);
+inline double _cue_weight(const Ref<Cue>& cue, double time);
+inline double _cue_seconds(const Ref<Cue>& cue, double time);
+inline double _ease(double x);
+
+}  // namespace follow_through
+
+/// What a clip's arms do. clip: its id. rows: of each tenth of a second, beside the base pose: by how much the left arm
+/// shifts the centre of mass of the whole body to the left, up and ahead, the right arm the same, and how far each
+/// collar bone lags behind its arm; in units of `UNIT`.
+struct ArmTrack {
+    std::string clip;
+    List<List<double>> rows;
+
+    ArmTrack(std::string clip_, List<List<double>> rows_)
+        : clip(std::move(clip_)), rows(std::move(rows_)) {}
+};
+
+namespace follow_through {
+
+/// Return the number of the last time that is looked at for a pose at `time`.
+inline int knot_before(double time) {
+    return static_cast<int>(std::floor((time - follow_through::OFFSET) / follow_through::STEP));
+}
+
+/// Return when a time that is looked at is, seconds.
+inline double knot_time(int number) {
+    return number * follow_through::STEP + follow_through::OFFSET;
+}
+
+/// Return how far the arms are from their stance at a time, as rows of tracks are, in metres and radians.
+///
+/// tracks: by action. hands: the names of the hands' joints. cue: of the arms' layer, if it has motion; place: of the
+/// rest in force, -1 for none; of the body's layer the same. A cue of the very clip that the body's layer shows, too,
+/// brings its own hips and counts for nothing.
+inline List<double> arm_sway(
+    const Ref<Project>& project,
+    const Map<std::string, Ref<ArmTrack>>& tracks,
+    const List<std::string>& hands,
+    const Ref<LayerPlan>& arms,
+    const Ref<Cue>& cue,
+    int place,
+    const Ref<LayerPlan>& body,
+    const Ref<Cue>& body_cue,
+    int body_place,
+    double time
+) {
+    List<double> out;
+    for (int n2 = 0; n2 < follow_through::NUMBERS; n2++) {
+        out.push_back(0.0);
+    }
+    if (cue == nullptr) {
+        return out;
+    }
+    Ref<ArmTrack> track = lang::get(tracks, cue->action->id);
+    if (track == nullptr || lang::len(track->rows) == 0) {
+        return out;
+    }
+    double weight = follow_through::_cue_weight(cue, time);
+    double share = cue->extent * (1.0 - follow_through::_shown(tracks, body, body_cue, body_place, track->clip, time));
+    if (weight <= 0.0 || share <= 0.0) {
+        return out;
+    }
+    List<double> row = follow_through::_row(track, follow_through::_cue_seconds(cue, time));
+    List<double> rest = follow_through::_stance(project, tracks, arms, place, time);
+    bool entering = time < cue->start + cue->blend_in;
+    if (entering || time >= cue->end - cue->blend_out) {
+        List<double> edge = follow_through::_row(
+            track,
+            entering ? cue->entry : follow_through::_cue_seconds(cue, cue->end)
+        );
+        List<double> found;
+        for (int n3 = 0; n3 < follow_through::NUMBERS; n3++) {
+            found.push_back(lang::at(row, n3) + (1.0 - weight) * (lang::at(rest, n3) - lang::at(edge, n3)));
+        }
+        row = found;
+    }
+    double left = follow_through::_moves(cue->action, "left", lang::at(hands, 0)) ? share * follow_through::UNIT : 0.0;
+    double right = follow_through::_moves(cue->action, "right", lang::at(hands, 1))
+        ? share * follow_through::UNIT
+        : 0.0;
+    for (int n = 0; n < follow_through::NUMBERS; n++) {
+        lang::at(out, n) = (lang::at(row, n) - lang::at(rest, n)) * ((n < 3 || n == 6) ? left : right);
+    }
+    return out;
+}
+
+/// Return what moves the body at a time: the eight numbers, and how fast each changes, a second. sways: of the last
+/// `KNOTS` times before it.
+inline List<double> driven(const List<List<double>>& sways, double time) {
+    double u = (time - follow_through::OFFSET) / follow_through::STEP;
+    u = u - static_cast<int>(std::floor(u));
+    double back = 1.0 - u;
+    List<double> weights = List<double>{
+        back * back * back / 6.0,
+        (3.0 * u * u * u - 6.0 * u * u + 4.0) / 6.0,
+        (3.0 * u + 3.0 * u * u - 3.0 * u * u * u + 1.0) / 6.0,
+        u * u * u / 6.0
+    };
+    List<double> slopes = List<double>{
+        -back * back / 2.0,
+        (3.0 * u * u - 4.0 * u) / 2.0,
+        (1.0 + 2.0 * u - 3.0 * u * u) / 2.0,
+        u * u / 2.0
+    };
+    List<double> out;
+    for (int n2 = 0; n2 < 2 * follow_through::NUMBERS; n2++) {
+        out.push_back(0.0);
+    }
+    for (int n = 0; n < follow_through::NUMBERS; n++) {
+        for (int k = 0; k < follow_through::KNOTS; k++) {
+            lang::at(out, n) += lang::at(weights, k) * lang::at(lang::at(sways, k), n);
+            lang::at(out, follow_through::NUMBERS + n) += lang::at(slopes, k) * lang::at(lang::at(sways, k), n)
+                / follow_through::STEP;
+        }
+    }
+    return out;
+}
+
+/// Whether an action moves an arm, and does not leave it to its stance.
+inline bool _moves(const Ref<Action>& action, const std::string& side, const std::string& hand) {
+    if (!lang::contains(List<std::string>{"both", side}, action->limb)) {
+        return false;
+    }
+    return lang::len(action->joints) == 0 || lang::contains(action->joints, hand);
+}
+
+/// Return how much a layer shows of a clip, 0..1.
+inline double _shown(
+    const Map<std::string, Ref<ArmTrack>>& tracks,
+    const Ref<LayerPlan>& plan,
+    const Ref<Cue>& cue,
+    int place,
+    const std::string& clip,
+    double time
+) {
+    double left = 1.0;
+    double out = 0.0;
+    if (cue != nullptr) {
+        double weight = follow_through::_cue_weight(cue, time);
+        left = 1.0 - weight;
+        if (follow_through::_is_of(tracks, cue->action, clip)) {
+            out += weight;
+        }
+    }
+    if (place >= 0) {
+        Ref<Rest> rest = lang::at(plan->rests, place);
+        double over = 1.0;
+        if (place > 0 && rest->fade_start + rest->fade > time) {
+            over = follow_through::_ease((time - rest->fade_start) / rest->fade);
+            if (follow_through::_is_of(tracks, lang::at(plan->rests, place - 1)->action, clip)) {
+                out += left * (1.0 - over);
+            }
+        }
+        if (follow_through::_is_of(tracks, rest->action, clip)) {
+            out += left * over;
+        }
+    }
+    return std::min(1.0, out);
+}
+
+inline bool _is_of(const Map<std::string, Ref<ArmTrack>>& tracks, const Ref<Action>& action, const std::string& clip) {
+    Ref<ArmTrack> track = lang::get(tracks, action->id);
+    return track != nullptr && track->clip == clip;
+}
+
+/// Return the row of the stance that lies under the cues.
+inline List<double> _stance(
+    const Ref<Project>& project,
+    const Map<std::string, Ref<ArmTrack>>& tracks,
+    const Ref<LayerPlan>& plan,
+    int place,
+    double time
+) {
+    if (place < 0) {
+        List<double> found;
+        for (int n = 0; n < follow_through::NUMBERS; n++) {
+            found.push_back(0.0);
+        }
+        return found;
+    }
+    Ref<Rest> rest = lang::at(plan->rests, place);
+    List<double> row = follow_through::_loop(project, tracks, rest, time);
+    if (place > 0 && rest->fade_start + rest->fade > time) {
+        double over = follow_through::_ease((time - rest->fade_start) / rest->fade);
+        List<double> before = follow_through::_loop(project, tracks, lang::at(plan->rests, place - 1), time);
+        List<double> found2;
+        for (int n = 0; n < follow_through::NUMBERS; n++) {
+            found2.push_back(lang::at(before, n) + (lang::at(row, n) - lang::at(before, n)) * over);
+        }
+        row = found2;
+    }
+    return row;
+}
+
+/// Return the row of a loop, its end faded into its beginning.
+inline List<double> _loop(
+    const Ref<Project>& project,
+    const Map<std::string, Ref<ArmTrack>>& tracks,
+    const Ref<Rest>& rest,
+    double time
+) {
+    Ref<Action> action = rest->action;
+    Ref<ArmTrack> track = lang::get(tracks, action->id);
+    if (track == nullptr || lang::len(track->rows) == 0) {
+        List<double> found;
+        for (int n = 0; n < follow_through::NUMBERS; n++) {
+            found.push_back(0.0);
+        }
+        return found;
+    }
+    auto [start, end] = project->span(action);
+    double seam = std::min(std::max(0.0, action->timing->blend_in), (end - start) / 2.0);
+    double period = end - start - seam;
+    if (period <= 0.0) {
+        return follow_through::_row(track, start);
+    }
+    double elapsed = time - rest->start;
+    double phase = seam > 0.0 ? std::max(elapsed, 0.0) : elapsed;
+    phase = phase - period * static_cast<int>(std::floor(phase / period));
+    List<double> row = follow_through::_row(track, start + phase);
+    if (seam > 0.0 && elapsed >= period) {
+        double old = 1.0 - follow_through::_ease(phase / seam);
+        List<double> before = follow_through::_row(track, start + std::min(period + phase, end - start));
+        List<double> found2;
+        for (int n = 0; n < follow_through::NUMBERS; n++) {
+            found2.push_back(lang::at(row, n) + (lang::at(before, n) - lang::at(row, n)) * old);
+        }
+        row = found2;
+    }
+    return row;
+}
+
+/// Return a track's row at clip seconds, on the straight line between its rows.
+inline List<double> _row(const Ref<ArmTrack>& track, double seconds) {
+    int last = lang::len(track->rows) - 1;
+    double at = std::min(std::max(seconds * follow_through::RATE, 0.0), static_cast<double>(last));
+    int low = std::min(static_cast<int>(std::floor(at)), std::max(0, last - 1));
+    double part = at - low;
+    List<double> a = lang::at(track->rows, low);
+    List<double> b = lang::at(track->rows, std::min(low + 1, last));
+    List<double> found;
+    for (int n = 0; n < follow_through::NUMBERS; n++) {
+        found.push_back(lang::at(a, n) + (lang::at(b, n) - lang::at(a, n)) * part);
+    }
+    return found;
+}
+
+inline double _cue_weight(const Ref<Cue>& cue, double time) {
+    if (time < cue->start || time >= cue->end) {
+        return 0.0;
+    }
+    double rise = cue->blend_in > 0.0 ? follow_through::_ease((time - cue->start) / cue->blend_in) : 1.0;
+    double fall = cue->blend_out > 0.0 ? follow_through::_ease((cue->end - time) / cue->blend_out) : 1.0;
+    return rise * fall;
+}
+
+inline double _cue_seconds(const Ref<Cue>& cue, double time) {
+    double elapsed = time - cue->start;
+    if (cue->hold <= 0.0) {
+        return cue->entry + elapsed * cue->tempo;
+    }
+    double held = std::min(std::max(elapsed - (cue->hold_from - cue->entry) / cue->tempo, 0.0), cue->hold);
+    double more = (elapsed - held) * (cue->tempo - 1.0);
+    return cue->entry + elapsed - held + more + held * ((cue->hold_to - cue->hold_from) / cue->hold);
+}
+
+inline double _ease(double x) {
+    x = std::min(std::max(x, 0.0), 1.0);
+    return x * x * (3.0 - 2.0 * x);
+}
+
+}  // namespace follow_through
+
+}  // namespace metagraph

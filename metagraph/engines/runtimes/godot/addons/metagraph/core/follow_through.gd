@@ -1,0 +1,211 @@
+# What the arms of a plan weigh at a time: how far a gesture has carried their mass away from its stance.
+#
+# The body answers with some delay, so what moves it is not the arms' place at one time but a cubic B-spline through their places
+# at four fixed times before it: smooth, and a function of plan and time alone.
+#
+# Translated from metagraph/playback/follow_through.py; change that, and translate anew.
+
+const Util = preload("util.gd")
+const STEP = 0.08  # seconds between the times that are looked at; the answer comes two of them late
+const OFFSET = 0.0111  # seconds that they lie beside whole steps, where cues begin and end
+const KNOTS = 4
+const RATE = 10.0  # rows of a track in a second of its clip
+const UNIT = 1e-05  # metres, or radians, that 1 in a row stands for
+const NUMBERS = 8  # in a row
+
+
+# What a clip's arms do. clip: its id. rows: of each tenth of a second, beside the base pose: by how much the left arm shifts the
+# centre of mass of the whole body to the left, up and ahead, the right arm the same, and how far each collar bone lags behind its
+# arm; in units of `UNIT`.
+class ArmTrack:
+	var clip
+	var rows
+
+	func _init(clip_, rows_):
+		self.clip = clip_
+		self.rows = rows_
+
+
+# Return the number of the last time that is looked at for a pose at `time`.
+static func knot_before(time):
+	return int(floor((time - OFFSET) / STEP))
+
+
+# Return when a time that is looked at is, seconds.
+static func knot_time(number):
+	return number * STEP + OFFSET
+
+
+# Return how far the arms are from their stance at a time, as rows of tracks are, in metres and radians.
+#
+# tracks: by action. hands: the names of the hands' joints. cue: of the arms' layer, if it has motion; place: of the rest in
+# force, -1 for none; of the body's layer the same. A cue of the very clip that the body's layer shows, too, brings its own hips
+# and counts for nothing.
+static func arm_sway(project, tracks, hands, arms, cue, place, body, body_cue, body_place, time):
+	var out = []
+	for n2 in range(NUMBERS):
+		out.append(0.0)
+	if cue == null:
+		return out
+	var track = tracks.get(cue.action.id)
+	if track == null or track.rows.size() == 0:
+		return out
+	var weight = _cue_weight(cue, time)
+	var share = cue.extent * (1.0 - _shown(tracks, body, body_cue, body_place, track.clip, time))
+	if weight <= 0.0 or share <= 0.0:
+		return out
+	var row = _row(track, _cue_seconds(cue, time))
+	var rest = _stance(project, tracks, arms, place, time)
+	var entering = time < cue.start + cue.blend_in
+	if entering or time >= cue.end - cue.blend_out:
+		var edge = _row(track, cue.entry if entering else _cue_seconds(cue, cue.end))
+		var found = []
+		for n3 in range(NUMBERS):
+			found.append(row[n3] + (1.0 - weight) * (rest[n3] - edge[n3]))
+		row = found
+	var left = share * UNIT if _moves(cue.action, "left", hands[0]) else 0.0
+	var right = share * UNIT if _moves(cue.action, "right", hands[1]) else 0.0
+	for n in range(NUMBERS):
+		out[n] = (row[n] - rest[n]) * (left if (n < 3 or n == 6) else right)
+	return out
+
+
+# Return what moves the body at a time: the eight numbers, and how fast each changes, a second. sways: of the last `KNOTS` times
+# before it.
+static func driven(sways, time):
+	var u = (time - OFFSET) / STEP
+	u = u - int(floor(u))
+	var back = 1.0 - u
+	var weights = [
+		back * back * back / 6.0,
+		(3.0 * u * u * u - 6.0 * u * u + 4.0) / 6.0,
+		(3.0 * u + 3.0 * u * u - 3.0 * u * u * u + 1.0) / 6.0,
+		u * u * u / 6.0
+	]
+	var slopes = [-back * back / 2.0, (3.0 * u * u - 4.0 * u) / 2.0, (1.0 + 2.0 * u - 3.0 * u * u) / 2.0, u * u / 2.0]
+	var out = []
+	for n2 in range(2 * NUMBERS):
+		out.append(0.0)
+	for n in range(NUMBERS):
+		for k in range(KNOTS):
+			out[n] += weights[k] * sways[k][n]
+			out[NUMBERS + n] += slopes[k] * sways[k][n] / STEP
+	return out
+
+
+# Whether an action moves an arm, and does not leave it to its stance.
+static func _moves(action, side, hand):
+	if not ["both", side].has(action.limb):
+		return false
+	return action.joints.size() == 0 or action.joints.has(hand)
+
+
+# Return how much a layer shows of a clip, 0..1.
+static func _shown(tracks, plan, cue, place, clip, time):
+	var left = 1.0
+	var out = 0.0
+	if cue != null:
+		var weight = _cue_weight(cue, time)
+		left = 1.0 - weight
+		if _is_of(tracks, cue.action, clip):
+			out += weight
+	if place >= 0:
+		var rest = plan.rests[place]
+		var over = 1.0
+		if place > 0 and rest.fade_start + rest.fade > time:
+			over = _ease((time - rest.fade_start) / rest.fade)
+			if _is_of(tracks, plan.rests[place - 1].action, clip):
+				out += left * (1.0 - over)
+		if _is_of(tracks, rest.action, clip):
+			out += left * over
+	return Util.least(1.0, out)
+
+
+static func _is_of(tracks, action, clip):
+	var track = tracks.get(action.id)
+	return track != null and track.clip == clip
+
+
+# Return the row of the stance that lies under the cues.
+static func _stance(project, tracks, plan, place, time):
+	if place < 0:
+		var found = []
+		for n in range(NUMBERS):
+			found.append(0.0)
+		return found
+	var rest = plan.rests[place]
+	var row = _loop(project, tracks, rest, time)
+	if place > 0 and rest.fade_start + rest.fade > time:
+		var over = _ease((time - rest.fade_start) / rest.fade)
+		var before = _loop(project, tracks, plan.rests[place - 1], time)
+		var found2 = []
+		for n in range(NUMBERS):
+			found2.append(before[n] + (row[n] - before[n]) * over)
+		row = found2
+	return row
+
+
+# Return the row of a loop, its end faded into its beginning.
+static func _loop(project, tracks, rest, time):
+	var action = rest.action
+	var track = tracks.get(action.id)
+	if track == null or track.rows.size() == 0:
+		var found = []
+		for n in range(NUMBERS):
+			found.append(0.0)
+		return found
+	var both = project.span(action)
+	var start = both[0]
+	var end = both[1]
+	var seam = Util.least(Util.most(0.0, action.timing.blend_in), (end - start) / 2.0)
+	var period = end - start - seam
+	if period <= 0.0:
+		return _row(track, start)
+	var elapsed = time - rest.start
+	var phase = Util.most(elapsed, 0.0) if seam > 0.0 else elapsed
+	phase = phase - period * int(floor(phase / period))
+	var row = _row(track, start + phase)
+	if seam > 0.0 and elapsed >= period:
+		var old = 1.0 - _ease(phase / seam)
+		var before = _row(track, start + Util.least(period + phase, end - start))
+		var found2 = []
+		for n in range(NUMBERS):
+			found2.append(row[n] + (before[n] - row[n]) * old)
+		row = found2
+	return row
+
+
+# Return a track's row at clip seconds, on the straight line between its rows.
+static func _row(track, seconds):
+	var last = track.rows.size() - 1
+	var at = Util.least(Util.most(seconds * RATE, 0.0), float(last))
+	var low = Util.least(int(floor(at)), Util.most(0, last - 1))
+	var part = at - low
+	var a = track.rows[low]
+	var b = track.rows[Util.least(low + 1, last)]
+	var found = []
+	for n in range(NUMBERS):
+		found.append(a[n] + (b[n] - a[n]) * part)
+	return found
+
+
+static func _cue_weight(cue, time):
+	if time < cue.start or time >= cue.end:
+		return 0.0
+	var rise = _ease((time - cue.start) / cue.blend_in) if cue.blend_in > 0.0 else 1.0
+	var fall = _ease((cue.end - time) / cue.blend_out) if cue.blend_out > 0.0 else 1.0
+	return rise * fall
+
+
+static func _cue_seconds(cue, time):
+	var elapsed = time - cue.start
+	if cue.hold <= 0.0:
+		return cue.entry + elapsed * cue.tempo
+	var held = Util.least(Util.most(elapsed - (cue.hold_from - cue.entry) / cue.tempo, 0.0), cue.hold)
+	var more = (elapsed - held) * (cue.tempo - 1.0)
+	return cue.entry + elapsed - held + more + held * ((cue.hold_to - cue.hold_from) / cue.hold)
+
+
+static func _ease(x):
+	x = Util.least(Util.most(x, 0.0), 1.0)
+	return x * x * (3.0 - 2.0 * x)

@@ -1,0 +1,294 @@
+/**
+ * What the arms of a plan weigh at a time: how far a gesture has carried their mass away from its stance.
+ *
+ * The body answers with some delay, so what moves it is not the arms' place at one time but a cubic B-spline through their
+ * places at four fixed times before it: smooth, and a function of plan and time alone.
+ *
+ * Translated from metagraph/playback/follow_through.py; change that, and translate anew.
+ */
+
+import { range } from "./basics.js";
+
+export const STEP = 0.08; // seconds between the times that are looked at; the answer comes two of them late
+export const OFFSET = 0.0111; // seconds that they lie beside whole steps, where cues begin and end
+export const KNOTS = 4;
+export const RATE = 10; // rows of a track in a second of its clip
+export const UNIT = 1e-05; // metres, or radians, that 1 in a row stands for
+export const NUMBERS = 8; // in a row
+
+/**
+ * What a clip's arms do. clip: its id. rows: of each tenth of a second, beside the base pose: by how much the left arm
+ * shifts the centre of mass of the whole body to the left, up and ahead, the right arm the same, and how far each collar
+ * bone lags behind its arm; in units of `UNIT`.
+ *
+ * clip: string; rows: number[][].
+ */
+export class ArmTrack {
+  constructor(clip, rows) {
+    this.clip = clip;
+    this.rows = rows;
+  }
+}
+
+/**
+ * Return the number of the last time that is looked at for a pose at `time`.
+ * @param {number} time
+ * @returns {number}
+ */
+export function knotBefore(time) {
+  return Math.floor((time - OFFSET) / STEP);
+}
+
+/**
+ * Return when a time that is looked at is, seconds.
+ * @param {number} number
+ * @returns {number}
+ */
+export function knotTime(number) {
+  return number * STEP + OFFSET;
+}
+
+/**
+ * Return how far the arms are from their stance at a time, as rows of tracks are, in metres and radians.
+ *
+ * tracks: by action. hands: the names of the hands' joints. cue: of the arms' layer, if it has motion; place: of the rest in
+ * force, -1 for none; of the body's layer the same. A cue of the very clip that the body's layer shows, too, brings its own
+ * hips and counts for nothing.
+ * @param {Project} project
+ * @param {Map<string, ArmTrack>} tracks
+ * @param {string[]} hands
+ * @param {LayerPlan} arms
+ * @param {?Cue} cue
+ * @param {number} place
+ * @param {LayerPlan} body
+ * @param {?Cue} bodyCue
+ * @param {number} bodyPlace
+ * @param {number} time
+ * @returns {number[]}
+ */
+export function armSway(project, tracks, hands, arms, cue, place, body, bodyCue, bodyPlace, time) {
+  const out = range(NUMBERS).map((n) => 0);
+  if (cue === null) {
+    return out;
+  }
+  const track = tracks.get(cue.action.id) ?? null;
+  if (track === null || track.rows.length === 0) {
+    return out;
+  }
+  const weight = _cueWeight(cue, time);
+  const share = cue.extent * (1 - _shown(tracks, body, bodyCue, bodyPlace, track.clip, time));
+  if (weight <= 0 || share <= 0) {
+    return out;
+  }
+  let row = _row(track, _cueSeconds(cue, time));
+  const rest = _stance(project, tracks, arms, place, time);
+  const entering = time < cue.start + cue.blendIn;
+  if (entering || time >= cue.end - cue.blendOut) {
+    const edge = _row(track, entering ? cue.entry : _cueSeconds(cue, cue.end));
+    row = range(NUMBERS).map((n) => row[n] + (1 - weight) * (rest[n] - edge[n]));
+  }
+  const left = _moves(cue.action, "left", hands[0]) ? share * UNIT : 0;
+  const right = _moves(cue.action, "right", hands[1]) ? share * UNIT : 0;
+  for (let n = 0; n < NUMBERS; n++) {
+    out[n] = (row[n] - rest[n]) * ((n < 3 || n === 6) ? left : right);
+  }
+  return out;
+}
+
+/**
+ * Return what moves the body at a time: the eight numbers, and how fast each changes, a second. sways: of the last `KNOTS`
+ * times before it.
+ * @param {number[][]} sways
+ * @param {number} time
+ * @returns {number[]}
+ */
+export function driven(sways, time) {
+  let u = (time - OFFSET) / STEP;
+  u = u - Math.floor(u);
+  const back = 1 - u;
+  const weights = [
+    back * back * back / 6,
+    (3 * u * u * u - 6 * u * u + 4) / 6,
+    (3 * u + 3 * u * u - 3 * u * u * u + 1) / 6,
+    u * u * u / 6,
+  ];
+  const slopes = [-back * back / 2, (3 * u * u - 4 * u) / 2, (1 + 2 * u - 3 * u * u) / 2, u * u / 2];
+  const out = range(2 * NUMBERS).map((n) => 0);
+  for (let n = 0; n < NUMBERS; n++) {
+    for (let k = 0; k < KNOTS; k++) {
+      out[n] += weights[k] * sways[k][n];
+      out[NUMBERS + n] += slopes[k] * sways[k][n] / STEP;
+    }
+  }
+  return out;
+}
+
+/**
+ * Whether an action moves an arm, and does not leave it to its stance.
+ * @param {Action} action
+ * @param {string} side
+ * @param {string} hand
+ * @returns {boolean}
+ */
+function _moves(action, side, hand) {
+  if (!["both", side].includes(action.limb)) {
+    return false;
+  }
+  return action.joints.length === 0 || action.joints.includes(hand);
+}
+
+/**
+ * Return how much a layer shows of a clip, 0..1.
+ * @param {Map<string, ArmTrack>} tracks
+ * @param {LayerPlan} plan
+ * @param {?Cue} cue
+ * @param {number} place
+ * @param {string} clip
+ * @param {number} time
+ * @returns {number}
+ */
+function _shown(tracks, plan, cue, place, clip, time) {
+  let left = 1;
+  let out = 0;
+  if (cue !== null) {
+    const weight = _cueWeight(cue, time);
+    left = 1 - weight;
+    if (_isOf(tracks, cue.action, clip)) {
+      out += weight;
+    }
+  }
+  if (place >= 0) {
+    const rest = plan.rests[place];
+    let over = 1;
+    if (place > 0 && rest.fadeStart + rest.fade > time) {
+      over = _ease((time - rest.fadeStart) / rest.fade);
+      if (_isOf(tracks, plan.rests[place - 1].action, clip)) {
+        out += left * (1 - over);
+      }
+    }
+    if (_isOf(tracks, rest.action, clip)) {
+      out += left * over;
+    }
+  }
+  return Math.min(1, out);
+}
+
+/**
+ * @param {Map<string, ArmTrack>} tracks
+ * @param {Action} action
+ * @param {string} clip
+ * @returns {boolean}
+ */
+function _isOf(tracks, action, clip) {
+  const track = tracks.get(action.id) ?? null;
+  return track !== null && track.clip === clip;
+}
+
+/**
+ * Return the row of the stance that lies under the cues.
+ * @param {Project} project
+ * @param {Map<string, ArmTrack>} tracks
+ * @param {LayerPlan} plan
+ * @param {number} place
+ * @param {number} time
+ * @returns {number[]}
+ */
+function _stance(project, tracks, plan, place, time) {
+  if (place < 0) {
+    return range(NUMBERS).map((n) => 0);
+  }
+  const rest = plan.rests[place];
+  let row = _loop(project, tracks, rest, time);
+  if (place > 0 && rest.fadeStart + rest.fade > time) {
+    const over = _ease((time - rest.fadeStart) / rest.fade);
+    const before = _loop(project, tracks, plan.rests[place - 1], time);
+    row = range(NUMBERS).map((n) => before[n] + (row[n] - before[n]) * over);
+  }
+  return row;
+}
+
+/**
+ * Return the row of a loop, its end faded into its beginning.
+ * @param {Project} project
+ * @param {Map<string, ArmTrack>} tracks
+ * @param {Rest} rest
+ * @param {number} time
+ * @returns {number[]}
+ */
+function _loop(project, tracks, rest, time) {
+  const action = rest.action;
+  const track = tracks.get(action.id) ?? null;
+  if (track === null || track.rows.length === 0) {
+    return range(NUMBERS).map((n) => 0);
+  }
+  const [start, end] = project.span(action);
+  const seam = Math.min(Math.max(0, action.timing.blendIn), (end - start) / 2);
+  const period = end - start - seam;
+  if (period <= 0) {
+    return _row(track, start);
+  }
+  const elapsed = time - rest.start;
+  let phase = seam > 0 ? Math.max(elapsed, 0) : elapsed;
+  phase = phase - period * Math.floor(phase / period);
+  let row = _row(track, start + phase);
+  if (seam > 0 && elapsed >= period) {
+    const old = 1 - _ease(phase / seam);
+    const before = _row(track, start + Math.min(period + phase, end - start));
+    row = range(NUMBERS).map((n) => row[n] + (before[n] - row[n]) * old);
+  }
+  return row;
+}
+
+/**
+ * Return a track's row at clip seconds, on the straight line between its rows.
+ * @param {ArmTrack} track
+ * @param {number} seconds
+ * @returns {number[]}
+ */
+function _row(track, seconds) {
+  const last = track.rows.length - 1;
+  const at = Math.min(Math.max(seconds * RATE, 0), last);
+  const low = Math.min(Math.floor(at), Math.max(0, last - 1));
+  const part = at - low;
+  const a = track.rows[low];
+  const b = track.rows[Math.min(low + 1, last)];
+  return range(NUMBERS).map((n) => a[n] + (b[n] - a[n]) * part);
+}
+
+/**
+ * @param {Cue} cue
+ * @param {number} time
+ * @returns {number}
+ */
+function _cueWeight(cue, time) {
+  if (time < cue.start || time >= cue.end) {
+    return 0;
+  }
+  const rise = cue.blendIn > 0 ? _ease((time - cue.start) / cue.blendIn) : 1;
+  const fall = cue.blendOut > 0 ? _ease((cue.end - time) / cue.blendOut) : 1;
+  return rise * fall;
+}
+
+/**
+ * @param {Cue} cue
+ * @param {number} time
+ * @returns {number}
+ */
+function _cueSeconds(cue, time) {
+  const elapsed = time - cue.start;
+  if (cue.hold <= 0) {
+    return cue.entry + elapsed * cue.tempo;
+  }
+  const held = Math.min(Math.max(elapsed - (cue.holdFrom - cue.entry) / cue.tempo, 0), cue.hold);
+  const more = (elapsed - held) * (cue.tempo - 1);
+  return cue.entry + elapsed - held + more + held * ((cue.holdTo - cue.holdFrom) / cue.hold);
+}
+
+/**
+ * @param {number} x
+ * @returns {number}
+ */
+function _ease(x) {
+  x = Math.min(Math.max(x, 0), 1);
+  return x * x * (3 - 2 * x);
+}

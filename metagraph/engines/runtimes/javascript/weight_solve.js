@@ -1,0 +1,306 @@
+/**
+ * How a standing body answers its arms: hips give way, spine and legs make up for it, feet stay.
+ *
+ * Rotations are quaternions xyzw, lengths metres; places are those in a rig's list of joints. Worked out one pose at a time,
+ * in plain numbers, the same in all languages.
+ *
+ * By how much: whoever stands keeps the centre of mass over the feet, so the hips go as far back as the arms carry it ahead
+ * (de Leva 1996 has what each segment weighs; that trunk and legs move against a raised arm: Bouisset and Zattara 1987). The
+ * other amounts are ours, chosen by eye on the sample.
+ *
+ * Translated from metagraph/motion/weight_solve.py; change that, and translate anew.
+ */
+
+import { REACHED, bring, length, rotated, spread, times } from "./contact_solve.js";
+
+export const BALANCE = 1.4; // of how far the arms carry the centre of mass away, the hips give way
+export const HASTE = 0.12; // seconds of the arms' speed that add to that
+export const DIP = 0.05; // seconds: arms that rise this fast press the body down, half as far at most
+export const SPIN = 30; // seconds: how far the pelvis turns against what arms turn about the vertical
+export const ROLL = 3; // radians that the pelvis rolls for a shift to a side of its own height, and
+export const PITCH = 2; // bends for one ahead or back
+export const MOST_SHIFT = 0.02; // of the height
+export const MOST_TURN = 0.1; // radians
+export const SITTING = 0.75; // how high a hip is above its ankle, of the leg's length: below this it does not stand
+export const STANDING = 0.15; // and this much above it stands altogether
+export const GIVE = 0.5; // of a shift: over so much a leg's full length makes itself felt
+
+/**
+ * A joint that turns. left, up, ahead: the character's directions in its own space. share: of the hips' turn, below 0
+ * against it.
+ *
+ * place: number; left: [number, number, number]; up: [number, number, number]; ahead: [number, number, number]; share:
+ * number.
+ */
+export class WeightBend {
+  constructor(place, left, up, ahead, share) {
+    this.place = place;
+    this.left = left;
+    this.up = up;
+    this.ahead = ahead;
+    this.share = share;
+  }
+}
+
+/**
+ * A collar bone. upper: the place of its arm. axis: what lifts it, in its own space. side: 0 left, 1 right.
+ *
+ * place: number; upper: number; axis: [number, number, number]; side: number.
+ */
+export class WeightCollar {
+  constructor(place, upper, axis, side) {
+    this.place = place;
+    this.upper = upper;
+    this.axis = axis;
+    this.side = side;
+  }
+}
+
+/**
+ * What of a skeleton answers its arms. body: joints, its `arms` being the legs, left and right, its `hands` the names of the
+ * hands. bends: from the hips up. knees: where straight legs bend to, in the upper legs' own spaces. levers: how far to the
+ * left and ahead of the hips arms are. up: the character's up. height: of the figure, metres. strength: how much of the
+ * arms' layer counts, 0..1.
+ *
+ * body: ContactRig; bends: WeightBend[]; collars: WeightCollar[]; knees: [number, number, number][]; levers: [number,
+ * number][]; up: [number, number, number]; height: number; strength: number.
+ */
+export class WeightRig {
+  constructor(body, bends, collars, knees, levers, up, height, strength) {
+    this.body = body;
+    this.bends = bends;
+    this.collars = collars;
+    this.knees = knees;
+    this.levers = levers;
+    this.up = up;
+    this.height = height;
+    this.strength = strength;
+  }
+}
+
+/**
+ * Whether there is anything to answer.
+ * @param {number[]} drive
+ * @returns {boolean}
+ */
+export function movesBody(drive) {
+  return drive.some((x) => x !== 0);
+}
+
+/**
+ * Change a pose of the rig's joints by what its arms do; return whether it did.
+ *
+ * drive: as `playback.follow_through.driven`. follow, lift: the dials. Joints' places need not be known.
+ * @param {WeightRig} rig
+ * @param {ContactPose} pose
+ * @param {number[]} drive
+ * @param {number} follow
+ * @param {number} lift
+ * @returns {boolean}
+ */
+export function answerArms(rig, pose, drive, follow, lift) {
+  follow = follow * rig.strength;
+  lift = lift * rig.strength;
+  if ((follow <= 0 && lift <= 0) || !movesBody(drive)) {
+    return false;
+  }
+  for (const collar of rig.collars) {
+    const turn = _turn(collar.axis, lift * drive[6 + collar.side]);
+    pose.local[collar.place] = times(pose.local[collar.place], turn);
+    pose.local[collar.upper] = times(_back(turn), pose.local[collar.upper]);
+  }
+  if (follow <= 0) {
+    return true;
+  }
+  spread(rig.body, pose);
+  follow = follow * _stands(rig, pose);
+  if (follow <= 0) {
+    return true;
+  }
+  _giveWay(rig, pose, drive, follow);
+  return true;
+}
+
+/**
+ * Return how much a figure stands, 0 for one that sits or lies, 1 on straight legs.
+ * @param {WeightRig} rig
+ * @param {ContactPose} pose
+ * @returns {number}
+ */
+function _stands(rig, pose) {
+  let least = 1;
+  for (const leg of rig.body.arms) {
+    const hip = pose.at[leg.upper];
+    const knee = pose.at[leg.lower];
+    const ankle = pose.at[leg.hand];
+    const whole = length(_minus(knee, hip)) + length(_minus(ankle, knee));
+    if (whole > 1e-06) {
+      least = Math.min(least, _dot(_minus(hip, ankle), rig.up) / whole);
+    }
+  }
+  const x = Math.min(Math.max((least - SITTING) / STANDING, 0), 1);
+  return x * x * (3 - 2 * x);
+}
+
+/**
+ * Shift and turn the hips, undo that in the spine, and bring the legs back to where the feet were.
+ * @param {WeightRig} rig
+ * @param {ContactPose} pose
+ * @param {number[]} drive
+ * @param {number} follow
+ */
+function _giveWay(rig, pose, drive, follow) {
+  const body = rig.body;
+  const vx = drive[8] + drive[11];
+  const vy = drive[9] + drive[12];
+  const vz = drive[10] + drive[13];
+  let spin = 0;
+  for (const [side, lever] of rig.levers.entries()) {
+    const [lx, lz] = lever;
+    spin += lz * drive[8 + 3 * side] - lx * drive[10 + 3 * side];
+  }
+  const most = MOST_SHIFT * rig.height;
+  const x = _soft(-follow * BALANCE * (drive[0] + drive[3] + HASTE * vx), most);
+  const y = _soft(-follow * DIP * vy, 0.5 * most);
+  const z = _soft(-follow * BALANCE * (drive[2] + drive[5] + HASTE * vz), most);
+  const yaw = _soft(-follow * SPIN * spin / (rig.height * rig.height), MOST_TURN);
+  const roll = ROLL * x / rig.height;
+  const pitch = -PITCH * z / rig.height;
+  const feet = body.arms.map((leg) => pose.at[leg.hand]);
+  const soles = body.arms.map((leg) => pose.turned[leg.hand]);
+  const reaches = body.arms.map((leg) => length(_minus(pose.at[leg.hand], pose.at[leg.upper])));
+  const hips = rig.bends[0];
+  let shift = _plus(_plus(_scaled(hips.left, x), _scaled(hips.up, y)), _scaled(hips.ahead, z));
+  shift = rotated(pose.turned[hips.place], shift);
+  for (const bend of rig.bends) {
+    const axis = _plus(_plus(_scaled(bend.left, pitch), _scaled(bend.up, yaw)), _scaled(bend.ahead, roll));
+    pose.local[bend.place] = times(pose.local[bend.place], _turn(axis, bend.share));
+  }
+  const above = body.parents[hips.place];
+  const space = above < 0 ? [0, 0, 0, 1] : _back(pose.turned[above]);
+  pose.moved[hips.place] = _plus(pose.moved[hips.place], rotated(space, shift));
+  spread(body, pose);
+  const size = length([x, y, z]) + 0.1 * rig.height * length([yaw, roll, pitch]);
+  let low = 0;
+  for (let side = 0; side < feet.length; side++) {
+    low = Math.max(low, _tooFar(rig, pose, side, feet[side], reaches[side], GIVE * size));
+  }
+  if (low > 0) {
+    const down = rotated(space, _scaled(rig.up, -low));
+    pose.moved[hips.place] = _plus(pose.moved[hips.place], down);
+    spread(body, pose);
+  }
+  for (let side = 0; side < feet.length; side++) {
+    bring(body, pose, side, feet[side], soles[side], rig.knees[side]);
+  }
+}
+
+/**
+ * Return by how much the hips have to sink for a foot to be within a leg's reach; from a little before that on, so that it
+ * sets in gently. reach: how far hip and foot were apart.
+ * @param {WeightRig} rig
+ * @param {ContactPose} pose
+ * @param {number} side
+ * @param {[number, number, number]} foot
+ * @param {number} reach
+ * @param {number} soft
+ * @returns {number}
+ */
+function _tooFar(rig, pose, side, foot, reach, soft) {
+  const leg = rig.body.arms[side];
+  const hip = pose.at[leg.upper];
+  const knee = pose.at[leg.lower];
+  const ankle = pose.at[leg.hand];
+  const whole = length(_minus(knee, hip)) + length(_minus(ankle, knee));
+  const most = Math.max(REACHED * whole, reach);
+  const way = _minus(hip, foot);
+  const high = _dot(way, rig.up);
+  const aside = _dot(way, way) - high * high;
+  if (high <= 0 || aside >= most * most || soft <= 0) {
+    return 0;
+  }
+  const over = high - Math.sqrt(most * most - aside);
+  if (over >= soft) {
+    return over;
+  }
+  return over <= -soft ? 0 : (over + soft) * (over + soft) / (4 * soft);
+}
+
+/**
+ * Return a number that never gets to `most`, and is itself where small.
+ * @param {number} x
+ * @param {number} most
+ * @returns {number}
+ */
+function _soft(x, most) {
+  return x / Math.sqrt(1 + x / most * (x / most));
+}
+
+/**
+ * Return the turn about an axis by its length times an angle, radians.
+ * @param {[number, number, number]} axis
+ * @param {number} angle
+ * @returns {[number, number, number, number]}
+ */
+function _turn(axis, angle) {
+  const [x, y, z] = axis;
+  const size = length(axis);
+  if (size <= 0) {
+    return [0, 0, 0, 1];
+  }
+  const half = 0.5 * size * angle;
+  const k = Math.sin(half) / size;
+  return [x * k, y * k, z * k, Math.cos(half)];
+}
+
+/**
+ * @param {[number, number, number, number]} q
+ * @returns {[number, number, number, number]}
+ */
+function _back(q) {
+  const [x, y, z, w] = q;
+  return [-x, -y, -z, w];
+}
+
+/**
+ * @param {[number, number, number]} a
+ * @param {[number, number, number]} b
+ * @returns {[number, number, number]}
+ */
+function _plus(a, b) {
+  const [ax, ay, az] = a;
+  const [bx, by, bz] = b;
+  return [ax + bx, ay + by, az + bz];
+}
+
+/**
+ * @param {[number, number, number]} a
+ * @param {[number, number, number]} b
+ * @returns {[number, number, number]}
+ */
+function _minus(a, b) {
+  const [ax, ay, az] = a;
+  const [bx, by, bz] = b;
+  return [ax - bx, ay - by, az - bz];
+}
+
+/**
+ * @param {[number, number, number]} a
+ * @param {number} k
+ * @returns {[number, number, number]}
+ */
+function _scaled(a, k) {
+  const [x, y, z] = a;
+  return [x * k, y * k, z * k];
+}
+
+/**
+ * @param {[number, number, number]} a
+ * @param {[number, number, number]} b
+ * @returns {number}
+ */
+function _dot(a, b) {
+  const [ax, ay, az] = a;
+  const [bx, by, bz] = b;
+  return ax * bx + ay * by + az * bz;
+}

@@ -1,0 +1,227 @@
+"""How a standing body answers its arms: hips give way, spine and legs make up for it, feet stay.
+
+Rotations are quaternions xyzw, lengths metres; places are those in a rig's list of joints. Worked out one
+pose at a time, in plain numbers, the same in all languages.
+
+By how much: whoever stands keeps the centre of mass over the feet, so the hips go as far back as the arms
+carry it ahead (de Leva 1996 has what each segment weighs; that trunk and legs move against a raised arm:
+Bouisset and Zattara 1987). The other amounts are ours, chosen by eye on the sample.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import cos, sin, sqrt
+
+from metagraph.motion.contact_solve import (
+    REACHED,
+    ContactPose,
+    ContactRig,
+    bring,
+    length,
+    rotated,
+    spread,
+    times,
+)
+from metagraph.motion.contact_spans import Quaternion, Vector
+
+BALANCE = 1.4  # of how far the arms carry the centre of mass away, the hips give way
+HASTE = 0.12  # seconds of the arms' speed that add to that
+DIP = 0.05  # seconds: arms that rise this fast press the body down, half as far at most
+SPIN = 30.0  # seconds: how far the pelvis turns against what arms turn about the vertical
+ROLL = 3.0  # radians that the pelvis rolls for a shift to a side of its own height, and
+PITCH = 2.0  # bends for one ahead or back
+MOST_SHIFT = 0.02  # of the height
+MOST_TURN = 0.1  # radians
+SITTING = 0.75  # how high a hip is above its ankle, of the leg's length: below this it does not stand
+STANDING = 0.15  # and this much above it stands altogether
+GIVE = 0.5  # of a shift: over so much a leg's full length makes itself felt
+
+
+@dataclass(frozen=True)
+class WeightBend:
+    """A joint that turns. left, up, ahead: the character's directions in its own space. share: of the hips'
+    turn, below 0 against it.
+    """
+
+    place: int
+    left: Vector
+    up: Vector
+    ahead: Vector
+    share: float
+
+
+@dataclass(frozen=True)
+class WeightCollar:
+    """A collar bone. upper: the place of its arm. axis: what lifts it, in its own space. side: 0 left, 1
+    right.
+    """
+
+    place: int
+    upper: int
+    axis: Vector
+    side: int
+
+
+@dataclass(frozen=True)
+class WeightRig:
+    """What of a skeleton answers its arms. body: joints, its `arms` being the legs, left and right, its
+    `hands` the names of the hands. bends: from the hips up. knees: where straight legs bend to, in the upper
+    legs' own spaces. levers: how far to the left and ahead of the hips arms are. up: the character's
+    up. height: of the figure, metres. strength: how much of the arms' layer counts, 0..1.
+    """
+
+    body: ContactRig
+    bends: tuple[WeightBend, ...]
+    collars: tuple[WeightCollar, ...]
+    knees: tuple[Vector, ...]
+    levers: tuple[tuple[float, float], ...]
+    up: Vector
+    height: float
+    strength: float
+
+
+def moves_body(drive: Sequence[float]) -> bool:
+    """Whether there is anything to answer."""
+    return any(x != 0.0 for x in drive)
+
+
+def answer_arms(
+    rig: WeightRig, pose: ContactPose, drive: Sequence[float], follow: float, lift: float
+) -> bool:
+    """Change a pose of the rig's joints by what its arms do; return whether it did.
+
+    drive: as `playback.follow_through.driven`. follow, lift: the dials. Joints' places need not be known.
+    """
+    follow = follow * rig.strength
+    lift = lift * rig.strength
+    if (follow <= 0.0 and lift <= 0.0) or not moves_body(drive):
+        return False
+    for collar in rig.collars:
+        turn = _turn(collar.axis, lift * drive[6 + collar.side])
+        pose.local[collar.place] = times(pose.local[collar.place], turn)
+        pose.local[collar.upper] = times(_back(turn), pose.local[collar.upper])
+    if follow <= 0.0:
+        return True
+    spread(rig.body, pose)
+    follow = follow * _stands(rig, pose)
+    if follow <= 0.0:
+        return True
+    _give_way(rig, pose, drive, follow)
+    return True
+
+
+def _stands(rig: WeightRig, pose: ContactPose) -> float:
+    """Return how much a figure stands, 0 for one that sits or lies, 1 on straight legs."""
+    least = 1.0
+    for leg in rig.body.arms:
+        hip, knee, ankle = pose.at[leg.upper], pose.at[leg.lower], pose.at[leg.hand]
+        whole = length(_minus(knee, hip)) + length(_minus(ankle, knee))
+        if whole > 1e-6:
+            least = min(least, _dot(_minus(hip, ankle), rig.up) / whole)
+    x = min(max((least - SITTING) / STANDING, 0.0), 1.0)
+    return x * x * (3.0 - 2.0 * x)
+
+
+def _give_way(rig: WeightRig, pose: ContactPose, drive: Sequence[float], follow: float) -> None:
+    """Shift and turn the hips, undo that in the spine, and bring the legs back to where the feet were."""
+    body = rig.body
+    vx, vy, vz = drive[8] + drive[11], drive[9] + drive[12], drive[10] + drive[13]
+    spin = 0.0
+    for side, lever in enumerate(rig.levers):
+        lx, lz = lever
+        spin += lz * drive[8 + 3 * side] - lx * drive[10 + 3 * side]
+    most = MOST_SHIFT * rig.height
+    x = _soft(-follow * BALANCE * (drive[0] + drive[3] + HASTE * vx), most)
+    y = _soft(-follow * DIP * vy, 0.5 * most)
+    z = _soft(-follow * BALANCE * (drive[2] + drive[5] + HASTE * vz), most)
+    yaw = _soft(-follow * SPIN * spin / (rig.height * rig.height), MOST_TURN)
+    roll = ROLL * x / rig.height
+    pitch = -PITCH * z / rig.height
+    feet = [pose.at[leg.hand] for leg in body.arms]
+    soles = [pose.turned[leg.hand] for leg in body.arms]
+    reaches = [length(_minus(pose.at[leg.hand], pose.at[leg.upper])) for leg in body.arms]
+    hips = rig.bends[0]
+    shift = _plus(_plus(_scaled(hips.left, x), _scaled(hips.up, y)), _scaled(hips.ahead, z))
+    shift = rotated(pose.turned[hips.place], shift)
+    for bend in rig.bends:
+        axis = _plus(_plus(_scaled(bend.left, pitch), _scaled(bend.up, yaw)), _scaled(bend.ahead, roll))
+        pose.local[bend.place] = times(pose.local[bend.place], _turn(axis, bend.share))
+    above = body.parents[hips.place]
+    space = (0.0, 0.0, 0.0, 1.0) if above < 0 else _back(pose.turned[above])
+    pose.moved[hips.place] = _plus(pose.moved[hips.place], rotated(space, shift))
+    spread(body, pose)
+    size = length((x, y, z)) + 0.1 * rig.height * length((yaw, roll, pitch))
+    low = 0.0
+    for side in range(len(feet)):
+        low = max(low, _too_far(rig, pose, side, feet[side], reaches[side], GIVE * size))
+    if low > 0.0:
+        down = rotated(space, _scaled(rig.up, -low))
+        pose.moved[hips.place] = _plus(pose.moved[hips.place], down)
+        spread(body, pose)
+    for side in range(len(feet)):
+        bring(body, pose, side, feet[side], soles[side], rig.knees[side])
+
+
+def _too_far(rig: WeightRig, pose: ContactPose, side: int, foot: Vector, reach: float, soft: float) -> float:
+    """Return by how much the hips have to sink for a foot to be within a leg's reach; from a little before
+    that on, so that it sets in gently. reach: how far hip and foot were apart.
+    """
+    leg = rig.body.arms[side]
+    hip, knee, ankle = pose.at[leg.upper], pose.at[leg.lower], pose.at[leg.hand]
+    whole = length(_minus(knee, hip)) + length(_minus(ankle, knee))
+    most = max(REACHED * whole, reach)
+    way = _minus(hip, foot)
+    high = _dot(way, rig.up)
+    aside = _dot(way, way) - high * high
+    if high <= 0.0 or aside >= most * most or soft <= 0.0:
+        return 0.0
+    over = high - sqrt(most * most - aside)
+    if over >= soft:
+        return over
+    return 0.0 if over <= -soft else (over + soft) * (over + soft) / (4.0 * soft)
+
+
+def _soft(x: float, most: float) -> float:
+    """Return a number that never gets to `most`, and is itself where small."""
+    return x / sqrt(1.0 + (x / most) * (x / most))
+
+
+def _turn(axis: Vector, angle: float) -> Quaternion:
+    """Return the turn about an axis by its length times an angle, radians."""
+    x, y, z = axis
+    size = length(axis)
+    if size <= 0.0:
+        return (0.0, 0.0, 0.0, 1.0)
+    half = 0.5 * size * angle
+    k = sin(half) / size
+    return (x * k, y * k, z * k, cos(half))
+
+
+def _back(q: Quaternion) -> Quaternion:
+    x, y, z, w = q
+    return (-x, -y, -z, w)
+
+
+def _plus(a: Vector, b: Vector) -> Vector:
+    ax, ay, az = a
+    bx, by, bz = b
+    return (ax + bx, ay + by, az + bz)
+
+
+def _minus(a: Vector, b: Vector) -> Vector:
+    ax, ay, az = a
+    bx, by, bz = b
+    return (ax - bx, ay - by, az - bz)
+
+
+def _scaled(a: Vector, k: float) -> Vector:
+    x, y, z = a
+    return (x * k, y * k, z * k)
+
+
+def _dot(a: Vector, b: Vector) -> float:
+    ax, ay, az = a
+    bx, by, bz = b
+    return ax * bx + ay * by + az * bz
