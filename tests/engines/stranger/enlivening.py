@@ -209,20 +209,25 @@ class Life:
     def lips(self, t: float, said: list[tuple[float, float, str]]) -> Numbers:
         """How much of each of SHAPES the mouth shows; said: start, end, line; "Lips"."""
 
-        def shown(t: float) -> Numbers:
-            total = np.zeros(len(SHAPES))
-            for start, end, line in said:
-                if t < start:
-                    continue
-                voice = self.character.data["voices"][line]
-                rows = np.array(voice["weights"])[:, 1:]
-                keys = np.linspace(0.0, max(voice["duration"], 1e-3), len(rows))
-                row = np.array([np.interp(min(t, end) - start, keys, each) for each in rows.T])
-                total += row * (1.0 - ease((t - end) / 0.12))
-            return total
+        def shown(t: float, one: tuple[float, float, str]) -> Numbers:
+            start, end, line = one
+            if t < start:
+                return np.zeros(len(SHAPES))
+            voice = self.character.data["voices"][line]
+            rows = np.array(voice["weights"])[:, 1:]
+            keys = np.linspace(0.0, max(voice["duration"], 1e-3), len(rows))
+            row = np.array([np.interp(min(t, end) - start, keys, each) for each in rows.T])
+            return np.asarray(row * (1.0 - ease((t - end) / 0.12)))
 
         s = self.dials["lip_smoothing"]
-        mouth = shown(t) if s <= 0.0 else 0.25 * shown(t - s) + 0.5 * shown(t) + 0.25 * shown(t + s)
+        mouth = np.zeros(len(SHAPES))
+        for each in said:
+            now = shown(t, each)
+            soft = now if s <= 0.0 else 0.25 * shown(t - s, each) + 0.5 * now + 0.25 * shown(t + s, each)
+            closed = now[:2]
+            room = 1.0 - soft[:2].sum()
+            rest = min(1.0, max(0.0, 1.0 - closed.sum()) / room) if room > 1e-9 else 0.0
+            mouth += np.concatenate([closed, rest * soft[2:]])
         return np.asarray(mouth / max(float(mouth.sum()), 1.0) * self.dials["lips"])
 
     def added(

@@ -1,4 +1,5 @@
 using System;
+using System.Collections.Generic;
 
 namespace Metagraph
 {
@@ -20,14 +21,17 @@ namespace Metagraph
                 {
                     continue;
                 }
-                if (smoothing <= 0)
+                Voice voice = voices.Of(speech);
+                List<double> now = Shown(speech, voice, time, shapes.Length);
+                if (smoothing > 0)
                 {
-                    Add(speech, voices.Of(speech), time, 1.0, shapes);
-                    continue;
+                    List<double> before = Shown(speech, voice, time - smoothing, shapes.Length);
+                    now = MouthRules.Softened(before, now, Shown(speech, voice, time + smoothing, shapes.Length));
                 }
-                Add(speech, voices.Of(speech), time - smoothing, 0.25, shapes);
-                Add(speech, voices.Of(speech), time, 0.5, shapes);
-                Add(speech, voices.Of(speech), time + smoothing, 0.25, shapes);
+                for (int v = 0; v < shapes.Length; v++)
+                {
+                    shapes[v] += now[v];
+                }
             }
             double sum = 0.0; // two speeches may meet; together they are one mouth
             foreach (double shape in shapes)
@@ -40,21 +44,23 @@ namespace Metagraph
             }
         }
 
-        private static void Add(Speech speech, Voice voice, double time, double share, double[] shapes)
+        private static List<double> Shown(Speech speech, Voice voice, double time, int count)
         {
+            var shapes = new List<double>(new double[count]);
             if (time < speech.Start)
             {
-                return;
+                return shapes;
             }
             double said = Math.Min(time, speech.End) - speech.Start;
             int low = Math.Min(Math.Max(Basics.BisectRight(voice.Times, said) - 1, 0), voice.Times.Length - 2);
             double gap = Math.Max(voice.Times[low + 1] - voice.Times[low], 1e-9);
             double part = Basics.Clamp((said - voice.Times[low]) / gap, 0.0, 1.0);
-            share *= 1 - Basics.Ease((time - speech.End) / Closing);
-            for (int v = 0; v < shapes.Length; v++)
+            double share = 1 - Basics.Ease((time - speech.End) / Closing);
+            for (int v = 0; v < count; v++)
             {
-                shapes[v] += share * (voice.Weights[low][v + 1] * (1 - part) + voice.Weights[low + 1][v + 1] * part);
+                shapes[v] = share * (voice.Weights[low][v + 1] * (1 - part) + voice.Weights[low + 1][v + 1] * part);
             }
+            return shapes;
         }
     }
 }
