@@ -71,6 +71,8 @@ class Life(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
     blink_open: Annotated[float, Meta(ge=0.02, le=1)] = 0.10
     lips: Annotated[float, Meta(ge=0, le=2)] = 1.0
     lip_smoothing: Annotated[float, Meta(ge=0, le=0.2)] = 0.03
+    expressions: Annotated[float, Meta(ge=0, le=2)] = 1.0
+    accent_brows: Annotated[float, Meta(ge=0, le=1)] = 0.4
     valence: Annotated[float, Meta(ge=-1, le=1)] = 0.0
     arousal: Annotated[float, Meta(ge=-1, le=1)] = 0.0
     intensity: Annotated[float, Meta(ge=0, le=2)] = 1.0
@@ -200,6 +202,28 @@ DIALS: tuple[Dial, ...] = (
         "lips", "Lips", "Lip sync", "×", 0, 2, 0.05, 0, "How far the mouth opens and shapes itself in speech."
     ),
     Dial("lip_smoothing", "Lips", "Smoothing", "s", 0, 0.2, 0.005, 0, "More is softer; too much mumbles."),
+    Dial(
+        "expressions",
+        "Face",
+        "Expressions",
+        "×",
+        0,
+        2,
+        0.05,
+        0,
+        "How far brows and smiles come and go; at 0 a mood's face stands still.",
+    ),
+    Dial(
+        "accent_brows",
+        "Face",
+        "Brows on stress",
+        "",
+        0,
+        1,
+        0.01,
+        0,
+        "How many of the stressed syllables raise the brows.",
+    ),
 )
 MANNER_DIALS: tuple[Dial, ...] = (
     Dial("breathing", "Breathing", "Depth", "×", 0, 4, 0.05, 0, "Depth of breath in this mode."),

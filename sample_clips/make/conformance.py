@@ -25,6 +25,8 @@ LIVING = (
     "stressed syllables",
     "the models in four moods",
     "moods over moods",
+    "questions and lips that meet",
+    "a mood's face over time",
 )
 FOLDER = Path(engines.__file__).with_name("conformance")
 

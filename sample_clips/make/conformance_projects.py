@@ -68,6 +68,16 @@ MORPHS = (  # of faces that have no joints
     "mouthPucker",
     "viseme_aa",
     "viseme_PP",
+    "mouthPressLeft",
+    "mouthRollLower",
+    "mouthUpperUpLeft",
+    "mouthSmileLeft",
+    "mouthSmileRight",
+    "mouthFrownLeft",
+    "browInnerUp",
+    "browDownLeft",
+    "browOuterUpRight",
+    "cheekSquintLeft",
 )
 
 
@@ -482,6 +492,8 @@ def varied() -> Project:
         blink_open=0.2,
         lips=0.8,
         lip_smoothing=0.06,
+        expressions=1.3,
+        accent_brows=0.9,
         modes={"idle": Manner(aversion_rate=0.5, blinks=2.0, breathing=0.5)},
     )
     return replace(edits.set_base(project, None), life=life)

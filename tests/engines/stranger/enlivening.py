@@ -278,7 +278,7 @@ class Life:
         feels = {
             "smile": i * well,
             "frown": i * ill,
-            "brow_down": 1.4 * i * up * max(0.0, 0.4 - v),
+            "brow_down": 1.8 * i * up * max(0.0, 0.4 - v),
             "brow_up": i * ill * max(0.0, 0.6 - a),
         }
         named = {name: clamp(value, 0.0, 1.0) for name, value in feels.items()}

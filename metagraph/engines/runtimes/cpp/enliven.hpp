@@ -6,6 +6,7 @@
 //     lid       = follow x pitch of the eye + blink x (1 - how far it is shut already)
 #pragma once
 
+#include "expressions.hpp"
 #include "lips.hpp"
 #include "solve.hpp"
 
@@ -72,9 +73,9 @@ public:
         for (std::size_t n = 0; n < turned_.size(); n++) lang::at(pose, turned_[n]).rotation = results_[n];
     }
 
-    /// Add the morph target weights of what was found, by their places in the graph's `morphs`.
-    void morphs(List<double>& out) {
-        double values[17 + life::SHAPES];
+    /// Add the morph target weights of what was found, by their places in the graph's `morphs`. cues: those that play then.
+    void morphs(List<double>& out, const Schedule& schedule, const List<const Cue*>& cues, double time) {
+        double values[19 + life::SHAPES];
         values[0] = std::max((shut_[0] + shut_[1]) / 2, channels_[life::BLINK]);
         for (std::size_t side = 0; side < 2; side++) {
             const double left = solver_.eyes[2 * side] / MORPH_LOOK, up = solver_.eyes[2 * side + 1] / MORPH_LOOK;
@@ -88,10 +89,11 @@ public:
         }
         for (std::size_t k = 0; k < life::SHAPES; k++) values[13 + k] = channels_[life::BLINK + 1 + k];
         double* feels = values + 13 + life::SHAPES;
-        feels[0] = bears_.smile;
-        feels[1] = bears_.frown;
-        feels[2] = bears_.brow_down;
-        feels[3] = bears_.brow_up;
+        const Ref<Expression> face =
+            expressions::shown_face(graph_.life, schedule.swells, schedule.emphases, lang::made<Bearing>(bears_), time);
+        for (const Cue* cue : cues) expressions::answer(graph_.life, face, cue->action->tags, cue->start, cue->end, time);
+        const List<double> shown = face->values();
+        std::copy(shown.begin(), shown.end(), feels);
         std::fill(added_.begin(), added_.end(), 0.0);
         for (const MorphShare& share : body_.face.morphs) {
             if (values[share.value] > 1e-4) lang::at(added_, share.target) += values[share.value] * share.weight;
