@@ -35,7 +35,10 @@ MOOD_FACE = ("smile", "frown", "brow_down", "brow_up", "brows", "cheeks")
 _MOODS: dict[str, tuple[Weights, tuple[str, ...]]] = {
     "smile": ((("mouthsmile#", 0.9),), ("happy", "joy", "fun", "smile")),
     "frown": ((("mouthfrown#", 1.0), ("mouthshruglower", 0.3)), ("sad", "sorrow", "frown")),
-    "brow_down": ((("browdown#", 1.0), ("eyesquint#", 0.35), ("nosesneer#", 0.25)), ("angry", "browdown", "browsdown")),
+    "brow_down": (
+        (("browdown#", 1.0), ("eyesquint#", 0.35), ("nosesneer#", 0.25)),
+        ("angry", "browdown", "browsdown"),
+    ),
     "brow_up": ((("browinnerup", 1.0),), ("browinnerup", "browsup", "browup")),
     "brows": ((("browinnerup", 0.9), ("browouterup#", 0.9)), ("browsup", "browup", "browraise")),
     "cheeks": ((("cheeksquint#", 0.7), ("eyesquint#", 0.3)), ("cheeksquint", "cheekraise")),

@@ -33,7 +33,7 @@ from metagraph.graph.life import Life
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.life.body import Body, body_of
-from metagraph.playback.life.expressions import Expression, answer, shown_face
+from metagraph.playback.life.expressions import FaceShown, answer, settle, shown_face
 from metagraph.playback.life.gaze import ease, gaze_of
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.lips import mouth
@@ -103,9 +103,11 @@ def face_weights(
     one = Pose(whole.rotations[None], whole.translations[None])
     found = _Found(body, project, schedule, track, np.array([float(seconds)]), one)
     look, life = found.faces[0], project.life
-    face = shown_face(life, schedule.swells, schedule.emphases, look.bears, float(seconds))
+    face = FaceShown()
+    shown_face(face, life, schedule.swells, schedule.emphases, look.bears, float(seconds))
     for tags, start, end in playing:
-        answer(life, face, tags, start, end, float(seconds))
+        answer(face, life, tags, start, end, float(seconds))
+    settle(face)
     return _morphs(body.face, look, face, found.channels[0])
 
 
@@ -224,7 +226,7 @@ def blink_at(lane: Lane, life: Life, time: float) -> float:
     return out
 
 
-def _morphs(face: FaceRig, look: _Look, shown: Expression, channels: Array) -> dict[str, float]:
+def _morphs(face: FaceRig, look: _Look, shown: FaceShown, channels: Array) -> dict[str, float]:
     """Return morph target weights of a face."""
     values: dict[str, float] = {"blink": max(sum(look.shut[:2]) / 2, look.blink)}
     for n, side in enumerate(("left", "right")):
@@ -236,7 +238,7 @@ def _morphs(face: FaceRig, look: _Look, shown: Expression, channels: Array) -> d
             f"look_up_{side}": up,
             f"look_down_{side}": -up,
         }
-    values |= dict(zip(MOOD_FACE, shown.values(), strict=True))
+    values |= {channel: getattr(shown, channel) for channel in MOOD_FACE}
     values |= dict(zip(MOUTH, channels[len(LIDS) + 1 :].tolist(), strict=True))
     out: dict[str, float] = {}
     for channel, targets in face.morphs.items():

@@ -1,4 +1,5 @@
-"""Small events of the face: drawn with the other life layers, shown by `shown_face` and `answer`.
+"""Small events of the face: drawn with the other life layers, shown by `shown_face`, `answer` and
+`settle`.
 
 What is known and followed here: speakers raise their brows on stressed words (Cave et al. 1996), from about
 60 ms before the accent (Flecha-Garcia 2010), and where they ask (Ekman 1979); greeting, people flash their
@@ -36,8 +37,8 @@ RAISE = 0.35  # seconds it takes at least
 RAISE_CHANCE = 0.3  # and what chance adds
 RAISE_RISES = 0.12
 ASKING = 0.8  # seconds before the end of a question that its brows begin to rise, but in its second half
-ASKING_ON = 0.5  # and stay on after it
-ASKING_RISES = 0.5
+ASKING_ON = 0.5  # seconds they take to sink after it
+ASKING_LIFTS = 0.8  # of a full raise
 LONGEST_EMPHASIS = 1.5  # seconds
 # Cues: what those with certain tags show.
 CUE_RISES = 0.25  # seconds
@@ -59,9 +60,9 @@ DUCHENNE = 0.2  # the smile from which on cheeks rise
 
 
 @dataclass
-class Expression:
-    """What a face shows beside lids and lips, before it is clamped to 0..1. brow_down, brow_up: of a mood;
-    brow_up raises their inner ends alone, brows the whole of them.
+class FaceShown:
+    """What a face shows beside lids and lips: weights of its channels. brow_up raises the brows' inner ends
+    alone, brows the whole of them. One is filled again for each time (`shown_face`, `answer`, `settle`).
     """
 
     smile: float = 0.0
@@ -69,18 +70,7 @@ class Expression:
     brow_down: float = 0.0
     brow_up: float = 0.0
     brows: float = 0.0
-
-    def values(self) -> list[float]:
-        """Return the weights of the face's channels smile, frown, brow_down, brow_up, brows and cheeks."""
-        smile = within(self.smile, 0.0, 1.0)
-        return [
-            smile,
-            within(self.frown, 0.0, 1.0),
-            within(self.brow_down, 0.0, 1.0),
-            within(self.brow_up, 0.0, 1.0),
-            within(self.brows, 0.0, 1.0),
-            within((smile - DUCHENNE) / (1 - DUCHENNE), 0.0, 1.0),
-        ]
+    cheeks: float = 0.0
 
 
 def swells_on(track: Track, seed: Bits, cut: float, drawn: float, before: Lane) -> Lane:
@@ -130,7 +120,7 @@ def emphases_on(
             lead = min(ASKING, 0.5 * length)
             at = speech.start + length - lead
             if at < speech.end:
-                found.append([at, lead + ASKING_ON, 0.8, min(ASKING_RISES, lead)])
+                found.append([at, lead + ASKING_ON, ASKING_LIFTS, lead])
     times: list[float] = []
     rows: list[list[float]] = []
     for event in sorted(found, key=lambda x: (x[0], x[3])):
@@ -146,8 +136,10 @@ def asks(speech: Speech) -> bool:
     return text != "" and any(text.rpartition(mark)[2] == "" for mark in MARKS)
 
 
-def shown_face(life: Life, swells: Lane, emphases: Lane, bears: Bearing, seconds: float) -> Expression:
-    """Return the face of a mood at a time, and of what was drawn."""
+def shown_face(
+    face: FaceShown, life: Life, swells: Lane, emphases: Lane, bears: Bearing, seconds: float
+) -> None:
+    """Fill in the face of a mood at a time, and of what was drawn."""
     calm = 1 - life.stillness
     swell, warm = 0.0, 0.0
     n = bisect_right(swells.times, seconds) - 1
@@ -166,17 +158,15 @@ def shown_face(life: Life, swells: Lane, emphases: Lane, bears: Bearing, seconds
         gone = seconds - emphases.times[n]
         brows = max(brows, amount * faded(min(gone / rise, (length - gone) / (length - rise))))
         n -= 1
-    return Expression(
-        share * bears.smile + much * WARMTH * warm * (1 - bears.frown),
-        share * bears.frown,
-        share * bears.brow_down,
-        share * bears.brow_up,
-        much * brows,
-    )
+    face.smile = share * bears.smile + much * WARMTH * warm * (1 - bears.frown)
+    face.frown = share * bears.frown
+    face.brow_down = share * bears.brow_down
+    face.brow_up = share * bears.brow_up
+    face.brows = much * brows
 
 
 def answer(
-    life: Life, face: Expression, tags: Sequence[str], start: float, end: float, seconds: float
+    face: FaceShown, life: Life, tags: Sequence[str], start: float, end: float, seconds: float
 ) -> None:
     """Add what a cue with these tags, from `start` to `end`, shows on a face at a time."""
     much = (1 - life.stillness) * life.expressions
@@ -196,3 +186,13 @@ def answer(
             flash = gone - FLASH_FROM
             left = FLASH_LASTS - flash
             face.brows += much * faded(min(flash / FLASH_RISES, left / (FLASH_LASTS - FLASH_RISES)))
+
+
+def settle(face: FaceShown) -> None:
+    """Keep all within 0..1, and raise the cheeks with a smile."""
+    face.smile = within(face.smile, 0.0, 1.0)
+    face.frown = within(face.frown, 0.0, 1.0)
+    face.brow_down = within(face.brow_down, 0.0, 1.0)
+    face.brow_up = within(face.brow_up, 0.0, 1.0)
+    face.brows = within(face.brows, 0.0, 1.0)
+    face.cheeks = within((face.smile - DUCHENNE) / (1 - DUCHENNE), 0.0, 1.0)

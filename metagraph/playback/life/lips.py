@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.face_names import VISEMES
-from metagraph.playback.life.mouth import softened
+from metagraph.playback.life.mouth import soften
 from metagraph.playback.life.track import Speech, Track
 from metagraph.playback.life.voice import Voice, voice_of
 
@@ -41,11 +41,15 @@ def mouth(track: Track, voices: Mapping[str, Voice], smoothing: float, times: Ar
 
 
 def _shown(speech: Speech, voice: Voice, smoothing: float, times: Array) -> Array:
-    """Return a speech's shapes, smoothed over `smoothing` seconds before and after (`mouth.softened`)."""
+    """Return a speech's shapes, smoothed over `smoothing` seconds before and after (`mouth.soften`)."""
     if smoothing <= 0:
         return _at(speech, voice, times)
     taps = _at(speech, voice, (times[:, None] + smoothing * _TAPS).reshape(-1))
-    return np.array([softened(*rows) for rows in taps.reshape(len(times), 3, -1).tolist()])
+    out: list[list[float]] = []
+    for before, now, after in taps.reshape(len(times), 3, -1).tolist():
+        out.append([0.0] * len(now))
+        soften(out[-1], before, now, after)
+    return np.array(out)
 
 
 def _at(speech: Speech, voice: Voice, times: Array) -> Array:

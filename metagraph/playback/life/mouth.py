@@ -114,18 +114,18 @@ def _closed(row: list[float], lips: tuple[float, float], teeth: tuple[float, flo
     return out
 
 
-def softened(before: Sequence[float], now: Sequence[float], after: Sequence[float]) -> list[float]:
-    """Return shapes but silence `[14]` smoothed over three moments; those that close the mouth stay as they
+def soften(out: list[float], before: Sequence[float], now: Sequence[float], after: Sequence[float]) -> None:
+    """Write shapes but silence `[14]` smoothed over three moments; those that close the mouth stay as they
     are now, and leave the others what room they leave: smoothing must not part lips that meet.
     """
-    out = [0.25 * before[n] + 0.5 * now[n] + 0.25 * after[n] for n in range(len(now))]
+    for n in range(len(out)):
+        out[n] = 0.25 * before[n] + 0.5 * now[n] + 0.25 * after[n]
     open_ = 1 - out[0] - out[1]
     out[0] = now[0]
     out[1] = now[1]
     left = max(0.0, 1 - out[0] - out[1]) / open_ if open_ > 1e-9 else 0.0
     for n in range(2, len(out)):
         out[n] *= min(1.0, left)
-    return out
 
 
 def rest() -> list[float]:

@@ -89,11 +89,11 @@ public:
         }
         for (std::size_t k = 0; k < life::SHAPES; k++) values[13 + k] = channels_[life::BLINK + 1 + k];
         double* feels = values + 13 + life::SHAPES;
-        const Ref<Expression> face =
-            expressions::shown_face(graph_.life, schedule.swells, schedule.emphases, lang::made<Bearing>(bears_), time);
-        for (const Cue* cue : cues) expressions::answer(graph_.life, face, cue->action->tags, cue->start, cue->end, time);
-        const List<double> shown = face->values();
-        std::copy(shown.begin(), shown.end(), feels);
+        expressions::shown_face(face_, graph_.life, schedule.swells, schedule.emphases, lang::made<Bearing>(bears_), time);
+        for (const Cue* cue : cues) expressions::answer(face_, graph_.life, cue->action->tags, cue->start, cue->end, time);
+        expressions::settle(face_);
+        const double shown[] = {face_->smile, face_->frown, face_->brow_down, face_->brow_up, face_->brows, face_->cheeks};
+        std::copy(std::begin(shown), std::end(shown), feels);
         std::fill(added_.begin(), added_.end(), 0.0);
         for (const MorphShare& share : body_.face.morphs) {
             if (values[share.value] > 1e-4) lang::at(added_, share.target) += values[share.value] * share.weight;
@@ -117,6 +117,7 @@ private:
     std::array<double, life::LIDS> shut_{};
     double full_ = 0; // how full the chest is
     Bearing bears_;
+    Ref<FaceShown> face_ = lang::made<FaceShown>(0, 0, 0, 0, 0, 0);
     List<double> added_;
 
     /// Return how full the chest is, 0 at rest, about 1 at the top of a breath.

@@ -1,4 +1,4 @@
-// Small events of the face: drawn with the other life layers, shown by `shown_face` and `answer`.
+// Small events of the face: drawn with the other life layers, shown by `shown_face`, `answer` and `settle`.
 //
 // What is known and followed here: speakers raise their brows on stressed words (Cave et al. 1996), from about 60 ms
 // before the accent (Flecha-Garcia 2010), and where they ask (Ekman 1979); greeting, people flash their brows for about
@@ -23,7 +23,7 @@
 
 namespace metagraph {
 
-struct Expression;
+struct FaceShown;
 
 namespace expressions {
 
@@ -41,8 +41,8 @@ inline constexpr double RAISE_CHANCE = 0.3; // and what chance adds
 inline constexpr double RAISE_RISES = 0.12;
 // seconds before the end of a question that its brows begin to rise, but in its second half
 inline constexpr double ASKING = 0.8;
-inline constexpr double ASKING_ON = 0.5; // and stay on after it
-inline constexpr double ASKING_RISES = 0.5;
+inline constexpr double ASKING_ON = 0.5; // seconds they take to sink after it
+inline constexpr double ASKING_LIFTS = 0.8; // of a full raise
 inline constexpr double LONGEST_EMPHASIS = 1.5; // seconds
 // Cues: what those with certain tags show.
 inline constexpr double CUE_RISES = 0.25; // seconds
@@ -82,7 +82,8 @@ inline Ref<Lane> emphases_on(
     const Ref<Lane>& before
 );
 inline bool asks(const Ref<Speech>& speech);
-inline Ref<Expression> shown_face(
+inline void shown_face(
+    const Ref<FaceShown>& face,
     const Ref<Life>& life,
     const Ref<Lane>& swells,
     const Ref<Lane>& emphases,
@@ -90,49 +91,37 @@ inline Ref<Expression> shown_face(
     double seconds
 );
 inline void answer(
+    const Ref<FaceShown>& face,
     const Ref<Life>& life,
-    const Ref<Expression>& face,
     const List<std::string>& tags,
     double start,
     double end,
     double seconds
 );
+inline void settle(const Ref<FaceShown>& face);
 
 }  // namespace expressions
 
-/// What a face shows beside lids and lips, before it is clamped to 0..1. brow_down, brow_up: of a mood; brow_up raises
-/// their inner ends alone, brows the whole of them.
-struct Expression {
+/// What a face shows beside lids and lips: weights of its channels. brow_up raises the brows' inner ends alone, brows
+/// the whole of them. One is filled again for each time (`shown_face`, `answer`, `settle`).
+struct FaceShown {
     double smile;
     double frown;
     double brow_down;
     double brow_up;
     double brows;
+    double cheeks;
 
-    explicit Expression(
+    explicit FaceShown(
         double smile_ = 0.0,
         double frown_ = 0.0,
         double brow_down_ = 0.0,
         double brow_up_ = 0.0,
-        double brows_ = 0.0
+        double brows_ = 0.0,
+        double cheeks_ = 0.0
     )
-        : smile(smile_), frown(frown_), brow_down(brow_down_), brow_up(brow_up_), brows(brows_) {}
-
-    /// Return the weights of the face's channels smile, frown, brow_down, brow_up, brows and cheeks.
-    List<double> values();
+        : smile(smile_), frown(frown_), brow_down(brow_down_), brow_up(brow_up_), brows(brows_), cheeks(cheeks_) {}
 };
-
-inline List<double> Expression::values() {
-    double smile = mood::within(this->smile, 0.0, 1.0);
-    return List<double>{
-        smile,
-        mood::within(this->frown, 0.0, 1.0),
-        mood::within(this->brow_down, 0.0, 1.0),
-        mood::within(this->brow_up, 0.0, 1.0),
-        mood::within(this->brows, 0.0, 1.0),
-        mood::within((smile - expressions::DUCHENNE) / (1 - expressions::DUCHENNE), 0.0, 1.0)
-    };
-}
 
 namespace expressions {
 
@@ -205,12 +194,7 @@ inline Ref<Lane> emphases_on(
             double lead = std::min(expressions::ASKING, 0.5 * length);
             at = speech->start + length - lead;
             if (at < speech->end) {
-                found.push_back(List<double>{
-                    at,
-                    lead + expressions::ASKING_ON,
-                    0.8,
-                    std::min(expressions::ASKING_RISES, lead)
-                });
+                found.push_back(List<double>{at, lead + expressions::ASKING_ON, expressions::ASKING_LIFTS, lead});
             }
         }
     }
@@ -246,8 +230,9 @@ inline bool asks(const Ref<Speech>& speech) {
     return holds;
 }
 
-/// Return the face of a mood at a time, and of what was drawn.
-inline Ref<Expression> shown_face(
+/// Fill in the face of a mood at a time, and of what was drawn.
+inline void shown_face(
+    const Ref<FaceShown>& face,
     const Ref<Life>& life,
     const Ref<Lane>& swells,
     const Ref<Lane>& emphases,
@@ -283,19 +268,17 @@ inline Ref<Expression> shown_face(
         brows = std::max(brows, amount * mood::faded(std::min(gone / rise, (length - gone) / (length - rise))));
         n -= 1;
     }
-    return lang::made<Expression>(
-        share * bears->smile + much * expressions::WARMTH * warm * (1 - bears->frown),
-        share * bears->frown,
-        share * bears->brow_down,
-        share * bears->brow_up,
-        much * brows
-    );
+    face->smile = share * bears->smile + much * expressions::WARMTH * warm * (1 - bears->frown);
+    face->frown = share * bears->frown;
+    face->brow_down = share * bears->brow_down;
+    face->brow_up = share * bears->brow_up;
+    face->brows = much * brows;
 }
 
 /// Add what a cue with these tags, from `start` to `end`, shows on a face at a time.
 inline void answer(
+    const Ref<FaceShown>& face,
     const Ref<Life>& life,
-    const Ref<Expression>& face,
     const List<std::string>& tags,
     double start,
     double end,
@@ -334,6 +317,16 @@ inline void answer(
                 );
         }
     }
+}
+
+/// Keep all within 0..1, and raise the cheeks with a smile.
+inline void settle(const Ref<FaceShown>& face) {
+    face->smile = mood::within(face->smile, 0.0, 1.0);
+    face->frown = mood::within(face->frown, 0.0, 1.0);
+    face->brow_down = mood::within(face->brow_down, 0.0, 1.0);
+    face->brow_up = mood::within(face->brow_up, 0.0, 1.0);
+    face->brows = mood::within(face->brows, 0.0, 1.0);
+    face->cheeks = mood::within((face->smile - expressions::DUCHENNE) / (1 - expressions::DUCHENNE), 0.0, 1.0);
 }
 
 }  // namespace expressions

@@ -37,11 +37,12 @@ inline Shown at(const Graph& graph, const Track& track, double time) {
         if (speech->start > time + smoothing) break;
         if (speech->end + CLOSING + smoothing <= time || time <= speech->start - smoothing) continue;
         const Ref<Voice> voice = graph.voices->of(speech);
-        List<double> now = shown(*voice, *speech, time);
+        const List<double> now = shown(*voice, *speech, time);
+        List<double> soft = now;
         if (smoothing > 0) {
-            now = mouth::softened(shown(*voice, *speech, time - smoothing), now, shown(*voice, *speech, time + smoothing));
+            mouth::soften(soft, shown(*voice, *speech, time - smoothing), now, shown(*voice, *speech, time + smoothing));
         }
-        for (std::size_t k = 0; k < out.size(); k++) out[k] += now[k];
+        for (std::size_t k = 0; k < out.size(); k++) out[k] += soft[k];
     }
     double sum = 0;
     for (const double one : out) sum += one;

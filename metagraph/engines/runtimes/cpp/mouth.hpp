@@ -65,7 +65,7 @@ inline List<double> _closed(
     const std::tuple<double, double>& lips,
     const std::tuple<double, double>& teeth
 );
-inline List<double> softened(const List<double>& before, const List<double>& now, const List<double>& after);
+inline void soften(List<double>& out, const List<double>& before, const List<double>& now, const List<double>& after);
 inline List<double> rest();
 inline List<double> accents_of(const List<double>& peaks, const List<double>& strengths);
 inline double _ease(double x);
@@ -208,12 +208,11 @@ inline List<double> _closed(
     return out;
 }
 
-/// Return shapes but silence `[14]` smoothed over three moments; those that close the mouth stay as they are now, and
+/// Write shapes but silence `[14]` smoothed over three moments; those that close the mouth stay as they are now, and
 /// leave the others what room they leave: smoothing must not part lips that meet.
-inline List<double> softened(const List<double>& before, const List<double>& now, const List<double>& after) {
-    List<double> out;
-    for (int n2 = 0; n2 < lang::len(now); n2++) {
-        out.push_back(0.25 * lang::at(before, n2) + 0.5 * lang::at(now, n2) + 0.25 * lang::at(after, n2));
+inline void soften(List<double>& out, const List<double>& before, const List<double>& now, const List<double>& after) {
+    for (int n = 0; n < lang::len(out); n++) {
+        lang::at(out, n) = 0.25 * lang::at(before, n) + 0.5 * lang::at(now, n) + 0.25 * lang::at(after, n);
     }
     double open_ = 1 - lang::at(out, 0) - lang::at(out, 1);
     lang::at(out, 0) = lang::at(now, 0);
@@ -222,7 +221,6 @@ inline List<double> softened(const List<double>& before, const List<double>& now
     for (int n = 2; n < lang::len(out); n++) {
         lang::at(out, n) *= std::min(1.0, left);
     }
-    return out;
 }
 
 /// Return the weights of a shut mouth.

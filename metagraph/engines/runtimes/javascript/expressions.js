@@ -1,5 +1,5 @@
 /**
- * Small events of the face: drawn with the other life layers, shown by `shown_face` and `answer`.
+ * Small events of the face: drawn with the other life layers, shown by `shown_face`, `answer` and `settle`.
  *
  * What is known and followed here: speakers raise their brows on stressed words (Cave et al. 1996), from about 60 ms before
  * the accent (Flecha-Garcia 2010), and where they ask (Ekman 1979); greeting, people flash their brows for about a third of
@@ -30,8 +30,8 @@ export const RAISE = 0.35; // seconds it takes at least
 export const RAISE_CHANCE = 0.3; // and what chance adds
 export const RAISE_RISES = 0.12;
 export const ASKING = 0.8; // seconds before the end of a question that its brows begin to rise, but in its second half
-export const ASKING_ON = 0.5; // and stay on after it
-export const ASKING_RISES = 0.5;
+export const ASKING_ON = 0.5; // seconds they take to sink after it
+export const ASKING_LIFTS = 0.8; // of a full raise
 export const LONGEST_EMPHASIS = 1.5; // seconds
 // Cues: what those with certain tags show.
 export const CUE_RISES = 0.25; // seconds
@@ -56,31 +56,19 @@ export const MARKS = ["?", "？", "؟"]; // at the end of questions
 export const DUCHENNE = 0.2; // the smile from which on cheeks rise
 
 /**
- * What a face shows beside lids and lips, before it is clamped to 0..1. brow_down, brow_up: of a mood; brow_up raises their
- * inner ends alone, brows the whole of them.
+ * What a face shows beside lids and lips: weights of its channels. brow_up raises the brows' inner ends alone, brows the
+ * whole of them. One is filled again for each time (`shown_face`, `answer`, `settle`).
  *
- * smile: number; frown: number; browDown: number; browUp: number; brows: number.
+ * smile: number; frown: number; browDown: number; browUp: number; brows: number; cheeks: number.
  */
-export class Expression {
-  constructor(smile = 0, frown = 0, browDown = 0, browUp = 0, brows = 0) {
+export class FaceShown {
+  constructor(smile = 0, frown = 0, browDown = 0, browUp = 0, brows = 0, cheeks = 0) {
     this.smile = smile;
     this.frown = frown;
     this.browDown = browDown;
     this.browUp = browUp;
     this.brows = brows;
-  }
-
-  /** Return the weights of the face's channels smile, frown, brow_down, brow_up, brows and cheeks. */
-  values() {
-    const smile = within(this.smile, 0, 1);
-    return [
-      smile,
-      within(this.frown, 0, 1),
-      within(this.browDown, 0, 1),
-      within(this.browUp, 0, 1),
-      within(this.brows, 0, 1),
-      within((smile - DUCHENNE) / (1 - DUCHENNE), 0, 1),
-    ];
+    this.cheeks = cheeks;
   }
 }
 
@@ -146,7 +134,7 @@ export function emphasesOn(life, track, voices, seed, cut, drawn, before) {
       const lead = Math.min(ASKING, 0.5 * length);
       at = speech.start + length - lead;
       if (at < speech.end) {
-        found.push([at, lead + ASKING_ON, 0.8, Math.min(ASKING_RISES, lead)]);
+        found.push([at, lead + ASKING_ON, ASKING_LIFTS, lead]);
       }
     }
   }
@@ -172,15 +160,15 @@ export function asks(speech) {
 }
 
 /**
- * Return the face of a mood at a time, and of what was drawn.
+ * Fill in the face of a mood at a time, and of what was drawn.
+ * @param {FaceShown} face
  * @param {Life} life
  * @param {Lane} swells
  * @param {Lane} emphases
  * @param {Bearing} bears
  * @param {number} seconds
- * @returns {Expression}
  */
-export function shownFace(life, swells, emphases, bears, seconds) {
+export function shownFace(face, life, swells, emphases, bears, seconds) {
   const calm = 1 - life.stillness;
   let swell = 0;
   let warm = 0;
@@ -210,25 +198,23 @@ export function shownFace(life, swells, emphases, bears, seconds) {
     brows = Math.max(brows, amount * faded(Math.min(gone / rise, (length - gone) / (length - rise))));
     n -= 1;
   }
-  return new Expression(
-    share * bears.smile + much * WARMTH * warm * (1 - bears.frown),
-    share * bears.frown,
-    share * bears.browDown,
-    share * bears.browUp,
-    much * brows,
-  );
+  face.smile = share * bears.smile + much * WARMTH * warm * (1 - bears.frown);
+  face.frown = share * bears.frown;
+  face.browDown = share * bears.browDown;
+  face.browUp = share * bears.browUp;
+  face.brows = much * brows;
 }
 
 /**
  * Add what a cue with these tags, from `start` to `end`, shows on a face at a time.
+ * @param {FaceShown} face
  * @param {Life} life
- * @param {Expression} face
  * @param {string[]} tags
  * @param {number} start
  * @param {number} end
  * @param {number} seconds
  */
-export function answer(life, face, tags, start, end, seconds) {
+export function answer(face, life, tags, start, end, seconds) {
   const much = (1 - life.stillness) * life.expressions;
   if (much <= 0 || seconds <= start || seconds >= Math.min(end, start + CUE_LASTS)) {
     return;
@@ -250,4 +236,17 @@ export function answer(life, face, tags, start, end, seconds) {
       face.brows += much * faded(Math.min(flash / FLASH_RISES, left / (FLASH_LASTS - FLASH_RISES)));
     }
   }
+}
+
+/**
+ * Keep all within 0..1, and raise the cheeks with a smile.
+ * @param {FaceShown} face
+ */
+export function settle(face) {
+  face.smile = within(face.smile, 0, 1);
+  face.frown = within(face.frown, 0, 1);
+  face.browDown = within(face.browDown, 0, 1);
+  face.browUp = within(face.browUp, 0, 1);
+  face.brows = within(face.brows, 0, 1);
+  face.cheeks = within((face.smile - DUCHENNE) / (1 - DUCHENNE), 0, 1);
 }

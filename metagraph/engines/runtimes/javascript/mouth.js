@@ -148,15 +148,17 @@ function _closed(row, lips, teeth) {
 }
 
 /**
- * Return shapes but silence `[14]` smoothed over three moments; those that close the mouth stay as they are now, and leave
+ * Write shapes but silence `[14]` smoothed over three moments; those that close the mouth stay as they are now, and leave
  * the others what room they leave: smoothing must not part lips that meet.
+ * @param {number[]} out
  * @param {number[]} before
  * @param {number[]} now
  * @param {number[]} after
- * @returns {number[]}
  */
-export function softened(before, now, after) {
-  const out = range(now.length).map((n) => 0.25 * before[n] + 0.5 * now[n] + 0.25 * after[n]);
+export function soften(out, before, now, after) {
+  for (let n = 0; n < out.length; n++) {
+    out[n] = 0.25 * before[n] + 0.5 * now[n] + 0.25 * after[n];
+  }
   const open = 1 - out[0] - out[1];
   out[0] = now[0];
   out[1] = now[1];
@@ -164,7 +166,6 @@ export function softened(before, now, after) {
   for (let n = 2; n < out.length; n++) {
     out[n] *= Math.min(1, left);
   }
-  return out;
 }
 
 /**

@@ -8,7 +8,7 @@
  */
 
 import { bisect } from "../basics.js";
-import { answer, shownFace } from "../expressions.js";
+import { FaceShown, answer, settle, shownFace } from "../expressions.js";
 import { Bearing, bearing, shown } from "../mood.js";
 import { fromVector, multiply } from "../rotation.js";
 import { CHANNELS, LIDS, MOUTH } from "../words.js";
@@ -45,6 +45,7 @@ export class Enlivener {
     this.shut = new Float64Array(LIDS.length);
     this.full = 0; // how full the chest is
     this.bears = UNMOVED;
+    this.feels = new FaceShown();
     this.values = new Float64Array(SHOWN.length);
     this.added = new Float64Array(graph.morphs.length);
     this.targets = body.face.morphs
@@ -178,9 +179,11 @@ export class Enlivener {
     }
     for (let k = 0; k < MOUTH.length; k++) values[13 + k] = channels[BLINK + 1 + k];
     const { life } = this.graph;
-    const face = shownFace(life, plan.life.swells, plan.life.emphases, this.bears, time);
-    for (const cue of cues) answer(life, face, cue.action.tags, cue.start, cue.end, time);
-    values.set(face.values(), 13 + MOUTH.length);
+    const face = this.feels;
+    shownFace(face, life, plan.life.swells, plan.life.emphases, this.bears, time);
+    for (const cue of cues) answer(face, life, cue.action.tags, cue.start, cue.end, time);
+    settle(face);
+    values.set([face.smile, face.frown, face.browDown, face.browUp, face.brows, face.cheeks], 13 + MOUTH.length);
     added.fill(0);
     for (let n = 0; n < this.targets.length; n++) {
       const { value, morph, weight } = this.targets[n];

@@ -1,7 +1,7 @@
 /** Which shape the mouth has: the voices of what is said, at any time. */
 
 import { begunBy } from "../basics.js";
-import { softened } from "../mouth.js";
+import { soften } from "../mouth.js";
 import { VISEMES } from "../words.js";
 import { ease } from "./gaze.js";
 
@@ -22,7 +22,8 @@ export function mouthAt(graph, speeches, time, out) {
     const voice = graph.voiceOf(speech);
     said = true;
     const now = shownOf(voice, speech, time);
-    const shown = smoothing > 0 ? softened(shownOf(voice, speech, time - smoothing), now, shownOf(voice, speech, time + smoothing)) : now;
+    const shown = [...now];
+    if (smoothing > 0) soften(shown, shownOf(voice, speech, time - smoothing), now, shownOf(voice, speech, time + smoothing));
     for (let k = 0; k < COUNT - 1; k++) out[k] += shown[k];
   }
   let sum = 0;

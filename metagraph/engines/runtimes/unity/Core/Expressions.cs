@@ -6,38 +6,33 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// What a face shows beside lids and lips, before it is clamped to 0..1. brow_down, brow_up: of a mood; brow_up raises their
-    /// inner ends alone, brows the whole of them.
+    /// What a face shows beside lids and lips: weights of its channels. brow_up raises the brows' inner ends alone, brows the
+    /// whole of them. One is filled again for each time (`shown_face`, `answer`, `settle`).
     /// </summary>
-    public sealed class Expression
+    public sealed class FaceShown
     {
         public double Smile;
         public double Frown;
         public double BrowDown;
         public double BrowUp;
         public double Brows;
+        public double Cheeks;
 
-        public Expression(double smile = 0.0, double frown = 0.0, double browDown = 0.0, double browUp = 0.0, double brows = 0.0)
+        public FaceShown(
+            double smile = 0.0,
+            double frown = 0.0,
+            double browDown = 0.0,
+            double browUp = 0.0,
+            double brows = 0.0,
+            double cheeks = 0.0
+        )
         {
             Smile = smile;
             Frown = frown;
             BrowDown = browDown;
             BrowUp = browUp;
             Brows = brows;
-        }
-
-        /// <summary>Return the weights of the face's channels smile, frown, brow_down, brow_up, brows and cheeks.</summary>
-        public List<double> Values()
-        {
-            var smile = MoodRules.Within(Smile, 0.0, 1.0);
-            return new List<double> {
-                smile,
-                MoodRules.Within(Frown, 0.0, 1.0),
-                MoodRules.Within(BrowDown, 0.0, 1.0),
-                MoodRules.Within(BrowUp, 0.0, 1.0),
-                MoodRules.Within(Brows, 0.0, 1.0),
-                MoodRules.Within((smile - ExpressionsRules.Duchenne) / (1 - ExpressionsRules.Duchenne), 0.0, 1.0)
-             };
+            Cheeks = cheeks;
         }
     }
 
@@ -57,8 +52,8 @@ namespace Metagraph
         public const double RaiseRises = 0.12;
         // seconds before the end of a question that its brows begin to rise, but in its second half
         public const double Asking = 0.8;
-        public const double AskingOn = 0.5; // and stay on after it
-        public const double AskingRises = 0.5;
+        public const double AskingOn = 0.5; // seconds they take to sink after it
+        public const double AskingLifts = 0.8; // of a full raise
         public const double LongestEmphasis = 1.5; // seconds
         // Cues: what those with certain tags show.
         public const double CueRises = 0.25; // seconds
@@ -150,7 +145,7 @@ namespace Metagraph
                     at = speech.Start + length - lead;
                     if (at < speech.End)
                     {
-                        found.Add(new List<double> { at, lead + AskingOn, 0.8, Math.Min(AskingRises, lead) });
+                        found.Add(new List<double> { at, lead + AskingOn, AskingLifts, lead });
                     }
                 }
             }
@@ -174,8 +169,8 @@ namespace Metagraph
             return text != "" && Marks.Any(mark => PlainText.PartedLast(text, mark).Item3 == "");
         }
 
-        /// <summary>Return the face of a mood at a time, and of what was drawn.</summary>
-        public static Expression ShownFace(LifeSettings life, Lane swells, Lane emphases, Bearing bears, double seconds)
+        /// <summary>Fill in the face of a mood at a time, and of what was drawn.</summary>
+        public static void ShownFace(FaceShown face, LifeSettings life, Lane swells, Lane emphases, Bearing bears, double seconds)
         {
             var calm = 1 - life.Stillness;
             var swell = 0.0;
@@ -208,17 +203,15 @@ namespace Metagraph
                 brows = Math.Max(brows, amount * MoodRules.Faded(Math.Min(gone / rise, (length - gone) / (length - rise))));
                 n -= 1;
             }
-            return new Expression(
-                share * bears.Smile + much * Warmth * warm * (1 - bears.Frown),
-                share * bears.Frown,
-                share * bears.BrowDown,
-                share * bears.BrowUp,
-                much * brows
-            );
+            face.Smile = share * bears.Smile + much * Warmth * warm * (1 - bears.Frown);
+            face.Frown = share * bears.Frown;
+            face.BrowDown = share * bears.BrowDown;
+            face.BrowUp = share * bears.BrowUp;
+            face.Brows = much * brows;
         }
 
         /// <summary>Add what a cue with these tags, from `start` to `end`, shows on a face at a time.</summary>
-        public static void Answer(LifeSettings life, Expression face, List<string> tags, double start, double end, double seconds)
+        public static void Answer(FaceShown face, LifeSettings life, List<string> tags, double start, double end, double seconds)
         {
             var much = (1 - life.Stillness) * life.Expressions;
             if (much <= 0 || seconds <= start || seconds >= Math.Min(end, start + CueLasts))
@@ -245,6 +238,17 @@ namespace Metagraph
                     face.Brows += much * MoodRules.Faded(Math.Min(flash / FlashRises, left / (FlashLasts - FlashRises)));
                 }
             }
+        }
+
+        /// <summary>Keep all within 0..1, and raise the cheeks with a smile.</summary>
+        public static void Settle(FaceShown face)
+        {
+            face.Smile = MoodRules.Within(face.Smile, 0.0, 1.0);
+            face.Frown = MoodRules.Within(face.Frown, 0.0, 1.0);
+            face.BrowDown = MoodRules.Within(face.BrowDown, 0.0, 1.0);
+            face.BrowUp = MoodRules.Within(face.BrowUp, 0.0, 1.0);
+            face.Brows = MoodRules.Within(face.Brows, 0.0, 1.0);
+            face.Cheeks = MoodRules.Within((face.Smile - Duchenne) / (1 - Duchenne), 0.0, 1.0);
         }
     }
 }

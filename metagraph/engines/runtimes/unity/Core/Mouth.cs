@@ -160,12 +160,15 @@ namespace Metagraph
         }
 
         /// <summary>
-        /// Return shapes but silence `[14]` smoothed over three moments; those that close the mouth stay as they are now, and
+        /// Write shapes but silence `[14]` smoothed over three moments; those that close the mouth stay as they are now, and
         /// leave the others what room they leave: smoothing must not part lips that meet.
         /// </summary>
-        public static List<double> Softened(List<double> before, List<double> now, List<double> after)
+        public static void Soften(List<double> out_, List<double> before, List<double> now, List<double> after)
         {
-            var out_ = PlainNumbers.Range(now.Count).Select(n => 0.25 * before[n] + 0.5 * now[n] + 0.25 * after[n]).ToList();
+            for (int n = 0; n < out_.Count; n++)
+            {
+                out_[n] = 0.25 * before[n] + 0.5 * now[n] + 0.25 * after[n];
+            }
             var open = 1 - out_[0] - out_[1];
             out_[0] = now[0];
             out_[1] = now[1];
@@ -174,7 +177,6 @@ namespace Metagraph
             {
                 out_[n] *= Math.Min(1.0, left);
             }
-            return out_;
         }
 
         /// <summary>Return the weights of a shut mouth.</summary>

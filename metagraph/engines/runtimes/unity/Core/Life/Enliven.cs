@@ -1,5 +1,4 @@
 using System;
-using System.Collections.Generic;
 
 namespace Metagraph
 {
@@ -25,6 +24,8 @@ namespace Metagraph
         private readonly Vec[] places;
         private readonly double[] channels = new double[FaceRig.Channels], shapes = new double[14], values = new double[Values];
         private readonly double[] shut = new double[4], eyeLeft = new double[2], eyeUp = new double[2], weights;
+        private readonly Lips lips = new Lips();
+        private readonly FaceShown face = new FaceShown();
         private double blink, full;
         private Gaze gaze;
         private Bearing bears = new Bearing();
@@ -152,20 +153,22 @@ namespace Metagraph
                 values[at + 5] = -eyeUp[n] / MorphLook;
             }
             Array.Copy(channels, 0, values, 15, channels.Length);
-            Expression shown = ExpressionsRules.ShownFace(graph.Life, plan.Life.Swells, plan.Life.Emphases, bears, time);
+            ExpressionsRules.ShownFace(face, graph.Life, plan.Life.Swells, plan.Life.Emphases, bears, time);
             foreach (string layer in Basics.Layers)
             {
                 Cue cue = plan.Layers[layer].CueAt(time);
                 if (cue != null)
                 {
-                    ExpressionsRules.Answer(graph.Life, shown, cue.Action.Tags, cue.Start, cue.End, time);
+                    ExpressionsRules.Answer(face, graph.Life, cue.Action.Tags, cue.Start, cue.End, time);
                 }
             }
-            List<double> feels = shown.Values();
-            for (int n = 0; n < feels.Count; n++)
-            {
-                values[Moods + n] = feels[n];
-            }
+            ExpressionsRules.Settle(face);
+            values[Moods] = face.Smile;
+            values[Moods + 1] = face.Frown;
+            values[Moods + 2] = face.BrowDown;
+            values[Moods + 3] = face.BrowUp;
+            values[Moods + 4] = face.Brows;
+            values[Moods + 5] = face.Cheeks;
             Array.Clear(weights, 0, weights.Length);
             for (int n = 0; n < body.Face.Morphs.Count; n++)
             {
@@ -218,7 +221,7 @@ namespace Metagraph
             FindLids(life, rotations);
             if (life.Lips > 0)
             {
-                Lips.Shapes(plan.Track, graph.Voices, life.LipSmoothing, time, shapes);
+                lips.Shapes(plan.Track, graph.Voices, life.LipSmoothing, time, shapes);
                 for (int v = 0; v < shapes.Length; v++)
                 {
                     channels[FaceRig.JawOpen + 1 + v] = shapes[v] * life.Lips;

@@ -148,12 +148,13 @@ static func _morphs(graph, plan, time, cues, found):
 		values["look_down" + side] = -up
 	for n in range(MOUTH.size()):
 		values[MOUTH[n]] = found.channels[LIDS + 1 + n]
-	var shown = Expressions.shown_face(graph.life, plan.life.swells, plan.life.emphases, found.bears, time)
+	var shown = Expressions.FaceShown.new()
+	Expressions.shown_face(shown, graph.life, plan.life.swells, plan.life.emphases, found.bears, time)
 	for cue in cues:
-		Expressions.answer(graph.life, shown, cue.action.tags, cue.start, cue.end, time)
-	var feels = shown.values()
-	for n in range(FEELS.size()):
-		values[FEELS[n]] = feels[n]
+		Expressions.answer(shown, graph.life, cue.action.tags, cue.start, cue.end, time)
+	Expressions.settle(shown)
+	for name in FEELS:
+		values[name] = shown[name]
 	var out = {}
 	for channel in face.morphs:
 		var value = values.get(channel, 0.0)

@@ -1,4 +1,4 @@
-# Small events of the face: drawn with the other life layers, shown by `shown_face` and `answer`.
+# Small events of the face: drawn with the other life layers, shown by `shown_face`, `answer` and `settle`.
 #
 # What is known and followed here: speakers raise their brows on stressed words (Cave et al. 1996), from about 60 ms before the
 # accent (Flecha-Garcia 2010), and where they ask (Ekman 1979); greeting, people flash their brows for about a third of a second
@@ -27,8 +27,8 @@ const RAISE = 0.35  # seconds it takes at least
 const RAISE_CHANCE = 0.3  # and what chance adds
 const RAISE_RISES = 0.12
 const ASKING = 0.8  # seconds before the end of a question that its brows begin to rise, but in its second half
-const ASKING_ON = 0.5  # and stay on after it
-const ASKING_RISES = 0.5
+const ASKING_ON = 0.5  # seconds they take to sink after it
+const ASKING_LIFTS = 0.8  # of a full raise
 const LONGEST_EMPHASIS = 1.5  # seconds
 # Cues: what those with certain tags show.
 const CUE_RISES = 0.25  # seconds
@@ -53,33 +53,23 @@ const MARKS = ["?", "？", "؟"]  # at the end of questions
 const DUCHENNE = 0.2  # the smile from which on cheeks rise
 
 
-# What a face shows beside lids and lips, before it is clamped to 0..1. brow_down, brow_up: of a mood; brow_up raises their inner
-# ends alone, brows the whole of them.
-class Expression:
+# What a face shows beside lids and lips: weights of its channels. brow_up raises the brows' inner ends alone, brows the whole of
+# them. One is filled again for each time (`shown_face`, `answer`, `settle`).
+class FaceShown:
 	var smile
 	var frown
 	var brow_down
 	var brow_up
 	var brows
+	var cheeks
 
-	func _init(smile_ = 0.0, frown_ = 0.0, brow_down_ = 0.0, brow_up_ = 0.0, brows_ = 0.0):
+	func _init(smile_ = 0.0, frown_ = 0.0, brow_down_ = 0.0, brow_up_ = 0.0, brows_ = 0.0, cheeks_ = 0.0):
 		self.smile = smile_
 		self.frown = frown_
 		self.brow_down = brow_down_
 		self.brow_up = brow_up_
 		self.brows = brows_
-
-	# Return the weights of the face's channels smile, frown, brow_down, brow_up, brows and cheeks.
-	func values():
-		var smile = Mood.within(self.smile, 0.0, 1.0)
-		return [
-			smile,
-			Mood.within(self.frown, 0.0, 1.0),
-			Mood.within(self.brow_down, 0.0, 1.0),
-			Mood.within(self.brow_up, 0.0, 1.0),
-			Mood.within(self.brows, 0.0, 1.0),
-			Mood.within((smile - DUCHENNE) / (1 - DUCHENNE), 0.0, 1.0)
-		]
+		self.cheeks = cheeks_
 
 
 # Return the lane of swells filled from `cut` to `drawn` seconds.
@@ -122,7 +112,7 @@ static func emphases_on(life, track, voices, seed_, cut, drawn, before):
 			var lead = Util.least(ASKING, 0.5 * length)
 			at = speech.start + length - lead
 			if at < speech.end:
-				found.append([at, lead + ASKING_ON, 0.8, Util.least(ASKING_RISES, lead)])
+				found.append([at, lead + ASKING_ON, ASKING_LIFTS, lead])
 	var times = []
 	var rows = []
 	var keys = []
@@ -149,8 +139,8 @@ static func asks(speech):
 	return holds
 
 
-# Return the face of a mood at a time, and of what was drawn.
-static func shown_face(life, swells, emphases, bears, seconds):
+# Fill in the face of a mood at a time, and of what was drawn.
+static func shown_face(face, life, swells, emphases, bears, seconds):
 	var calm = 1 - life.stillness
 	var swell = 0.0
 	var warm = 0.0
@@ -178,17 +168,15 @@ static func shown_face(life, swells, emphases, bears, seconds):
 		gone = seconds - emphases.times[n]
 		brows = Util.most(brows, amount * Mood.faded(Util.least(gone / rise, (length - gone) / (length - rise))))
 		n -= 1
-	return Expression.new(
-		share * bears.smile + much * WARMTH * warm * (1 - bears.frown),
-		share * bears.frown,
-		share * bears.brow_down,
-		share * bears.brow_up,
-		much * brows
-	)
+	face.smile = share * bears.smile + much * WARMTH * warm * (1 - bears.frown)
+	face.frown = share * bears.frown
+	face.brow_down = share * bears.brow_down
+	face.brow_up = share * bears.brow_up
+	face.brows = much * brows
 
 
 # Add what a cue with these tags, from `start` to `end`, shows on a face at a time.
-static func answer(life, face, tags, start, end, seconds):
+static func answer(face, life, tags, start, end, seconds):
 	var much = (1 - life.stillness) * life.expressions
 	if much <= 0 or seconds <= start or seconds >= Util.least(end, start + CUE_LASTS):
 		return
@@ -206,3 +194,13 @@ static func answer(life, face, tags, start, end, seconds):
 			var flash = gone - FLASH_FROM
 			var left = FLASH_LASTS - flash
 			face.brows += much * Mood.faded(Util.least(flash / FLASH_RISES, left / (FLASH_LASTS - FLASH_RISES)))
+
+
+# Keep all within 0..1, and raise the cheeks with a smile.
+static func settle(face):
+	face.smile = Mood.within(face.smile, 0.0, 1.0)
+	face.frown = Mood.within(face.frown, 0.0, 1.0)
+	face.brow_down = Mood.within(face.brow_down, 0.0, 1.0)
+	face.brow_up = Mood.within(face.brow_up, 0.0, 1.0)
+	face.brows = Mood.within(face.brows, 0.0, 1.0)
+	face.cheeks = Mood.within((face.smile - DUCHENNE) / (1 - DUCHENNE), 0.0, 1.0)

@@ -19,7 +19,9 @@ static func mouth(graph, track, smoothing, time):
 			var voice = Voice.of(graph, speech)
 			var now = _shown(speech, voice, time)
 			if smoothing > 0:
-				now = Mouth.softened(_shown(speech, voice, time - smoothing), now, _shown(speech, voice, time + smoothing))
+				var soft = now.duplicate()
+				Mouth.soften(soft, _shown(speech, voice, time - smoothing), now, _shown(speech, voice, time + smoothing))
+				now = soft
 			for n in range(out.size()):
 				out[n] += now[n]
 	if out != null:  # two speeches may meet; together they are one mouth

@@ -131,19 +131,17 @@ static func _closed(row, lips, teeth):
 	return out
 
 
-# Return shapes but silence `[14]` smoothed over three moments; those that close the mouth stay as they are now, and leave the
+# Write shapes but silence `[14]` smoothed over three moments; those that close the mouth stay as they are now, and leave the
 # others what room they leave: smoothing must not part lips that meet.
-static func softened(before, now, after):
-	var out = []
-	for n2 in range(now.size()):
-		out.append(0.25 * before[n2] + 0.5 * now[n2] + 0.25 * after[n2])
+static func soften(out, before, now, after):
+	for n in range(out.size()):
+		out[n] = 0.25 * before[n] + 0.5 * now[n] + 0.25 * after[n]
 	var open_ = 1 - out[0] - out[1]
 	out[0] = now[0]
 	out[1] = now[1]
 	var left = Util.most(0.0, 1 - out[0] - out[1]) / open_ if open_ > 1e-09 else 0.0
 	for n in range(2, out.size()):
 		out[n] *= Util.least(1.0, left)
-	return out
 
 
 # Return the weights of a shut mouth.
