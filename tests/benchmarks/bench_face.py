@@ -1,4 +1,4 @@
-"""How far the mouth closes and opens in speech.
+"""How far the mouth closes and opens in speech, and how much of a face moves in moods and talk.
 
     .venv/bin/python tests/benchmarks/bench_face.py [CHARACTER.glb]
 
@@ -8,28 +8,43 @@ recorded lines by their phones. Printed are, for the sounds whose lips must meet
 how much of their mouth shape shows at the most within the sound (as `lip_smoothing` leaves it), and in the
 frame of 25 a second that shows most of it; how many of them reach 0.95; the gap that is left between the
 lips in the middle of the face (mm); and how much of a vowel's shape is reached.
+
+Then, over a minute in each of some moods, and of a minute's talk, how far the left corner of the mouth and
+the inner end of the left brow are from where they are at rest, upwards (least and most, mm), and by how many
+pixels that changes where the whole figure fills a picture of 1080 lines.
 """
 
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from metagraph.formats.gltf import read_character
+from metagraph.formats.store import open_project
+from metagraph.graph.face import with_morphs
 from metagraph.graph.face_names import VISEMES, find_morphs
 from metagraph.graph.life import Life
+from metagraph.graph.model import Project
+from metagraph.graph.requests import Say
 from metagraph.motion.character_mesh import Character
+from metagraph.playback.extend_performance import hear
 from metagraph.playback.life.alphabet import ALPHABET
+from metagraph.playback.life.evaluate import face_weights
 from metagraph.playback.life.graphemes import spelled
 from metagraph.playback.life.lips import mouth
 from metagraph.playback.life.mouth import MouthPiece
 from metagraph.playback.life.track import Speech, Track
 from metagraph.playback.life.voice import Voice, voiced
+from metagraph.playback.mood import MOODS
+from metagraph.playback.plan import Plan
+from metagraph.playback.planner import make_plan
 from metagraph.speech.phones import pieces_of
 from metagraph.speech.textgrid import read_textgrid
 
@@ -116,6 +131,44 @@ def measured(body: Character, said: list[tuple[list[MouthPiece], float]]) -> dic
     return {kind: np.array(rows) for kind, rows in out.items()}
 
 
+def moving(project: Project, body: Character, plan: Plan) -> Array:
+    """Return how high the left corner of the mouth and the left brow's inner end are above their rest,
+    `[N, 2]` mm.
+    """
+    shifts, names = body.morph_positions, list(body.morphs)
+    left = body.positions[:, 0] > 0.003
+    smile, brow = (
+        np.argmax(np.linalg.norm(shifts[names.index(target)], axis=1) * left)
+        for target in ("mouthSmileLeft", "browInnerUp")
+    )
+    out = []
+    for t in np.arange(0.0, plan.end, 0.1):
+        weights = face_weights(project, plan.life, plan.track, float(t))
+        moved = sum(w * shifts[names.index(n)] for n, w in weights.items() if n in names)
+        out.append([0.0, 0.0] if isinstance(moved, int) else [moved[smile, 1], moved[brow, 1]])
+    return np.array(out) * 1e3
+
+
+def faces(body: Character) -> None:
+    project = with_morphs(open_project(SAMPLES / "sample.metagraph.yaml").project, body.morphs)
+    pixel = 1080 / (1.1 * float(np.ptp(body.positions[:, 1])) * 1e3)
+    print(f"a minute of the face: least..most mm above rest; {pixel:.2f} pixels a mm at 1080 lines")
+    for name in ("neutral", "happy", "excited", "angry", "sad", "tired", "talk"):
+        valence, arousal = MOODS.get(name, (0.0, 0.0))
+        life = msgspec.structs.replace(project.life, valence=valence, arousal=arousal, lips=0.0)
+        felt = replace(project, life=life)
+        plan = make_plan(felt, 60.0, idle=False)
+        if name == "talk":
+            asks = [Say(id=f"s{n}", at=5.0 * n, text=line) for n, line in enumerate(LINES)]
+            plan = hear(felt, plan, 0.0, asks, 60.0, idle=False)
+        rows = moving(felt, body, plan)
+        corner, brow = ([x.min(), x.max(), np.ptp(x) * pixel] for x in rows.T)
+        print(
+            f"  {name:8} corner {corner[0]:+.1f}..{corner[1]:+.1f} mm, changes {corner[2]:.1f} px   "
+            f"brow {brow[0]:+.1f}..{brow[1]:+.1f} mm, changes {brow[2]:.1f} px"
+        )
+
+
 def main() -> None:
     path = Path(sys.argv[1]) if len(sys.argv) > 1 else SAMPLES / "ada.glb"
     body = read_character(path)
@@ -137,6 +190,7 @@ def main() -> None:
             line = f"{np.median(most):.2f} ({most.min():.2f})   {np.median(seen):.2f} ({seen.min():.2f})"
             closed = f"{(most >= 0.95).mean():4.0%}   gap {np.median(gap):+.1f} (most {gap.max():+.1f})"
             print(f"  {name:26} {kind:7} n {len(rows):4d}   {line}   {closed if kind != 'vowels' else ''}")
+    faces(body)
 
 
 if __name__ == "__main__":
