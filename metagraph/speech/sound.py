@@ -377,6 +377,8 @@ def shapes_heard(heard: HeardSound) -> list[MouthPiece]:
         if labels[start] != "sil":
             loud = float(heard.loud[start:n].max())
             strength = 0.35 + 0.65 * loud if labels[start] in ("aa", "E", "I", "O", "U") else 1.0
+            if labels[start] == "PP":
+                strength = UNSURE
             out.append(MouthPiece(begin, min(end, heard.duration), labels[start], strength))
         start = n
     return out
