@@ -315,7 +315,7 @@ def stick(name: str = "stick", morphs: tuple[str, ...] = (), size: float = 1.0) 
         s_sides,
         m.clip("point", 32, 1.5, sides, None, left),
         limb="left",
-        tags=("there",),
+        tags=("there", "question", "surprise"),
         timing={"earliest_exit": 0.9},
     )
     b.act(
@@ -373,7 +373,7 @@ def stick(name: str = "stick", morphs: tuple[str, ...] = (), size: float = 1.0) 
         "gesture",
         s_level,
         m.clip("nod yes", 45, 0.9, level, None, HEAD, 0.4),
-        tags=("nod", "positive"),
+        tags=("nod", "positive", "agree"),
         spacing=3,
     )
     b.act(
@@ -382,7 +382,7 @@ def stick(name: str = "stick", morphs: tuple[str, ...] = (), size: float = 1.0) 
         s_level,
         m.clip("shake it", 46, 1.1, level, None, HEAD, 0.4),
         limb="left",
-        tags=("negative",),
+        tags=("negative", "thinking"),
         spacing=2,
     )
     b.act("head", "gesture", s_tilted, m.clip("nod tilted", 47, 0.8, tilted, None, HEAD, 0.4), tags=("nod",))
