@@ -23,6 +23,7 @@ from metagraph.formats.store import writable
 from metagraph.graph import anatomy
 from metagraph.graph.check import check
 from metagraph.graph.expand import columns
+from metagraph.graph.expression_presets import presets_of
 from metagraph.graph.model import (
     KINDS,
     LAYERS,
@@ -140,7 +141,7 @@ def write(
     names = unique_names([entry.name for entry in used])
     tell(0, 3, "clips")
     clips = [e.motion.renamed(name) for e, name in zip(used, names, strict=True) if e.motion is not None]
-    notes = _write_glb(glb, clips, project.skeleton, character, project.hidden)
+    notes = _write_glb(glb, clips, project, character)
     tell(1, 3, "graph")
     document = to_document(project, glb.name, names, expanded)
     sounds, missing = _sounds(document, target, base, chosen) if base is not None else ((), ())
@@ -202,12 +203,14 @@ def _channel(source: Path, channel: int | None) -> bytes:
 def _write_glb(
     path: Path,
     clips: list[Clip],
-    skeleton: Skeleton,
+    project: Project,
     character: Path | Character | None,
-    hidden: Collection[str] = (),
 ) -> list[str]:
     """Write the GLB, without the meshes that are hidden; return what is not in it, in words."""
     from metagraph.formats.gltf_writer import write_glb
+
+    skeleton = project.skeleton
+    assert skeleton is not None
 
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -218,8 +221,9 @@ def _write_glb(
             "on making the folder",
             "Choose a folder you may write to.",
         ) from None
-    shown, notes = mesh_on(skeleton, character, hidden)
-    write_glb(path, [replace(clip, skeleton=skeleton) for clip in clips], shown)
+    shown, notes = mesh_on(skeleton, character, project.hidden)
+    presets = presets_of(shown.morphs, project.face.channels) if shown is not None else {}
+    write_glb(path, [replace(clip, skeleton=skeleton) for clip in clips], shown, expressions=presets)
     return notes
 
 

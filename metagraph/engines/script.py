@@ -9,6 +9,7 @@ from itertools import combinations
 from typing import Any
 
 from metagraph.engines.script_chatter import chatter_cases
+from metagraph.engines.script_faces import face_cases
 from metagraph.engines.script_life import life_cases
 from metagraph.engines.script_moods import mood_cases
 from metagraph.engines.script_parts import Ask, Case, ScriptStep
@@ -35,6 +36,7 @@ def cases(project: Project) -> Iterator[Case]:
         _over_time,
         life_cases,
         mood_cases,
+        face_cases,
         replaced_cases,
         chatter_cases,
         weight_cases,

@@ -157,6 +157,9 @@ def _layer(plan: LayerPlan) -> dict[str, Any]:
     }
 
 
+LIFE_LANES = ("modes", "breaths", "aversions", "saccades", "blinks", "swells", "emphases")
+
+
 def life_data(plan: Plan) -> dict[str, Any]:
     """Return what the life layers were drawn to do, as plain data."""
     life = plan.life
@@ -171,9 +174,7 @@ def life_data(plan: Plan) -> dict[str, Any]:
         ]
         for t in life.targets
     ]
-    lanes = {
-        name: _lane(getattr(life, name)) for name in ("modes", "breaths", "aversions", "saccades", "blinks")
-    }
+    lanes = {name: _lane(getattr(life, name)) for name in LIFE_LANES}
     if any(list(row) != [0, 0, 1] for row in life.moods.rows):
         lanes["moods"] = _lane(life.moods)
     return {**lanes, "targets": targets}

@@ -126,6 +126,7 @@ def write_glb(
     stand: Pose | None = None,
     moved: Mapping[str, Collection[int]] | None = None,
     extensions: Mapping[str, Any] | None = None,
+    expressions: Mapping[str, Mapping[str, float]] | None = None,
 ) -> None:
     """Write one skeleton, its skin and every clip as an animation.
 
@@ -136,8 +137,9 @@ def write_glb(
     are posed by their nodes and cost no key at all; the rest pose is then only in the inverse bind matrices,
     as in many exporters' files. stand: the pose the joints' nodes have, the rest pose when None; the skin
     stays bound to the rest pose, and the scene gets a name, with which some engines' paths begin. moved: clip
-    name -> the joints it moves, all where None. extensions: of the document, by name. Raises FileError when
-    the file cannot be written, ValueError for mixed skeletons.
+    name -> the joints it moves, all where None. extensions: of the document, by name. expressions: name ->
+    morph target -> weight, beside the targets' names in the mesh's `extras`. Raises FileError when the file
+    cannot be written, ValueError for mixed skeletons.
     """
     path = Path(path)
     if not clips and character is None:
@@ -172,6 +174,8 @@ def write_glb(
     if character is not None and len(character.triangles):
         mesh_node = _add_character(document, body, character)
         morphs = character.morphs
+        if expressions and morphs:
+            document["meshes"][0].setdefault("extras", {})["expressions"] = expressions
         roots = [*roots, mesh_node]
     document["scenes"] = [{"nodes": roots} if stand is None else {"name": SCENE, "nodes": roots}]
     posed = _pose_still_nodes(nodes, clips, tolerance) if pose_nodes and clips else frozenset()

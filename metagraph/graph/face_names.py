@@ -29,13 +29,19 @@ VISEMES: tuple[str, ...] = (
     "U",
 )
 Weights = tuple[tuple[str, float], ...]
-MOOD_FACE = ("smile", "frown", "brow_down", "brow_up")  # what a mood shows, on morph targets alone
+# What moods and expressions show, on morph targets alone.
+MOOD_FACE = ("smile", "frown", "brow_down", "brow_up", "brows", "cheeks")
 # ARKit's targets for these, else the expressions of VRM and its kin.
 _MOODS: dict[str, tuple[Weights, tuple[str, ...]]] = {
-    "smile": ((("mouthsmile#", 0.5), ("cheeksquint#", 0.3)), ("happy", "joy", "fun", "smile")),
-    "frown": ((("mouthfrown#", 0.6),), ("sad", "sorrow", "frown")),
-    "brow_down": ((("browdown#", 0.8), ("eyesquint#", 0.25)), ("angry", "browdown", "browsdown")),
-    "brow_up": ((("browinnerup", 0.7),), ("browinnerup", "browsup", "browup")),
+    "smile": ((("mouthsmile#", 0.9),), ("happy", "joy", "fun", "smile")),
+    "frown": ((("mouthfrown#", 1.0), ("mouthshruglower", 0.3)), ("sad", "sorrow", "frown")),
+    "brow_down": (
+        (("browdown#", 1.0), ("eyesquint#", 0.35), ("nosesneer#", 0.25)),
+        ("angry", "browdown", "browsdown"),
+    ),
+    "brow_up": ((("browinnerup", 1.0),), ("browinnerup", "browsup", "browup")),
+    "brows": ((("browinnerup", 0.9), ("browouterup#", 0.9)), ("browsup", "browup", "browraise")),
+    "cheeks": ((("cheeksquint#", 0.7), ("eyesquint#", 0.3)), ("cheeksquint", "cheekraise")),
 }
 _WHOLE = 0.5  # of an expression of the whole face
 

@@ -73,6 +73,8 @@ class Life(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
     lip_smoothing: Annotated[float, Meta(ge=0, le=0.2)] = 0.03
     follow_through: Annotated[float, Meta(ge=0, le=2)] = 1.0
     shoulder_lift: Annotated[float, Meta(ge=0, le=2)] = 1.0
+    expressions: Annotated[float, Meta(ge=0, le=2)] = 1.0
+    accent_brows: Annotated[float, Meta(ge=0, le=1)] = 0.4
     valence: Annotated[float, Meta(ge=-1, le=1)] = 0.0
     arousal: Annotated[float, Meta(ge=-1, le=1)] = 0.0
     intensity: Annotated[float, Meta(ge=0, le=2)] = 1.0
@@ -223,6 +225,28 @@ DIALS: tuple[Dial, ...] = (
         0.05,
         0,
         "How far collar bones that a clip leaves still rise with raised arms.",
+    ),
+    Dial(
+        "expressions",
+        "Face",
+        "Expressions",
+        "×",
+        0,
+        2,
+        0.05,
+        0,
+        "How far brows and smiles come and go; at 0 a mood's face stands still.",
+    ),
+    Dial(
+        "accent_brows",
+        "Face",
+        "Brows on stress",
+        "",
+        0,
+        1,
+        0.01,
+        0,
+        "How many of the stressed syllables raise the brows.",
     ),
 )
 MANNER_DIALS: tuple[Dial, ...] = (

@@ -307,6 +307,6 @@ def bearing(mood: Mood) -> Bearing:
         within(i * 0.3 * down, 0.0, 0.5),
         within(i * well, 0.0, 1.0),
         within(i * ill, 0.0, 1.0),
-        within(i * 1.4 * up * max(0.0, 0.4 - v), 0.0, 1.0),
+        within(i * 1.8 * up * max(0.0, 0.4 - v), 0.0, 1.0),
         within(i * ill * max(0.0, 0.6 - a), 0.0, 1.0),
     )

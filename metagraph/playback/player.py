@@ -18,7 +18,7 @@ from metagraph.motion.skeleton import Pose
 from metagraph.playback.composer import Ground, Reach, rig
 from metagraph.playback.contacts import touched
 from metagraph.playback.life.body import body_of
-from metagraph.playback.life.evaluate import enliven, face_weights
+from metagraph.playback.life.evaluate import Playing, enliven, face_weights
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Rest
 from metagraph.playback.weight import weighed
 
@@ -276,9 +276,12 @@ def morphs_at(
     top. composed: the pose `[J]` before `enliven`, where it is not the plan's alone.
     """
     out: dict[str, float] = {}
+    playing: list[Playing] = []
     for layer in LAYERS:
         of = plan.layers[layer]
         cue = of.cue_at(seconds)
+        if cue is not None:
+            playing.append((cue.action.tags, cue.start, cue.end))
         rest = next(
             (r for r in reversed(of.rests) if r.fade_start <= seconds), of.rests[0] if of.rests else None
         )
@@ -303,6 +306,7 @@ def morphs_at(
         by_morphs = project.skeleton is not None and bool(body_of(project).face.morphs)
         if by_morphs and composed is None:  # what the eyes hold against
             composed = _weighed_at(plan, project, seconds)
-        for name, value in face_weights(project, plan.life, plan.track, seconds, composed).items():
+        found = face_weights(project, plan.life, plan.track, seconds, composed, playing)
+        for name, value in found.items():
             out[name] = out.get(name, 0.0) + value
     return {name: min(1.0, max(0.0, value)) for name, value in out.items()}

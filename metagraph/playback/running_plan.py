@@ -29,7 +29,7 @@ REPLAYED = (
 )
 RECENT = 30.0  # seconds of past that are planned on from; what lies before costs nothing
 CUT = 15.0  # seconds between two cuts
-LANES = ("modes", "moods", "breaths", "aversions", "saccades", "blinks")
+LANES = ("modes", "moods", "breaths", "aversions", "saccades", "blinks", "swells", "emphases")
 
 
 class RunningPlan:

@@ -38,6 +38,7 @@ SMOOTH = 0.020  # seconds, of loudness
 DIP, BELOW = 2.0, 24.0  # dB: a syllable stands out by; and is at most so much below the loudest
 APART = 0.09  # seconds between syllables
 OPEN, HALF = 0.66, 0.45  # of a vowel
+UNSURE = 0.6  # how far lips close for a gap that may be another stop's
 AUDIBLE, SONOROUS = 0.12, 0.4  # how loud speech is at least, and a vowel
 _LEAST_RANGE = 9.0  # dB between the loudest and the softest of anything spoken
 _HUSH = -84.0  # dB of full scale: softer than this is silence
@@ -377,6 +378,8 @@ def shapes_heard(heard: HeardSound) -> list[MouthPiece]:
         if labels[start] != "sil":
             loud = float(heard.loud[start:n].max())
             strength = 0.35 + 0.65 * loud if labels[start] in ("aa", "E", "I", "O", "U") else 1.0
+            if labels[start] == "PP":
+                strength = UNSURE
             out.append(MouthPiece(begin, min(end, heard.duration), labels[start], strength))
         start = n
     return out

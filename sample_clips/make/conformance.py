@@ -33,6 +33,8 @@ LIVING = (
     "stressed syllables",
     "the models in four moods",
     "moods over moods",
+    "questions and lips that meet",
+    "a mood's face over time",
 )
 STANDING = (
     "the models alone",

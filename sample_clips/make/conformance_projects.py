@@ -68,6 +68,16 @@ MORPHS = (  # of faces that have no joints
     "mouthPucker",
     "viseme_aa",
     "viseme_PP",
+    "mouthPressLeft",
+    "mouthRollLower",
+    "mouthUpperUpLeft",
+    "mouthSmileLeft",
+    "mouthSmileRight",
+    "mouthFrownLeft",
+    "browInnerUp",
+    "browDownLeft",
+    "browOuterUpRight",
+    "cheekSquintLeft",
 )
 
 
@@ -310,7 +320,7 @@ def stick(
         s_sides,
         m.clip("point", 32, 1.5, sides, None, left),
         limb="left",
-        tags=("there",),
+        tags=("there", "question", "surprise"),
         timing={"earliest_exit": 0.9},
     )
     b.act(
@@ -368,7 +378,7 @@ def stick(
         "gesture",
         s_level,
         m.clip("nod yes", 45, 0.9, level, None, HEAD, 0.4),
-        tags=("nod", "positive"),
+        tags=("nod", "positive", "agree"),
         spacing=3,
     )
     b.act(
@@ -377,7 +387,7 @@ def stick(
         s_level,
         m.clip("shake it", 46, 1.1, level, None, HEAD, 0.4),
         limb="left",
-        tags=("negative",),
+        tags=("negative", "thinking"),
         spacing=2,
     )
     b.act("head", "gesture", s_tilted, m.clip("nod tilted", 47, 0.8, tilted, None, HEAD, 0.4), tags=("nod",))
@@ -487,6 +497,8 @@ def varied() -> Project:
         blink_open=0.2,
         lips=0.8,
         lip_smoothing=0.06,
+        expressions=1.3,
+        accent_brows=0.9,
         modes={"idle": Manner(aversion_rate=0.5, blinks=2.0, breathing=0.5)},
     )
     return replace(edits.set_base(project, None), life=life)

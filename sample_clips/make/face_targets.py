@@ -21,7 +21,8 @@ JAW_OPEN = 20.0  # degrees at 1
 _CORNER = (MOUTH_HALF, MOUTH_Y + 0.001, 0.0745)
 _CHEEK = (0.0370, 1.5720, 0.0600)
 _NOSTRIL = (0.0120, 1.5740, 0.0900)
-_BROW = (0.0240, 1.6300, 0.0850)
+_BROW_INNER = (0.0165, 1.6300, 0.0860)  # angry brows slant: their inner ends go down
+_BROW_OUTER = (0.0440, 1.6320, 0.0790)
 
 
 class Face:
@@ -62,14 +63,14 @@ def _jaw(f: Face, degrees: float) -> Array:
 def _smile(f: Face, s: float) -> Array:
     corner = f.near(_CORNER, 0.015, s)
     return (
-        _moved(corner, (0.0050 * s, 0.0072, -0.0030))
-        + _moved(f.near((0.0290, 1.5580, 0.0700), 0.015, s), (0.0015 * s, 0.0030, 0.0010))
+        _moved(corner, (0.0058 * s, 0.0090, -0.0036))
+        + _moved(f.near((0.0290, 1.5580, 0.0700), 0.015, s), (0.0017 * s, 0.0036, 0.0010))
         + _moved(f.near(_CHEEK, 0.020, s), (0.0008 * s, 0.0032, 0.0022))
     )
 
 
 def _frown(f: Face, s: float) -> Array:
-    return _moved(f.near(_CORNER, 0.014, s), (0.0010 * s, -0.0066, -0.0010)) + _moved(
+    return _moved(f.near(_CORNER, 0.014, s), (0.0010 * s, -0.0080, -0.0010)) + _moved(
         f.near((0.0240, 1.5260, 0.0690), 0.013, s), (0.0, -0.0020, 0.0010)
     )
 
@@ -105,8 +106,11 @@ _PAIRS: dict[str, Callable[[Face, float], Array]] = {
     ),
     "eyeSquint": _squint,
     "noseSneer": lambda f, s: _moved(f.near(_NOSTRIL, 0.013, s), (0.0010 * s, 0.0038, 0.0010)),
-    "browDown": lambda f, s: _moved(f.near(_BROW, 0.020, s), (-0.0026 * s, -0.0056, 0.0010)),
-    "browOuterUp": lambda f, s: _moved(f.near((0.0440, 1.6320, 0.0790), 0.020, s), (0.0, 0.0060, 0.0)),
+    "browDown": lambda f, s: (
+        _moved(f.near(_BROW_INNER, 0.017, s), (-0.0030 * s, -0.0074, 0.0012))
+        + _moved(f.near(_BROW_OUTER, 0.018, s), (-0.0010 * s, -0.0020, 0.0))
+    ),
+    "browOuterUp": lambda f, s: _moved(f.near(_BROW_OUTER, 0.020, s), (0.0, 0.0072, 0.0)),
 }  # fmt: skip
 
 
@@ -132,8 +136,8 @@ TARGETS: dict[str, Target] = {
     "mouthShrugLower": lambda f: _moved(f.lower_lip, (0, 0.0036, 0.0016)),
     "mouthShrugUpper": lambda f: _moved(f.upper_lip, (0, 0.0030, 0.0010)),
     "browInnerUp": lambda f: _moved(
-        f.near((0.0170, 1.6300, 0.0860), 0.018, 1.0) + f.near((0.0170, 1.6300, 0.0860), 0.018, -1.0),
-        (0, 0.0066, 0),
+        f.near(_BROW_INNER, 0.017, 1.0) + f.near(_BROW_INNER, 0.017, -1.0),
+        (0, 0.0080, 0),
     ),
     "cheekPuff": lambda f: (
         _moved(f.near((0.0400, 1.5450, 0.0560), 0.022, 1.0), (0.0068, 0, 0.0040))

@@ -57,8 +57,8 @@ def step(low: float, high: float, x: Array) -> Array:
 
 
 def mouth_line(x: Array) -> Array:
-    """Height of the line between the lips: a slight smile."""
-    return np.asarray(MOUTH_Y + 0.0034 * np.minimum(np.abs(x) / MOUTH_HALF, 1.3) ** 2)
+    """Height of the line between the lips: level, but for corners a hair above; a mood makes the smile."""
+    return np.asarray(MOUTH_Y + 0.0007 * np.minimum(np.abs(x) / MOUTH_HALF, 1.3) ** 2)
 
 
 # --- head

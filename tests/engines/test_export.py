@@ -142,6 +142,15 @@ def test_an_export_of_what_was_read_back_says_the_same(exported: Any, tmp_path: 
     assert ours == theirs
 
 
+def test_the_mesh_says_how_its_targets_make_vrms_presets(sample: Project, tmp_path: Path) -> None:
+    made = export(sample, tmp_path, character=ROOT / "sample_clips" / "ada.glb")
+    khronos(made.glb)
+    extras = gltf(made.glb)["meshes"][0]["extras"]
+    assert {"happy", "angry", "sad", "surprised", "aa", "ou"} <= extras["expressions"].keys()
+    assert all(mix.keys() <= set(extras["targetNames"]) for mix in extras["expressions"].values())
+    assert extras["expressions"]["aa"]["jawOpen"] == 0.6
+
+
 def test_the_glb_holds_every_used_clip_under_its_name_and_the_mesh(sample: Project, exported: Any) -> None:
     document, content = json.loads(exported.json.read_bytes()), gltf(exported.glb)
     names = [a["name"] for a in content["animations"]]

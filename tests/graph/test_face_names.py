@@ -61,8 +61,9 @@ def test_a_mood_shows_on_arkits_targets_or_on_expressions_of_the_whole_face() ->
         "brow_down": (("Angry", 0.5),),
     }
     found = find_morphs(["mouthSmileLeft", "mouthSmileRight", "browInnerUp", "Joy"])
-    assert found["smile"] == (("mouthSmileLeft", 0.5), ("mouthSmileRight", 0.5))
-    assert found["brow_up"] == (("browInnerUp", 0.7),)
+    assert found["smile"] == (("mouthSmileLeft", 0.9), ("mouthSmileRight", 0.9))
+    assert found["brow_up"] == (("browInnerUp", 1.0),)
+    assert found["brows"] == (("browInnerUp", 0.9),)
 
 
 def spellings(name: str) -> list[str]:

@@ -12,12 +12,14 @@ translation.
     while the head nods
     lid         = follow x pitch of the eye + blink x (1 - how far it is shut already)
     posture     = the mood's droop x bowed, its lift of the shoulders, on top of the breath: `mood.bearing`
+    expressions = of moods, speech and cues: `expressions.shown_face`, `expressions.answer`
     mouth       = sum over mouth shapes of weight x shape: `lips`
 """
 
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -31,6 +33,7 @@ from metagraph.graph.life import Life
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.life.body import Body, body_of
+from metagraph.playback.life.expressions import FaceShown, answer, settle, shown_face
 from metagraph.playback.life.gaze import ease, gaze_of
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.lips import mouth
@@ -42,6 +45,7 @@ from metagraph.playback.mood import shown as mood_shown
 
 Array = NDArray[Any]
 
+Playing = tuple[Sequence[str], float, float]  # a cue: its action's tags, start and end, seconds
 INHALE = 0.4  # of a breath
 UNMOVED = Bearing()
 MORPH_LOOK = np.radians(30.0)  # the turn of an eye that a morph target of a look stands for
@@ -78,12 +82,17 @@ def enliven(pose: Pose, project: Project, schedule: Schedule, track: Track, time
 
 
 def face_weights(
-    project: Project, schedule: Schedule, track: Track, seconds: float, pose: Pose | None = None
+    project: Project,
+    schedule: Schedule,
+    track: Track,
+    seconds: float,
+    pose: Pose | None = None,
+    playing: Iterable[Playing] = (),
 ) -> dict[str, float]:
     """Return the morph target weights of the life layers at one time, 0..1.
 
     pose: the composed pose `[J]`, before `enliven`, so that eyes made of morph targets hold while the head
-    moves; else the base pose.
+    moves; else the base pose. playing: what plays, which the face answers (`expressions.answer`).
     """
     if not project.life.on or project.skeleton is None:
         return {}
@@ -93,7 +102,13 @@ def face_weights(
     whole = base_pose(project) if pose is None else pose
     one = Pose(whole.rotations[None], whole.translations[None])
     found = _Found(body, project, schedule, track, np.array([float(seconds)]), one)
-    return _morphs(body.face, found.faces[0], found.channels[0])
+    look, life = found.faces[0], project.life
+    face = FaceShown()
+    shown_face(face, life, schedule.swells, schedule.emphases, look.bears, float(seconds))
+    for tags, start, end in playing:
+        answer(face, life, tags, start, end, float(seconds))
+    settle(face)
+    return _morphs(body.face, look, face, found.channels[0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,11 +203,6 @@ class _Found:
 _NONE = (0.0, 0.0, 0.0)
 
 
-def mood_weights(bears: Bearing) -> tuple[float, ...]:
-    """Return how much of each of `face_names.MOOD_FACE` a mood shows, 0..1."""
-    return bears.smile, bears.frown, bears.brow_down, bears.brow_up
-
-
 def breath_at(lane: Lane, life: Life, time: float) -> float:
     """Return how full the chest is, 0 at rest, about 1 at the top of a breath."""
     starts, values = lane.times, lane.rows
@@ -216,7 +226,7 @@ def blink_at(lane: Lane, life: Life, time: float) -> float:
     return out
 
 
-def _morphs(face: FaceRig, look: _Look, channels: Array) -> dict[str, float]:
+def _morphs(face: FaceRig, look: _Look, shown: FaceShown, channels: Array) -> dict[str, float]:
     """Return morph target weights of a face."""
     values: dict[str, float] = {"blink": max(sum(look.shut[:2]) / 2, look.blink)}
     for n, side in enumerate(("left", "right")):
@@ -228,8 +238,7 @@ def _morphs(face: FaceRig, look: _Look, channels: Array) -> dict[str, float]:
             f"look_up_{side}": up,
             f"look_down_{side}": -up,
         }
-    for mood, how in zip(MOOD_FACE, mood_weights(look.bears), strict=True):
-        values[mood] = how
+    values |= {channel: getattr(shown, channel) for channel in MOOD_FACE}
     values |= dict(zip(MOUTH, channels[len(LIDS) + 1 :].tolist(), strict=True))
     out: dict[str, float] = {}
     for channel, targets in face.morphs.items():

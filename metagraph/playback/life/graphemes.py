@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from metagraph.playback.life.alphabet import Alphabet
-from metagraph.playback.life.mouth import MouthPiece
+from metagraph.playback.life.mouth import VOWELS, MouthPiece
 
 PACE = 14.0  # characters a second: about 150 words a minute
 SHORTEST = 0.4  # seconds
@@ -36,7 +36,6 @@ _ALIKE: dict[str, str] = {
     "п": "p", "р": "r", "с": "s", "т": "t", "у": "u", "ф": "f", "х": "h", "ц": "s", "ч": "j", "ш": "j",
     "щ": "j", "ы": "i", "э": "e", "ю": "u", "я": "a", "і": "i", "є": "e", "ї": "i",
 }  # fmt: skip
-VOWELS: tuple[str, ...] = ("aa", "E", "I", "O", "U")
 _CONSONANTS: tuple[str, ...] = ("DD", "nn", "SS", "kk", "PP")  # of syllables nobody knows
 _VOWEL_LENGTH = 1.25  # of one character's time
 _CONSONANT_LENGTH = 0.8

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from math import ceil
 
 from metagraph.playback.life.alphabet import Alphabet
-from metagraph.playback.life.graphemes import VOWELS, Spelled, sounds
-from metagraph.playback.life.mouth import LATE, STEP, MouthPiece
+from metagraph.playback.life.graphemes import Spelled, sounds
+from metagraph.playback.life.mouth import LATE, STEP, VOWELS, MouthPiece
 
 WORD = 0.15  # seconds a word takes of which only the start is told, if nothing comes before
 LETTER = 0.07  # and for each of its letters

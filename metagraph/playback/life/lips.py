@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.face_names import VISEMES
+from metagraph.playback.life.mouth import soften
 from metagraph.playback.life.track import Speech, Track
 from metagraph.playback.life.voice import Voice, voice_of
 
 Array = NDArray[Any]
 
 CLOSING = 0.12  # seconds the mouth takes to close where speech was cut
-_TAPS, _TAP_WEIGHTS = np.array([-1.0, 0.0, 1.0]), np.array([0.25, 0.5, 0.25])
+_TAPS = np.array([-1.0, 0.0, 1.0])
 
 
 def mouth(track: Track, voices: Mapping[str, Voice], smoothing: float, times: Array) -> Array | None:
@@ -40,11 +41,15 @@ def mouth(track: Track, voices: Mapping[str, Voice], smoothing: float, times: Ar
 
 
 def _shown(speech: Speech, voice: Voice, smoothing: float, times: Array) -> Array:
-    """Return a speech's shapes, each the weighted mean over `smoothing` seconds before and after."""
+    """Return a speech's shapes, smoothed over `smoothing` seconds before and after (`mouth.soften`)."""
     if smoothing <= 0:
         return _at(speech, voice, times)
     taps = _at(speech, voice, (times[:, None] + smoothing * _TAPS).reshape(-1))
-    return np.asarray((taps.reshape(len(times), 3, -1) * _TAP_WEIGHTS[:, None]).sum(1))
+    out: list[list[float]] = []
+    for before, now, after in taps.reshape(len(times), 3, -1).tolist():
+        out.append([0.0] * len(now))
+        soften(out[-1], before, now, after)
+    return np.array(out)
 
 
 def _at(speech: Speech, voice: Voice, times: Array) -> Array:

@@ -16,6 +16,7 @@ from metagraph.graph.life import Life, Manner, manner, same_life
 from metagraph.graph.words import MODES
 from metagraph.playback.choice import uniform
 from metagraph.playback.hashing import Bits
+from metagraph.playback.life.expressions import emphases_on, swells_on
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.track import Track
 from metagraph.playback.life.voice import Voice, same_voices, stressed
@@ -59,8 +60,9 @@ class Schedule:
 
     modes: place among MODES. moods: valence, arousal, intensity. targets: what is looked at. breaths: length
     s, depth. aversions: end s, right-to-left and upward part of the offset (of life's angle). saccades:
-    offset to the left and up, degrees. blinks: 0 of itself, 1 on a stressed syllable, 2 asked for. drawn:
-    seconds up to which the lanes are filled; the rest is what they were drawn from.
+    offset to the left and up, degrees. blinks: 0 of itself, 1 on a stressed syllable, 2 asked for. swells,
+    emphases: of the face (`expressions`). drawn: seconds up to which the lanes are filled; the rest is what
+    they were drawn from.
     """
 
     end: float = 0.0
@@ -72,6 +74,8 @@ class Schedule:
     aversions: Lane = Lane(width=3)
     saccades: Lane = Lane(width=2)
     blinks: Lane = Lane(width=1)
+    swells: Lane = Lane(width=3)
+    emphases: Lane = Lane(width=3)
     life: Life | None = field(default=None, compare=False, repr=False)
     track: Track | None = field(default=None, compare=False, repr=False)
     voices: Mapping[str, Voice] | None = field(default=None, compare=False, repr=False)
@@ -106,6 +110,8 @@ class Schedule:
             aversions=aversions,
             saccades=saccades,
             blinks=blinks,
+            swells=self.swells.since(seconds),
+            emphases=self.emphases.since(seconds, 3),
         )
 
 
@@ -136,15 +142,19 @@ def schedule(
     aversions = before.aversions.until(chance)
     saccades = before.saccades.until(chance)
     blinks = before.blinks.until(chance)
+    swells = before.swells.until(chance)
+    emphases = before.emphases.until(chance)
     if chance < drawn:
         draw.begin(chance)
         breaths = draw.breaths(breaths)
         aversions = draw.aversions(aversions)
         saccades = draw.saccades(saccades)
         blinks = draw.blinks(blinks)
+        swells = swells_on(track, seed, chance, drawn, swells)
+        emphases = emphases_on(life, track, voices, seed, chance, drawn, emphases)
     return Schedule(
         end, drawn, draw.modes, draw.moods, draw.targets, breaths, aversions, saccades, blinks,
-        life, track, voices, seed,
+        swells, emphases, life, track, voices, seed,
     )  # fmt: skip
 
 

@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from tests.engines.stranger.posing import Pose, ease
+from tests.engines.stranger.posing import Pose, ease, playing
 from tests.engines.stranger.reading import Character
 from tests.engines.stranger.rotating import Numbers, about, inverse, times, turned
 
 USUAL = {
     "stillness": 0.0, "breathing": 1.0, "gaze": 1.0, "head_share": 0.6, "aversion_angle": 14.0,
     "saccades": 1.0, "lids": 1.0, "blink_close": 0.07, "blink_open": 0.10, "lips": 1.0, "lip_smoothing": 0.03,
+    "expressions": 1.0,
 }  # fmt: skip
 LIDS = ("upper_lid_left", "upper_lid_right", "lower_lid_left", "lower_lid_right")
 SHAPES = ("PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "I", "O", "U")
@@ -54,11 +55,28 @@ def along(row: list[float], q: Numbers) -> float:
     return float(np.dot(row, q)) * (-1.0 if q[3] < 0.0 else 1.0)
 
 
+# "Expressions": what a tag adds to smile, frown, brow_down, brow_up, brows.
+FEELS = ("smile", "frown", "brow_down", "brow_up", "brows")
+TAGGED = {
+    "greeting": (0.6, 0.0, 0.0, 0.0, 0.1), "positive": (0.3, 0.0, 0.0, 0.0, 0.15),
+    "agree": (0.1, 0.0, 0.0, 0.0, 0.1), "negative": (0.0, 0.2, 0.35, 0.0, 0.0),
+    "surprise": (0.0, 0.0, 0.0, 0.0, 0.9),
+    "question": (0.0, 0.0, 0.0, 0.0, 0.6), "unsure": (0.0, 0.3, 0.0, 0.2, 0.5),
+    "thinking": (0.0, 0.1, 0.35, 0.0, 0.0),
+}  # fmt: skip
+
+
+def bump(x: float, rise: float, length: float) -> float:
+    """ "Expressions"."""
+    return ease(min(x / rise, (length - x) / (length - rise)))
+
+
 class Life:
     """A character's life, with the events that were drawn for a case."""
 
     def __init__(self, character: Character, case: dict[str, Any]) -> None:
         self.character, self.events = character, case["life"]
+        self.layers: dict[str, Any] = case["plan"]["layers"]
         self.rig: dict[str, Any] = character.data["rig"]
         self.dials: dict[str, Any] = USUAL | character.data.get("life", {})
         self.calm = 1.0 - self.dials["stillness"]
@@ -209,21 +227,55 @@ class Life:
     def lips(self, t: float, said: list[tuple[float, float, str]]) -> Numbers:
         """How much of each of SHAPES the mouth shows; said: start, end, line; "Lips"."""
 
-        def shown(t: float) -> Numbers:
-            total = np.zeros(len(SHAPES))
-            for start, end, line in said:
-                if t < start:
-                    continue
-                voice = self.character.data["voices"][line]
-                rows = np.array(voice["weights"])[:, 1:]
-                keys = np.linspace(0.0, max(voice["duration"], 1e-3), len(rows))
-                row = np.array([np.interp(min(t, end) - start, keys, each) for each in rows.T])
-                total += row * (1.0 - ease((t - end) / 0.12))
-            return total
+        def shown(t: float, one: tuple[float, float, str]) -> Numbers:
+            start, end, line = one
+            if t < start:
+                return np.zeros(len(SHAPES))
+            voice = self.character.data["voices"][line]
+            rows = np.array(voice["weights"])[:, 1:]
+            keys = np.linspace(0.0, max(voice["duration"], 1e-3), len(rows))
+            row = np.array([np.interp(min(t, end) - start, keys, each) for each in rows.T])
+            return np.asarray(row * (1.0 - ease((t - end) / 0.12)))
 
         s = self.dials["lip_smoothing"]
-        mouth = shown(t) if s <= 0.0 else 0.25 * shown(t - s) + 0.5 * shown(t) + 0.25 * shown(t + s)
+        mouth = np.zeros(len(SHAPES))
+        for each in said:
+            now = shown(t, each)
+            soft = now if s <= 0.0 else 0.25 * shown(t - s, each) + 0.5 * now + 0.25 * shown(t + s, each)
+            closed = now[:2]
+            room = 1.0 - soft[:2].sum()
+            rest = min(1.0, max(0.0, 1.0 - closed.sum()) / room) if room > 1e-9 else 0.0
+            mouth += np.concatenate([closed, rest * soft[2:]])
         return np.asarray(mouth / max(float(mouth.sum()), 1.0) * self.dials["lips"])
+
+    def face(self, t: float, felt: dict[str, float]) -> dict[str, float]:
+        """What shows beside lids and lips; felt: the mood's share; "Expressions"."""
+        wide = self.dials["expressions"]
+        k, s, listening = self.calm * wide, 0.0, 0.0
+        n = begun(self.events["swells"], t)
+        if n >= 0:
+            start, length, amount, listening = self.events["swells"][n]
+            s = amount * bump(t - start, 0.35 * length, length)
+        out = {
+            name: value * (1.0 - 0.4 * self.calm * min(1.0, wide) * (1.0 - s)) for name, value in felt.items()
+        }
+        out["smile"] += 0.35 * k * listening * s * (1.0 - felt["frown"])
+        recent = [each for each in self.events["emphases"] if 0.0 <= t - each[0] < 1.5]
+        lifts = [amount * bump(t - start, rise, length) for start, length, amount, rise in recent]
+        out["brows"] = k * max(lifts, default=0.0)
+        for plan in self.layers.values():
+            cue = playing(plan, t)
+            if cue is None or not cue["start"] < t < min(cue["end"], cue["start"] + 1.8):
+                continue
+            gone, left = t - cue["start"], min(cue["end"], cue["start"] + 1.8) - t
+            c = k * ease(min(gone / 0.25, left / 0.6))
+            for tag in self.character.actions[cue["action"]].get("tags", []):
+                for name, share in zip(FEELS, TAGGED.get(tag, (0.0,) * 5), strict=True):
+                    out[name] += c * share
+                if tag == "greeting":
+                    out["brows"] += k * bump(gone - 0.1, 0.08, 0.4)
+        out = {name: clamp(value, 0.0, 1.0) for name, value in out.items()}
+        return out | {"cheeks": clamp((out["smile"] - 0.2) / 0.8, 0.0, 1.0)}
 
     def added(
         self, composed: Pose, t: float, said: list[tuple[float, float, str]]
@@ -273,10 +325,10 @@ class Life:
         feels = {
             "smile": i * well,
             "frown": i * ill,
-            "brow_down": 1.4 * i * up * max(0.0, 0.4 - v),
+            "brow_down": 1.8 * i * up * max(0.0, 0.4 - v),
             "brow_up": i * ill * max(0.0, 0.6 - a),
         }
-        named = {name: clamp(value, 0.0, 1.0) for name, value in feels.items()}
+        named = self.face(t, {name: clamp(value, 0.0, 1.0) for name, value in feels.items()})
         named |= dict(zip(CHANNELS, values, strict=True)) | {"blink": max(blink, (shut[0] + shut[1]) / 2.0)}
         for n, side in enumerate(("left", "right")):
             left, high = ij[n] / radians(30.0)

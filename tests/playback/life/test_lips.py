@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from metagraph.playback.life.alphabet import ALPHABET
+from metagraph.playback.life.graphemes import spelled
 from metagraph.playback.life.lips import CLOSING, mouth
 from metagraph.playback.life.track import Speech, Track, track_of
 from metagraph.playback.life.voice import Voice, voice_from_text, voice_of
@@ -47,12 +49,24 @@ def test_without_smoothing_the_mouth_shows_the_voice_as_it_is() -> None:
 
 def test_smoothing_makes_the_mouth_slower_not_later() -> None:
     times = np.arange(0.5, 4.5, 1 / 100)
-    track = spoken(Speech("s", 1.0, 4.0, text=TEXT))
+    track = spoken(Speech("s", 1.0, 4.0, text="Nelly and her sister listened to a tall story."))
     sharp, soft = (mouth(track, {}, s, times) for s in (0.0, 0.08))
     assert sharp is not None and soft is not None
     assert np.abs(np.diff(soft, axis=0)).max() < 0.7 * np.abs(np.diff(sharp, axis=0)).max()
     centre = [float((m.sum(1) * times).sum() / m.sum()) for m in (sharp, soft)]
     assert centre[0] == pytest.approx(centre[1], abs=0.01)
+
+
+@pytest.mark.parametrize("smoothing", [0.0, 0.03, 0.1, 0.2])
+def test_smoothing_never_parts_lips_that_meet(smoothing: float) -> None:
+    length = len(TEXT) / 18  # quick
+    found = spelled(ALPHABET, TEXT, length)
+    track = spoken(Speech("s", 1.0, 1.0 + length, text=TEXT, length=length))
+    shut = [piece for piece in found.pieces if piece.viseme == "PP"]
+    assert len(shut) == 6
+    shown = mouth(track, {}, smoothing, np.array([1.0 + 0.5 * (p.start + p.end) for p in shut]))
+    assert shown is not None and shown[:, 0].min() > 0.95
+    assert shown[:, 1:].sum(1).max() < 0.05
 
 
 def test_speech_that_is_cut_shuts_the_mouth_at_once_but_not_in_one_frame() -> None:

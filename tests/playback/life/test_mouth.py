@@ -54,8 +54,31 @@ def test_lips_meet_between_vowels_however_quick_they_are(lips: str) -> None:
     pieces, length = said(("aa", 0.12), (lips, 0.05), ("aa", 0.12))
     times, weights = mouth_track(pieces, length)
     here = (times > pieces[1].start - 0.02) & (times < pieces[1].end + 0.02)
-    assert weights[here, PLACE[lips]].max() > 0.6
-    assert weights[here, PLACE["aa"]].min() < 0.4
+    assert weights[here, PLACE[lips]].max() > 0.99
+    assert weights[here, PLACE["aa"]].min() < 0.01
+
+
+def test_of_two_closures_in_a_row_each_has_its_moment() -> None:
+    pieces, length = said(("aa", 0.1), ("PP", 0.05), ("FF", 0.05), ("aa", 0.1))
+    times, weights = mouth_track(pieces, length)
+    for piece in pieces[1:3]:
+        middle = np.abs(times - (piece.start + piece.end) / 2).argmin()
+        assert weights[middle, PLACE[piece.viseme]] > 0.95
+    assert weights[(times > pieces[1].start) & (times < pieces[2].end), PLACE["aa"]].max() < 0.1
+
+
+def test_lips_round_through_the_consonants_before_a_rounded_vowel() -> None:
+    def rounded(vowel: str) -> float:
+        pieces, length = said(("E", 0.1), ("SS", 0.06), ("DD", 0.06), (vowel, 0.12))
+        times, weights = mouth_track(pieces, length)
+        return float(weights[np.abs(times - pieces[1].end).argmin(), PLACE[vowel]])
+
+    assert rounded("U") > 0.2 and rounded("O") > 0.2
+    assert rounded("aa") < 0.1
+    pieces, length = said(("E", 0.1), ("DD", 0.05))
+    pieces.append(MouthPiece(pieces[-1].end + 0.3, pieces[-1].end + 0.5, "U"))
+    times, weights = mouth_track(pieces, length + 0.5)
+    assert weights[times < pieces[-1].start - 0.09, PLACE["U"]].max() == 0, "not through a pause"
 
 
 def test_no_shape_pops_up_in_a_frame() -> None:

@@ -17,7 +17,7 @@ from metagraph.playback.life.track import BlinkAt, LookAt, ModeFrom, PlaceFrom, 
 from metagraph.playback.life.voice import Voice, voice_from_text
 from metagraph.playback.life.wanted import PARTNER
 
-LANES = ("breaths", "aversions", "saccades", "blinks", "modes")
+LANES = ("breaths", "aversions", "saccades", "blinks", "modes", "swells", "emphases")
 HOUR = 3600.0
 
 

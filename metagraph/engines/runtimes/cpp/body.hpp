@@ -76,7 +76,7 @@ inline const List<std::string> SHOWN = [] {
     }
     out.push_back("jaw_open");
     for (int n = 1; n < life::SHAPES; n++) out.push_back("viseme_" + lang::at(words::VISEMES, n));
-    for (const char* what : {"smile", "frown", "brow_down", "brow_up"}) out.push_back(what);
+    for (const char* what : {"smile", "frown", "brow_down", "brow_up", "brows", "cheeks"}) out.push_back(what);
     return out;
 }();
 

@@ -86,6 +86,7 @@ inline Json life_data(const Schedule& life) {
     Json out = Json::object({
         {"modes", lane_data(*life.modes)}, {"breaths", lane_data(*life.breaths)}, {"aversions", lane_data(*life.aversions)},
         {"saccades", lane_data(*life.saccades)}, {"blinks", lane_data(*life.blinks)}, {"targets", targets},
+        {"swells", lane_data(*life.swells)}, {"emphases", lane_data(*life.emphases)},
     });
     const List<double> neutral = {0, 0, 1};
     const auto& moods = life.moods->rows;

@@ -6,6 +6,7 @@
 //     lid       = follow x pitch of the eye + blink x (1 - how far it is shut already)
 #pragma once
 
+#include "expressions.hpp"
 #include "lips.hpp"
 #include "solve.hpp"
 
@@ -72,9 +73,9 @@ public:
         for (std::size_t n = 0; n < turned_.size(); n++) lang::at(pose, turned_[n]).rotation = results_[n];
     }
 
-    /// Add the morph target weights of what was found, by their places in the graph's `morphs`.
-    void morphs(List<double>& out) {
-        double values[17 + life::SHAPES];
+    /// Add the morph target weights of what was found, by their places in the graph's `morphs`. cues: those that play then.
+    void morphs(List<double>& out, const Schedule& schedule, const List<const Cue*>& cues, double time) {
+        double values[19 + life::SHAPES];
         values[0] = std::max((shut_[0] + shut_[1]) / 2, channels_[life::BLINK]);
         for (std::size_t side = 0; side < 2; side++) {
             const double left = solver_.eyes[2 * side] / MORPH_LOOK, up = solver_.eyes[2 * side + 1] / MORPH_LOOK;
@@ -88,10 +89,11 @@ public:
         }
         for (std::size_t k = 0; k < life::SHAPES; k++) values[13 + k] = channels_[life::BLINK + 1 + k];
         double* feels = values + 13 + life::SHAPES;
-        feels[0] = bears_.smile;
-        feels[1] = bears_.frown;
-        feels[2] = bears_.brow_down;
-        feels[3] = bears_.brow_up;
+        expressions::shown_face(face_, graph_.life, schedule.swells, schedule.emphases, lang::made<Bearing>(bears_), time);
+        for (const Cue* cue : cues) expressions::answer(face_, graph_.life, cue->action->tags, cue->start, cue->end, time);
+        expressions::settle(face_);
+        const double shown[] = {face_->smile, face_->frown, face_->brow_down, face_->brow_up, face_->brows, face_->cheeks};
+        std::copy(std::begin(shown), std::end(shown), feels);
         std::fill(added_.begin(), added_.end(), 0.0);
         for (const MorphShare& share : body_.face.morphs) {
             if (values[share.value] > 1e-4) lang::at(added_, share.target) += values[share.value] * share.weight;
@@ -115,6 +117,7 @@ private:
     std::array<double, life::LIDS> shut_{};
     double full_ = 0; // how full the chest is
     Bearing bears_;
+    Ref<FaceShown> face_ = lang::made<FaceShown>(0, 0, 0, 0, 0, 0);
     List<double> added_;
 
     /// Return how full the chest is, 0 at rest, about 1 at the top of a breath.

@@ -146,7 +146,6 @@ inline const Map<std::string, std::string> _ALIKE = Map<std::string, std::string
     {"є", "e"},
     {"ї", "i"}
 };
-inline const List<std::string> VOWELS = List<std::string>{"aa", "E", "I", "O", "U"};
 // of syllables nobody knows
 inline const List<std::string> _CONSONANTS = List<std::string>{"DD", "nn", "SS", "kk", "PP"};
 inline constexpr double _VOWEL_LENGTH = 1.25; // of one character's time
@@ -216,7 +215,7 @@ inline void Spelled::add(const List<Ref<SpelledSound>>& plan, double start, doub
     for (const auto& sound : plan) {
         double then = at + sound->size * scale;
         if (sound->shape != "") {
-            double fully = lang::contains(graphemes::VOWELS, sound->shape)
+            double fully = lang::contains(mouth::VOWELS, sound->shape)
                 ? std::min(1.0, 0.7 + 0.4 * sound->strength)
                 : 1.0;
             this->pieces.push_back(lang::made<MouthPiece>(at, then, sound->shape, fully));
@@ -254,7 +253,7 @@ inline List<std::string> shapes(const Ref<Alphabet>& alphabet, const std::string
         if (holds) {
             bool is_any = false;
             for (const auto& s : out) {
-                if (lang::contains(graphemes::VOWELS, s)) {
+                if (lang::contains(mouth::VOWELS, s)) {
                     is_any = true;
                     break;
                 }
@@ -263,7 +262,7 @@ inline List<std::string> shapes(const Ref<Alphabet>& alphabet, const std::string
         }
         bool final_e = holds;
         bool twice = at > 0 && size == 1 && lang::at(letters, at) == lang::at(letters, at - 1);
-        if (lang::len(found) > 0 && !final_e && !(twice && !lang::contains(graphemes::VOWELS, lang::at(found, 0)))) {
+        if (lang::len(found) > 0 && !final_e && !(twice && !lang::contains(mouth::VOWELS, lang::at(found, 0)))) {
             lang::extend(out, found);
         }
         at += size;
@@ -281,11 +280,11 @@ inline List<std::string> _unknown(
         int code = alphabet->code(letter);
         return List<std::string>{
             lang::at(graphemes::_CONSONANTS, lang::modulo(code, 5)),
-            lang::at(graphemes::VOWELS, lang::modulo(lang::floored(code, 5), 5))
+            lang::at(mouth::VOWELS, lang::modulo(lang::floored(code, 5), 5))
         };
     }
     if (kind == "letter") {
-        return (lang::len(before) > 0 && !lang::contains(graphemes::VOWELS, lang::at(before, -1)))
+        return (lang::len(before) > 0 && !lang::contains(mouth::VOWELS, lang::at(before, -1)))
             ? List<std::string>{"aa"}
             : List<std::string>{"DD"};
     }
@@ -326,8 +325,8 @@ inline List<Ref<SpelledSound>> sounds(const Ref<Alphabet>& alphabet, const std::
     bool first = true;
     std::string before = "";
     for (const auto& shape : found) {
-        bool vowel = lang::contains(graphemes::VOWELS, shape);
-        bool syllable = vowel && !lang::contains(graphemes::VOWELS, before);
+        bool vowel = lang::contains(mouth::VOWELS, shape);
+        bool syllable = vowel && !lang::contains(mouth::VOWELS, before);
         double strength = syllable ? first ? weight : 0.6 * weight : 0.0;
         first = first && !syllable;
         out.push_back(lang::made<SpelledSound>(

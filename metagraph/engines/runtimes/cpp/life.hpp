@@ -18,7 +18,7 @@ struct Life {
     double stillness = 0.0, breathing = 1.0, breath_rate = 14.0, gaze = 1.0, head_share = 0.6;
     double aversion_rate = 12.0, aversion_length = 0.93, aversion_angle = 14.0;
     double saccades = 1.0, saccade_rate = 60.0, lids = 1.0, blinks = 17.0, accent_blinks = 1.0;
-    double blink_close = 0.07, blink_open = 0.1, lips = 1.0, lip_smoothing = 0.03;
+    double blink_close = 0.07, blink_open = 0.1, lips = 1.0, lip_smoothing = 0.03, expressions = 1.0, accent_brows = 0.4;
     double valence = 0.0, arousal = 0.0, intensity = 1.0;
     double follow_through = 1.0, shoulder_lift = 1.0;
     List<Ref<Manner>> manners = {
@@ -63,6 +63,8 @@ inline Ref<Life> read(const Node& json) {
     dial("blink_open", out.blink_open, 0.02, 1);
     dial("lips", out.lips, 0, 2);
     dial("lip_smoothing", out.lip_smoothing, 0, 0.2);
+    dial("expressions", out.expressions, 0, 2);
+    dial("accent_brows", out.accent_brows, 0, 1);
     dial("valence", out.valence, -1, 1);
     dial("arousal", out.arousal, -1, 1);
     dial("intensity", out.intensity, 0, 2);

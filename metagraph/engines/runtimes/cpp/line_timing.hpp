@@ -428,8 +428,8 @@ inline Ref<Spelled> timed_sounds(const Ref<Alphabet>& alphabet, const Ref<LineTi
         const auto& end = lang::at(line_timing::_ends(timing->marks), n);
         if (mark->viseme != "sil" && end > mark->at) {
             shown->pieces.push_back(lang::made<MouthPiece>(mark->at, end, mark->viseme, mark->weight));
-            if (lang::contains(graphemes::VOWELS, mark->viseme)
-                && !lang::contains(graphemes::VOWELS, before)
+            if (lang::contains(mouth::VOWELS, mark->viseme)
+                && !lang::contains(mouth::VOWELS, before)
                 && mark->weight > 0) {
                 shown->peaks.push_back(0.5 * (mark->at + end));
                 shown->strengths.push_back(mark->weight * std::min(1.0, 0.3 + 4 * (end - mark->at)));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "graph.hpp"
+#include "mouth.hpp"
 #include "track.hpp"
 
 namespace metagraph {
@@ -12,18 +13,20 @@ inline constexpr double CLOSING = 0.12; // seconds the mouth takes to close wher
 /// How much of each shape but silence the mouth shows.
 using Shown = std::array<double, life::SHAPES - 1>;
 
-inline void add(const Voice& voice, const Speech& speech, double time, double share, Shown& out) {
-    if (time < speech.start) return;
-    const double kept = share * (1 - rotation::ease((time - speech.end) / CLOSING));
+inline List<double> shown(const Voice& voice, const Speech& speech, double time) {
+    List<double> out(static_cast<std::size_t>(life::SHAPES - 1), 0.0);
+    if (time < speech.start) return out;
+    const double kept = 1 - rotation::ease((time - speech.end) / CLOSING);
     const int last = static_cast<int>(voice.weights.size()) / life::SHAPES - 1;
     const double at = (std::min(time, speech.end) - speech.start) / std::max(voice.duration, 1e-3) * last;
     const int low = std::clamp(static_cast<int>(std::floor(std::min(at, 1e9))), 0, last - 1);
     const double part = std::clamp(at - low, 0.0, 1.0);
     for (int k = 1; k < life::SHAPES; k++) {
         const int a = low * life::SHAPES + k;
-        const double shown = lang::at(voice.weights, a) * (1 - part) + lang::at(voice.weights, a + life::SHAPES) * part;
-        out[static_cast<std::size_t>(k - 1)] += kept * shown;
+        const double weight = lang::at(voice.weights, a) * (1 - part) + lang::at(voice.weights, a + life::SHAPES) * part;
+        out[static_cast<std::size_t>(k - 1)] = kept * weight;
     }
+    return out;
 }
 
 /// Return what the mouth shows at a time; all 0 where nothing is said.
@@ -34,14 +37,12 @@ inline Shown at(const Graph& graph, const Track& track, double time) {
         if (speech->start > time + smoothing) break;
         if (speech->end + CLOSING + smoothing <= time || time <= speech->start - smoothing) continue;
         const Ref<Voice> voice = graph.voices->of(speech);
-        // The weighted mean over `smoothing` seconds before and after.
+        const List<double> now = shown(*voice, *speech, time);
+        List<double> soft = now;
         if (smoothing > 0) {
-            add(*voice, *speech, time - smoothing, 0.25, out);
-            add(*voice, *speech, time, 0.5, out);
-            add(*voice, *speech, time + smoothing, 0.25, out);
-        } else {
-            add(*voice, *speech, time, 1, out);
+            mouth::soften(soft, shown(*voice, *speech, time - smoothing), now, shown(*voice, *speech, time + smoothing));
         }
+        for (std::size_t k = 0; k < out.size(); k++) out[k] += soft[k];
     }
     double sum = 0;
     for (const double one : out) sum += one;

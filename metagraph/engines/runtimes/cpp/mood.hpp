@@ -401,7 +401,7 @@ inline Ref<Bearing> bearing(const Ref<Mood>& mood) {
         mood::within(i * 0.3 * down, 0.0, 0.5),
         mood::within(i * well, 0.0, 1.0),
         mood::within(i * ill, 0.0, 1.0),
-        mood::within(i * 1.4 * up * std::max(0.0, 0.4 - v), 0.0, 1.0),
+        mood::within(i * 1.8 * up * std::max(0.0, 0.4 - v), 0.0, 1.0),
         mood::within(i * ill * std::max(0.0, 0.6 - a), 0.0, 1.0)
     );
 }

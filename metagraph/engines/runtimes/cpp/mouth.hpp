@@ -1,8 +1,11 @@
 // The mouth over time: from pieces of speech, each with one mouth shape, to smooth weights of all shapes.
 //
 // Coarticulation after Cohen and Massaro (1993): every piece rules the mouth around its own time, begins before it is
-// heard and lingers after it; what the mouth shows is the mean of all pieces weighted by how much each rules. Lips that
-// must meet rule more than a tongue nobody sees.
+// heard and lingers after it; what the mouth shows is the mean of all pieces weighted by how much each rules. A mean
+// never closes a mouth, so lips that meet (p, b, m) and teeth on the lip (f, v) are laid over it (`_closed`): in their
+// middle nothing else shows, however quick the speech is. Lips round for a rounded vowel as soon as the consonants
+// before it begin (look-ahead, Henke 1966), at most a quarter of a second before it (Bell-Berti and Harris 1981 found
+// it begin at about a fixed time before the vowel). The numbers are ours.
 //
 // Translated from metagraph/playback/life/mouth.py; change that, and translate anew.
 #pragma once
@@ -16,12 +19,12 @@ struct MouthPiece;
 
 namespace mouth {
 
-// How much each of VISEMES rules its neighbours: closed lips and teeth on the lip must be seen, tongue and
-// palate need not.
+// How much each of VISEMES rules its neighbours: tongue and palate need not be seen. What closes the mouth
+// does not take part in the mean.
 inline const List<double> RULE = List<double>{
     0.8,
-    6.0,
-    4.0,
+    0.0,
+    0.0,
     1.0,
     0.7,
     0.5,
@@ -35,13 +38,34 @@ inline const List<double> RULE = List<double>{
     1.7,
     1.9
 };
+inline const List<std::string> CLOSURES = List<std::string>{"PP", "FF"};
+inline const List<std::string> VOWELS = List<std::string>{"aa", "E", "I", "O", "U"};
+inline const List<std::string> ROUNDED = List<std::string>{"O", "U"};
 inline constexpr double EARLY = 0.075; // seconds over which a shape comes before its sound begins
 inline constexpr double LATE = 0.065; // and goes after it ends
 inline constexpr double STEP = 0.02; // seconds between the rows of a track
+inline constexpr double LOOK_AHEAD = 0.25; // seconds by which a rounded vowel may come before its sound
+inline constexpr double PAUSE = 0.03; // seconds without a sound that end a run of consonants
+// seconds before and after its middle that a closure lasts at least: a row on each side
+inline constexpr double HELD = 0.02;
+inline constexpr double SHUTTING = 0.09; // seconds it takes to close and to open again
+inline constexpr double PARTING = 0.03; // seconds one closure takes to make way for the other
 inline constexpr double LEAST = 0.02; // how much rest rules everywhere
 // seconds round a stressed syllable without another: blinks come as often as people's
 inline constexpr double ACCENT = 2.0;
 inline List<List<double>> mouth_track(const List<Ref<MouthPiece>>& pieces, double duration);
+inline List<std::tuple<double, double>> _gates(
+    const List<Ref<MouthPiece>>& pieces,
+    const std::string& viseme,
+    int count,
+    double step
+);
+inline List<double> _closed(
+    const List<double>& row,
+    const std::tuple<double, double>& lips,
+    const std::tuple<double, double>& teeth
+);
+inline void soften(List<double>& out, const List<double>& before, const List<double>& now, const List<double>& after);
 inline List<double> rest();
 inline List<double> accents_of(const List<double>& peaks, const List<double>& strengths);
 inline double _ease(double x);
@@ -79,19 +103,36 @@ inline List<List<double>> mouth_track(const List<Ref<MouthPiece>>& pieces, doubl
     for (int row = 0; row < count; row++) {
         made.push_back(0.0);
     }
+    double begun = 0.0;
+    double last = -1.0; // of a run of consonants; where the sound before ended
     for (const auto& piece : pieces) {
         int place = lang::index(words::VISEMES, piece->viseme);
+        if (piece->start - last > mouth::PAUSE) {
+            begun = piece->start;
+        }
+        double early = mouth::EARLY;
+        if (lang::contains(mouth::ROUNDED, piece->viseme)) {
+            early = std::min(std::max(piece->start - begun, mouth::EARLY), mouth::LOOK_AHEAD);
+        }
+        last = piece->end;
+        if (lang::contains(mouth::VOWELS, piece->viseme)) {
+            begun = piece->end;
+        }
         // Short sounds are not left out: their ramps overlap and still reach the top in the middle.
         double inside = std::min(0.5 * (piece->end - piece->start), 0.04);
-        int first = std::max(0, static_cast<int>(std::ceil((piece->start - mouth::EARLY) / step)));
+        int first = std::max(0, static_cast<int>(std::ceil((piece->start - early) / step)));
         for (int k = first; k < std::min(count, static_cast<int>(std::ceil((piece->end + mouth::LATE) / step))); k++) {
-            double rise = mouth::_ease((k * step - piece->start + mouth::EARLY) / (mouth::EARLY + inside));
+            double rise = mouth::_ease((k * step - piece->start + early) / (early + inside));
             double fall = mouth::_ease((piece->end + mouth::LATE - k * step) / (mouth::LATE + inside));
             double here = std::min(rise, fall);
             lang::at(made, k) += here;
             lang::at(lang::at(rows, k), place) += here * lang::at(mouth::RULE, place) * piece->strength;
             lang::at(lang::at(rows, k), 0) += here * lang::at(mouth::RULE, place) * (1 - piece->strength);
         }
+    }
+    List<List<std::tuple<double, double>>> shut;
+    for (const auto& name : mouth::CLOSURES) {
+        shut.push_back(mouth::_gates(pieces, name, count, step));
     }
     List<List<double>> out = List<List<double>>{mouth::rest()};
     for (int k = 1; k < count - 1; k++) {
@@ -102,10 +143,84 @@ inline List<List<double>> mouth_track(const List<Ref<MouthPiece>>& pieces, doubl
         for (const auto& weight : lang::at(rows, k)) {
             found2.push_back(weight / whole);
         }
-        out.push_back(found2);
+        out.push_back(mouth::_closed(found2, lang::at(lang::at(shut, 0), k), lang::at(lang::at(shut, 1), k)));
     }
     out.push_back(mouth::rest());
     return out;
+}
+
+/// Return rows (how far a closure has come, how far it keeps the other one away), 0..1.
+inline List<std::tuple<double, double>> _gates(
+    const List<Ref<MouthPiece>>& pieces,
+    const std::string& viseme,
+    int count,
+    double step
+) {
+    List<std::tuple<double, double>> out;
+    for (int row = 0; row < count; row++) {
+        out.push_back(std::tuple<double, double>{0.0, 0.0});
+    }
+    for (const auto& piece : pieces) {
+        if (piece->viseme != viseme) {
+            continue;
+        }
+        double middle = 0.5 * (piece->start + piece->end);
+        double held = std::max(mouth::HELD, 0.5 * (piece->end - piece->start) - 0.01);
+        int first = std::max(0, static_cast<int>(std::ceil((middle - held - mouth::SHUTTING) / step)));
+        for (int k = first; k < std::min(
+            count,
+            static_cast<int>(std::ceil((middle + held + mouth::SHUTTING) / step))
+        ); k++) {
+            double away = std::max(0.0, std::abs(k * step - middle) - held);
+            double wide = piece->strength * mouth::_ease(1 - away / mouth::SHUTTING);
+            double narrow = piece->strength * mouth::_ease(1 - away / mouth::PARTING);
+            lang::at(out, k) = std::tuple<double, double>{
+                std::max(std::get<0>(lang::at(out, k)), wide),
+                std::max(std::get<1>(lang::at(out, k)), narrow)
+            };
+        }
+    }
+    return out;
+}
+
+/// Return a row with closures laid over it: as much of it is left as they leave open.
+inline List<double> _closed(
+    const List<double>& row,
+    const std::tuple<double, double>& lips,
+    const std::tuple<double, double>& teeth
+) {
+    double most = std::max(std::get<0>(lips), std::get<0>(teeth));
+    if (most <= 0) {
+        return row;
+    }
+    double one = std::get<0>(lips) * (1 - std::get<1>(teeth));
+    double other = std::get<0>(teeth) * (1 - std::get<1>(lips));
+    if (one + other <= 0) {
+        one = std::get<0>(lips);
+        other = std::get<0>(teeth);
+    }
+    List<double> out;
+    for (const auto& weight : row) {
+        out.push_back((1 - most) * weight);
+    }
+    lang::at(out, 1) += most * one / (one + other);
+    lang::at(out, 2) += most * other / (one + other);
+    return out;
+}
+
+/// Write shapes but silence `[14]` smoothed over three moments; those that close the mouth stay as they are now, and
+/// leave the others what room they leave: smoothing must not part lips that meet.
+inline void soften(List<double>& out, const List<double>& before, const List<double>& now, const List<double>& after) {
+    for (int n = 0; n < lang::len(out); n++) {
+        lang::at(out, n) = 0.25 * lang::at(before, n) + 0.5 * lang::at(now, n) + 0.25 * lang::at(after, n);
+    }
+    double open_ = 1 - lang::at(out, 0) - lang::at(out, 1);
+    lang::at(out, 0) = lang::at(now, 0);
+    lang::at(out, 1) = lang::at(now, 1);
+    double left = open_ > 1e-09 ? std::max(0.0, 1 - lang::at(out, 0) - lang::at(out, 1)) / open_ : 0.0;
+    for (int n = 2; n < lang::len(out); n++) {
+        lang::at(out, n) *= std::min(1.0, left);
+    }
 }
 
 /// Return the weights of a shut mouth.

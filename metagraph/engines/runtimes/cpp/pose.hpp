@@ -80,10 +80,14 @@ public:
     void morphs(double time, List<double>& out, bool alive = true) {
         out.assign(graph_->morphs.size(), 0.0);
         if (out.empty()) return;
+        List<const Cue*> cues;
         for (Layer& layer : layers_) {
             const Cue* cue = cue_at(layer, time);
             const double weight = cue == nullptr ? 0 : pose::cue_weight(*cue, time);
-            if (cue != nullptr) add_morphs(*cue->action, pose::clip_seconds(*cue, time), weight, out);
+            if (cue != nullptr) {
+                cues.push_back(cue);
+                add_morphs(*cue->action, pose::clip_seconds(*cue, time), weight, out);
+            }
             if (layer.plan->rests.empty()) continue;
             const Rest& rest = *lang::at(layer.plan->rests, rest_at(layer, time));
             const auto [start, length, seam] = loop_of(*rest.action);
@@ -93,7 +97,7 @@ public:
             compose(time); // eyes made of morph targets hold while the head moves
             weigh(time);
             life_->find(pose_, *plan_->life, *plan_->track, gaze_.get(), time);
-            life_->morphs(out);
+            life_->morphs(out, *plan_->life, cues, time);
         }
         for (double& weight : out) weight = std::clamp(weight, 0.0, 1.0);
     }

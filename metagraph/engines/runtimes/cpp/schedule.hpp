@@ -10,6 +10,7 @@
 #include "life.hpp"
 #include "words.hpp"
 #include "choice.hpp"
+#include "expressions.hpp"
 #include "lane.hpp"
 #include "track.hpp"
 #include "voice.hpp"
@@ -80,8 +81,8 @@ inline double share(const Ref<Lane>& lane, double start, double end);
 ///
 /// modes: place among MODES. moods: valence, arousal, intensity. targets: what is looked at. breaths: length s, depth.
 /// aversions: end s, right-to-left and upward part of the offset (of life's angle). saccades: offset to the left and
-/// up, degrees. blinks: 0 of itself, 1 on a stressed syllable, 2 asked for. drawn: seconds up to which the lanes are
-/// filled; the rest is what they were drawn from.
+/// up, degrees. blinks: 0 of itself, 1 on a stressed syllable, 2 asked for. swells, emphases: of the face
+/// (`expressions`). drawn: seconds up to which the lanes are filled; the rest is what they were drawn from.
 struct Schedule {
     double end;
     double drawn;
@@ -92,6 +93,8 @@ struct Schedule {
     Ref<Lane> aversions;
     Ref<Lane> saccades;
     Ref<Lane> blinks;
+    Ref<Lane> swells;
+    Ref<Lane> emphases;
     Ref<Life> life;
     Ref<Track> track;
     Ref<Voices> voices;
@@ -107,6 +110,8 @@ struct Schedule {
         Ref<Lane> aversions_ = lang::made<Lane>(List<double>{}, List<List<double>>{}, 0, 3),
         Ref<Lane> saccades_ = lang::made<Lane>(List<double>{}, List<List<double>>{}, 0, 2),
         Ref<Lane> blinks_ = lang::made<Lane>(List<double>{}, List<List<double>>{}, 0, 1),
+        Ref<Lane> swells_ = lang::made<Lane>(List<double>{}, List<List<double>>{}, 0, 3),
+        Ref<Lane> emphases_ = lang::made<Lane>(List<double>{}, List<List<double>>{}, 0, 3),
         Ref<Life> life_ = nullptr,
         Ref<Track> track_ = nullptr,
         Ref<Voices> voices_ = nullptr,
@@ -121,6 +126,8 @@ struct Schedule {
             aversions(std::move(aversions_)),
             saccades(std::move(saccades_)),
             blinks(std::move(blinks_)),
+            swells(std::move(swells_)),
+            emphases(std::move(emphases_)),
             life(std::move(life_)),
             track(std::move(track_)),
             voices(std::move(voices_)),
@@ -256,6 +263,8 @@ inline Ref<Schedule> Schedule::since(double seconds) const {
         aversions,
         saccades,
         blinks,
+        this->swells->since(seconds),
+        this->emphases->since(seconds, 3),
         this->life,
         this->track,
         this->voices,
@@ -541,6 +550,8 @@ inline Ref<Schedule> schedule(
             before->aversions,
             before->saccades,
             before->blinks,
+            before->swells,
+            before->emphases,
             life,
             track,
             voices,
@@ -560,6 +571,8 @@ inline Ref<Schedule> schedule(
             before->aversions,
             before->saccades,
             before->blinks,
+            before->swells,
+            before->emphases,
             before->life,
             before->track,
             before->voices,
@@ -573,12 +586,16 @@ inline Ref<Schedule> schedule(
     Ref<Lane> aversions = before->aversions->until(chance);
     Ref<Lane> saccades = before->saccades->until(chance);
     Ref<Lane> blinks = before->blinks->until(chance);
+    Ref<Lane> swells = before->swells->until(chance);
+    Ref<Lane> emphases = before->emphases->until(chance);
     if (chance < drawn) {
         draw->begin(chance);
         breaths = draw->breaths(breaths);
         aversions = draw->aversions(aversions);
         saccades = draw->saccades(saccades);
         blinks = draw->blinks(blinks);
+        swells = expressions::swells_on(track, seed, chance, drawn, swells);
+        emphases = expressions::emphases_on(life, track, voices, seed, chance, drawn, emphases);
     }
     return lang::made<Schedule>(
         end,
@@ -590,6 +607,8 @@ inline Ref<Schedule> schedule(
         aversions,
         saccades,
         blinks,
+        swells,
+        emphases,
         life,
         track,
         voices,

@@ -60,7 +60,7 @@ function runCase(graph, { seed, idle, stances, steps, plan: expected, life, pose
   const reports = plan.reports.map((r) => [r.request, r.outcome, r.layer, r.at, r.played]);
   const sorted = (rows) => [...rows].sort((a, b) => (order(a) < order(b) ? -1 : 1));
   same("reports", sorted(reports), sorted(expected.reports));
-  for (const lane of ["modes", "breaths", "aversions", "saccades", "blinks"]) {
+  for (const lane of ["modes", "breaths", "aversions", "saccades", "blinks", "swells", "emphases"]) {
     same(`life.${lane}`, plan.life[lane].times.map((start, n) => [start, ...plan.life[lane].rows[n]]), life[lane]);
   }
   if (life.moods) same("life.moods", plan.life.moods.times.map((start, n) => [start, ...plan.life.moods.rows[n]]), life.moods);

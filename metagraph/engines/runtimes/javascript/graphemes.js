@@ -6,7 +6,7 @@
  * Translated from metagraph/playback/life/graphemes.py; change that, and translate anew.
  */
 
-import { MouthPiece } from "./mouth.js";
+import { MouthPiece, VOWELS } from "./mouth.js";
 import { modulo, sum } from "./basics.js";
 
 export const PACE = 14; // characters a second: about 150 words a minute
@@ -139,7 +139,6 @@ const _ALIKE = new Map([
   ["є", "e"],
   ["ї", "i"],
 ]);
-export const VOWELS = ["aa", "E", "I", "O", "U"];
 const _CONSONANTS = ["DD", "nn", "SS", "kk", "PP"]; // of syllables nobody knows
 const _VOWEL_LENGTH = 1.25; // of one character's time
 const _CONSONANT_LENGTH = 0.8;

@@ -5,8 +5,8 @@
  * Translated from metagraph/playback/life/line_timing.py; change that, and translate anew.
  */
 
-import { Spelled, VOWELS, sounds } from "./graphemes.js";
-import { LATE, MouthPiece, STEP } from "./mouth.js";
+import { Spelled, sounds } from "./graphemes.js";
+import { LATE, MouthPiece, STEP, VOWELS } from "./mouth.js";
 import { but, maxOf, thousandths, zip } from "./basics.js";
 
 export const WORD = 0.15; // seconds a word takes of which only the start is told, if nothing comes before

@@ -425,7 +425,7 @@ export function bearing(mood) {
     within(i * 0.3 * down, 0, 0.5),
     within(i * well, 0, 1),
     within(i * ill, 0, 1),
-    within(i * 1.4 * up * Math.max(0, 0.4 - v), 0, 1),
+    within(i * 1.8 * up * Math.max(0, 0.4 - v), 0, 1),
     within(i * ill * Math.max(0, 0.6 - a), 0, 1),
   );
 }

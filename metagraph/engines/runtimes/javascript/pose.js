@@ -83,12 +83,16 @@ export class Player {
   morphs(time, out, alive = true) {
     out.fill(0);
     if (!out.length) return;
+    const cues = [];
     for (let n = 0; n < LAYERS.length; n++) {
       const layer = this.plan.layers[LAYERS[n]];
       const cue = this.cueAt(n, layer, time);
       const rest = layer.rests.length ? layer.rests[this.restAt(n, layer, time)] : null;
       const weight = cue ? cueWeight(cue, time) : 0;
-      if (cue) addMorphs(cue.action, clipSeconds(cue, time), weight, out);
+      if (cue) {
+        cues.push(cue);
+        addMorphs(cue.action, clipSeconds(cue, time), weight, out);
+      }
       if (rest) addMorphs(rest.action, rest.action.start + phaseOf(rest.action, time - rest.start), 1 - weight, out);
     }
     if (alive && this.lives && this.graph.body.face.morphs.length) {
@@ -96,7 +100,7 @@ export class Player {
       this.compose(time); // eyes made of morph targets hold while the head moves
       this.weigh(time);
       life.find(pose.rotations, pose.translations, this.plan, this.gaze, time);
-      life.morphs(out);
+      life.morphs(out, this.plan, time, cues);
     }
     for (let n = 0; n < out.length; n++) out[n] = Math.min(1, Math.max(0, out[n]));
   }

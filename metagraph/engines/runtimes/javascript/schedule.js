@@ -10,6 +10,7 @@
 import { manner, sameLife } from "./life.js";
 import { MODES } from "./words.js";
 import { uniform } from "./choice.js";
+import { emphasesOn, swellsOn } from "./expressions.js";
 import { Lane } from "./lane.js";
 import { sameVoices, stressed } from "./voice.js";
 import { modesBetween, moodsBetween, moodsOf, targetsBetween, waysIn } from "./wanted.js";
@@ -42,11 +43,11 @@ export const BREATH_CHANCE = 0.3; // and what chance adds
  *
  * modes: place among MODES. moods: valence, arousal, intensity. targets: what is looked at. breaths: length s, depth.
  * aversions: end s, right-to-left and upward part of the offset (of life's angle). saccades: offset to the left and up,
- * degrees. blinks: 0 of itself, 1 on a stressed syllable, 2 asked for. drawn: seconds up to which the lanes are filled; the
- * rest is what they were drawn from.
+ * degrees. blinks: 0 of itself, 1 on a stressed syllable, 2 asked for. swells, emphases: of the face (`expressions`). drawn:
+ * seconds up to which the lanes are filled; the rest is what they were drawn from.
  *
  * end: number; drawn: number; modes: Lane; moods: Lane; targets: GazeTarget[]; breaths: Lane; aversions: Lane; saccades:
- * Lane; blinks: Lane; life: ?Life; track: ?Track; voices: ?Voices; seed: number.
+ * Lane; blinks: Lane; swells: Lane; emphases: Lane; life: ?Life; track: ?Track; voices: ?Voices; seed: number.
  */
 export class Schedule {
   constructor(
@@ -59,6 +60,8 @@ export class Schedule {
     aversions = new Lane([], [], 0, 3),
     saccades = new Lane([], [], 0, 2),
     blinks = new Lane([], [], 0, 1),
+    swells = new Lane([], [], 0, 3),
+    emphases = new Lane([], [], 0, 3),
     life = null,
     track = null,
     voices = null,
@@ -73,6 +76,8 @@ export class Schedule {
     this.aversions = aversions;
     this.saccades = saccades;
     this.blinks = blinks;
+    this.swells = swells;
+    this.emphases = emphases;
     this.life = life;
     this.track = track;
     this.voices = voices;
@@ -100,7 +105,9 @@ export class Schedule {
     return but(this, { modes: this.modes.since(needed, 0), moods: this.moods.since(
       Math.min(needed, seconds - RECALL),
       0,
-    ), targets: this.targets.slice(Math.max(0, looked)), breaths: breaths, aversions: aversions, saccades: saccades, blinks: blinks });
+    ), targets: this.targets.slice(Math.max(0, looked)), breaths: breaths, aversions: aversions, saccades: saccades, blinks: blinks, swells: this.swells.since(
+      seconds,
+    ), emphases: this.emphases.since(seconds, 3) });
   }
 }
 
@@ -133,12 +140,16 @@ export function schedule(life, track, voices, seed, end, before, now) {
   let aversions = before.aversions.until(chance);
   let saccades = before.saccades.until(chance);
   let blinks = before.blinks.until(chance);
+  let swells = before.swells.until(chance);
+  let emphases = before.emphases.until(chance);
   if (chance < drawn) {
     draw.begin(chance);
     breaths = draw.breaths(breaths);
     aversions = draw.aversions(aversions);
     saccades = draw.saccades(saccades);
     blinks = draw.blinks(blinks);
+    swells = swellsOn(track, seed, chance, drawn, swells);
+    emphases = emphasesOn(life, track, voices, seed, chance, drawn, emphases);
   }
   return new Schedule(
     end,
@@ -150,6 +161,8 @@ export function schedule(life, track, voices, seed, end, before, now) {
     aversions,
     saccades,
     blinks,
+    swells,
+    emphases,
     life,
     track,
     voices,

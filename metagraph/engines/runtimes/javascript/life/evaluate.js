@@ -8,6 +8,7 @@
  */
 
 import { bisect } from "../basics.js";
+import { FaceShown, answer, settle, shownFace } from "../expressions.js";
 import { Bearing, bearing, shown } from "../mood.js";
 import { fromVector, multiply } from "../rotation.js";
 import { CHANNELS, LIDS, MOUTH } from "../words.js";
@@ -24,8 +25,9 @@ const BLINK = LIDS.length; // place among CHANNELS
 const VISEME = CHANNELS.length - 14; // place of the first mouth shape but silence
 
 // What morph targets stand for, in the order in which `morphs` works it out.
+const FEELS = ["smile", "frown", "brow_down", "brow_up", "brows", "cheeks"];
 const SIDED = ["blink", "wide", "look_left", "look_right", "look_up", "look_down"];
-const SHOWN = ["blink", ...["left", "right"].flatMap((side) => SIDED.map((what) => `${what}_${side}`)), ...MOUTH, "smile", "frown", "brow_down", "brow_up"];
+const SHOWN = ["blink", ...["left", "right"].flatMap((side) => SIDED.map((what) => `${what}_${side}`)), ...MOUTH, ...FEELS];
 const UNMOVED = new Bearing();
 
 /** What the life layers make of one body: `find` works a time out, `apply` and `morphs` use what it found. */
@@ -43,6 +45,7 @@ export class Enlivener {
     this.shut = new Float64Array(LIDS.length);
     this.full = 0; // how full the chest is
     this.bears = UNMOVED;
+    this.feels = new FaceShown();
     this.values = new Float64Array(SHOWN.length);
     this.added = new Float64Array(graph.morphs.length);
     this.targets = body.face.morphs
@@ -157,8 +160,11 @@ export class Enlivener {
     multiply(this.results, 4 * place, this.results, 4 * place, this.turn, 0);
   }
 
-  /** Add the morph target weights of what was found, by their places in `graph.morphs`. @param {Float32Array} out */
-  morphs(out) {
+  /**
+   * Add the morph target weights of what was found, by their places in `graph.morphs`.
+   * @param {Float32Array} out @param {import("../plan.js").Plan} plan @param {number} time @param {object[]} cues those that play then
+   */
+  morphs(out, plan, time, cues) {
     const { shut, channels, values, added } = this;
     values[0] = Math.max((shut[0] + shut[1]) / 2, channels[BLINK]);
     for (let side = 0; side < 2; side++) {
@@ -172,8 +178,12 @@ export class Enlivener {
       values[at + 5] = -up;
     }
     for (let k = 0; k < MOUTH.length; k++) values[13 + k] = channels[BLINK + 1 + k];
-    const { smile, frown, browDown, browUp } = this.bears;
-    [smile, frown, browDown, browUp].forEach((value, k) => (values[13 + MOUTH.length + k] = value));
+    const { life } = this.graph;
+    const face = this.feels;
+    shownFace(face, life, plan.life.swells, plan.life.emphases, this.bears, time);
+    for (const cue of cues) answer(face, life, cue.action.tags, cue.start, cue.end, time);
+    settle(face);
+    values.set([face.smile, face.frown, face.browDown, face.browUp, face.brows, face.cheeks], 13 + MOUTH.length);
     added.fill(0);
     for (let n = 0; n < this.targets.length; n++) {
       const { value, morph, weight } = this.targets[n];

@@ -1,6 +1,7 @@
 /** Which shape the mouth has: the voices of what is said, at any time. */
 
 import { begunBy } from "../basics.js";
+import { soften } from "../mouth.js";
 import { VISEMES } from "../words.js";
 import { ease } from "./gaze.js";
 
@@ -20,14 +21,10 @@ export function mouthAt(graph, speeches, time, out) {
     if (time <= speech.start - smoothing) continue;
     const voice = graph.voiceOf(speech);
     said = true;
-    // The weighted mean over `smoothing` seconds before and after.
-    if (smoothing > 0) {
-      addShown(voice, speech, time - smoothing, 0.25, out);
-      addShown(voice, speech, time, 0.5, out);
-      addShown(voice, speech, time + smoothing, 0.25, out);
-    } else {
-      addShown(voice, speech, time, 1, out);
-    }
+    const now = shownOf(voice, speech, time);
+    const shown = [...now];
+    if (smoothing > 0) soften(shown, shownOf(voice, speech, time - smoothing), now, shownOf(voice, speech, time + smoothing));
+    for (let k = 0; k < COUNT - 1; k++) out[k] += shown[k];
   }
   let sum = 0;
   for (let k = 0; k < COUNT - 1; k++) sum += out[k];
@@ -35,13 +32,15 @@ export function mouthAt(graph, speeches, time, out) {
   return said;
 }
 
-function addShown(voice, speech, time, share, out) {
-  if (time < speech.start) return;
-  const kept = share * (1 - ease((time - speech.end) / CLOSING));
+function shownOf(voice, speech, time) {
+  const out = new Array(COUNT - 1).fill(0);
+  if (time < speech.start) return out;
+  const kept = 1 - ease((time - speech.end) / CLOSING);
   const { weights } = voice;
   const last = weights.length / COUNT - 1;
   const at = ((Math.min(time, speech.end) - speech.start) / Math.max(voice.duration, 1e-3)) * last;
   const low = Math.min(Math.max(Math.floor(at), 0), last - 1);
   const part = Math.min(Math.max(at - low, 0), 1);
-  for (let k = 1, a = low * COUNT + 1; k < COUNT; k++, a++) out[k - 1] += kept * (weights[a] * (1 - part) + weights[a + COUNT] * part);
+  for (let k = 1, a = low * COUNT + 1; k < COUNT; k++, a++) out[k - 1] = kept * (weights[a] * (1 - part) + weights[a + COUNT] * part);
+  return out;
 }

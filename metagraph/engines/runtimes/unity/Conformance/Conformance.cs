@@ -178,7 +178,8 @@ public static class Conformance
             t.Start, t.To.Point == null ? (object)t.To.Name : t.To.Point.Cast<object>().ToList(), t.Since, t.Amount, t.Strict, t.Asked));
         return Fields(
             "modes", Lanes(life.Modes), "breaths", Lanes(life.Breaths), "aversions", Lanes(life.Aversions),
-            "saccades", Lanes(life.Saccades), "blinks", Lanes(life.Blinks), "targets", targets, "moods", Lanes(life.Moods));
+            "saccades", Lanes(life.Saccades), "blinks", Lanes(life.Blinks), "targets", targets, "moods", Lanes(life.Moods),
+            "swells", Lanes(life.Swells), "emphases", Lanes(life.Emphases));
     }
 
     private static List<object> Lanes(Lane lane)

@@ -48,7 +48,7 @@ namespace Metagraph
                 var then = at + sound.Size * scale;
                 if (sound.Shape != "")
                 {
-                    var fully = GraphemesRules.Vowels.Contains(sound.Shape) ? Math.Min(1.0, 0.7 + 0.4 * sound.Strength) : 1.0;
+                    var fully = MouthRules.Vowels.Contains(sound.Shape) ? Math.Min(1.0, 0.7 + 0.4 * sound.Strength) : 1.0;
                     Pieces.Add(new MouthPiece(at, then, sound.Shape, fully));
                 }
                 if (sound.Strength > 0)
@@ -193,7 +193,6 @@ namespace Metagraph
             { "є", "e" },
             { "ї", "i" }
          };
-        public static readonly List<string> Vowels = new List<string> { "aa", "E", "I", "O", "U" };
         // of syllables nobody knows
         private static readonly List<string> Consonants = new List<string> { "DD", "nn", "SS", "kk", "PP" };
         private const double VowelLength = 1.25; // of one character's time
@@ -230,9 +229,9 @@ namespace Metagraph
                 var spelling = string.Join("", PlainLists.Part(letters, at, at + size));
                 var found = Spellings.ContainsKey(spelling) ? Spellings[spelling] : Unknown(alphabet, spelling, out_);
                 var last = at == letters.Count - 1;
-                var finalE = spelling == "e" && last && out_.Count > 1 && out_.Any(s => Vowels.Contains(s));
+                var finalE = spelling == "e" && last && out_.Count > 1 && out_.Any(s => MouthRules.Vowels.Contains(s));
                 var twice = at > 0 && size == 1 && letters[at] == letters[at - 1];
-                if (found.Count > 0 && !finalE && !(twice && !Vowels.Contains(found[0])))
+                if (found.Count > 0 && !finalE && !(twice && !MouthRules.Vowels.Contains(found[0])))
                 {
                     out_.AddRange(found);
                 }
@@ -249,12 +248,12 @@ namespace Metagraph
                 var code = alphabet.Code(letter);
                 return new List<string> {
                     Consonants[PlainNumbers.Modulo(code, 5)],
-                    Vowels[PlainNumbers.Modulo((int)Math.Floor((double)code / 5), 5)]
+                    MouthRules.Vowels[PlainNumbers.Modulo((int)Math.Floor((double)code / 5), 5)]
                  };
             }
             if (kind == "letter")
             {
-                return (before.Count > 0 && !Vowels.Contains(before[before.Count - 1]))
+                return (before.Count > 0 && !MouthRules.Vowels.Contains(before[before.Count - 1]))
                     ? new List<string> { "aa" }
                     : new List<string> { "DD" };
             }
@@ -305,8 +304,8 @@ namespace Metagraph
             var before = "";
             foreach (string shape in found)
             {
-                var vowel = Vowels.Contains(shape);
-                var syllable = vowel && !Vowels.Contains(before);
+                var vowel = MouthRules.Vowels.Contains(shape);
+                var syllable = vowel && !MouthRules.Vowels.Contains(before);
                 var strength = syllable ? first ? weight : 0.6 * weight : 0.0;
                 first = first && !syllable;
                 out_.Add(new SpelledSound(shape, vowel ? VowelLength : ConsonantLength, strength));

@@ -389,7 +389,7 @@ namespace Metagraph
                 if (mark.Viseme != "sil" && end > mark.At)
                 {
                     shown.Pieces.Add(new MouthPiece(mark.At, end, mark.Viseme, mark.Weight));
-                    if (GraphemesRules.Vowels.Contains(mark.Viseme) && !GraphemesRules.Vowels.Contains(before) && mark.Weight > 0)
+                    if (MouthRules.Vowels.Contains(mark.Viseme) && !MouthRules.Vowels.Contains(before) && mark.Weight > 0)
                     {
                         shown.Peaks.Add(0.5 * (mark.At + end));
                         shown.Strengths.Add(mark.Weight * Math.Min(1.0, 0.3 + 4 * (end - mark.At)));

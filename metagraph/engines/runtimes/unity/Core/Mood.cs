@@ -419,7 +419,7 @@ namespace Metagraph
                 Within(i * 0.3 * down, 0.0, 0.5),
                 Within(i * well, 0.0, 1.0),
                 Within(i * ill, 0.0, 1.0),
-                Within(i * 1.4 * up * Math.Max(0.0, 0.4 - v), 0.0, 1.0),
+                Within(i * 1.8 * up * Math.Max(0.0, 0.4 - v), 0.0, 1.0),
                 Within(i * ill * Math.Max(0.0, 0.6 - a), 0.0, 1.0)
             );
         }

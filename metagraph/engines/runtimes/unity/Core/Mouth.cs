@@ -24,12 +24,12 @@ namespace Metagraph
 
     public static class MouthRules
     {
-        // How much each of VISEMES rules its neighbours: closed lips and teeth on the lip must be seen, tongue and
-        // palate need not.
+        // How much each of VISEMES rules its neighbours: tongue and palate need not be seen. What closes the mouth
+        // does not take part in the mean.
         public static readonly List<double> Rule = new List<double> {
             0.8,
-            6.0,
-            4.0,
+            0.0,
+            0.0,
             1.0,
             0.7,
             0.5,
@@ -43,9 +43,17 @@ namespace Metagraph
             1.7,
             1.9
          };
+        public static readonly List<string> Closures = new List<string> { "PP", "FF" };
+        public static readonly List<string> Vowels = new List<string> { "aa", "E", "I", "O", "U" };
+        public static readonly List<string> Rounded = new List<string> { "O", "U" };
         public const double Early = 0.075; // seconds over which a shape comes before its sound begins
         public const double Late = 0.065; // and goes after it ends
         public const double Step = 0.02; // seconds between the rows of a track
+        public const double LookAhead = 0.25; // seconds by which a rounded vowel may come before its sound
+        public const double Pause = 0.03; // seconds without a sound that end a run of consonants
+        public const double Held = 0.02; // seconds before and after its middle that a closure lasts at least: a row on each side
+        public const double Shutting = 0.09; // seconds it takes to close and to open again
+        public const double Parting = 0.03; // seconds one closure takes to make way for the other
         public const double Least = 0.02; // how much rest rules everywhere
         public const double Accent = 2.0; // seconds round a stressed syllable without another: blinks come as often as people's
 
@@ -62,15 +70,31 @@ namespace Metagraph
                 WordsRules.Visemes.Count
             ).Select(shape => 0.0).ToList()).ToList();
             var made = PlainNumbers.Range(count).Select(row => 0.0).ToList();
+            var begun = 0.0;
+            var last = -1.0; // of a run of consonants; where the sound before ended
             foreach (MouthPiece piece in pieces)
             {
                 var place = WordsRules.Visemes.IndexOf(piece.Viseme);
+                if (piece.Start - last > Pause)
+                {
+                    begun = piece.Start;
+                }
+                var early = Early;
+                if (Rounded.Contains(piece.Viseme))
+                {
+                    early = Math.Min(Math.Max(piece.Start - begun, Early), LookAhead);
+                }
+                last = piece.End;
+                if (Vowels.Contains(piece.Viseme))
+                {
+                    begun = piece.End;
+                }
                 // Short sounds are not left out: their ramps overlap and still reach the top in the middle.
                 var inside = Math.Min(0.5 * (piece.End - piece.Start), 0.04);
-                var first = Math.Max(0, (int)Math.Ceiling((piece.Start - Early) / step));
+                var first = Math.Max(0, (int)Math.Ceiling((piece.Start - early) / step));
                 for (int k = first; k < Math.Min(count, (int)Math.Ceiling((piece.End + Late) / step)); k++)
                 {
-                    var rise = Ease((k * step - piece.Start + Early) / (Early + inside));
+                    var rise = Ease((k * step - piece.Start + early) / (early + inside));
                     var fall = Ease((piece.End + Late - k * step) / (Late + inside));
                     var here = Math.Min(rise, fall);
                     made[k] += here;
@@ -78,15 +102,81 @@ namespace Metagraph
                     rows[k][0] += here * Rule[place] * (1 - piece.Strength);
                 }
             }
+            var shut = Closures.Select(name => Gates(pieces, name, count, step)).ToList();
             var out_ = new List<List<double>> { Rest() };
             for (int k = 1; k < count - 1; k++)
             {
                 rows[k][0] += Least + Rule[0] * Math.Max(1 - made[k], 0.0); // where no sound rules, rest does
                 var whole = rows[k].Sum();
-                out_.Add(rows[k].Select(weight => weight / whole).ToList());
+                out_.Add(Closed(rows[k].Select(weight => weight / whole).ToList(), shut[0][k], shut[1][k]));
             }
             out_.Add(Rest());
             return out_;
+        }
+
+        /// <summary>Return rows (how far a closure has come, how far it keeps the other one away), 0..1.</summary>
+        private static List<(double, double)> Gates(List<MouthPiece> pieces, string viseme, int count, double step)
+        {
+            var out_ = PlainNumbers.Range(count).Select(row => (0.0, 0.0)).ToList();
+            foreach (MouthPiece piece in pieces)
+            {
+                if (piece.Viseme != viseme)
+                {
+                    continue;
+                }
+                var middle = 0.5 * (piece.Start + piece.End);
+                var held = Math.Max(Held, 0.5 * (piece.End - piece.Start) - 0.01);
+                var first = Math.Max(0, (int)Math.Ceiling((middle - held - Shutting) / step));
+                for (int k = first; k < Math.Min(count, (int)Math.Ceiling((middle + held + Shutting) / step)); k++)
+                {
+                    var away = Math.Max(0.0, Math.Abs(k * step - middle) - held);
+                    var wide = piece.Strength * Ease(1 - away / Shutting);
+                    var narrow = piece.Strength * Ease(1 - away / Parting);
+                    out_[k] = (Math.Max(out_[k].Item1, wide), Math.Max(out_[k].Item2, narrow));
+                }
+            }
+            return out_;
+        }
+
+        /// <summary>Return a row with closures laid over it: as much of it is left as they leave open.</summary>
+        private static List<double> Closed(List<double> row, (double, double) lips, (double, double) teeth)
+        {
+            var most = Math.Max(lips.Item1, teeth.Item1);
+            if (most <= 0)
+            {
+                return row;
+            }
+            var one = lips.Item1 * (1 - teeth.Item2);
+            var other = teeth.Item1 * (1 - lips.Item2);
+            if (one + other <= 0)
+            {
+                one = lips.Item1;
+                other = teeth.Item1;
+            }
+            var out_ = row.Select(weight => (1 - most) * weight).ToList();
+            out_[1] += most * one / (one + other);
+            out_[2] += most * other / (one + other);
+            return out_;
+        }
+
+        /// <summary>
+        /// Write shapes but silence `[14]` smoothed over three moments; those that close the mouth stay as they are now, and
+        /// leave the others what room they leave: smoothing must not part lips that meet.
+        /// </summary>
+        public static void Soften(List<double> out_, List<double> before, List<double> now, List<double> after)
+        {
+            for (int n = 0; n < out_.Count; n++)
+            {
+                out_[n] = 0.25 * before[n] + 0.5 * now[n] + 0.25 * after[n];
+            }
+            var open = 1 - out_[0] - out_[1];
+            out_[0] = now[0];
+            out_[1] = now[1];
+            var left = open > 1e-09 ? Math.Max(0.0, 1 - out_[0] - out_[1]) / open : 0.0;
+            for (int n = 2; n < out_.Count; n++)
+            {
+                out_[n] *= Math.Min(1.0, left);
+            }
         }
 
         /// <summary>Return the weights of a shut mouth.</summary>

@@ -10,8 +10,8 @@ namespace Metagraph
     ///
     /// modes: place among MODES. moods: valence, arousal, intensity. targets: what is looked at. breaths: length s, depth.
     /// aversions: end s, right-to-left and upward part of the offset (of life's angle). saccades: offset to the left and up,
-    /// degrees. blinks: 0 of itself, 1 on a stressed syllable, 2 asked for. drawn: seconds up to which the lanes are filled; the
-    /// rest is what they were drawn from.
+    /// degrees. blinks: 0 of itself, 1 on a stressed syllable, 2 asked for. swells, emphases: of the face (`expressions`). drawn:
+    /// seconds up to which the lanes are filled; the rest is what they were drawn from.
     /// </summary>
     public sealed class Schedule
     {
@@ -24,6 +24,8 @@ namespace Metagraph
         public readonly Lane Aversions;
         public readonly Lane Saccades;
         public readonly Lane Blinks;
+        public readonly Lane Swells;
+        public readonly Lane Emphases;
         public readonly LifeSettings Life;
         public readonly Track Track;
         public readonly Voices Voices;
@@ -39,6 +41,8 @@ namespace Metagraph
             Lane aversions = null,
             Lane saccades = null,
             Lane blinks = null,
+            Lane swells = null,
+            Lane emphases = null,
             LifeSettings life = null,
             Track track = null,
             Voices voices = null,
@@ -54,6 +58,8 @@ namespace Metagraph
             Aversions = aversions ?? new Lane(new List<double>(), new List<List<double>>(), 0, 3);
             Saccades = saccades ?? new Lane(new List<double>(), new List<List<double>>(), 0, 2);
             Blinks = blinks ?? new Lane(new List<double>(), new List<List<double>>(), 0, 1);
+            Swells = swells ?? new Lane(new List<double>(), new List<List<double>>(), 0, 3);
+            Emphases = emphases ?? new Lane(new List<double>(), new List<List<double>>(), 0, 3);
             Life = life;
             Track = track;
             Voices = voices;
@@ -94,6 +100,8 @@ namespace Metagraph
                 aversions,
                 saccades,
                 blinks,
+                Swells.Since(seconds),
+                Emphases.Since(seconds, 3),
                 this.Life,
                 this.Track,
                 this.Voices,
@@ -502,6 +510,8 @@ namespace Metagraph
                     before.Aversions,
                     before.Saccades,
                     before.Blinks,
+                    before.Swells,
+                    before.Emphases,
                     life,
                     track,
                     voices,
@@ -522,6 +532,8 @@ namespace Metagraph
                     before.Aversions,
                     before.Saccades,
                     before.Blinks,
+                    before.Swells,
+                    before.Emphases,
                     before.Life,
                     before.Track,
                     before.Voices,
@@ -535,6 +547,8 @@ namespace Metagraph
             var aversions = before.Aversions.Until(chance);
             var saccades = before.Saccades.Until(chance);
             var blinks = before.Blinks.Until(chance);
+            var swells = before.Swells.Until(chance);
+            var emphases = before.Emphases.Until(chance);
             if (chance < drawn)
             {
                 draw.Begin(chance);
@@ -542,6 +556,8 @@ namespace Metagraph
                 aversions = draw.Aversions(aversions);
                 saccades = draw.Saccades(saccades);
                 blinks = draw.Blinks(blinks);
+                swells = ExpressionsRules.SwellsOn(track, seed, chance, drawn, swells);
+                emphases = ExpressionsRules.EmphasesOn(life, track, voices, seed, chance, drawn, emphases);
             }
             return new Schedule(
                 end,
@@ -553,6 +569,8 @@ namespace Metagraph
                 aversions,
                 saccades,
                 blinks,
+                swells,
+                emphases,
                 life,
                 track,
                 voices,

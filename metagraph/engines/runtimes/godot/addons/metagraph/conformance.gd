@@ -176,7 +176,7 @@ func _life_data(life, expected):
 	var out = {targets = []}
 	for t in life.targets:
 		out.targets.append([t.start, t.to, t.since, t.amount, t.strict, t.asked])
-	for name in ["modes", "breaths", "aversions", "saccades", "blinks"] + (["moods"] if expected.has("moods") else []):
+	for name in ["modes", "breaths", "aversions", "saccades", "blinks", "swells", "emphases"] + (["moods"] if expected.has("moods") else []):
 		out[name] = []
 		for n in range(life[name].times.size()):
 			out[name].append([life[name].times[n]] + life[name].rows[n])

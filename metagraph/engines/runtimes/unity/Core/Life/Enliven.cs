@@ -12,9 +12,9 @@ namespace Metagraph
         private const double MorphWide = 0.6; // of a target that opens wide, for a lid as far open as it would be shut
         private static readonly double MorphLook = Solve.Radians(30); // the turn of an eye that a morph target of a look stands for
         private static readonly double MorphFollows = 0.6 / Solve.Radians(40); // how far a target shuts for an eye a radian down
-        // Blink, seven of each eye, the channels that joints have, too, then what a mood shows.
-        private const int Moods = 15 + FaceRig.Channels, Values = Moods + 4;
-        private static readonly string[] MoodFace = { "smile", "frown", "brow_down", "brow_up" };
+        // Blink, seven of each eye, the channels that joints have, too, then what moods and expressions show.
+        private const int Moods = 15 + FaceRig.Channels, Values = Moods + 6;
+        private static readonly string[] MoodFace = { "smile", "frown", "brow_down", "brow_up", "brows", "cheeks" };
 
         private readonly Graph graph;
         private readonly Body body;
@@ -24,6 +24,8 @@ namespace Metagraph
         private readonly Vec[] places;
         private readonly double[] channels = new double[FaceRig.Channels], shapes = new double[14], values = new double[Values];
         private readonly double[] shut = new double[4], eyeLeft = new double[2], eyeUp = new double[2], weights;
+        private readonly Lips lips = new Lips();
+        private readonly FaceShown face = new FaceShown();
         private double blink, full;
         private Gaze gaze;
         private Bearing bears = new Bearing();
@@ -70,7 +72,7 @@ namespace Metagraph
         public void Add(Plan plan, double time, BodyPose pose)
         {
             Find(plan, time, pose.Rotations, pose.Translations);
-            Morphs(pose.Morphs);
+            Morphs(plan, time, pose.Morphs);
             Turn(pose);
         }
 
@@ -133,8 +135,12 @@ namespace Metagraph
         }
 
         /// <summary>Add the face's morph target weights, each at most 1.</summary>
-        private void Morphs(float[] morphs)
+        private void Morphs(Plan plan, double time, float[] morphs)
         {
+            if (body.Face.Morphs.Count == 0)
+            {
+                return;
+            }
             values[0] = Math.Max((shut[0] + shut[1]) / 2, blink);
             for (int n = 0; n < 2; n++)
             {
@@ -147,10 +153,22 @@ namespace Metagraph
                 values[at + 5] = -eyeUp[n] / MorphLook;
             }
             Array.Copy(channels, 0, values, 15, channels.Length);
-            values[Moods] = bears.Smile;
-            values[Moods + 1] = bears.Frown;
-            values[Moods + 2] = bears.BrowDown;
-            values[Moods + 3] = bears.BrowUp;
+            ExpressionsRules.ShownFace(face, graph.Life, plan.Life.Swells, plan.Life.Emphases, bears, time);
+            foreach (string layer in Basics.Layers)
+            {
+                Cue cue = plan.Layers[layer].CueAt(time);
+                if (cue != null)
+                {
+                    ExpressionsRules.Answer(face, graph.Life, cue.Action.Tags, cue.Start, cue.End, time);
+                }
+            }
+            ExpressionsRules.Settle(face);
+            values[Moods] = face.Smile;
+            values[Moods + 1] = face.Frown;
+            values[Moods + 2] = face.BrowDown;
+            values[Moods + 3] = face.BrowUp;
+            values[Moods + 4] = face.Brows;
+            values[Moods + 5] = face.Cheeks;
             Array.Clear(weights, 0, weights.Length);
             for (int n = 0; n < body.Face.Morphs.Count; n++)
             {
@@ -203,7 +221,7 @@ namespace Metagraph
             FindLids(life, rotations);
             if (life.Lips > 0)
             {
-                Lips.Shapes(plan.Track, graph.Voices, life.LipSmoothing, time, shapes);
+                lips.Shapes(plan.Track, graph.Voices, life.LipSmoothing, time, shapes);
                 for (int v = 0; v < shapes.Length; v++)
                 {
                     channels[FaceRig.JawOpen + 1 + v] = shapes[v] * life.Lips;

@@ -74,6 +74,7 @@ namespace Metagraph
         public double AversionRate = 12.0, AversionLength = 0.93, AversionAngle = 14.0, Saccades = 1.0, SaccadeRate = 60.0;
         public double Lids = 1.0, Blinks = 17.0, AccentBlinks = 1.0, BlinkClose = 0.07, BlinkOpen = 0.10, Lips = 1.0, LipSmoothing = 0.03;
         public double FollowThrough = 1.0, ShoulderLift = 1.0;
+        public double Expressions = 1.0, AccentBrows = 0.4;
         public double Valence, Arousal, Intensity = 1.0;
 
         private readonly Dictionary<string, Manner> modes = new Dictionary<string, Manner>
@@ -114,6 +115,8 @@ namespace Metagraph
                     case "blink_open": life.BlinkOpen = value.Within(0.02, 1); break;
                     case "lips": life.Lips = value.Within(0, 2); break;
                     case "lip_smoothing": life.LipSmoothing = value.Within(0, 0.2); break;
+                    case "expressions": life.Expressions = value.Within(0, 2); break;
+                    case "accent_brows": life.AccentBrows = value.Within(0, 1); break;
                     case "valence": life.Valence = value.Within(-1, 1); break;
                     case "arousal": life.Arousal = value.Within(-1, 1); break;
                     case "intensity": life.Intensity = value.Within(0, 2); break;

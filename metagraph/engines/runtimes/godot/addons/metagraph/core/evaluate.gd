@@ -1,6 +1,7 @@
 # The life layers at a time: what they add to the pose the layers have composed. A turn is multiplied on the right of a joint's composed
 # rotation, a shift is added to its translation.
 
+const Expressions = preload("expressions.gd")
 const Mood = preload("mood.gd")
 const Util = preload("util.gd")
 const Turns = preload("turns.gd")
@@ -12,6 +13,7 @@ const MOUTH = [
 	"jaw_open", "viseme_PP", "viseme_FF", "viseme_TH", "viseme_DD", "viseme_kk", "viseme_CH", "viseme_SS", "viseme_nn", "viseme_RR",
 	"viseme_aa", "viseme_E", "viseme_I", "viseme_O", "viseme_U"
 ]
+const FEELS = ["smile", "frown", "brow_down", "brow_up", "brows", "cheeks"]  # what moods and expressions show
 const INHALE = 0.4  # of a breath
 const MORPH_LOOK = 30.0 * PI / 180.0  # the turn of an eye that a morph target of a look stands for
 const MORPH_FOLLOWS = 0.6 / (40.0 * PI / 180.0)  # how far a morph target shuts for an eye that looks down a radian
@@ -19,7 +21,8 @@ const MORPH_WIDE = 0.6  # of a target that opens wide, for a lid as far open as 
 
 
 # Returns what the life layers make of a composed pose {rotations, translations}: {rotations, translations, morphs {name: weight}}.
-static func enliven(graph, plan, time, pose):
+# cues: those that play then.
+static func enliven(graph, plan, time, pose, cues = []):
 	var rig = graph.rig
 	var found = _found(graph, plan, time, pose)
 	var rotations = pose.rotations.duplicate()
@@ -43,7 +46,7 @@ static func enliven(graph, plan, time, pose):
 		translations = translations.duplicate()
 		for place in shifts:
 			translations[rig.face.joints[place]] += shifts[place]
-	return {rotations = rotations, translations = translations, morphs = _morphs(rig.face, found)}
+	return {rotations = rotations, translations = translations, morphs = _morphs(graph, plan, time, cues, found)}
 
 
 # Returns {chain: rotations as breathing has them, turns of the chain, full: how full the chest is, eyes [left, up] of both, shut: how far
@@ -128,7 +131,8 @@ static func blink_at(lane, life, time):
 	return out
 
 
-static func _morphs(face, found):
+static func _morphs(graph, plan, time, cues, found):
+	var face = graph.rig.face
 	if face.morphs.size() == 0:
 		return {}
 	var values = {blink = Util.most((found.shut[0] + found.shut[1]) / 2.0, found.blink)}
@@ -144,10 +148,13 @@ static func _morphs(face, found):
 		values["look_down" + side] = -up
 	for n in range(MOUTH.size()):
 		values[MOUTH[n]] = found.channels[LIDS + 1 + n]
-	values.smile = found.bears.smile
-	values.frown = found.bears.frown
-	values.brow_down = found.bears.brow_down
-	values.brow_up = found.bears.brow_up
+	var shown = Expressions.FaceShown.new()
+	Expressions.shown_face(shown, graph.life, plan.life.swells, plan.life.emphases, found.bears, time)
+	for cue in cues:
+		Expressions.answer(shown, graph.life, cue.action.tags, cue.start, cue.end, time)
+	Expressions.settle(shown)
+	for name in FEELS:
+		values[name] = shown[name]
 	var out = {}
 	for channel in face.morphs:
 		var value = values.get(channel, 0.0)

@@ -136,7 +136,6 @@ const _ALIKE = {
 	"є": "e",
 	"ї": "i"
 }
-const VOWELS = ["aa", "E", "I", "O", "U"]
 const _CONSONANTS = ["DD", "nn", "SS", "kk", "PP"]  # of syllables nobody knows
 const _VOWEL_LENGTH = 1.25  # of one character's time
 const _CONSONANT_LENGTH = 0.8
@@ -175,13 +174,13 @@ static func shapes(alphabet, word):
 		if holds:
 			var is_any = false
 			for s in out:
-				if VOWELS.has(s):
+				if Mouth.VOWELS.has(s):
 					is_any = true
 					break
 			holds = is_any
 		var final_e = holds
 		var twice = at > 0 and size == 1 and letters[at] == letters[at - 1]
-		if found.size() > 0 and not final_e and not (twice and not VOWELS.has(found[0])):
+		if found.size() > 0 and not final_e and not (twice and not Mouth.VOWELS.has(found[0])):
 			Util.extend(out, found)
 		at += size
 	return out
@@ -191,9 +190,9 @@ static func _unknown(alphabet, letter, before):
 	var kind = alphabet.kind(letter)
 	if kind == "syllable":
 		var code = alphabet.code(letter)
-		return [_CONSONANTS[posmod(code, 5)], VOWELS[posmod(int(floor(float(code) / 5)), 5)]]
+		return [_CONSONANTS[posmod(code, 5)], Mouth.VOWELS[posmod(int(floor(float(code) / 5)), 5)]]
 	if kind == "letter":
-		return ["aa"] if (before.size() > 0 and not VOWELS.has(before[-1])) else ["DD"]
+		return ["aa"] if (before.size() > 0 and not Mouth.VOWELS.has(before[-1])) else ["DD"]
 	return []
 
 
@@ -238,8 +237,8 @@ static func sounds(alphabet, word):
 	var first = true
 	var before = ""
 	for shape in found:
-		var vowel = VOWELS.has(shape)
-		var syllable = vowel and not VOWELS.has(before)
+		var vowel = Mouth.VOWELS.has(shape)
+		var syllable = vowel and not Mouth.VOWELS.has(before)
 		var strength = (weight if first else 0.6 * weight) if syllable else 0.0
 		first = first and not syllable
 		out.append(SpelledSound.new(shape, _VOWEL_LENGTH if vowel else _CONSONANT_LENGTH, strength))
@@ -268,7 +267,7 @@ class Spelled:
 		for sound in plan:
 			var then = at + sound.size * scale
 			if sound.shape != "":
-				var fully = Util.least(1.0, 0.7 + 0.4 * sound.strength) if VOWELS.has(sound.shape) else 1.0
+				var fully = Util.least(1.0, 0.7 + 0.4 * sound.strength) if Mouth.VOWELS.has(sound.shape) else 1.0
 				self.pieces.append(Mouth.MouthPiece.new(at, then, sound.shape, fully))
 			if sound.strength > 0:
 				self.peaks.append(0.5 * (at + then))

@@ -299,7 +299,7 @@ static func timed_sounds(alphabet, timing):
 		var end = _ends(timing.marks)[n]
 		if mark.viseme != "sil" and end > mark.at:
 			shown.pieces.append(Mouth.MouthPiece.new(mark.at, end, mark.viseme, mark.weight))
-			if Graphemes.VOWELS.has(mark.viseme) and not Graphemes.VOWELS.has(before) and mark.weight > 0:
+			if Mouth.VOWELS.has(mark.viseme) and not Mouth.VOWELS.has(before) and mark.weight > 0:
 				shown.peaks.append(0.5 * (mark.at + end))
 				shown.strengths.append(mark.weight * Util.least(1.0, 0.3 + 4 * (end - mark.at)))
 		before = mark.viseme

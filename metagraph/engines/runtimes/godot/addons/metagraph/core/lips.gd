@@ -1,5 +1,6 @@
 # Which shape the mouth has: the voices of what is said, at any time.
 
+const Mouth = preload("mouth.gd")
 const Util = preload("util.gd")
 const Voice = preload("voice.gd")
 const Words = preload("words.gd")
@@ -16,12 +17,13 @@ static func mouth(graph, track, smoothing, time):
 				for _n in range(Words.VISEMES.size() - 1):
 					out.append(0.0)
 			var voice = Voice.of(graph, speech)
-			if smoothing <= 0:
-				_add(out, speech, voice, time, 1.0)
-			else:
-				_add(out, speech, voice, time - smoothing, 0.25)
-				_add(out, speech, voice, time, 0.5)
-				_add(out, speech, voice, time + smoothing, 0.25)
+			var now = _shown(speech, voice, time)
+			if smoothing > 0:
+				var soft = now.duplicate()
+				Mouth.soften(soft, _shown(speech, voice, time - smoothing), now, _shown(speech, voice, time + smoothing))
+				now = soft
+			for n in range(out.size()):
+				out[n] += now[n]
 	if out != null:  # two speeches may meet; together they are one mouth
 		var whole = 0.0
 		for weight in out:
@@ -32,15 +34,19 @@ static func mouth(graph, track, smoothing, time):
 	return out
 
 
-# Adds a share of a speech's shapes at a time.
-static func _add(out, speech, voice, time, share):
+# Returns a speech's shapes at a time.
+static func _shown(speech, voice, time):
+	var out = []
+	for _n in range(Words.VISEMES.size() - 1):
+		out.append(0.0)
 	if time < speech.start:
-		return
+		return out
 	var rows = voice.weights
 	var step = Util.most(voice.duration, 1e-3) / (rows.size() - 1)
 	var at = (Util.least(time, speech.end) - speech.start) / step
 	var low = int(Util.within(floor(at), 0.0, rows.size() - 2.0))
 	var part = Util.within(at - low, 0.0, 1.0)
-	var kept = share * (1.0 - Util.smooth((time - speech.end) / CLOSING))
+	var kept = 1.0 - Util.smooth((time - speech.end) / CLOSING)
 	for n in range(out.size()):
-		out[n] += kept * (rows[low][n + 1] * (1.0 - part) + rows[low + 1][n + 1] * part)
+		out[n] = kept * (rows[low][n + 1] * (1.0 - part) + rows[low + 1][n + 1] * part)
+	return out

@@ -319,6 +319,6 @@ static func bearing(mood):
 		within(i * 0.3 * down, 0.0, 0.5),
 		within(i * well, 0.0, 1.0),
 		within(i * ill, 0.0, 1.0),
-		within(i * 1.4 * up * Util.most(0.0, 0.4 - v), 0.0, 1.0),
+		within(i * 1.8 * up * Util.most(0.0, 0.4 - v), 0.0, 1.0),
 		within(i * ill * Util.most(0.0, 0.6 - a), 0.0, 1.0)
 	)

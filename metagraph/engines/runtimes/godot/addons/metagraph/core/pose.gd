@@ -17,7 +17,12 @@ static func pose_at(graph, plan, time, alive = true):
 	if alive and plan.life.end > 0 and Weight.is_on(graph) and plan.layers.arms.cues.size() > 0:
 		_weigh(graph, plan, time, composed)
 	if alive and graph.life.on and graph.rig != null and not graph.rig.empty and plan.life.end > 0:
-		composed = Evaluate.enliven(graph, plan, time, composed)
+		var cues = []
+		for layer in Util.LAYERS:
+			var cue = cue_at(plan.layers[layer], time)
+			if cue != null:
+				cues.append(cue)
+		composed = Evaluate.enliven(graph, plan, time, composed, cues)
 		for name in composed.morphs:
 			morphs[name] = morphs.get(name, 0.0) + composed.morphs[name]
 	if graph.contact_rig != null:

@@ -8,6 +8,7 @@
 const Life = preload("life.gd")
 const Words = preload("words.gd")
 const Choice = preload("choice.gd")
+const Expressions = preload("expressions.gd")
 const Lane = preload("lane.gd")
 const Voice = preload("voice.gd")
 const Wanted = preload("wanted.gd")
@@ -39,8 +40,8 @@ const BREATH_CHANCE = 0.3  # and what chance adds
 #
 # modes: place among MODES. moods: valence, arousal, intensity. targets: what is looked at. breaths: length s, depth. aversions:
 # end s, right-to-left and upward part of the offset (of life's angle). saccades: offset to the left and up, degrees. blinks: 0 of
-# itself, 1 on a stressed syllable, 2 asked for. drawn: seconds up to which the lanes are filled; the rest is what they were drawn
-# from.
+# itself, 1 on a stressed syllable, 2 asked for. swells, emphases: of the face (`expressions`). drawn: seconds up to which the
+# lanes are filled; the rest is what they were drawn from.
 class Schedule:
 	var end
 	var drawn
@@ -51,6 +52,8 @@ class Schedule:
 	var aversions
 	var saccades
 	var blinks
+	var swells
+	var emphases
 	var life
 	var track
 	var voices
@@ -66,6 +69,8 @@ class Schedule:
 		aversions_ = null,
 		saccades_ = null,
 		blinks_ = null,
+		swells_ = null,
+		emphases_ = null,
 		life_ = null,
 		track_ = null,
 		voices_ = null,
@@ -80,6 +85,8 @@ class Schedule:
 		self.aversions = aversions_ if aversions_ != null else Lane.Lane.new([], [], 0, 3)
 		self.saccades = saccades_ if saccades_ != null else Lane.Lane.new([], [], 0, 2)
 		self.blinks = blinks_ if blinks_ != null else Lane.Lane.new([], [], 0, 1)
+		self.swells = swells_ if swells_ != null else Lane.Lane.new([], [], 0, 3)
+		self.emphases = emphases_ if emphases_ != null else Lane.Lane.new([], [], 0, 3)
 		self.life = life_
 		self.track = track_
 		self.voices = voices_
@@ -124,6 +131,8 @@ class Schedule:
 			aversions,
 			saccades,
 			blinks,
+			self.swells.since(seconds),
+			self.emphases.since(seconds, 3),
 			self.life,
 			self.track,
 			self.voices,
@@ -146,6 +155,8 @@ static func schedule(life, track, voices, seed_, end, before, now):
 			before.aversions,
 			before.saccades,
 			before.blinks,
+			before.swells,
+			before.emphases,
 			life,
 			track,
 			voices,
@@ -164,6 +175,8 @@ static func schedule(life, track, voices, seed_, end, before, now):
 			before.aversions,
 			before.saccades,
 			before.blinks,
+			before.swells,
+			before.emphases,
 			before.life,
 			before.track,
 			before.voices,
@@ -176,12 +189,16 @@ static func schedule(life, track, voices, seed_, end, before, now):
 	var aversions = before.aversions.until(chance)
 	var saccades = before.saccades.until(chance)
 	var blinks = before.blinks.until(chance)
+	var swells = before.swells.until(chance)
+	var emphases = before.emphases.until(chance)
 	if chance < drawn:
 		draw.begin(chance)
 		breaths = draw.breaths(breaths)
 		aversions = draw.aversions(aversions)
 		saccades = draw.saccades(saccades)
 		blinks = draw.blinks(blinks)
+		swells = Expressions.swells_on(track, seed_, chance, drawn, swells)
+		emphases = Expressions.emphases_on(life, track, voices, seed_, chance, drawn, emphases)
 	return Schedule.new(
 		end,
 		drawn,
@@ -192,6 +209,8 @@ static func schedule(life, track, voices, seed_, end, before, now):
 		aversions,
 		saccades,
 		blinks,
+		swells,
+		emphases,
 		life,
 		track,
 		voices,
