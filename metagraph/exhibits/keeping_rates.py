@@ -36,10 +36,13 @@ def delivery(material: Material) -> Shown:
     off = [z for row in spoken for z in (_errors(row[1], row[1].performed),)]
     near = sum(abs(z) <= NEAR for z in off)
     minutes = TALKS[material.full] * TALK / 60
+    # Of a row's cells the second is how many were written, the fourth how many performed.
+    wrote, played = (sum(int(row[place]) for row, _ in improvised) for place in (1, 3))
     says = [
-        "The models' kinds are performed as often as they are written, one for one; their limbs are wishes, "
-        "met where the stance has such a clip. What was written keeps to the matrix, what was performed does "
-        "so only where the project has every limb in every stance.",
+        f"Of {wrote:,} acts that the models wrote {played:,} are performed; the others are what a longer "
+        "clip before them covers. Their limbs are wishes, met where the stance has such a clip. What was "
+        "written keeps to the matrix, what was performed does so only where the project has every limb in "
+        "every stance.",
         f"Conversations: {near} of {len(off)} rates are performed within {NEAR:g} standard errors of what "
         "was asked. A clause counts as accompanied where its peak lies between a stroke and the end of its "
         "hold; those with a stroke of their own are told beside.",

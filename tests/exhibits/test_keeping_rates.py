@@ -50,7 +50,7 @@ def test_with_every_limb_in_every_stance_an_hour_keeps_to_the_matrix_as_it_is_pe
 def test_the_samples_rates_are_performed_within_sampling_error(sample: Project) -> None:
     shown = delivery(Material(sample))
     arms = next(r for r in shown.numbers["improvised"] if r["layer"] == "arms")
-    assert arms["performed"] == arms["written"]
+    assert 0.99 * arms["written"] <= arms["performed"] <= arms["written"], "but what longer clips cover"
     assert arms["limb"] < arms["performed"], "not every stance has every limb, and that is told"
     assert len(shown.numbers["conversation"]) == 6
     assert "6 of 6 rates" in shown.says[1]

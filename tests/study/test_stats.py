@@ -222,6 +222,7 @@ def test_it_agrees_with_scipy() -> None:
 
 @given(st.floats(0.3, 300), st.floats(0.3, 300), st.floats(0, 1))
 def test_both_ends_of_the_beta_function_are_all_of_it(a: float, b: float, x: float) -> None:
+    x = round(x, 9)  # what is left of 1 has to be known as well
     assert incomplete_beta(a, b, x) + incomplete_beta(b, a, 1 - x) == pytest.approx(1, abs=1e-9)
 
 
