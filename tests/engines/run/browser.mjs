@@ -22,7 +22,7 @@ page.on("console", (message) => message.type() === "error" && errors.push(messag
 page.on("pageerror", (error) => errors.push(String(error)));
 async function until(words) {  // asked from outside, since a page may forbid eval
   for (const end = Date.now() + 30000; ; await page.waitForTimeout(40)) {
-    if (await page.evaluate(words).then(Boolean, () => false)) return;
+    if (await page.evaluate(`Boolean(${words})`).catch(() => false)) return; // a whole scene would take seconds to come over
     if (Date.now() > end) throw new Error(`never came true: ${words}`);
   }
 }
