@@ -17,6 +17,7 @@ from metagraph.engines.script_parts import ask as _ask
 from metagraph.engines.script_parts import once as _once
 from metagraph.engines.script_parts import some as _some
 from metagraph.engines.script_replaced import replaced_cases
+from metagraph.engines.script_shades import shade_cases
 from metagraph.engines.script_timely import timely_cases
 from metagraph.engines.script_weight import weight_cases
 from metagraph.graph.expand import chain
@@ -36,6 +37,7 @@ def cases(project: Project) -> Iterator[Case]:
         _over_time,
         life_cases,
         mood_cases,
+        shade_cases,
         face_cases,
         replaced_cases,
         chatter_cases,

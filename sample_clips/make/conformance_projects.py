@@ -400,7 +400,7 @@ def stick(
     greeting = (Gesture(tags=("greeting",), at=0.2, stroke=0.9, priority=2), Nod(at=0.5))
     lines = {
         "hello": Line(text="Hello. I am a stick.", asks=greeting),
-        "7": Line(text="Seven!", duration=0.8, asks=(Nod(),)),
+        "7": Line(text="Seven!", duration=0.8, asks=(Nod(),), mood=(-0.6, 0.4), intensity=1.3),
     }
     voices = {"hello": voice_from_text(lines["hello"].text, 1.7)}
     return replace(b.project, lines=lines, voices=voices, points={"door": (1.5, 1.2, 0.5)})

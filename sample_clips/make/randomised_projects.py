@@ -14,7 +14,7 @@ from metagraph.graph.words import Mode
 from metagraph.playback.markov import KINDS as MODEL_KINDS
 from sample_clips.make.conformance_projects import stick
 
-TAGS = ("", "x", "positive", "negative unsure", "there", "greeting")
+TAGS = ("", "x", "positive", "negative unsure", "there", "greeting", "sad", "happy excited")
 
 
 def randomised(seed: int, morphs: tuple[str, ...] = ()) -> Project:

@@ -17,6 +17,7 @@ import pytest
 from metagraph import Character, engines
 from metagraph.engines.reading import read_export
 from metagraph.engines.script_moods import mood_cases
+from metagraph.engines.script_shades import shade_cases
 from metagraph.engines.vectors import check_vectors, every_case, write_vectors
 from metagraph.graph.check import check
 
@@ -48,7 +49,8 @@ def test_an_old_export_loads_and_performs(export: Path) -> None:
 def test_the_runtimes_agree_on_an_old_export(export: Path, tmp_path: Path) -> None:
     old = copied(export, tmp_path)
     # Of moods an old export does not tell how energetic actions are, nor which joints take part.
-    moods = {case.name for case in mood_cases(read_export(old, resolved=True))}
+    project = read_export(old, resolved=True)
+    moods = {case.name for part in (mood_cases, shade_cases) for case in part(project)}
     write_vectors(
         old, [case for case in every_case(read_export(old, resolved=True)) if case.name not in moods]
     )
