@@ -50,7 +50,7 @@ class Stimuli:
     def __init__(self, path: Path, plan: PerceivePlan) -> None:
         self.path, self.plan = path, plan
         self._projects: dict[Path, Project] = {}
-        self._figures: dict[int, Any] = {}
+        self._figures: dict[tuple[Any, ...], Any] = {}
         self._whole: dict[str, Source] = {}
         self._plans = ConversationPlans()
 
@@ -132,7 +132,7 @@ class Stimuli:
         return self._projects[path], path.parent
 
     def _figure(self, project: Project, folder: Path) -> Any:
-        key = hash((str(folder), project.character, project.hidden, project.skeleton))
+        key = str(folder), project.character, project.hidden, project.skeleton
         if key not in self._figures:
             self._figures[key] = figure_of(project, folder)
         return self._figures[key]
