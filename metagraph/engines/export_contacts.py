@@ -8,7 +8,8 @@ from metagraph.engines import contract as c
 from metagraph.formats.fields import DataError
 from metagraph.graph.model import Action, Project
 from metagraph.motion.contact_solve import BodyCapsule, ContactArm, ContactRig
-from metagraph.motion.contact_spans import ContactKey, ContactSpan, Vector
+from metagraph.motion.contact_spans import ContactKey, ContactSpan
+from metagraph.motion.plain_vectors import Vector
 from metagraph.motion.skeleton import Skeleton
 from metagraph.playback.contacts import contact_rig, matters
 

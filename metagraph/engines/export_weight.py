@@ -9,7 +9,7 @@ from metagraph.engines.export_contacts import below
 from metagraph.formats.fields import DataError
 from metagraph.graph.model import Project
 from metagraph.motion.contact_solve import ContactArm, ContactRig
-from metagraph.motion.contact_spans import Vector
+from metagraph.motion.plain_vectors import Vector
 from metagraph.motion.skeleton import Skeleton
 from metagraph.motion.weight_solve import WeightBend, WeightCollar, WeightRig
 from metagraph.playback.weight import Weight, rows_of, weighs, weight_of

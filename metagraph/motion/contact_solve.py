@@ -11,7 +11,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import sqrt
 
-from metagraph.motion.contact_spans import Quaternion, Vector
+from metagraph.motion.plain_vectors import (
+    Quaternion,
+    Vector,
+    back,
+    between,
+    dot,
+    length,
+    minus,
+    plus,
+    rotated,
+    scaled,
+    times,
+    unit,
+    unit_turn,
+)
 
 REACHED = 0.995  # of an arm's length: it does not snap straight
 FOLDED = 0.906  # cosine of the least angle inside an elbow, 25 degrees
@@ -110,7 +124,7 @@ def _join(rig: ContactRig, pose: ContactPose, place: int) -> None:
         pose.at[place] = pose.moved[place]
     else:
         pose.turned[place] = times(pose.turned[above], pose.local[place])
-        pose.at[place] = _plus(pose.at[above], rotated(pose.turned[above], pose.moved[place]))
+        pose.at[place] = plus(pose.at[above], rotated(pose.turned[above], pose.moved[place]))
 
 
 def solve_contacts(rig: ContactRig, pose: ContactPose, goals: Sequence[HandGoal]) -> bool:
@@ -156,7 +170,7 @@ def _hold(
     for goal in goals:
         if goal.arm == side and goal.weight > 0.0:
             k = goal.weight
-            px, py, pz = _plus(pose.at[goal.to], rotated(pose.turned[goal.to], goal.at))
+            px, py, pz = plus(pose.at[goal.to], rotated(pose.turned[goal.to], goal.at))
             qx, qy, qz, qw = times(pose.turned[goal.to], goal.turn)
             x, y, z, total = x + k * px, y + k * py, z + k * pz, total + k
             if qx * hx + qy * hy + qz * hz + qw * hw < 0.0:
@@ -164,17 +178,17 @@ def _hold(
             a, b, c, d = a + k * qx, b + k * qy, c + k * qz, d + k * qw
     weight = min(1.0, total)
     mean = (x / total, y / total, z / total)
-    turn = _within_wrist(hand, _unit_turn((a, b, c, d)))
+    turn = _within_wrist(hand, unit_turn((a, b, c, d)))
     tx, ty, tz, tw = turn
     rest = 1.0 - weight
     k = -weight if tx * hx + ty * hy + tz * hz + tw * hw < 0.0 else weight
-    turn = _unit_turn((hx * rest + tx * k, hy * rest + ty * k, hz * rest + tz * k, hw * rest + tw * k))
-    bring(rig, pose, side, _plus(wrist, _scaled(_minus(mean, wrist), weight)), turn, STRAIGHT)
+    turn = unit_turn((hx * rest + tx * k, hy * rest + ty * k, hz * rest + tz * k, hw * rest + tw * k))
+    bring(rig, pose, side, plus(wrist, scaled(minus(mean, wrist), weight)), turn, STRAIGHT)
 
 
 def _within_wrist(hand: Quaternion, turn: Quaternion) -> Quaternion:
     """Return a hand's turn, as near to it as the wrist may be turned from how the hand was."""
-    x, y, z, w = times(turn, _back(hand))
+    x, y, z, w = times(turn, back(hand))
     if w < 0.0:
         x, y, z, w = -x, -y, -z, -w
     if w >= WRIST:
@@ -191,12 +205,12 @@ def bring(
     """
     arm = rig.arms[side]
     root, elbow, wrist = pose.at[arm.upper], pose.at[arm.lower], pose.at[arm.hand]
-    bone, fore = _minus(elbow, root), _minus(wrist, elbow)
+    bone, fore = minus(elbow, root), minus(wrist, elbow)
     above_elbow, below_elbow = length(bone), length(fore)
-    now = length(_minus(wrist, root))
+    now = length(minus(wrist, root))
     if above_elbow < 1e-6 or below_elbow < 1e-6 or now < 1e-6:
         return
-    way = _minus(goal, root)
+    way = minus(goal, root)
     most = max(REACHED * (above_elbow + below_elbow), now)
     least = min(
         sqrt(
@@ -205,25 +219,25 @@ def bring(
         now,
     )
     far = min(max(length(way), least), most)
-    ahead, before = _unit(way), _scaled(_minus(wrist, root), 1.0 / now)
-    aside = _minus(bone, _scaled(before, _dot(bone, before)))
+    ahead, before = unit(way), scaled(minus(wrist, root), 1.0 / now)
+    aside = minus(bone, scaled(before, dot(bone, before)))
     # A straight arm has no side: it bends to one that goes with its bone.
     spare = rotated(pose.turned[arm.upper], side_of)
-    spare = _minus(spare, _scaled(before, _dot(spare, before)))
-    aside = _plus(aside, _scaled(spare, max(0.0, 0.01 * above_elbow - length(aside))))
-    aside = _unit(rotated(between(before, ahead), aside))
+    spare = minus(spare, scaled(before, dot(spare, before)))
+    aside = plus(aside, scaled(spare, max(0.0, 0.01 * above_elbow - length(aside))))
+    aside = unit(rotated(between(before, ahead), aside))
     along = (above_elbow * above_elbow + far * far - below_elbow * below_elbow) / (2.0 * far)
     high = sqrt(max(0.0, above_elbow * above_elbow - along * along))
-    knee = _plus(_scaled(ahead, along), _scaled(aside, high))
-    swing = between(_unit(bone), _unit(knee))
-    fold = between(_unit(rotated(swing, fore)), _unit(_minus(_scaled(ahead, far), knee)))
+    knee = plus(scaled(ahead, along), scaled(aside, high))
+    swing = between(unit(bone), unit(knee))
+    fold = between(unit(rotated(swing, fore)), unit(minus(scaled(ahead, far), knee)))
     both = times(fold, swing)
     above = _above(rig, pose, arm.upper)
-    pose.local[arm.upper] = times(_back(above), times(swing, pose.turned[arm.upper]))
+    pose.local[arm.upper] = times(back(above), times(swing, pose.turned[arm.upper]))
     above = times(swing, _above(rig, pose, arm.lower))
-    pose.local[arm.lower] = times(_back(above), times(both, pose.turned[arm.lower]))
+    pose.local[arm.lower] = times(back(above), times(both, pose.turned[arm.lower]))
     above = times(both, _above(rig, pose, arm.hand))
-    pose.local[arm.hand] = times(_back(above), hand)
+    pose.local[arm.hand] = times(back(above), hand)
     for place in arm.below:
         _join(rig, pose, place)
 
@@ -248,7 +262,7 @@ def _guarded(rig: ContactRig, pose: ContactPose, held: Sequence[float], across: 
         for side, shift in enumerate(shifts):
             if length(shift) > 0.0:
                 hand = rig.arms[side].hand
-                bring(rig, pose, side, _plus(pose.at[hand], shift), pose.turned[hand], STRAIGHT)
+                bring(rig, pose, side, plus(pose.at[hand], shift), pose.turned[hand], STRAIGHT)
                 found = True
         if not found:
             return moved
@@ -260,8 +274,8 @@ def capsule_ends(rig: ContactRig, pose: ContactPose) -> list[Vector]:
     """Return both ends of every capsule's line, one after the other."""
     out: list[Vector] = []
     for capsule in rig.capsules:
-        out.append(_plus(pose.at[capsule.joint], rotated(pose.turned[capsule.joint], capsule.a)))
-        out.append(_plus(pose.at[capsule.to], rotated(pose.turned[capsule.to], capsule.b)))
+        out.append(plus(pose.at[capsule.joint], rotated(pose.turned[capsule.joint], capsule.a)))
+        out.append(plus(pose.at[capsule.to], rotated(pose.turned[capsule.to], capsule.b)))
     return out
 
 
@@ -319,9 +333,9 @@ def _shift(
             amount = amount * share * inner * inner * (3.0 - 2.0 * inner)
             part = s if mine.kind == FOREARM else 1.0
             way = (x / gap, y / gap, z / gap)
-            left = amount - part * _dot(way, shift)
+            left = amount - part * dot(way, shift)
             if left > 0.0:
-                shift = _plus(shift, _scaled(way, left * part / (part * part + ELBOW * (1.0 - part))))
+                shift = plus(shift, scaled(way, left * part / (part * part + ELBOW * (1.0 - part))))
     return shift
 
 
@@ -330,8 +344,8 @@ def apart(ends: Sequence[Vector], i: int, k: int) -> tuple[float, float, float, 
     latter it ends, 0..1, and its length.
     """
     a, c = ends[i], ends[k]
-    u, v, w = _minus(ends[i + 1], a), _minus(ends[k + 1], c), _minus(a, c)
-    uu, uv, vv, uw, vw = _dot(u, u), _dot(u, v), _dot(v, v), _dot(u, w), _dot(v, w)
+    u, v, w = minus(ends[i + 1], a), minus(ends[k + 1], c), minus(a, c)
+    uu, uv, vv, uw, vw = dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w)
     s, t = 0.0, 0.0
     if uu > 1e-12:
         below = uu * vv - uv * uv
@@ -346,86 +360,5 @@ def apart(ends: Sequence[Vector], i: int, k: int) -> tuple[float, float, float, 
             s = min(max(-uw / uu, 0.0), 1.0)
     elif vv > 1e-12:
         t = min(max(vw / vv, 0.0), 1.0)
-    x, y, z = _minus(_plus(w, _scaled(u, s)), _scaled(v, t))
+    x, y, z = minus(plus(w, scaled(u, s)), scaled(v, t))
     return x, y, z, s, sqrt(x * x + y * y + z * z)
-
-
-# --- arithmetic
-
-
-def times(a: Quaternion, b: Quaternion) -> Quaternion:
-    """Return the product: rotate by `b`, then by `a`."""
-    ax, ay, az, aw = a
-    bx, by, bz, bw = b
-    return (
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
-        aw * bw - ax * bx - ay * by - az * bz,
-    )
-
-
-def rotated(q: Quaternion, v: Vector) -> Vector:
-    """Return a vector rotated."""
-    x, y, z, w = q
-    vx, vy, vz = v
-    tx, ty, tz = 2.0 * (y * vz - z * vy), 2.0 * (z * vx - x * vz), 2.0 * (x * vy - y * vx)
-    return (
-        vx + w * tx + y * tz - z * ty,
-        vy + w * ty + z * tx - x * tz,
-        vz + w * tz + x * ty - y * tx,
-    )
-
-
-def between(a: Vector, b: Vector) -> Quaternion:
-    """Return the shortest rotation that takes one direction to another, both of length 1."""
-    ax, ay, az = a
-    bx, by, bz = b
-    dot = ax * bx + ay * by + az * bz
-    if dot < -0.999999999:  # half a turn about any axis across
-        return _unit_turn((0.0, az, -ay, 0.0) if abs(ax) < 0.9 else (-az, 0.0, ax, 0.0))
-    return _unit_turn((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx, 1.0 + dot))
-
-
-def length(v: Vector) -> float:
-    """Return how long a vector is."""
-    x, y, z = v
-    return sqrt(x * x + y * y + z * z)
-
-
-def _unit(v: Vector) -> Vector:
-    return _scaled(v, 1.0 / max(length(v), 1e-12))
-
-
-def _unit_turn(q: Quaternion) -> Quaternion:
-    x, y, z, w = q
-    k = 1.0 / max(sqrt(x * x + y * y + z * z + w * w), 1e-12)
-    return (x * k, y * k, z * k, w * k)
-
-
-def _back(q: Quaternion) -> Quaternion:
-    x, y, z, w = q
-    return (-x, -y, -z, w)
-
-
-def _plus(a: Vector, b: Vector) -> Vector:
-    ax, ay, az = a
-    bx, by, bz = b
-    return (ax + bx, ay + by, az + bz)
-
-
-def _minus(a: Vector, b: Vector) -> Vector:
-    ax, ay, az = a
-    bx, by, bz = b
-    return (ax - bx, ay - by, az - bz)
-
-
-def _scaled(a: Vector, k: float) -> Vector:
-    x, y, z = a
-    return (x * k, y * k, z * k)
-
-
-def _dot(a: Vector, b: Vector) -> float:
-    ax, ay, az = a
-    bx, by, bz = b
-    return ax * bx + ay * by + az * bz

@@ -9,8 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import sqrt
 
-Vector = tuple[float, float, float]
-Quaternion = tuple[float, float, float, float]
+from metagraph.motion.plain_vectors import Quaternion, Vector
 
 HANDS: tuple[str, ...] = ("left", "right")
 PLACES: tuple[str, ...] = ("palm", "fingertips", "back", "wrist")

@@ -14,17 +14,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, sin, sqrt
 
-from metagraph.motion.contact_solve import (
-    REACHED,
-    ContactPose,
-    ContactRig,
-    bring,
+from metagraph.motion.contact_solve import REACHED, ContactPose, ContactRig, bring, spread
+from metagraph.motion.plain_vectors import (
+    Quaternion,
+    Vector,
+    back,
+    dot,
     length,
+    minus,
+    plus,
     rotated,
-    spread,
+    scaled,
     times,
 )
-from metagraph.motion.contact_spans import Quaternion, Vector
 
 BALANCE = 1.4  # of how far the arms carry the centre of mass away, the hips give way
 HASTE = 0.12  # seconds of the arms' speed that add to that
@@ -101,7 +103,7 @@ def answer_arms(
     for collar in rig.collars:
         turn = _turn(collar.axis, lift * drive[6 + collar.side])
         pose.local[collar.place] = times(pose.local[collar.place], turn)
-        pose.local[collar.upper] = times(_back(turn), pose.local[collar.upper])
+        pose.local[collar.upper] = times(back(turn), pose.local[collar.upper])
     if follow <= 0.0:
         return True
     spread(rig.body, pose)
@@ -117,9 +119,9 @@ def _stands(rig: WeightRig, pose: ContactPose) -> float:
     least = 1.0
     for leg in rig.body.arms:
         hip, knee, ankle = pose.at[leg.upper], pose.at[leg.lower], pose.at[leg.hand]
-        whole = length(_minus(knee, hip)) + length(_minus(ankle, knee))
+        whole = length(minus(knee, hip)) + length(minus(ankle, knee))
         if whole > 1e-6:
-            least = min(least, _dot(_minus(hip, ankle), rig.up) / whole)
+            least = min(least, dot(minus(hip, ankle), rig.up) / whole)
     x = min(max((least - SITTING) / STANDING, 0.0), 1.0)
     return x * x * (3.0 - 2.0 * x)
 
@@ -141,24 +143,24 @@ def _give_way(rig: WeightRig, pose: ContactPose, drive: Sequence[float], follow:
     pitch = -PITCH * z / rig.height
     feet = [pose.at[leg.hand] for leg in body.arms]
     soles = [pose.turned[leg.hand] for leg in body.arms]
-    reaches = [length(_minus(pose.at[leg.hand], pose.at[leg.upper])) for leg in body.arms]
+    reaches = [length(minus(pose.at[leg.hand], pose.at[leg.upper])) for leg in body.arms]
     hips = rig.bends[0]
-    shift = _plus(_plus(_scaled(hips.left, x), _scaled(hips.up, y)), _scaled(hips.ahead, z))
+    shift = plus(plus(scaled(hips.left, x), scaled(hips.up, y)), scaled(hips.ahead, z))
     shift = rotated(pose.turned[hips.place], shift)
     for bend in rig.bends:
-        axis = _plus(_plus(_scaled(bend.left, pitch), _scaled(bend.up, yaw)), _scaled(bend.ahead, roll))
+        axis = plus(plus(scaled(bend.left, pitch), scaled(bend.up, yaw)), scaled(bend.ahead, roll))
         pose.local[bend.place] = times(pose.local[bend.place], _turn(axis, bend.share))
     above = body.parents[hips.place]
-    space = (0.0, 0.0, 0.0, 1.0) if above < 0 else _back(pose.turned[above])
-    pose.moved[hips.place] = _plus(pose.moved[hips.place], rotated(space, shift))
+    space = (0.0, 0.0, 0.0, 1.0) if above < 0 else back(pose.turned[above])
+    pose.moved[hips.place] = plus(pose.moved[hips.place], rotated(space, shift))
     spread(body, pose)
     size = length((x, y, z)) + 0.1 * rig.height * length((yaw, roll, pitch))
     low = 0.0
     for side in range(len(feet)):
         low = max(low, _too_far(rig, pose, side, feet[side], reaches[side], GIVE * size))
     if low > 0.0:
-        down = rotated(space, _scaled(rig.up, -low))
-        pose.moved[hips.place] = _plus(pose.moved[hips.place], down)
+        down = rotated(space, scaled(rig.up, -low))
+        pose.moved[hips.place] = plus(pose.moved[hips.place], down)
         spread(body, pose)
     for side in range(len(feet)):
         bring(body, pose, side, feet[side], soles[side], rig.knees[side])
@@ -170,11 +172,11 @@ def _too_far(rig: WeightRig, pose: ContactPose, side: int, foot: Vector, reach: 
     """
     leg = rig.body.arms[side]
     hip, knee, ankle = pose.at[leg.upper], pose.at[leg.lower], pose.at[leg.hand]
-    whole = length(_minus(knee, hip)) + length(_minus(ankle, knee))
+    whole = length(minus(knee, hip)) + length(minus(ankle, knee))
     most = max(REACHED * whole, reach)
-    way = _minus(hip, foot)
-    high = _dot(way, rig.up)
-    aside = _dot(way, way) - high * high
+    way = minus(hip, foot)
+    high = dot(way, rig.up)
+    aside = dot(way, way) - high * high
     if high <= 0.0 or aside >= most * most or soft <= 0.0:
         return 0.0
     over = high - sqrt(most * most - aside)
@@ -197,31 +199,3 @@ def _turn(axis: Vector, angle: float) -> Quaternion:
     half = 0.5 * size * angle
     k = sin(half) / size
     return (x * k, y * k, z * k, cos(half))
-
-
-def _back(q: Quaternion) -> Quaternion:
-    x, y, z, w = q
-    return (-x, -y, -z, w)
-
-
-def _plus(a: Vector, b: Vector) -> Vector:
-    ax, ay, az = a
-    bx, by, bz = b
-    return (ax + bx, ay + by, az + bz)
-
-
-def _minus(a: Vector, b: Vector) -> Vector:
-    ax, ay, az = a
-    bx, by, bz = b
-    return (ax - bx, ay - by, az - bz)
-
-
-def _scaled(a: Vector, k: float) -> Vector:
-    x, y, z = a
-    return (x * k, y * k, z * k)
-
-
-def _dot(a: Vector, b: Vector) -> float:
-    ax, ay, az = a
-    bx, by, bz = b
-    return ax * bx + ay * by + az * bz

@@ -10,6 +10,7 @@ from math import floor
 from metagraph.graph.model import Action, Project
 from metagraph.motion.contact_solve import ContactRig, HandGoal
 from metagraph.motion.contact_spans import HANDS, ContactSpan, contact_key, contact_weight
+from metagraph.playback.cue_times import cue_seconds, cue_weight, ease
 from metagraph.playback.plan import Cue, LayerPlan, Rest
 
 LEAST = 1e-6  # of a hand: what shows less than this is not solved
@@ -30,17 +31,17 @@ def layer_goals(
     out: list[HandGoal] = []
     shown = [0.0, 0.0]
     if cue is not None:
-        weight = _cue_weight(cue, time)
+        weight = cue_weight(cue, time)
         for arm, hand in enumerate(HANDS):
             if _moves(rig, cue.action, arm, hand):
                 shown[arm] = weight
         if len(cue.action.contacts) > 0:
-            out += _goals(rig, project, cue.action, _cue_seconds(cue, time), [strength * w for w in shown])
+            out += _goals(rig, project, cue.action, cue_seconds(cue, time), [strength * w for w in shown])
     if place >= 0:
         rest = plan.rests[place]
         over = 1.0
         if place > 0 and rest.fade_start + rest.fade > time:
-            over = _ease((time - rest.fade_start) / rest.fade)
+            over = ease((time - rest.fade_start) / rest.fade)
             out += _loop_goals(rig, project, plan.rests[place - 1], time, strength * (1.0 - over), shown)
         out += _loop_goals(rig, project, rest, time, strength * over, shown)
     return out
@@ -70,7 +71,7 @@ def _loop_goals(
     phase = phase - period * floor(phase / period)
     old = 0.0
     if seam > 0.0 and elapsed >= period:
-        old = 1.0 - _ease(phase / seam)
+        old = 1.0 - ease(phase / seam)
     if old > 0.0:
         before = start + min(period + phase, end - start)
         out += _goals(rig, project, action, before, [old * w for w in left])
@@ -107,25 +108,3 @@ def _moves(rig: ContactRig, action: Action, arm: int, hand: str) -> bool:
     if action.limb not in ("both", hand):
         return False
     return len(action.joints) == 0 or rig.hands[arm] in action.joints
-
-
-def _cue_weight(cue: Cue, time: float) -> float:
-    if time < cue.start or time >= cue.end:
-        return 0.0
-    rise = _ease((time - cue.start) / cue.blend_in) if cue.blend_in > 0.0 else 1.0
-    fall = _ease((cue.end - time) / cue.blend_out) if cue.blend_out > 0.0 else 1.0
-    return rise * fall
-
-
-def _cue_seconds(cue: Cue, time: float) -> float:
-    elapsed = time - cue.start
-    if cue.hold <= 0.0:
-        return cue.entry + elapsed * cue.tempo
-    held = min(max(elapsed - (cue.hold_from - cue.entry) / cue.tempo, 0.0), cue.hold)
-    more = (elapsed - held) * (cue.tempo - 1.0)
-    return cue.entry + elapsed - held + more + held * ((cue.hold_to - cue.hold_from) / cue.hold)
-
-
-def _ease(x: float) -> float:
-    x = min(max(x, 0.0), 1.0)
-    return x * x * (3.0 - 2.0 * x)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from math import floor
 
 from metagraph.graph.model import Action, Project
+from metagraph.playback.cue_times import cue_seconds, cue_weight, ease
 from metagraph.playback.plan import Cue, LayerPlan, Rest
 
 STEP = 0.08  # seconds between the times that are looked at; the answer comes two of them late
@@ -66,15 +67,15 @@ def arm_sway(
     track = tracks.get(cue.action.id)
     if track is None or len(track.rows) == 0:
         return out
-    weight = _cue_weight(cue, time)
+    weight = cue_weight(cue, time)
     share = cue.extent * (1.0 - _shown(tracks, body, body_cue, body_place, track.clip, time))
     if weight <= 0.0 or share <= 0.0:
         return out
-    row = _row(track, _cue_seconds(cue, time))
+    row = _row(track, cue_seconds(cue, time))
     rest = _stance(project, tracks, arms, place, time)
     entering = time < cue.start + cue.blend_in
     if entering or time >= cue.end - cue.blend_out:
-        edge = _row(track, cue.entry if entering else _cue_seconds(cue, cue.end))
+        edge = _row(track, cue.entry if entering else cue_seconds(cue, cue.end))
         row = [row[n] + (1.0 - weight) * (rest[n] - edge[n]) for n in range(NUMBERS)]
     left = share * UNIT if _moves(cue.action, "left", hands[0]) else 0.0
     right = share * UNIT if _moves(cue.action, "right", hands[1]) else 0.0
@@ -124,7 +125,7 @@ def _shown(
     left = 1.0
     out = 0.0
     if cue is not None:
-        weight = _cue_weight(cue, time)
+        weight = cue_weight(cue, time)
         left = 1.0 - weight
         if _is_of(tracks, cue.action, clip):
             out += weight
@@ -132,7 +133,7 @@ def _shown(
         rest = plan.rests[place]
         over = 1.0
         if place > 0 and rest.fade_start + rest.fade > time:
-            over = _ease((time - rest.fade_start) / rest.fade)
+            over = ease((time - rest.fade_start) / rest.fade)
             if _is_of(tracks, plan.rests[place - 1].action, clip):
                 out += left * (1.0 - over)
         if _is_of(tracks, rest.action, clip):
@@ -154,7 +155,7 @@ def _stance(
     rest = plan.rests[place]
     row = _loop(project, tracks, rest, time)
     if place > 0 and rest.fade_start + rest.fade > time:
-        over = _ease((time - rest.fade_start) / rest.fade)
+        over = ease((time - rest.fade_start) / rest.fade)
         before = _loop(project, tracks, plan.rests[place - 1], time)
         row = [before[n] + (row[n] - before[n]) * over for n in range(NUMBERS)]
     return row
@@ -176,7 +177,7 @@ def _loop(project: Project, tracks: Mapping[str, ArmTrack], rest: Rest, time: fl
     phase = phase - period * floor(phase / period)
     row = _row(track, start + phase)
     if seam > 0.0 and elapsed >= period:
-        old = 1.0 - _ease(phase / seam)
+        old = 1.0 - ease(phase / seam)
         before = _row(track, start + min(period + phase, end - start))
         row = [row[n] + (before[n] - row[n]) * old for n in range(NUMBERS)]
     return row
@@ -191,25 +192,3 @@ def _row(track: ArmTrack, seconds: float) -> list[float]:
     a = track.rows[low]
     b = track.rows[min(low + 1, last)]
     return [a[n] + (b[n] - a[n]) * part for n in range(NUMBERS)]
-
-
-def _cue_weight(cue: Cue, time: float) -> float:
-    if time < cue.start or time >= cue.end:
-        return 0.0
-    rise = _ease((time - cue.start) / cue.blend_in) if cue.blend_in > 0.0 else 1.0
-    fall = _ease((cue.end - time) / cue.blend_out) if cue.blend_out > 0.0 else 1.0
-    return rise * fall
-
-
-def _cue_seconds(cue: Cue, time: float) -> float:
-    elapsed = time - cue.start
-    if cue.hold <= 0.0:
-        return cue.entry + elapsed * cue.tempo
-    held = min(max(elapsed - (cue.hold_from - cue.entry) / cue.tempo, 0.0), cue.hold)
-    more = (elapsed - held) * (cue.tempo - 1.0)
-    return cue.entry + elapsed - held + more + held * ((cue.hold_to - cue.hold_from) / cue.hold)
-
-
-def _ease(x: float) -> float:
-    x = min(max(x, 0.0), 1.0)
-    return x * x * (3.0 - 2.0 * x)

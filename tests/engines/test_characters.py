@@ -98,6 +98,8 @@ HEARD: dict[int, list[tuple[str, int, int]]] = {
     354: [("voice", 2500, 2500)],
     355: [("voice", 2500, 5000)],
     357: [("voice", 5000, 7200)],
+    380: [("behind", 0, 1200)],  # the next piece comes too late
+    395: [("behind", 1200, 4800)],
 }
 
 

@@ -15,10 +15,10 @@ from metagraph.motion.contact_solve import (
     ContactRig,
     HandGoal,
     apart,
-    between,
     solve_contacts,
     spread,
 )
+from metagraph.motion.plain_vectors import between
 
 STILL = (0.0, 0.0, 0.0, 1.0)
 # A trunk, and two arms of 0.3 + 0.25 m that hang a little bent.

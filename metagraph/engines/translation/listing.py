@@ -26,8 +26,10 @@ class Translated:
 
 LISTING = (
     Translated("metagraph.graph.model", "model", ("Timing", "Stance", "Markov", "Settings"), ("Action",)),
+    Translated("metagraph.motion.plain_vectors", "plain_vectors"),
     Translated("metagraph.motion.contact_spans", "contact_spans"),
     Translated("metagraph.motion.contact_solve", "contact_solve"),
+    Translated("metagraph.playback.cue_times", "cue_times"),
     Translated("metagraph.playback.contact_goals", "contact_goals"),
     Translated("metagraph.motion.weight_solve", "weight_solve"),
     Translated("metagraph.playback.follow_through", "follow_through"),

@@ -7,6 +7,7 @@
 #include "model.hpp"
 #include "contact_solve.hpp"
 #include "contact_spans.hpp"
+#include "cue_times.hpp"
 #include "meta_plan.hpp"
 #include "project.hpp"
 #include "language.hpp"
@@ -43,9 +44,6 @@ inline List<Ref<HandGoal>> _goals(
 );
 inline int _arm(const Ref<ContactSpan>& span);
 inline bool _moves(const Ref<ContactRig>& rig, const Ref<Action>& action, int arm, const std::string& hand);
-inline double _cue_weight(const Ref<Cue>& cue, double time);
-inline double _cue_seconds(const Ref<Cue>& cue, double time);
-inline double _ease(double x);
 
 }  // namespace contact_goals
 
@@ -65,7 +63,7 @@ inline List<Ref<HandGoal>> layer_goals(
     List<Ref<HandGoal>> out;
     List<double> shown = List<double>{0.0, 0.0};
     if (cue != nullptr) {
-        double weight = contact_goals::_cue_weight(cue, time);
+        double weight = cue_times::cue_weight(cue, time);
         for (int arm = 0; arm < lang::len(contact_spans::HANDS); arm++) {
             const auto& hand = lang::at(contact_spans::HANDS, arm);
             if (contact_goals::_moves(rig, cue->action, arm, hand)) {
@@ -81,7 +79,7 @@ inline List<Ref<HandGoal>> layer_goals(
                 rig,
                 project,
                 cue->action,
-                contact_goals::_cue_seconds(cue, time),
+                cue_times::cue_seconds(cue, time),
                 found
             ));
         }
@@ -90,7 +88,7 @@ inline List<Ref<HandGoal>> layer_goals(
         Ref<Rest> rest = lang::at(plan->rests, place);
         double over = 1.0;
         if (place > 0 && rest->fade_start + rest->fade > time) {
-            over = contact_goals::_ease((time - rest->fade_start) / rest->fade);
+            over = cue_times::ease((time - rest->fade_start) / rest->fade);
             lang::extend(out, contact_goals::_loop_goals(
                 rig,
                 project,
@@ -134,7 +132,7 @@ inline List<Ref<HandGoal>> _loop_goals(
     phase = phase - period * static_cast<int>(std::floor(phase / period));
     double old = 0.0;
     if (seam > 0.0 && elapsed >= period) {
-        old = 1.0 - contact_goals::_ease(phase / seam);
+        old = 1.0 - cue_times::ease(phase / seam);
     }
     if (old > 0.0) {
         double before = start + std::min(period + phase, end - start);
@@ -187,30 +185,6 @@ inline bool _moves(const Ref<ContactRig>& rig, const Ref<Action>& action, int ar
         return false;
     }
     return lang::len(action->joints) == 0 || lang::contains(action->joints, lang::at(rig->hands, arm));
-}
-
-inline double _cue_weight(const Ref<Cue>& cue, double time) {
-    if (time < cue->start || time >= cue->end) {
-        return 0.0;
-    }
-    double rise = cue->blend_in > 0.0 ? contact_goals::_ease((time - cue->start) / cue->blend_in) : 1.0;
-    double fall = cue->blend_out > 0.0 ? contact_goals::_ease((cue->end - time) / cue->blend_out) : 1.0;
-    return rise * fall;
-}
-
-inline double _cue_seconds(const Ref<Cue>& cue, double time) {
-    double elapsed = time - cue->start;
-    if (cue->hold <= 0.0) {
-        return cue->entry + elapsed * cue->tempo;
-    }
-    double held = std::min(std::max(elapsed - (cue->hold_from - cue->entry) / cue->tempo, 0.0), cue->hold);
-    double more = (elapsed - held) * (cue->tempo - 1.0);
-    return cue->entry + elapsed - held + more + held * ((cue->hold_to - cue->hold_from) / cue->hold);
-}
-
-inline double _ease(double x) {
-    x = std::min(std::max(x, 0.0), 1.0);
-    return x * x * (3.0 - 2.0 * x);
 }
 
 }  // namespace contact_goals

@@ -6,6 +6,7 @@
 // Translated from metagraph/motion/contact_solve.py; change that, and translate anew.
 #pragma once
 
+#include "plain_vectors.hpp"
 #include "language.hpp"
 
 namespace metagraph {
@@ -79,32 +80,6 @@ inline std::tuple<double, double, double, double, double> apart(
     int i,
     int k
 );
-inline std::tuple<double, double, double, double> times(
-    const std::tuple<double, double, double, double>& a,
-    const std::tuple<double, double, double, double>& b
-);
-inline std::tuple<double, double, double> rotated(
-    const std::tuple<double, double, double, double>& q,
-    const std::tuple<double, double, double>& v
-);
-inline std::tuple<double, double, double, double> between(
-    const std::tuple<double, double, double>& a,
-    const std::tuple<double, double, double>& b
-);
-inline double length(const std::tuple<double, double, double>& v);
-inline std::tuple<double, double, double> _unit(const std::tuple<double, double, double>& v);
-inline std::tuple<double, double, double, double> _unit_turn(const std::tuple<double, double, double, double>& q);
-inline std::tuple<double, double, double, double> _back(const std::tuple<double, double, double, double>& q);
-inline std::tuple<double, double, double> _plus(
-    const std::tuple<double, double, double>& a,
-    const std::tuple<double, double, double>& b
-);
-inline std::tuple<double, double, double> _minus(
-    const std::tuple<double, double, double>& a,
-    const std::tuple<double, double, double>& b
-);
-inline std::tuple<double, double, double> _scaled(const std::tuple<double, double, double>& a, double k);
-inline double _dot(const std::tuple<double, double, double>& a, const std::tuple<double, double, double>& b);
 
 }  // namespace contact_solve
 
@@ -233,13 +208,13 @@ inline void _join(const Ref<ContactRig>& rig, const Ref<ContactPose>& pose, int 
         lang::at(pose->turned, place) = lang::at(pose->local, place);
         lang::at(pose->at, place) = lang::at(pose->moved, place);
     } else {
-        lang::at(pose->turned, place) = contact_solve::times(
+        lang::at(pose->turned, place) = plain_vectors::times(
             lang::at(pose->turned, above),
             lang::at(pose->local, place)
         );
-        lang::at(pose->at, place) = contact_solve::_plus(
+        lang::at(pose->at, place) = plain_vectors::plus(
             lang::at(pose->at, above),
-            contact_solve::rotated(lang::at(pose->turned, above), lang::at(pose->moved, place))
+            plain_vectors::rotated(lang::at(pose->turned, above), lang::at(pose->moved, place))
         );
     }
 }
@@ -318,11 +293,11 @@ inline void _hold(
     for (const auto& goal : goals) {
         if (goal->arm == side && goal->weight > 0.0) {
             k = goal->weight;
-            auto [px, py, pz] = contact_solve::_plus(
+            auto [px, py, pz] = plain_vectors::plus(
                 lang::at(pose->at, goal->to),
-                contact_solve::rotated(lang::at(pose->turned, goal->to), goal->at)
+                plain_vectors::rotated(lang::at(pose->turned, goal->to), goal->at)
             );
-            auto [qx, qy, qz, qw] = contact_solve::times(lang::at(pose->turned, goal->to), goal->turn);
+            auto [qx, qy, qz, qw] = plain_vectors::times(lang::at(pose->turned, goal->to), goal->turn);
             x = x + k * px;
             y = y + k * py;
             z = z + k * pz;
@@ -340,12 +315,12 @@ inline void _hold(
     std::tuple<double, double, double> mean = std::tuple<double, double, double>{x / total, y / total, z / total};
     std::tuple<double, double, double, double> turn = contact_solve::_within_wrist(
         hand,
-        contact_solve::_unit_turn(std::tuple<double, double, double, double>{a, b, c, d})
+        plain_vectors::unit_turn(std::tuple<double, double, double, double>{a, b, c, d})
     );
     auto [tx, ty, tz, tw] = turn;
     double rest = 1.0 - weight;
     k = tx * hx + ty * hy + tz * hz + tw * hw < 0.0 ? -weight : weight;
-    turn = contact_solve::_unit_turn(
+    turn = plain_vectors::unit_turn(
         std::tuple<double, double, double, double>{
             hx * rest + tx * k,
             hy * rest + ty * k,
@@ -357,7 +332,7 @@ inline void _hold(
         rig,
         pose,
         side,
-        contact_solve::_plus(wrist, contact_solve::_scaled(contact_solve::_minus(mean, wrist), weight)),
+        plain_vectors::plus(wrist, plain_vectors::scaled(plain_vectors::minus(mean, wrist), weight)),
         turn,
         contact_solve::STRAIGHT
     );
@@ -368,7 +343,7 @@ inline std::tuple<double, double, double, double> _within_wrist(
     const std::tuple<double, double, double, double>& hand,
     const std::tuple<double, double, double, double>& turn
 ) {
-    auto [x, y, z, w] = contact_solve::times(turn, contact_solve::_back(hand));
+    auto [x, y, z, w] = plain_vectors::times(turn, plain_vectors::back(hand));
     if (w < 0.0) {
         x = -x;
         y = -y;
@@ -380,7 +355,7 @@ inline std::tuple<double, double, double, double> _within_wrist(
     }
     double k = std::sqrt(1.0 - contact_solve::WRIST * contact_solve::WRIST)
         / std::max(std::sqrt(x * x + y * y + z * z), 1e-12);
-    return contact_solve::times(
+    return plain_vectors::times(
         std::tuple<double, double, double, double>{x * k, y * k, z * k, contact_solve::WRIST},
         hand
     );
@@ -400,63 +375,63 @@ inline void bring(
     std::tuple<double, double, double> root = lang::at(pose->at, arm->upper);
     std::tuple<double, double, double> elbow = lang::at(pose->at, arm->lower);
     std::tuple<double, double, double> wrist = lang::at(pose->at, arm->hand);
-    std::tuple<double, double, double> bone = contact_solve::_minus(elbow, root);
-    std::tuple<double, double, double> fore = contact_solve::_minus(wrist, elbow);
-    double above_elbow = contact_solve::length(bone);
-    double below_elbow = contact_solve::length(fore);
-    double now = contact_solve::length(contact_solve::_minus(wrist, root));
+    std::tuple<double, double, double> bone = plain_vectors::minus(elbow, root);
+    std::tuple<double, double, double> fore = plain_vectors::minus(wrist, elbow);
+    double above_elbow = plain_vectors::length(bone);
+    double below_elbow = plain_vectors::length(fore);
+    double now = plain_vectors::length(plain_vectors::minus(wrist, root));
     if (above_elbow < 1e-06 || below_elbow < 1e-06 || now < 1e-06) {
         return;
     }
-    std::tuple<double, double, double> way = contact_solve::_minus(goal, root);
+    std::tuple<double, double, double> way = plain_vectors::minus(goal, root);
     double most = std::max(contact_solve::REACHED * (above_elbow + below_elbow), now);
     double least = std::min(
         std::sqrt(above_elbow * above_elbow + below_elbow * below_elbow
             - 2.0 * contact_solve::FOLDED * above_elbow * below_elbow),
         now
     );
-    double far = std::min(std::max(contact_solve::length(way), least), most);
-    std::tuple<double, double, double> ahead = contact_solve::_unit(way);
-    std::tuple<double, double, double> before = contact_solve::_scaled(contact_solve::_minus(wrist, root), 1.0 / now);
-    std::tuple<double, double, double> aside = contact_solve::_minus(
+    double far = std::min(std::max(plain_vectors::length(way), least), most);
+    std::tuple<double, double, double> ahead = plain_vectors::unit(way);
+    std::tuple<double, double, double> before = plain_vectors::scaled(plain_vectors::minus(wrist, root), 1.0 / now);
+    std::tuple<double, double, double> aside = plain_vectors::minus(
         bone,
-        contact_solve::_scaled(before, contact_solve::_dot(bone, before))
+        plain_vectors::scaled(before, plain_vectors::dot(bone, before))
     );
     // A straight arm has no side: it bends to one that goes with its bone.
-    std::tuple<double, double, double> spare = contact_solve::rotated(lang::at(pose->turned, arm->upper), side_of);
-    spare = contact_solve::_minus(spare, contact_solve::_scaled(before, contact_solve::_dot(spare, before)));
-    aside = contact_solve::_plus(
+    std::tuple<double, double, double> spare = plain_vectors::rotated(lang::at(pose->turned, arm->upper), side_of);
+    spare = plain_vectors::minus(spare, plain_vectors::scaled(before, plain_vectors::dot(spare, before)));
+    aside = plain_vectors::plus(
         aside,
-        contact_solve::_scaled(spare, std::max(0.0, 0.01 * above_elbow - contact_solve::length(aside)))
+        plain_vectors::scaled(spare, std::max(0.0, 0.01 * above_elbow - plain_vectors::length(aside)))
     );
-    aside = contact_solve::_unit(contact_solve::rotated(contact_solve::between(before, ahead), aside));
+    aside = plain_vectors::unit(plain_vectors::rotated(plain_vectors::between(before, ahead), aside));
     double along = (above_elbow * above_elbow + far * far - below_elbow * below_elbow) / (2.0 * far);
     double high = std::sqrt(std::max(0.0, above_elbow * above_elbow - along * along));
-    std::tuple<double, double, double> knee = contact_solve::_plus(
-        contact_solve::_scaled(ahead, along),
-        contact_solve::_scaled(aside, high)
+    std::tuple<double, double, double> knee = plain_vectors::plus(
+        plain_vectors::scaled(ahead, along),
+        plain_vectors::scaled(aside, high)
     );
-    std::tuple<double, double, double, double> swing = contact_solve::between(
-        contact_solve::_unit(bone),
-        contact_solve::_unit(knee)
+    std::tuple<double, double, double, double> swing = plain_vectors::between(
+        plain_vectors::unit(bone),
+        plain_vectors::unit(knee)
     );
-    std::tuple<double, double, double, double> fold = contact_solve::between(
-        contact_solve::_unit(contact_solve::rotated(swing, fore)),
-        contact_solve::_unit(contact_solve::_minus(contact_solve::_scaled(ahead, far), knee))
+    std::tuple<double, double, double, double> fold = plain_vectors::between(
+        plain_vectors::unit(plain_vectors::rotated(swing, fore)),
+        plain_vectors::unit(plain_vectors::minus(plain_vectors::scaled(ahead, far), knee))
     );
-    std::tuple<double, double, double, double> both = contact_solve::times(fold, swing);
+    std::tuple<double, double, double, double> both = plain_vectors::times(fold, swing);
     std::tuple<double, double, double, double> above = contact_solve::_above(rig, pose, arm->upper);
-    lang::at(pose->local, arm->upper) = contact_solve::times(
-        contact_solve::_back(above),
-        contact_solve::times(swing, lang::at(pose->turned, arm->upper))
+    lang::at(pose->local, arm->upper) = plain_vectors::times(
+        plain_vectors::back(above),
+        plain_vectors::times(swing, lang::at(pose->turned, arm->upper))
     );
-    above = contact_solve::times(swing, contact_solve::_above(rig, pose, arm->lower));
-    lang::at(pose->local, arm->lower) = contact_solve::times(
-        contact_solve::_back(above),
-        contact_solve::times(both, lang::at(pose->turned, arm->lower))
+    above = plain_vectors::times(swing, contact_solve::_above(rig, pose, arm->lower));
+    lang::at(pose->local, arm->lower) = plain_vectors::times(
+        plain_vectors::back(above),
+        plain_vectors::times(both, lang::at(pose->turned, arm->lower))
     );
-    above = contact_solve::times(both, contact_solve::_above(rig, pose, arm->hand));
-    lang::at(pose->local, arm->hand) = contact_solve::times(contact_solve::_back(above), hand);
+    above = plain_vectors::times(both, contact_solve::_above(rig, pose, arm->hand));
+    lang::at(pose->local, arm->hand) = plain_vectors::times(plain_vectors::back(above), hand);
     for (const auto& place : arm->below) {
         contact_solve::_join(rig, pose, place);
     }
@@ -492,13 +467,13 @@ inline bool _guarded(
         bool found = false;
         for (int side = 0; side < lang::len(shifts); side++) {
             const auto& shift = lang::at(shifts, side);
-            if (contact_solve::length(shift) > 0.0) {
+            if (plain_vectors::length(shift) > 0.0) {
                 int hand = lang::at(rig->arms, side)->hand;
                 contact_solve::bring(
                     rig,
                     pose,
                     side,
-                    contact_solve::_plus(lang::at(pose->at, hand), shift),
+                    plain_vectors::plus(lang::at(pose->at, hand), shift),
                     lang::at(pose->turned, hand),
                     contact_solve::STRAIGHT
                 );
@@ -517,13 +492,13 @@ inline bool _guarded(
 inline List<std::tuple<double, double, double>> capsule_ends(const Ref<ContactRig>& rig, const Ref<ContactPose>& pose) {
     List<std::tuple<double, double, double>> out;
     for (const auto& capsule : rig->capsules) {
-        out.push_back(contact_solve::_plus(
+        out.push_back(plain_vectors::plus(
             lang::at(pose->at, capsule->joint),
-            contact_solve::rotated(lang::at(pose->turned, capsule->joint), capsule->a)
+            plain_vectors::rotated(lang::at(pose->turned, capsule->joint), capsule->a)
         ));
-        out.push_back(contact_solve::_plus(
+        out.push_back(plain_vectors::plus(
             lang::at(pose->at, capsule->to),
-            contact_solve::rotated(lang::at(pose->turned, capsule->to), capsule->b)
+            plain_vectors::rotated(lang::at(pose->turned, capsule->to), capsule->b)
         ));
     }
     return out;
@@ -601,11 +576,11 @@ inline std::tuple<double, double, double> _shift(
             amount = amount * share * inner * inner * (3.0 - 2.0 * inner);
             double part = mine->kind == contact_solve::FOREARM ? s : 1.0;
             std::tuple<double, double, double> way = std::tuple<double, double, double>{x / gap, y / gap, z / gap};
-            double left = amount - part * contact_solve::_dot(way, shift);
+            double left = amount - part * plain_vectors::dot(way, shift);
             if (left > 0.0) {
-                shift = contact_solve::_plus(
+                shift = plain_vectors::plus(
                     shift,
-                    contact_solve::_scaled(way, left * part / (part * part + contact_solve::ELBOW * (1.0 - part)))
+                    plain_vectors::scaled(way, left * part / (part * part + contact_solve::ELBOW * (1.0 - part)))
                 );
             }
         }
@@ -622,14 +597,14 @@ inline std::tuple<double, double, double, double, double> apart(
 ) {
     std::tuple<double, double, double> a = lang::at(ends, i);
     std::tuple<double, double, double> c = lang::at(ends, k);
-    std::tuple<double, double, double> u = contact_solve::_minus(lang::at(ends, i + 1), a);
-    std::tuple<double, double, double> v = contact_solve::_minus(lang::at(ends, k + 1), c);
-    std::tuple<double, double, double> w = contact_solve::_minus(a, c);
-    double uu = contact_solve::_dot(u, u);
-    double uv = contact_solve::_dot(u, v);
-    double vv = contact_solve::_dot(v, v);
-    double uw = contact_solve::_dot(u, w);
-    double vw = contact_solve::_dot(v, w);
+    std::tuple<double, double, double> u = plain_vectors::minus(lang::at(ends, i + 1), a);
+    std::tuple<double, double, double> v = plain_vectors::minus(lang::at(ends, k + 1), c);
+    std::tuple<double, double, double> w = plain_vectors::minus(a, c);
+    double uu = plain_vectors::dot(u, u);
+    double uv = plain_vectors::dot(u, v);
+    double vv = plain_vectors::dot(v, v);
+    double uw = plain_vectors::dot(u, w);
+    double vw = plain_vectors::dot(v, w);
     double s = 0.0;
     double t = 0.0;
     if (uu > 1e-12) {
@@ -649,114 +624,11 @@ inline std::tuple<double, double, double, double, double> apart(
     } else if (vv > 1e-12) {
         t = std::min(std::max(vw / vv, 0.0), 1.0);
     }
-    auto [x, y, z] = contact_solve::_minus(
-        contact_solve::_plus(w, contact_solve::_scaled(u, s)),
-        contact_solve::_scaled(v, t)
+    auto [x, y, z] = plain_vectors::minus(
+        plain_vectors::plus(w, plain_vectors::scaled(u, s)),
+        plain_vectors::scaled(v, t)
     );
     return std::tuple<double, double, double, double, double>{x, y, z, s, std::sqrt(x * x + y * y + z * z)};
-}
-
-// --- arithmetic
-/// Return the product: rotate by `b`, then by `a`.
-inline std::tuple<double, double, double, double> times(
-    const std::tuple<double, double, double, double>& a,
-    const std::tuple<double, double, double, double>& b
-) {
-    auto [ax, ay, az, aw] = a;
-    auto [bx, by, bz, bw] = b;
-    return std::tuple<double, double, double, double>{
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
-        aw * bw - ax * bx - ay * by - az * bz
-    };
-}
-
-/// Return a vector rotated.
-inline std::tuple<double, double, double> rotated(
-    const std::tuple<double, double, double, double>& q,
-    const std::tuple<double, double, double>& v
-) {
-    auto [x, y, z, w] = q;
-    auto [vx, vy, vz] = v;
-    double tx = 2.0 * (y * vz - z * vy);
-    double ty = 2.0 * (z * vx - x * vz);
-    double tz = 2.0 * (x * vy - y * vx);
-    return std::tuple<double, double, double>{
-        vx + w * tx + y * tz - z * ty,
-        vy + w * ty + z * tx - x * tz,
-        vz + w * tz + x * ty - y * tx
-    };
-}
-
-/// Return the shortest rotation that takes one direction to another, both of length 1.
-inline std::tuple<double, double, double, double> between(
-    const std::tuple<double, double, double>& a,
-    const std::tuple<double, double, double>& b
-) {
-    auto [ax, ay, az] = a;
-    auto [bx, by, bz] = b;
-    double dot = ax * bx + ay * by + az * bz;
-    if (dot < -0.999999999) { // half a turn about any axis across
-        return contact_solve::_unit_turn(
-            std::abs(ax) < 0.9
-                ? std::tuple<double, double, double, double>{0.0, az, -ay, 0.0}
-                : std::tuple<double, double, double, double>{-az, 0.0, ax, 0.0}
-        );
-    }
-    return contact_solve::_unit_turn(
-        std::tuple<double, double, double, double>{ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx, 1.0 + dot}
-    );
-}
-
-/// Return how long a vector is.
-inline double length(const std::tuple<double, double, double>& v) {
-    auto [x, y, z] = v;
-    return std::sqrt(x * x + y * y + z * z);
-}
-
-inline std::tuple<double, double, double> _unit(const std::tuple<double, double, double>& v) {
-    return contact_solve::_scaled(v, 1.0 / std::max(contact_solve::length(v), 1e-12));
-}
-
-inline std::tuple<double, double, double, double> _unit_turn(const std::tuple<double, double, double, double>& q) {
-    auto [x, y, z, w] = q;
-    double k = 1.0 / std::max(std::sqrt(x * x + y * y + z * z + w * w), 1e-12);
-    return std::tuple<double, double, double, double>{x * k, y * k, z * k, w * k};
-}
-
-inline std::tuple<double, double, double, double> _back(const std::tuple<double, double, double, double>& q) {
-    auto [x, y, z, w] = q;
-    return std::tuple<double, double, double, double>{-x, -y, -z, w};
-}
-
-inline std::tuple<double, double, double> _plus(
-    const std::tuple<double, double, double>& a,
-    const std::tuple<double, double, double>& b
-) {
-    auto [ax, ay, az] = a;
-    auto [bx, by, bz] = b;
-    return std::tuple<double, double, double>{ax + bx, ay + by, az + bz};
-}
-
-inline std::tuple<double, double, double> _minus(
-    const std::tuple<double, double, double>& a,
-    const std::tuple<double, double, double>& b
-) {
-    auto [ax, ay, az] = a;
-    auto [bx, by, bz] = b;
-    return std::tuple<double, double, double>{ax - bx, ay - by, az - bz};
-}
-
-inline std::tuple<double, double, double> _scaled(const std::tuple<double, double, double>& a, double k) {
-    auto [x, y, z] = a;
-    return std::tuple<double, double, double>{x * k, y * k, z * k};
-}
-
-inline double _dot(const std::tuple<double, double, double>& a, const std::tuple<double, double, double>& b) {
-    auto [ax, ay, az] = a;
-    auto [bx, by, bz] = b;
-    return ax * bx + ay * by + az * bz;
 }
 
 }  // namespace contact_solve

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "model.hpp"
+#include "cue_times.hpp"
 #include "meta_plan.hpp"
 #include "project.hpp"
 #include "language.hpp"
@@ -62,9 +63,6 @@ inline List<double> _loop(
     double time
 );
 inline List<double> _row(const Ref<ArmTrack>& track, double seconds);
-inline double _cue_weight(const Ref<Cue>& cue, double time);
-inline double _cue_seconds(const Ref<Cue>& cue, double time);
-inline double _ease(double x);
 
 }  // namespace follow_through
 
@@ -119,19 +117,16 @@ inline List<double> arm_sway(
     if (track == nullptr || lang::len(track->rows) == 0) {
         return out;
     }
-    double weight = follow_through::_cue_weight(cue, time);
+    double weight = cue_times::cue_weight(cue, time);
     double share = cue->extent * (1.0 - follow_through::_shown(tracks, body, body_cue, body_place, track->clip, time));
     if (weight <= 0.0 || share <= 0.0) {
         return out;
     }
-    List<double> row = follow_through::_row(track, follow_through::_cue_seconds(cue, time));
+    List<double> row = follow_through::_row(track, cue_times::cue_seconds(cue, time));
     List<double> rest = follow_through::_stance(project, tracks, arms, place, time);
     bool entering = time < cue->start + cue->blend_in;
     if (entering || time >= cue->end - cue->blend_out) {
-        List<double> edge = follow_through::_row(
-            track,
-            entering ? cue->entry : follow_through::_cue_seconds(cue, cue->end)
-        );
+        List<double> edge = follow_through::_row(track, entering ? cue->entry : cue_times::cue_seconds(cue, cue->end));
         List<double> found;
         for (int n3 = 0; n3 < follow_through::NUMBERS; n3++) {
             found.push_back(lang::at(row, n3) + (1.0 - weight) * (lang::at(rest, n3) - lang::at(edge, n3)));
@@ -200,7 +195,7 @@ inline double _shown(
     double left = 1.0;
     double out = 0.0;
     if (cue != nullptr) {
-        double weight = follow_through::_cue_weight(cue, time);
+        double weight = cue_times::cue_weight(cue, time);
         left = 1.0 - weight;
         if (follow_through::_is_of(tracks, cue->action, clip)) {
             out += weight;
@@ -210,7 +205,7 @@ inline double _shown(
         Ref<Rest> rest = lang::at(plan->rests, place);
         double over = 1.0;
         if (place > 0 && rest->fade_start + rest->fade > time) {
-            over = follow_through::_ease((time - rest->fade_start) / rest->fade);
+            over = cue_times::ease((time - rest->fade_start) / rest->fade);
             if (follow_through::_is_of(tracks, lang::at(plan->rests, place - 1)->action, clip)) {
                 out += left * (1.0 - over);
             }
@@ -245,7 +240,7 @@ inline List<double> _stance(
     Ref<Rest> rest = lang::at(plan->rests, place);
     List<double> row = follow_through::_loop(project, tracks, rest, time);
     if (place > 0 && rest->fade_start + rest->fade > time) {
-        double over = follow_through::_ease((time - rest->fade_start) / rest->fade);
+        double over = cue_times::ease((time - rest->fade_start) / rest->fade);
         List<double> before = follow_through::_loop(project, tracks, lang::at(plan->rests, place - 1), time);
         List<double> found2;
         for (int n = 0; n < follow_through::NUMBERS; n++) {
@@ -283,7 +278,7 @@ inline List<double> _loop(
     phase = phase - period * static_cast<int>(std::floor(phase / period));
     List<double> row = follow_through::_row(track, start + phase);
     if (seam > 0.0 && elapsed >= period) {
-        double old = 1.0 - follow_through::_ease(phase / seam);
+        double old = 1.0 - cue_times::ease(phase / seam);
         List<double> before = follow_through::_row(track, start + std::min(period + phase, end - start));
         List<double> found2;
         for (int n = 0; n < follow_through::NUMBERS; n++) {
@@ -307,30 +302,6 @@ inline List<double> _row(const Ref<ArmTrack>& track, double seconds) {
         found.push_back(lang::at(a, n) + (lang::at(b, n) - lang::at(a, n)) * part);
     }
     return found;
-}
-
-inline double _cue_weight(const Ref<Cue>& cue, double time) {
-    if (time < cue->start || time >= cue->end) {
-        return 0.0;
-    }
-    double rise = cue->blend_in > 0.0 ? follow_through::_ease((time - cue->start) / cue->blend_in) : 1.0;
-    double fall = cue->blend_out > 0.0 ? follow_through::_ease((cue->end - time) / cue->blend_out) : 1.0;
-    return rise * fall;
-}
-
-inline double _cue_seconds(const Ref<Cue>& cue, double time) {
-    double elapsed = time - cue->start;
-    if (cue->hold <= 0.0) {
-        return cue->entry + elapsed * cue->tempo;
-    }
-    double held = std::min(std::max(elapsed - (cue->hold_from - cue->entry) / cue->tempo, 0.0), cue->hold);
-    double more = (elapsed - held) * (cue->tempo - 1.0);
-    return cue->entry + elapsed - held + more + held * ((cue->hold_to - cue->hold_from) / cue->hold);
-}
-
-inline double _ease(double x) {
-    x = std::min(std::max(x, 0.0), 1.0);
-    return x * x * (3.0 - 2.0 * x);
 }
 
 }  // namespace follow_through

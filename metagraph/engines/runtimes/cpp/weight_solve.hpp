@@ -11,6 +11,7 @@
 #pragma once
 
 #include "contact_solve.hpp"
+#include "plain_vectors.hpp"
 #include "language.hpp"
 
 namespace metagraph {
@@ -58,17 +59,6 @@ inline double _too_far(
 );
 inline double _soft(double x, double most);
 inline std::tuple<double, double, double, double> _turn(const std::tuple<double, double, double>& axis, double angle);
-inline std::tuple<double, double, double, double> _back(const std::tuple<double, double, double, double>& q);
-inline std::tuple<double, double, double> _plus(
-    const std::tuple<double, double, double>& a,
-    const std::tuple<double, double, double>& b
-);
-inline std::tuple<double, double, double> _minus(
-    const std::tuple<double, double, double>& a,
-    const std::tuple<double, double, double>& b
-);
-inline std::tuple<double, double, double> _scaled(const std::tuple<double, double, double>& a, double k);
-inline double _dot(const std::tuple<double, double, double>& a, const std::tuple<double, double, double>& b);
 
 }  // namespace weight_solve
 
@@ -170,9 +160,9 @@ inline bool answer_arms(
             collar->axis,
             lift * lang::at(drive, 6 + collar->side)
         );
-        lang::at(pose->local, collar->place) = contact_solve::times(lang::at(pose->local, collar->place), turn);
-        lang::at(pose->local, collar->upper) = contact_solve::times(
-            weight_solve::_back(turn),
+        lang::at(pose->local, collar->place) = plain_vectors::times(lang::at(pose->local, collar->place), turn);
+        lang::at(pose->local, collar->upper) = plain_vectors::times(
+            plain_vectors::back(turn),
             lang::at(pose->local, collar->upper)
         );
     }
@@ -195,10 +185,10 @@ inline double _stands(const Ref<WeightRig>& rig, const Ref<ContactPose>& pose) {
         std::tuple<double, double, double> hip = lang::at(pose->at, leg->upper);
         std::tuple<double, double, double> knee = lang::at(pose->at, leg->lower);
         std::tuple<double, double, double> ankle = lang::at(pose->at, leg->hand);
-        double whole = contact_solve::length(weight_solve::_minus(knee, hip))
-            + contact_solve::length(weight_solve::_minus(ankle, knee));
+        double whole = plain_vectors::length(plain_vectors::minus(knee, hip))
+            + plain_vectors::length(plain_vectors::minus(ankle, knee));
         if (whole > 1e-06) {
-            least = std::min(least, weight_solve::_dot(weight_solve::_minus(hip, ankle), rig->up) / whole);
+            least = std::min(least, plain_vectors::dot(plain_vectors::minus(hip, ankle), rig->up) / whole);
         }
     }
     double x = std::min(std::max((least - weight_solve::SITTING) / weight_solve::STANDING, 0.0), 1.0);
@@ -248,22 +238,22 @@ inline void _give_way(
     }
     List<double> reaches;
     for (const auto& leg : body->arms) {
-        reaches.push_back(contact_solve::length(
-            weight_solve::_minus(lang::at(pose->at, leg->hand), lang::at(pose->at, leg->upper))
+        reaches.push_back(plain_vectors::length(
+            plain_vectors::minus(lang::at(pose->at, leg->hand), lang::at(pose->at, leg->upper))
         ));
     }
     Ref<WeightBend> hips = lang::at(rig->bends, 0);
-    std::tuple<double, double, double> shift = weight_solve::_plus(
-        weight_solve::_plus(weight_solve::_scaled(hips->left, x), weight_solve::_scaled(hips->up, y)),
-        weight_solve::_scaled(hips->ahead, z)
+    std::tuple<double, double, double> shift = plain_vectors::plus(
+        plain_vectors::plus(plain_vectors::scaled(hips->left, x), plain_vectors::scaled(hips->up, y)),
+        plain_vectors::scaled(hips->ahead, z)
     );
-    shift = contact_solve::rotated(lang::at(pose->turned, hips->place), shift);
+    shift = plain_vectors::rotated(lang::at(pose->turned, hips->place), shift);
     for (const auto& bend : rig->bends) {
-        std::tuple<double, double, double> axis = weight_solve::_plus(
-            weight_solve::_plus(weight_solve::_scaled(bend->left, pitch), weight_solve::_scaled(bend->up, yaw)),
-            weight_solve::_scaled(bend->ahead, roll)
+        std::tuple<double, double, double> axis = plain_vectors::plus(
+            plain_vectors::plus(plain_vectors::scaled(bend->left, pitch), plain_vectors::scaled(bend->up, yaw)),
+            plain_vectors::scaled(bend->ahead, roll)
         );
-        lang::at(pose->local, bend->place) = contact_solve::times(
+        lang::at(pose->local, bend->place) = plain_vectors::times(
             lang::at(pose->local, bend->place),
             weight_solve::_turn(axis, bend->share)
         );
@@ -271,14 +261,14 @@ inline void _give_way(
     int above = lang::at(body->parents, hips->place);
     std::tuple<double, double, double, double> space = above < 0
         ? std::tuple<double, double, double, double>{0.0, 0.0, 0.0, 1.0}
-        : weight_solve::_back(lang::at(pose->turned, above));
-    lang::at(pose->moved, hips->place) = weight_solve::_plus(
+        : plain_vectors::back(lang::at(pose->turned, above));
+    lang::at(pose->moved, hips->place) = plain_vectors::plus(
         lang::at(pose->moved, hips->place),
-        contact_solve::rotated(space, shift)
+        plain_vectors::rotated(space, shift)
     );
     contact_solve::spread(body, pose);
-    double size = contact_solve::length(std::tuple<double, double, double>{x, y, z})
-        + 0.1 * rig->height * contact_solve::length(std::tuple<double, double, double>{yaw, roll, pitch});
+    double size = plain_vectors::length(std::tuple<double, double, double>{x, y, z})
+        + 0.1 * rig->height * plain_vectors::length(std::tuple<double, double, double>{yaw, roll, pitch});
     double low = 0.0;
     for (int side = 0; side < lang::len(feet); side++) {
         low = std::max(
@@ -294,8 +284,8 @@ inline void _give_way(
         );
     }
     if (low > 0.0) {
-        std::tuple<double, double, double> down = contact_solve::rotated(space, weight_solve::_scaled(rig->up, -low));
-        lang::at(pose->moved, hips->place) = weight_solve::_plus(lang::at(pose->moved, hips->place), down);
+        std::tuple<double, double, double> down = plain_vectors::rotated(space, plain_vectors::scaled(rig->up, -low));
+        lang::at(pose->moved, hips->place) = plain_vectors::plus(lang::at(pose->moved, hips->place), down);
         contact_solve::spread(body, pose);
     }
     for (int side = 0; side < lang::len(feet); side++) {
@@ -317,12 +307,12 @@ inline double _too_far(
     std::tuple<double, double, double> hip = lang::at(pose->at, leg->upper);
     std::tuple<double, double, double> knee = lang::at(pose->at, leg->lower);
     std::tuple<double, double, double> ankle = lang::at(pose->at, leg->hand);
-    double whole = contact_solve::length(weight_solve::_minus(knee, hip))
-        + contact_solve::length(weight_solve::_minus(ankle, knee));
+    double whole = plain_vectors::length(plain_vectors::minus(knee, hip))
+        + plain_vectors::length(plain_vectors::minus(ankle, knee));
     double most = std::max(contact_solve::REACHED * whole, reach);
-    std::tuple<double, double, double> way = weight_solve::_minus(hip, foot);
-    double high = weight_solve::_dot(way, rig->up);
-    double aside = weight_solve::_dot(way, way) - high * high;
+    std::tuple<double, double, double> way = plain_vectors::minus(hip, foot);
+    double high = plain_vectors::dot(way, rig->up);
+    double aside = plain_vectors::dot(way, way) - high * high;
     if (high <= 0.0 || aside >= most * most || soft <= 0.0) {
         return 0.0;
     }
@@ -341,47 +331,13 @@ inline double _soft(double x, double most) {
 /// Return the turn about an axis by its length times an angle, radians.
 inline std::tuple<double, double, double, double> _turn(const std::tuple<double, double, double>& axis, double angle) {
     auto [x, y, z] = axis;
-    double size = contact_solve::length(axis);
+    double size = plain_vectors::length(axis);
     if (size <= 0.0) {
         return std::tuple<double, double, double, double>{0.0, 0.0, 0.0, 1.0};
     }
     double half = 0.5 * size * angle;
     double k = std::sin(half) / size;
     return std::tuple<double, double, double, double>{x * k, y * k, z * k, std::cos(half)};
-}
-
-inline std::tuple<double, double, double, double> _back(const std::tuple<double, double, double, double>& q) {
-    auto [x, y, z, w] = q;
-    return std::tuple<double, double, double, double>{-x, -y, -z, w};
-}
-
-inline std::tuple<double, double, double> _plus(
-    const std::tuple<double, double, double>& a,
-    const std::tuple<double, double, double>& b
-) {
-    auto [ax, ay, az] = a;
-    auto [bx, by, bz] = b;
-    return std::tuple<double, double, double>{ax + bx, ay + by, az + bz};
-}
-
-inline std::tuple<double, double, double> _minus(
-    const std::tuple<double, double, double>& a,
-    const std::tuple<double, double, double>& b
-) {
-    auto [ax, ay, az] = a;
-    auto [bx, by, bz] = b;
-    return std::tuple<double, double, double>{ax - bx, ay - by, az - bz};
-}
-
-inline std::tuple<double, double, double> _scaled(const std::tuple<double, double, double>& a, double k) {
-    auto [x, y, z] = a;
-    return std::tuple<double, double, double>{x * k, y * k, z * k};
-}
-
-inline double _dot(const std::tuple<double, double, double>& a, const std::tuple<double, double, double>& b) {
-    auto [ax, ay, az] = a;
-    auto [bx, by, bz] = b;
-    return ax * bx + ay * by + az * bz;
 }
 
 }  // namespace weight_solve

@@ -7,6 +7,7 @@
 
 import { HandGoal } from "./contact_solve.js";
 import { HANDS, contactKey, contactWeight } from "./contact_spans.js";
+import { cueSeconds, cueWeight, ease } from "./cue_times.js";
 
 export const LEAST = 1e-06; // of a hand: what shows less than this is not solved
 
@@ -26,21 +27,21 @@ export function layerGoals(rig, project, plan, cue, place, time, strength) {
   const out = [];
   const shown = [0, 0];
   if (cue !== null) {
-    const weight = _cueWeight(cue, time);
+    const weight = cueWeight(cue, time);
     for (const [arm, hand] of HANDS.entries()) {
       if (_moves(rig, cue.action, arm, hand)) {
         shown[arm] = weight;
       }
     }
     if (cue.action.contacts.length > 0) {
-      out.push(..._goals(rig, project, cue.action, _cueSeconds(cue, time), shown.map((w) => strength * w)));
+      out.push(..._goals(rig, project, cue.action, cueSeconds(cue, time), shown.map((w) => strength * w)));
     }
   }
   if (place >= 0) {
     const rest = plan.rests[place];
     let over = 1;
     if (place > 0 && rest.fadeStart + rest.fade > time) {
-      over = _ease((time - rest.fadeStart) / rest.fade);
+      over = ease((time - rest.fadeStart) / rest.fade);
       out.push(..._loopGoals(rig, project, plan.rests[place - 1], time, strength * (1 - over), shown));
     }
     out.push(..._loopGoals(rig, project, rest, time, strength * over, shown));
@@ -76,7 +77,7 @@ function _loopGoals(rig, project, rest, time, strength, shown) {
   phase = phase - period * Math.floor(phase / period);
   let old = 0;
   if (seam > 0 && elapsed >= period) {
-    old = 1 - _ease(phase / seam);
+    old = 1 - ease(phase / seam);
   }
   if (old > 0) {
     const before = start + Math.min(period + phase, end - start);
@@ -134,42 +135,4 @@ function _moves(rig, action, arm, hand) {
     return false;
   }
   return action.joints.length === 0 || action.joints.includes(rig.hands[arm]);
-}
-
-/**
- * @param {Cue} cue
- * @param {number} time
- * @returns {number}
- */
-function _cueWeight(cue, time) {
-  if (time < cue.start || time >= cue.end) {
-    return 0;
-  }
-  const rise = cue.blendIn > 0 ? _ease((time - cue.start) / cue.blendIn) : 1;
-  const fall = cue.blendOut > 0 ? _ease((cue.end - time) / cue.blendOut) : 1;
-  return rise * fall;
-}
-
-/**
- * @param {Cue} cue
- * @param {number} time
- * @returns {number}
- */
-function _cueSeconds(cue, time) {
-  const elapsed = time - cue.start;
-  if (cue.hold <= 0) {
-    return cue.entry + elapsed * cue.tempo;
-  }
-  const held = Math.min(Math.max(elapsed - (cue.holdFrom - cue.entry) / cue.tempo, 0), cue.hold);
-  const more = (elapsed - held) * (cue.tempo - 1);
-  return cue.entry + elapsed - held + more + held * ((cue.holdTo - cue.holdFrom) / cue.hold);
-}
-
-/**
- * @param {number} x
- * @returns {number}
- */
-function _ease(x) {
-  x = Math.min(Math.max(x, 0), 1);
-  return x * x * (3 - 2 * x);
 }

@@ -7,6 +7,7 @@
  * Translated from metagraph/motion/contact_solve.py; change that, and translate anew.
  */
 
+import { back, between, dot, length, minus, plus, rotated, scaled, times, unit, unitTurn } from "./plain_vectors.js";
 import { range } from "./basics.js";
 
 export const REACHED = 0.995; // of an arm's length: it does not snap straight
@@ -136,7 +137,7 @@ function _join(rig, pose, place) {
     pose.at[place] = pose.moved[place];
   } else {
     pose.turned[place] = times(pose.turned[above], pose.local[place]);
-    pose.at[place] = _plus(pose.at[above], rotated(pose.turned[above], pose.moved[place]));
+    pose.at[place] = plus(pose.at[above], rotated(pose.turned[above], pose.moved[place]));
   }
 }
 
@@ -214,7 +215,7 @@ function _hold(rig, pose, goals, side, wrist, hand) {
   for (const goal of goals) {
     if (goal.arm === side && goal.weight > 0) {
       k = goal.weight;
-      const [px, py, pz] = _plus(pose.at[goal.to], rotated(pose.turned[goal.to], goal.at));
+      const [px, py, pz] = plus(pose.at[goal.to], rotated(pose.turned[goal.to], goal.at));
       const [qx, qy, qz, qw] = times(pose.turned[goal.to], goal.turn);
       x = x + k * px;
       y = y + k * py;
@@ -231,12 +232,12 @@ function _hold(rig, pose, goals, side, wrist, hand) {
   }
   const weight = Math.min(1, total);
   const mean = [x / total, y / total, z / total];
-  let turn = _withinWrist(hand, _unitTurn([a, b, c, d]));
+  let turn = _withinWrist(hand, unitTurn([a, b, c, d]));
   const [tx, ty, tz, tw] = turn;
   const rest = 1 - weight;
   k = tx * hx + ty * hy + tz * hz + tw * hw < 0 ? -weight : weight;
-  turn = _unitTurn([hx * rest + tx * k, hy * rest + ty * k, hz * rest + tz * k, hw * rest + tw * k]);
-  bring(rig, pose, side, _plus(wrist, _scaled(_minus(mean, wrist), weight)), turn, STRAIGHT);
+  turn = unitTurn([hx * rest + tx * k, hy * rest + ty * k, hz * rest + tz * k, hw * rest + tw * k]);
+  bring(rig, pose, side, plus(wrist, scaled(minus(mean, wrist), weight)), turn, STRAIGHT);
 }
 
 /**
@@ -246,7 +247,7 @@ function _hold(rig, pose, goals, side, wrist, hand) {
  * @returns {[number, number, number, number]}
  */
 function _withinWrist(hand, turn) {
-  const [x, y, z, w] = times(turn, _back(hand));
+  const [x, y, z, w] = times(turn, back(hand));
   if (w < 0) {
     x = -x;
     y = -y;
@@ -275,41 +276,41 @@ export function bring(rig, pose, side, goal, hand, sideOf) {
   const root = pose.at[arm.upper];
   const elbow = pose.at[arm.lower];
   const wrist = pose.at[arm.hand];
-  const bone = _minus(elbow, root);
-  const fore = _minus(wrist, elbow);
+  const bone = minus(elbow, root);
+  const fore = minus(wrist, elbow);
   const aboveElbow = length(bone);
   const belowElbow = length(fore);
-  const now = length(_minus(wrist, root));
+  const now = length(minus(wrist, root));
   if (aboveElbow < 1e-06 || belowElbow < 1e-06 || now < 1e-06) {
     return;
   }
-  const way = _minus(goal, root);
+  const way = minus(goal, root);
   const most = Math.max(REACHED * (aboveElbow + belowElbow), now);
   const least = Math.min(
     Math.sqrt(aboveElbow * aboveElbow + belowElbow * belowElbow - 2 * FOLDED * aboveElbow * belowElbow),
     now
   );
   const far = Math.min(Math.max(length(way), least), most);
-  const ahead = _unit(way);
-  const before = _scaled(_minus(wrist, root), 1 / now);
-  let aside = _minus(bone, _scaled(before, _dot(bone, before)));
+  const ahead = unit(way);
+  const before = scaled(minus(wrist, root), 1 / now);
+  let aside = minus(bone, scaled(before, dot(bone, before)));
   // A straight arm has no side: it bends to one that goes with its bone.
   let spare = rotated(pose.turned[arm.upper], sideOf);
-  spare = _minus(spare, _scaled(before, _dot(spare, before)));
-  aside = _plus(aside, _scaled(spare, Math.max(0, 0.01 * aboveElbow - length(aside))));
-  aside = _unit(rotated(between(before, ahead), aside));
+  spare = minus(spare, scaled(before, dot(spare, before)));
+  aside = plus(aside, scaled(spare, Math.max(0, 0.01 * aboveElbow - length(aside))));
+  aside = unit(rotated(between(before, ahead), aside));
   const along = (aboveElbow * aboveElbow + far * far - belowElbow * belowElbow) / (2 * far);
   const high = Math.sqrt(Math.max(0, aboveElbow * aboveElbow - along * along));
-  const knee = _plus(_scaled(ahead, along), _scaled(aside, high));
-  const swing = between(_unit(bone), _unit(knee));
-  const fold = between(_unit(rotated(swing, fore)), _unit(_minus(_scaled(ahead, far), knee)));
+  const knee = plus(scaled(ahead, along), scaled(aside, high));
+  const swing = between(unit(bone), unit(knee));
+  const fold = between(unit(rotated(swing, fore)), unit(minus(scaled(ahead, far), knee)));
   const both = times(fold, swing);
   let above = _above(rig, pose, arm.upper);
-  pose.local[arm.upper] = times(_back(above), times(swing, pose.turned[arm.upper]));
+  pose.local[arm.upper] = times(back(above), times(swing, pose.turned[arm.upper]));
   above = times(swing, _above(rig, pose, arm.lower));
-  pose.local[arm.lower] = times(_back(above), times(both, pose.turned[arm.lower]));
+  pose.local[arm.lower] = times(back(above), times(both, pose.turned[arm.lower]));
   above = times(both, _above(rig, pose, arm.hand));
-  pose.local[arm.hand] = times(_back(above), hand);
+  pose.local[arm.hand] = times(back(above), hand);
   for (const place of arm.below) {
     _join(rig, pose, place);
   }
@@ -347,7 +348,7 @@ function _guarded(rig, pose, held, across) {
     for (const [side, shift] of shifts.entries()) {
       if (length(shift) > 0) {
         const hand = rig.arms[side].hand;
-        bring(rig, pose, side, _plus(pose.at[hand], shift), pose.turned[hand], STRAIGHT);
+        bring(rig, pose, side, plus(pose.at[hand], shift), pose.turned[hand], STRAIGHT);
         found = true;
       }
     }
@@ -368,8 +369,8 @@ function _guarded(rig, pose, held, across) {
 export function capsuleEnds(rig, pose) {
   const out = [];
   for (const capsule of rig.capsules) {
-    out.push(_plus(pose.at[capsule.joint], rotated(pose.turned[capsule.joint], capsule.a)));
-    out.push(_plus(pose.at[capsule.to], rotated(pose.turned[capsule.to], capsule.b)));
+    out.push(plus(pose.at[capsule.joint], rotated(pose.turned[capsule.joint], capsule.a)));
+    out.push(plus(pose.at[capsule.to], rotated(pose.turned[capsule.to], capsule.b)));
   }
   return out;
 }
@@ -446,9 +447,9 @@ function _shift(rig, ends, balls, side, held, across) {
       amount = amount * share * inner * inner * (3 - 2 * inner);
       const part = mine.kind === FOREARM ? s : 1;
       const way = [x / gap, y / gap, z / gap];
-      const left = amount - part * _dot(way, shift);
+      const left = amount - part * dot(way, shift);
       if (left > 0) {
-        shift = _plus(shift, _scaled(way, left * part / (part * part + ELBOW * (1 - part))));
+        shift = plus(shift, scaled(way, left * part / (part * part + ELBOW * (1 - part))));
       }
     }
   }
@@ -466,14 +467,14 @@ function _shift(rig, ends, balls, side, held, across) {
 export function apart(ends, i, k) {
   const a = ends[i];
   const c = ends[k];
-  const u = _minus(ends[i + 1], a);
-  const v = _minus(ends[k + 1], c);
-  const w = _minus(a, c);
-  const uu = _dot(u, u);
-  const uv = _dot(u, v);
-  const vv = _dot(v, v);
-  const uw = _dot(u, w);
-  const vw = _dot(v, w);
+  const u = minus(ends[i + 1], a);
+  const v = minus(ends[k + 1], c);
+  const w = minus(a, c);
+  const uu = dot(u, u);
+  const uv = dot(u, v);
+  const vv = dot(v, v);
+  const uw = dot(u, w);
+  const vw = dot(v, w);
   let s = 0;
   let t = 0;
   if (uu > 1e-12) {
@@ -493,135 +494,6 @@ export function apart(ends, i, k) {
   } else if (vv > 1e-12) {
     t = Math.min(Math.max(vw / vv, 0), 1);
   }
-  const [x, y, z] = _minus(_plus(w, _scaled(u, s)), _scaled(v, t));
+  const [x, y, z] = minus(plus(w, scaled(u, s)), scaled(v, t));
   return [x, y, z, s, Math.sqrt(x * x + y * y + z * z)];
-}
-
-// --- arithmetic
-/**
- * Return the product: rotate by `b`, then by `a`.
- * @param {[number, number, number, number]} a
- * @param {[number, number, number, number]} b
- * @returns {[number, number, number, number]}
- */
-export function times(a, b) {
-  const [ax, ay, az, aw] = a;
-  const [bx, by, bz, bw] = b;
-  return [
-    aw * bx + ax * bw + ay * bz - az * by,
-    aw * by - ax * bz + ay * bw + az * bx,
-    aw * bz + ax * by - ay * bx + az * bw,
-    aw * bw - ax * bx - ay * by - az * bz,
-  ];
-}
-
-/**
- * Return a vector rotated.
- * @param {[number, number, number, number]} q
- * @param {[number, number, number]} v
- * @returns {[number, number, number]}
- */
-export function rotated(q, v) {
-  const [x, y, z, w] = q;
-  const [vx, vy, vz] = v;
-  const tx = 2 * (y * vz - z * vy);
-  const ty = 2 * (z * vx - x * vz);
-  const tz = 2 * (x * vy - y * vx);
-  return [vx + w * tx + y * tz - z * ty, vy + w * ty + z * tx - x * tz, vz + w * tz + x * ty - y * tx];
-}
-
-/**
- * Return the shortest rotation that takes one direction to another, both of length 1.
- * @param {[number, number, number]} a
- * @param {[number, number, number]} b
- * @returns {[number, number, number, number]}
- */
-export function between(a, b) {
-  const [ax, ay, az] = a;
-  const [bx, by, bz] = b;
-  const dot = ax * bx + ay * by + az * bz;
-  if (dot < -0.999999999) { // half a turn about any axis across
-    return _unitTurn(Math.abs(ax) < 0.9 ? [0, az, -ay, 0] : [-az, 0, ax, 0]);
-  }
-  return _unitTurn([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx, 1 + dot]);
-}
-
-/**
- * Return how long a vector is.
- * @param {[number, number, number]} v
- * @returns {number}
- */
-export function length(v) {
-  const [x, y, z] = v;
-  return Math.sqrt(x * x + y * y + z * z);
-}
-
-/**
- * @param {[number, number, number]} v
- * @returns {[number, number, number]}
- */
-function _unit(v) {
-  return _scaled(v, 1 / Math.max(length(v), 1e-12));
-}
-
-/**
- * @param {[number, number, number, number]} q
- * @returns {[number, number, number, number]}
- */
-function _unitTurn(q) {
-  const [x, y, z, w] = q;
-  const k = 1 / Math.max(Math.sqrt(x * x + y * y + z * z + w * w), 1e-12);
-  return [x * k, y * k, z * k, w * k];
-}
-
-/**
- * @param {[number, number, number, number]} q
- * @returns {[number, number, number, number]}
- */
-function _back(q) {
-  const [x, y, z, w] = q;
-  return [-x, -y, -z, w];
-}
-
-/**
- * @param {[number, number, number]} a
- * @param {[number, number, number]} b
- * @returns {[number, number, number]}
- */
-function _plus(a, b) {
-  const [ax, ay, az] = a;
-  const [bx, by, bz] = b;
-  return [ax + bx, ay + by, az + bz];
-}
-
-/**
- * @param {[number, number, number]} a
- * @param {[number, number, number]} b
- * @returns {[number, number, number]}
- */
-function _minus(a, b) {
-  const [ax, ay, az] = a;
-  const [bx, by, bz] = b;
-  return [ax - bx, ay - by, az - bz];
-}
-
-/**
- * @param {[number, number, number]} a
- * @param {number} k
- * @returns {[number, number, number]}
- */
-function _scaled(a, k) {
-  const [x, y, z] = a;
-  return [x * k, y * k, z * k];
-}
-
-/**
- * @param {[number, number, number]} a
- * @param {[number, number, number]} b
- * @returns {number}
- */
-function _dot(a, b) {
-  const [ax, ay, az] = a;
-  const [bx, by, bz] = b;
-  return ax * bx + ay * by + az * bz;
 }

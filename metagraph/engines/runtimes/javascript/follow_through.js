@@ -7,6 +7,7 @@
  * Translated from metagraph/playback/follow_through.py; change that, and translate anew.
  */
 
+import { cueSeconds, cueWeight, ease } from "./cue_times.js";
 import { range } from "./basics.js";
 
 export const STEP = 0.08; // seconds between the times that are looked at; the answer comes two of them late
@@ -75,16 +76,16 @@ export function armSway(project, tracks, hands, arms, cue, place, body, bodyCue,
   if (track === null || track.rows.length === 0) {
     return out;
   }
-  const weight = _cueWeight(cue, time);
+  const weight = cueWeight(cue, time);
   const share = cue.extent * (1 - _shown(tracks, body, bodyCue, bodyPlace, track.clip, time));
   if (weight <= 0 || share <= 0) {
     return out;
   }
-  let row = _row(track, _cueSeconds(cue, time));
+  let row = _row(track, cueSeconds(cue, time));
   const rest = _stance(project, tracks, arms, place, time);
   const entering = time < cue.start + cue.blendIn;
   if (entering || time >= cue.end - cue.blendOut) {
-    const edge = _row(track, entering ? cue.entry : _cueSeconds(cue, cue.end));
+    const edge = _row(track, entering ? cue.entry : cueSeconds(cue, cue.end));
     row = range(NUMBERS).map((n) => row[n] + (1 - weight) * (rest[n] - edge[n]));
   }
   const left = _moves(cue.action, "left", hands[0]) ? share * UNIT : 0;
@@ -151,7 +152,7 @@ function _shown(tracks, plan, cue, place, clip, time) {
   let left = 1;
   let out = 0;
   if (cue !== null) {
-    const weight = _cueWeight(cue, time);
+    const weight = cueWeight(cue, time);
     left = 1 - weight;
     if (_isOf(tracks, cue.action, clip)) {
       out += weight;
@@ -161,7 +162,7 @@ function _shown(tracks, plan, cue, place, clip, time) {
     const rest = plan.rests[place];
     let over = 1;
     if (place > 0 && rest.fadeStart + rest.fade > time) {
-      over = _ease((time - rest.fadeStart) / rest.fade);
+      over = ease((time - rest.fadeStart) / rest.fade);
       if (_isOf(tracks, plan.rests[place - 1].action, clip)) {
         out += left * (1 - over);
       }
@@ -200,7 +201,7 @@ function _stance(project, tracks, plan, place, time) {
   const rest = plan.rests[place];
   let row = _loop(project, tracks, rest, time);
   if (place > 0 && rest.fadeStart + rest.fade > time) {
-    const over = _ease((time - rest.fadeStart) / rest.fade);
+    const over = ease((time - rest.fadeStart) / rest.fade);
     const before = _loop(project, tracks, plan.rests[place - 1], time);
     row = range(NUMBERS).map((n) => before[n] + (row[n] - before[n]) * over);
   }
@@ -232,7 +233,7 @@ function _loop(project, tracks, rest, time) {
   phase = phase - period * Math.floor(phase / period);
   let row = _row(track, start + phase);
   if (seam > 0 && elapsed >= period) {
-    const old = 1 - _ease(phase / seam);
+    const old = 1 - ease(phase / seam);
     const before = _row(track, start + Math.min(period + phase, end - start));
     row = range(NUMBERS).map((n) => row[n] + (before[n] - row[n]) * old);
   }
@@ -253,42 +254,4 @@ function _row(track, seconds) {
   const a = track.rows[low];
   const b = track.rows[Math.min(low + 1, last)];
   return range(NUMBERS).map((n) => a[n] + (b[n] - a[n]) * part);
-}
-
-/**
- * @param {Cue} cue
- * @param {number} time
- * @returns {number}
- */
-function _cueWeight(cue, time) {
-  if (time < cue.start || time >= cue.end) {
-    return 0;
-  }
-  const rise = cue.blendIn > 0 ? _ease((time - cue.start) / cue.blendIn) : 1;
-  const fall = cue.blendOut > 0 ? _ease((cue.end - time) / cue.blendOut) : 1;
-  return rise * fall;
-}
-
-/**
- * @param {Cue} cue
- * @param {number} time
- * @returns {number}
- */
-function _cueSeconds(cue, time) {
-  const elapsed = time - cue.start;
-  if (cue.hold <= 0) {
-    return cue.entry + elapsed * cue.tempo;
-  }
-  const held = Math.min(Math.max(elapsed - (cue.holdFrom - cue.entry) / cue.tempo, 0), cue.hold);
-  const more = (elapsed - held) * (cue.tempo - 1);
-  return cue.entry + elapsed - held + more + held * ((cue.holdTo - cue.holdFrom) / cue.hold);
-}
-
-/**
- * @param {number} x
- * @returns {number}
- */
-function _ease(x) {
-  x = Math.min(Math.max(x, 0), 1);
-  return x * x * (3 - 2 * x);
 }

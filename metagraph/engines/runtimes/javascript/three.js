@@ -29,12 +29,13 @@ export class MetagraphObject {
   }
 
   /** As of a Character: the request's id. @param {object} request */
-  saySound(id, samples, rate) {
-    return this.character.saySound(id, samples, rate);
-  }
-
   ask(request) {
     return this.character.ask(request);
+  }
+
+  /** As of a Character. @param {string} id @param {ArrayLike<number>} samples @param {number} rate */
+  saySound(id, samples, rate) {
+    return this.character.saySound(id, samples, rate);
   }
 
   answer(id) {

@@ -11,7 +11,8 @@
  * Translated from metagraph/motion/weight_solve.py; change that, and translate anew.
  */
 
-import { REACHED, bring, length, rotated, spread, times } from "./contact_solve.js";
+import { REACHED, bring, spread } from "./contact_solve.js";
+import { back, dot, length, minus, plus, rotated, scaled, times } from "./plain_vectors.js";
 
 export const BALANCE = 1.4; // of how far the arms carry the centre of mass away, the hips give way
 export const HASTE = 0.12; // seconds of the arms' speed that add to that
@@ -107,7 +108,7 @@ export function answerArms(rig, pose, drive, follow, lift) {
   for (const collar of rig.collars) {
     const turn = _turn(collar.axis, lift * drive[6 + collar.side]);
     pose.local[collar.place] = times(pose.local[collar.place], turn);
-    pose.local[collar.upper] = times(_back(turn), pose.local[collar.upper]);
+    pose.local[collar.upper] = times(back(turn), pose.local[collar.upper]);
   }
   if (follow <= 0) {
     return true;
@@ -133,9 +134,9 @@ function _stands(rig, pose) {
     const hip = pose.at[leg.upper];
     const knee = pose.at[leg.lower];
     const ankle = pose.at[leg.hand];
-    const whole = length(_minus(knee, hip)) + length(_minus(ankle, knee));
+    const whole = length(minus(knee, hip)) + length(minus(ankle, knee));
     if (whole > 1e-06) {
-      least = Math.min(least, _dot(_minus(hip, ankle), rig.up) / whole);
+      least = Math.min(least, dot(minus(hip, ankle), rig.up) / whole);
     }
   }
   const x = Math.min(Math.max((least - SITTING) / STANDING, 0), 1);
@@ -168,17 +169,17 @@ function _giveWay(rig, pose, drive, follow) {
   const pitch = -PITCH * z / rig.height;
   const feet = body.arms.map((leg) => pose.at[leg.hand]);
   const soles = body.arms.map((leg) => pose.turned[leg.hand]);
-  const reaches = body.arms.map((leg) => length(_minus(pose.at[leg.hand], pose.at[leg.upper])));
+  const reaches = body.arms.map((leg) => length(minus(pose.at[leg.hand], pose.at[leg.upper])));
   const hips = rig.bends[0];
-  let shift = _plus(_plus(_scaled(hips.left, x), _scaled(hips.up, y)), _scaled(hips.ahead, z));
+  let shift = plus(plus(scaled(hips.left, x), scaled(hips.up, y)), scaled(hips.ahead, z));
   shift = rotated(pose.turned[hips.place], shift);
   for (const bend of rig.bends) {
-    const axis = _plus(_plus(_scaled(bend.left, pitch), _scaled(bend.up, yaw)), _scaled(bend.ahead, roll));
+    const axis = plus(plus(scaled(bend.left, pitch), scaled(bend.up, yaw)), scaled(bend.ahead, roll));
     pose.local[bend.place] = times(pose.local[bend.place], _turn(axis, bend.share));
   }
   const above = body.parents[hips.place];
-  const space = above < 0 ? [0, 0, 0, 1] : _back(pose.turned[above]);
-  pose.moved[hips.place] = _plus(pose.moved[hips.place], rotated(space, shift));
+  const space = above < 0 ? [0, 0, 0, 1] : back(pose.turned[above]);
+  pose.moved[hips.place] = plus(pose.moved[hips.place], rotated(space, shift));
   spread(body, pose);
   const size = length([x, y, z]) + 0.1 * rig.height * length([yaw, roll, pitch]);
   let low = 0;
@@ -186,8 +187,8 @@ function _giveWay(rig, pose, drive, follow) {
     low = Math.max(low, _tooFar(rig, pose, side, feet[side], reaches[side], GIVE * size));
   }
   if (low > 0) {
-    const down = rotated(space, _scaled(rig.up, -low));
-    pose.moved[hips.place] = _plus(pose.moved[hips.place], down);
+    const down = rotated(space, scaled(rig.up, -low));
+    pose.moved[hips.place] = plus(pose.moved[hips.place], down);
     spread(body, pose);
   }
   for (let side = 0; side < feet.length; side++) {
@@ -211,11 +212,11 @@ function _tooFar(rig, pose, side, foot, reach, soft) {
   const hip = pose.at[leg.upper];
   const knee = pose.at[leg.lower];
   const ankle = pose.at[leg.hand];
-  const whole = length(_minus(knee, hip)) + length(_minus(ankle, knee));
+  const whole = length(minus(knee, hip)) + length(minus(ankle, knee));
   const most = Math.max(REACHED * whole, reach);
-  const way = _minus(hip, foot);
-  const high = _dot(way, rig.up);
-  const aside = _dot(way, way) - high * high;
+  const way = minus(hip, foot);
+  const high = dot(way, rig.up);
+  const aside = dot(way, way) - high * high;
   if (high <= 0 || aside >= most * most || soft <= 0) {
     return 0;
   }
@@ -251,56 +252,4 @@ function _turn(axis, angle) {
   const half = 0.5 * size * angle;
   const k = Math.sin(half) / size;
   return [x * k, y * k, z * k, Math.cos(half)];
-}
-
-/**
- * @param {[number, number, number, number]} q
- * @returns {[number, number, number, number]}
- */
-function _back(q) {
-  const [x, y, z, w] = q;
-  return [-x, -y, -z, w];
-}
-
-/**
- * @param {[number, number, number]} a
- * @param {[number, number, number]} b
- * @returns {[number, number, number]}
- */
-function _plus(a, b) {
-  const [ax, ay, az] = a;
-  const [bx, by, bz] = b;
-  return [ax + bx, ay + by, az + bz];
-}
-
-/**
- * @param {[number, number, number]} a
- * @param {[number, number, number]} b
- * @returns {[number, number, number]}
- */
-function _minus(a, b) {
-  const [ax, ay, az] = a;
-  const [bx, by, bz] = b;
-  return [ax - bx, ay - by, az - bz];
-}
-
-/**
- * @param {[number, number, number]} a
- * @param {number} k
- * @returns {[number, number, number]}
- */
-function _scaled(a, k) {
-  const [x, y, z] = a;
-  return [x * k, y * k, z * k];
-}
-
-/**
- * @param {[number, number, number]} a
- * @param {[number, number, number]} b
- * @returns {number}
- */
-function _dot(a, b) {
-  const [ax, ay, az] = a;
-  const [bx, by, bz] = b;
-  return ax * bx + ay * by + az * bz;
 }

@@ -31,7 +31,7 @@ namespace Metagraph
             var shown = new List<double> { 0.0, 0.0 };
             if (cue != null)
             {
-                var weight = CueWeight(cue, time);
+                var weight = CueTimesRules.CueWeight(cue, time);
                 foreach (var one in ContactSpansRules.Hands.Select((item, n) => (n, item)))
                 {
                     var arm = one.Item1;
@@ -47,7 +47,7 @@ namespace Metagraph
                         rig,
                         project,
                         cue.Action,
-                        CueSeconds(cue, time),
+                        CueTimesRules.CueSeconds(cue, time),
                         shown.Select(w => strength * w).ToList()
                     ));
                 }
@@ -58,7 +58,7 @@ namespace Metagraph
                 var over = 1.0;
                 if (place > 0 && rest.FadeStart + rest.Fade > time)
                 {
-                    over = Ease((time - rest.FadeStart) / rest.Fade);
+                    over = CueTimesRules.Ease((time - rest.FadeStart) / rest.Fade);
                     out_.AddRange(LoopGoals(rig, project, plan.Rests[place - 1], time, strength * (1.0 - over), shown));
                 }
                 out_.AddRange(LoopGoals(rig, project, rest, time, strength * over, shown));
@@ -98,7 +98,7 @@ namespace Metagraph
             var old = 0.0;
             if (seam > 0.0 && elapsed >= period)
             {
-                old = 1.0 - Ease(phase / seam);
+                old = 1.0 - CueTimesRules.Ease(phase / seam);
             }
             if (old > 0.0)
             {
@@ -155,35 +155,6 @@ namespace Metagraph
                 return false;
             }
             return action.Joints.Count == 0 || action.Joints.Contains(rig.Hands[arm]);
-        }
-
-        private static double CueWeight(Cue cue, double time)
-        {
-            if (time < cue.Start || time >= cue.End)
-            {
-                return 0.0;
-            }
-            var rise = cue.BlendIn > 0.0 ? Ease((time - cue.Start) / cue.BlendIn) : 1.0;
-            var fall = cue.BlendOut > 0.0 ? Ease((cue.End - time) / cue.BlendOut) : 1.0;
-            return rise * fall;
-        }
-
-        private static double CueSeconds(Cue cue, double time)
-        {
-            var elapsed = time - cue.Start;
-            if (cue.Hold <= 0.0)
-            {
-                return cue.Entry + elapsed * cue.Tempo;
-            }
-            var held = Math.Min(Math.Max(elapsed - (cue.HoldFrom - cue.Entry) / cue.Tempo, 0.0), cue.Hold);
-            var more = (elapsed - held) * (cue.Tempo - 1.0);
-            return cue.Entry + elapsed - held + more + held * ((cue.HoldTo - cue.HoldFrom) / cue.Hold);
-        }
-
-        private static double Ease(double x)
-        {
-            x = Math.Min(Math.Max(x, 0.0), 1.0);
-            return x * x * (3.0 - 2.0 * x);
         }
     }
 }

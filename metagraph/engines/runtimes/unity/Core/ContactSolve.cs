@@ -184,8 +184,11 @@ namespace Metagraph
             }
             else
             {
-                pose.Turned[place] = Times(pose.Turned[above], pose.Local[place]);
-                pose.At[place] = Plus(pose.At[above], Rotated(pose.Turned[above], pose.Moved[place]));
+                pose.Turned[place] = PlainVectorsRules.Times(pose.Turned[above], pose.Local[place]);
+                pose.At[place] = PlainVectorsRules.Plus(
+                    pose.At[above],
+                    PlainVectorsRules.Rotated(pose.Turned[above], pose.Moved[place])
+                );
             }
         }
 
@@ -269,11 +272,14 @@ namespace Metagraph
                 if (goal.Arm == side && goal.Weight > 0.0)
                 {
                     k = goal.Weight;
-                    var found2 = Plus(pose.At[goal.To], Rotated(pose.Turned[goal.To], goal.At));
+                    var found2 = PlainVectorsRules.Plus(
+                        pose.At[goal.To],
+                        PlainVectorsRules.Rotated(pose.Turned[goal.To], goal.At)
+                    );
                     double px = found2.Item1;
                     double py = found2.Item2;
                     double pz = found2.Item3;
-                    var found3 = Times(pose.Turned[goal.To], goal.Turn);
+                    var found3 = PlainVectorsRules.Times(pose.Turned[goal.To], goal.Turn);
                     double qx = found3.Item1;
                     double qy = found3.Item2;
                     double qz = found3.Item3;
@@ -294,7 +300,7 @@ namespace Metagraph
             }
             var weight = Math.Min(1.0, total);
             var mean = (x / total, y / total, z / total);
-            var turn = WithinWrist(hand, UnitTurn((a, b, c, d)));
+            var turn = WithinWrist(hand, PlainVectorsRules.UnitTurn((a, b, c, d)));
             var found4 = turn;
             double tx = found4.Item1;
             double ty = found4.Item2;
@@ -302,8 +308,15 @@ namespace Metagraph
             double tw = found4.Item4;
             var rest = 1.0 - weight;
             k = tx * hx + ty * hy + tz * hz + tw * hw < 0.0 ? -weight : weight;
-            turn = UnitTurn((hx * rest + tx * k, hy * rest + ty * k, hz * rest + tz * k, hw * rest + tw * k));
-            Bring(rig, pose, side, Plus(wrist, Scaled(Minus(mean, wrist), weight)), turn, Straight);
+            turn = PlainVectorsRules.UnitTurn((hx * rest + tx * k, hy * rest + ty * k, hz * rest + tz * k, hw * rest + tw * k));
+            Bring(
+                rig,
+                pose,
+                side,
+                PlainVectorsRules.Plus(wrist, PlainVectorsRules.Scaled(PlainVectorsRules.Minus(mean, wrist), weight)),
+                turn,
+                Straight
+            );
         }
 
         /// <summary>Return a hand's turn, as near to it as the wrist may be turned from how the hand was.</summary>
@@ -312,7 +325,7 @@ namespace Metagraph
             (double, double, double, double) turn
         )
         {
-            var found = Times(turn, Back(hand));
+            var found = PlainVectorsRules.Times(turn, PlainVectorsRules.Back(hand));
             double x = found.Item1;
             double y = found.Item2;
             double z = found.Item3;
@@ -329,7 +342,7 @@ namespace Metagraph
                 return turn;
             }
             var k = Math.Sqrt(1.0 - Wrist * Wrist) / Math.Max(Math.Sqrt(x * x + y * y + z * z), 1e-12);
-            return Times((x * k, y * k, z * k, Wrist), hand);
+            return PlainVectorsRules.Times((x * k, y * k, z * k, Wrist), hand);
         }
 
         /// <summary>
@@ -349,42 +362,54 @@ namespace Metagraph
             var root = pose.At[arm.Upper];
             var elbow = pose.At[arm.Lower];
             var wrist = pose.At[arm.Hand];
-            var bone = Minus(elbow, root);
-            var fore = Minus(wrist, elbow);
-            var aboveElbow = Length(bone);
-            var belowElbow = Length(fore);
-            var now = Length(Minus(wrist, root));
+            var bone = PlainVectorsRules.Minus(elbow, root);
+            var fore = PlainVectorsRules.Minus(wrist, elbow);
+            var aboveElbow = PlainVectorsRules.Length(bone);
+            var belowElbow = PlainVectorsRules.Length(fore);
+            var now = PlainVectorsRules.Length(PlainVectorsRules.Minus(wrist, root));
             if (aboveElbow < 1e-06 || belowElbow < 1e-06 || now < 1e-06)
             {
                 return;
             }
-            var way = Minus(goal, root);
+            var way = PlainVectorsRules.Minus(goal, root);
             var most = Math.Max(Reached * (aboveElbow + belowElbow), now);
             var least = Math.Min(
                 Math.Sqrt(aboveElbow * aboveElbow + belowElbow * belowElbow - 2.0 * Folded * aboveElbow * belowElbow),
                 now
             );
-            var far = Math.Min(Math.Max(Length(way), least), most);
-            var ahead = Unit(way);
-            var before = Scaled(Minus(wrist, root), 1.0 / now);
-            var aside = Minus(bone, Scaled(before, Dot(bone, before)));
+            var far = Math.Min(Math.Max(PlainVectorsRules.Length(way), least), most);
+            var ahead = PlainVectorsRules.Unit(way);
+            var before = PlainVectorsRules.Scaled(PlainVectorsRules.Minus(wrist, root), 1.0 / now);
+            var aside = PlainVectorsRules.Minus(bone, PlainVectorsRules.Scaled(before, PlainVectorsRules.Dot(bone, before)));
             // A straight arm has no side: it bends to one that goes with its bone.
-            var spare = Rotated(pose.Turned[arm.Upper], sideOf);
-            spare = Minus(spare, Scaled(before, Dot(spare, before)));
-            aside = Plus(aside, Scaled(spare, Math.Max(0.0, 0.01 * aboveElbow - Length(aside))));
-            aside = Unit(Rotated(Between(before, ahead), aside));
+            var spare = PlainVectorsRules.Rotated(pose.Turned[arm.Upper], sideOf);
+            spare = PlainVectorsRules.Minus(spare, PlainVectorsRules.Scaled(before, PlainVectorsRules.Dot(spare, before)));
+            aside = PlainVectorsRules.Plus(
+                aside,
+                PlainVectorsRules.Scaled(spare, Math.Max(0.0, 0.01 * aboveElbow - PlainVectorsRules.Length(aside)))
+            );
+            aside = PlainVectorsRules.Unit(PlainVectorsRules.Rotated(PlainVectorsRules.Between(before, ahead), aside));
             var along = (aboveElbow * aboveElbow + far * far - belowElbow * belowElbow) / (2.0 * far);
             var high = Math.Sqrt(Math.Max(0.0, aboveElbow * aboveElbow - along * along));
-            var knee = Plus(Scaled(ahead, along), Scaled(aside, high));
-            var swing = Between(Unit(bone), Unit(knee));
-            var fold = Between(Unit(Rotated(swing, fore)), Unit(Minus(Scaled(ahead, far), knee)));
-            var both = Times(fold, swing);
+            var knee = PlainVectorsRules.Plus(PlainVectorsRules.Scaled(ahead, along), PlainVectorsRules.Scaled(aside, high));
+            var swing = PlainVectorsRules.Between(PlainVectorsRules.Unit(bone), PlainVectorsRules.Unit(knee));
+            var fold = PlainVectorsRules.Between(
+                PlainVectorsRules.Unit(PlainVectorsRules.Rotated(swing, fore)),
+                PlainVectorsRules.Unit(PlainVectorsRules.Minus(PlainVectorsRules.Scaled(ahead, far), knee))
+            );
+            var both = PlainVectorsRules.Times(fold, swing);
             var above = Above(rig, pose, arm.Upper);
-            pose.Local[arm.Upper] = Times(Back(above), Times(swing, pose.Turned[arm.Upper]));
-            above = Times(swing, Above(rig, pose, arm.Lower));
-            pose.Local[arm.Lower] = Times(Back(above), Times(both, pose.Turned[arm.Lower]));
-            above = Times(both, Above(rig, pose, arm.Hand));
-            pose.Local[arm.Hand] = Times(Back(above), hand);
+            pose.Local[arm.Upper] = PlainVectorsRules.Times(
+                PlainVectorsRules.Back(above),
+                PlainVectorsRules.Times(swing, pose.Turned[arm.Upper])
+            );
+            above = PlainVectorsRules.Times(swing, Above(rig, pose, arm.Lower));
+            pose.Local[arm.Lower] = PlainVectorsRules.Times(
+                PlainVectorsRules.Back(above),
+                PlainVectorsRules.Times(both, pose.Turned[arm.Lower])
+            );
+            above = PlainVectorsRules.Times(both, Above(rig, pose, arm.Hand));
+            pose.Local[arm.Hand] = PlainVectorsRules.Times(PlainVectorsRules.Back(above), hand);
             foreach (int place in arm.Below)
             {
                 Join(rig, pose, place);
@@ -423,10 +448,10 @@ namespace Metagraph
                 {
                     var side = one.Item1;
                     var shift = one.Item2;
-                    if (Length(shift) > 0.0)
+                    if (PlainVectorsRules.Length(shift) > 0.0)
                     {
                         var hand = rig.Arms[side].Hand;
-                        Bring(rig, pose, side, Plus(pose.At[hand], shift), pose.Turned[hand], Straight);
+                        Bring(rig, pose, side, PlainVectorsRules.Plus(pose.At[hand], shift), pose.Turned[hand], Straight);
                         found = true;
                     }
                 }
@@ -445,8 +470,14 @@ namespace Metagraph
             var out_ = new List<(double, double, double)>();
             foreach (BodyCapsule capsule in rig.Capsules)
             {
-                out_.Add(Plus(pose.At[capsule.Joint], Rotated(pose.Turned[capsule.Joint], capsule.A)));
-                out_.Add(Plus(pose.At[capsule.To], Rotated(pose.Turned[capsule.To], capsule.B)));
+                out_.Add(PlainVectorsRules.Plus(
+                    pose.At[capsule.Joint],
+                    PlainVectorsRules.Rotated(pose.Turned[capsule.Joint], capsule.A)
+                ));
+                out_.Add(PlainVectorsRules.Plus(
+                    pose.At[capsule.To],
+                    PlainVectorsRules.Rotated(pose.Turned[capsule.To], capsule.B)
+                ));
             }
             return out_;
         }
@@ -552,10 +583,13 @@ namespace Metagraph
                     amount = amount * share * inner * inner * (3.0 - 2.0 * inner);
                     var part = mine.Kind == Forearm ? s : 1.0;
                     var way = (x / gap, y / gap, z / gap);
-                    var left = amount - part * Dot(way, shift);
+                    var left = amount - part * PlainVectorsRules.Dot(way, shift);
                     if (left > 0.0)
                     {
-                        shift = Plus(shift, Scaled(way, left * part / (part * part + Elbow * (1.0 - part))));
+                        shift = PlainVectorsRules.Plus(
+                            shift,
+                            PlainVectorsRules.Scaled(way, left * part / (part * part + Elbow * (1.0 - part)))
+                        );
                     }
                 }
             }
@@ -570,14 +604,14 @@ namespace Metagraph
         {
             var a = ends[i];
             var c = ends[k];
-            var u = Minus(ends[i + 1], a);
-            var v = Minus(ends[k + 1], c);
-            var w = Minus(a, c);
-            var uu = Dot(u, u);
-            var uv = Dot(u, v);
-            var vv = Dot(v, v);
-            var uw = Dot(u, w);
-            var vw = Dot(v, w);
+            var u = PlainVectorsRules.Minus(ends[i + 1], a);
+            var v = PlainVectorsRules.Minus(ends[k + 1], c);
+            var w = PlainVectorsRules.Minus(a, c);
+            var uu = PlainVectorsRules.Dot(u, u);
+            var uv = PlainVectorsRules.Dot(u, v);
+            var vv = PlainVectorsRules.Dot(v, v);
+            var uw = PlainVectorsRules.Dot(u, w);
+            var vw = PlainVectorsRules.Dot(v, w);
             var s = 0.0;
             var t = 0.0;
             if (uu > 1e-12)
@@ -605,157 +639,14 @@ namespace Metagraph
             {
                 t = Math.Min(Math.Max(vw / vv, 0.0), 1.0);
             }
-            var found = Minus(Plus(w, Scaled(u, s)), Scaled(v, t));
+            var found = PlainVectorsRules.Minus(
+                PlainVectorsRules.Plus(w, PlainVectorsRules.Scaled(u, s)),
+                PlainVectorsRules.Scaled(v, t)
+            );
             double x = found.Item1;
             double y = found.Item2;
             double z = found.Item3;
             return (x, y, z, s, Math.Sqrt(x * x + y * y + z * z));
-        }
-
-        // --- arithmetic
-        /// <summary>Return the product: rotate by `b`, then by `a`.</summary>
-        public static (double, double, double, double) Times(
-            (double, double, double, double) a,
-            (double, double, double, double) b
-        )
-        {
-            var found = a;
-            double ax = found.Item1;
-            double ay = found.Item2;
-            double az = found.Item3;
-            double aw = found.Item4;
-            var found2 = b;
-            double bx = found2.Item1;
-            double by = found2.Item2;
-            double bz = found2.Item3;
-            double bw = found2.Item4;
-            return (
-                aw * bx + ax * bw + ay * bz - az * by,
-                aw * by - ax * bz + ay * bw + az * bx,
-                aw * bz + ax * by - ay * bx + az * bw,
-                aw * bw - ax * bx - ay * by - az * bz
-            );
-        }
-
-        /// <summary>Return a vector rotated.</summary>
-        public static (double, double, double) Rotated((double, double, double, double) q, (double, double, double) v)
-        {
-            var found = q;
-            double x = found.Item1;
-            double y = found.Item2;
-            double z = found.Item3;
-            double w = found.Item4;
-            var found2 = v;
-            double vx = found2.Item1;
-            double vy = found2.Item2;
-            double vz = found2.Item3;
-            var tx = 2.0 * (y * vz - z * vy);
-            var ty = 2.0 * (z * vx - x * vz);
-            var tz = 2.0 * (x * vy - y * vx);
-            return (vx + w * tx + y * tz - z * ty, vy + w * ty + z * tx - x * tz, vz + w * tz + x * ty - y * tx);
-        }
-
-        /// <summary>Return the shortest rotation that takes one direction to another, both of length 1.</summary>
-        public static (double, double, double, double) Between((double, double, double) a, (double, double, double) b)
-        {
-            var found = a;
-            double ax = found.Item1;
-            double ay = found.Item2;
-            double az = found.Item3;
-            var found2 = b;
-            double bx = found2.Item1;
-            double by = found2.Item2;
-            double bz = found2.Item3;
-            var dot = ax * bx + ay * by + az * bz;
-            if (dot < -0.999999999) // half a turn about any axis across
-            {
-                return UnitTurn(Math.Abs(ax) < 0.9 ? (0.0, az, -ay, 0.0) : (-az, 0.0, ax, 0.0));
-            }
-            return UnitTurn((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx, 1.0 + dot));
-        }
-
-        /// <summary>Return how long a vector is.</summary>
-        public static double Length((double, double, double) v)
-        {
-            var found = v;
-            double x = found.Item1;
-            double y = found.Item2;
-            double z = found.Item3;
-            return Math.Sqrt(x * x + y * y + z * z);
-        }
-
-        private static (double, double, double) Unit((double, double, double) v)
-        {
-            return Scaled(v, 1.0 / Math.Max(Length(v), 1e-12));
-        }
-
-        private static (double, double, double, double) UnitTurn((double, double, double, double) q)
-        {
-            var found = q;
-            double x = found.Item1;
-            double y = found.Item2;
-            double z = found.Item3;
-            double w = found.Item4;
-            var k = 1.0 / Math.Max(Math.Sqrt(x * x + y * y + z * z + w * w), 1e-12);
-            return (x * k, y * k, z * k, w * k);
-        }
-
-        private static (double, double, double, double) Back((double, double, double, double) q)
-        {
-            var found = q;
-            double x = found.Item1;
-            double y = found.Item2;
-            double z = found.Item3;
-            double w = found.Item4;
-            return (-x, -y, -z, w);
-        }
-
-        private static (double, double, double) Plus((double, double, double) a, (double, double, double) b)
-        {
-            var found = a;
-            double ax = found.Item1;
-            double ay = found.Item2;
-            double az = found.Item3;
-            var found2 = b;
-            double bx = found2.Item1;
-            double by = found2.Item2;
-            double bz = found2.Item3;
-            return (ax + bx, ay + by, az + bz);
-        }
-
-        private static (double, double, double) Minus((double, double, double) a, (double, double, double) b)
-        {
-            var found = a;
-            double ax = found.Item1;
-            double ay = found.Item2;
-            double az = found.Item3;
-            var found2 = b;
-            double bx = found2.Item1;
-            double by = found2.Item2;
-            double bz = found2.Item3;
-            return (ax - bx, ay - by, az - bz);
-        }
-
-        private static (double, double, double) Scaled((double, double, double) a, double k)
-        {
-            var found = a;
-            double x = found.Item1;
-            double y = found.Item2;
-            double z = found.Item3;
-            return (x * k, y * k, z * k);
-        }
-
-        private static double Dot((double, double, double) a, (double, double, double) b)
-        {
-            var found = a;
-            double ax = found.Item1;
-            double ay = found.Item2;
-            double az = found.Item3;
-            var found2 = b;
-            double bx = found2.Item1;
-            double by = found2.Item2;
-            double bz = found2.Item3;
-            return ax * bx + ay * by + az * bz;
         }
     }
 }

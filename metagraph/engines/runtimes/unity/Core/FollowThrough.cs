@@ -73,18 +73,18 @@ namespace Metagraph
             {
                 return out_;
             }
-            var weight = CueWeight(cue, time);
+            var weight = CueTimesRules.CueWeight(cue, time);
             var share = cue.Extent * (1.0 - Shown(tracks, body, bodyCue, bodyPlace, track.Clip, time));
             if (weight <= 0.0 || share <= 0.0)
             {
                 return out_;
             }
-            var row = Row(track, CueSeconds(cue, time));
+            var row = Row(track, CueTimesRules.CueSeconds(cue, time));
             var rest = Stance(project, tracks, arms, place, time);
             var entering = time < cue.Start + cue.BlendIn;
             if (entering || time >= cue.End - cue.BlendOut)
             {
-                var edge = Row(track, entering ? cue.Entry : CueSeconds(cue, cue.End));
+                var edge = Row(track, entering ? cue.Entry : CueTimesRules.CueSeconds(cue, cue.End));
                 row = PlainNumbers.Range(Numbers).Select(n => row[n] + (1.0 - weight) * (rest[n] - edge[n])).ToList();
             }
             var left = Moves(cue.Action, "left", hands[0]) ? share * Unit : 0.0;
@@ -153,7 +153,7 @@ namespace Metagraph
             var out_ = 0.0;
             if (cue != null)
             {
-                var weight = CueWeight(cue, time);
+                var weight = CueTimesRules.CueWeight(cue, time);
                 left = 1.0 - weight;
                 if (IsOf(tracks, cue.Action, clip))
                 {
@@ -166,7 +166,7 @@ namespace Metagraph
                 var over = 1.0;
                 if (place > 0 && rest.FadeStart + rest.Fade > time)
                 {
-                    over = Ease((time - rest.FadeStart) / rest.Fade);
+                    over = CueTimesRules.Ease((time - rest.FadeStart) / rest.Fade);
                     if (IsOf(tracks, plan.Rests[place - 1].Action, clip))
                     {
                         out_ += left * (1.0 - over);
@@ -203,7 +203,7 @@ namespace Metagraph
             var row = Loop(project, tracks, rest, time);
             if (place > 0 && rest.FadeStart + rest.Fade > time)
             {
-                var over = Ease((time - rest.FadeStart) / rest.Fade);
+                var over = CueTimesRules.Ease((time - rest.FadeStart) / rest.Fade);
                 var before = Loop(project, tracks, plan.Rests[place - 1], time);
                 row = PlainNumbers.Range(Numbers).Select(n => before[n] + (row[n] - before[n]) * over).ToList();
             }
@@ -234,7 +234,7 @@ namespace Metagraph
             var row = Row(track, start + phase);
             if (seam > 0.0 && elapsed >= period)
             {
-                var old = 1.0 - Ease(phase / seam);
+                var old = 1.0 - CueTimesRules.Ease(phase / seam);
                 var before = Row(track, start + Math.Min(period + phase, end - start));
                 row = PlainNumbers.Range(Numbers).Select(n => row[n] + (before[n] - row[n]) * old).ToList();
             }
@@ -251,35 +251,6 @@ namespace Metagraph
             var a = track.Rows[low];
             var b = track.Rows[Math.Min(low + 1, last)];
             return PlainNumbers.Range(Numbers).Select(n => a[n] + (b[n] - a[n]) * part).ToList();
-        }
-
-        private static double CueWeight(Cue cue, double time)
-        {
-            if (time < cue.Start || time >= cue.End)
-            {
-                return 0.0;
-            }
-            var rise = cue.BlendIn > 0.0 ? Ease((time - cue.Start) / cue.BlendIn) : 1.0;
-            var fall = cue.BlendOut > 0.0 ? Ease((cue.End - time) / cue.BlendOut) : 1.0;
-            return rise * fall;
-        }
-
-        private static double CueSeconds(Cue cue, double time)
-        {
-            var elapsed = time - cue.Start;
-            if (cue.Hold <= 0.0)
-            {
-                return cue.Entry + elapsed * cue.Tempo;
-            }
-            var held = Math.Min(Math.Max(elapsed - (cue.HoldFrom - cue.Entry) / cue.Tempo, 0.0), cue.Hold);
-            var more = (elapsed - held) * (cue.Tempo - 1.0);
-            return cue.Entry + elapsed - held + more + held * ((cue.HoldTo - cue.HoldFrom) / cue.Hold);
-        }
-
-        private static double Ease(double x)
-        {
-            x = Math.Min(Math.Max(x, 0.0), 1.0);
-            return x * x * (3.0 - 2.0 * x);
         }
     }
 }

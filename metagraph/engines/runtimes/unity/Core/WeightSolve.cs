@@ -128,8 +128,8 @@ namespace Metagraph
             foreach (WeightCollar collar in rig.Collars)
             {
                 var turn = Turn(collar.Axis, lift * drive[6 + collar.Side]);
-                pose.Local[collar.Place] = ContactSolveRules.Times(pose.Local[collar.Place], turn);
-                pose.Local[collar.Upper] = ContactSolveRules.Times(Back(turn), pose.Local[collar.Upper]);
+                pose.Local[collar.Place] = PlainVectorsRules.Times(pose.Local[collar.Place], turn);
+                pose.Local[collar.Upper] = PlainVectorsRules.Times(PlainVectorsRules.Back(turn), pose.Local[collar.Upper]);
             }
             if (follow <= 0.0)
             {
@@ -154,10 +154,11 @@ namespace Metagraph
                 var hip = pose.At[leg.Upper];
                 var knee = pose.At[leg.Lower];
                 var ankle = pose.At[leg.Hand];
-                var whole = ContactSolveRules.Length(Minus(knee, hip)) + ContactSolveRules.Length(Minus(ankle, knee));
+                var whole = PlainVectorsRules.Length(PlainVectorsRules.Minus(knee, hip))
+                    + PlainVectorsRules.Length(PlainVectorsRules.Minus(ankle, knee));
                 if (whole > 1e-06)
                 {
-                    least = Math.Min(least, Dot(Minus(hip, ankle), rig.Up) / whole);
+                    least = Math.Min(least, PlainVectorsRules.Dot(PlainVectorsRules.Minus(hip, ankle), rig.Up) / whole);
                 }
             }
             var x = Math.Min(Math.Max((least - Sitting) / Standing, 0.0), 1.0);
@@ -192,22 +193,28 @@ namespace Metagraph
             var pitch = -Pitch * z / rig.Height;
             var feet = body.Arms.Select(leg => pose.At[leg.Hand]).ToList();
             var soles = body.Arms.Select(leg => pose.Turned[leg.Hand]).ToList();
-            var reaches = body.Arms.Select(leg => ContactSolveRules.Length(
-                Minus(pose.At[leg.Hand], pose.At[leg.Upper])
+            var reaches = body.Arms.Select(leg => PlainVectorsRules.Length(
+                PlainVectorsRules.Minus(pose.At[leg.Hand], pose.At[leg.Upper])
             )).ToList();
             var hips = rig.Bends[0];
-            var shift = Plus(Plus(Scaled(hips.Left, x), Scaled(hips.Up, y)), Scaled(hips.Ahead, z));
-            shift = ContactSolveRules.Rotated(pose.Turned[hips.Place], shift);
+            var shift = PlainVectorsRules.Plus(
+                PlainVectorsRules.Plus(PlainVectorsRules.Scaled(hips.Left, x), PlainVectorsRules.Scaled(hips.Up, y)),
+                PlainVectorsRules.Scaled(hips.Ahead, z)
+            );
+            shift = PlainVectorsRules.Rotated(pose.Turned[hips.Place], shift);
             foreach (WeightBend bend in rig.Bends)
             {
-                var axis = Plus(Plus(Scaled(bend.Left, pitch), Scaled(bend.Up, yaw)), Scaled(bend.Ahead, roll));
-                pose.Local[bend.Place] = ContactSolveRules.Times(pose.Local[bend.Place], Turn(axis, bend.Share));
+                var axis = PlainVectorsRules.Plus(
+                    PlainVectorsRules.Plus(PlainVectorsRules.Scaled(bend.Left, pitch), PlainVectorsRules.Scaled(bend.Up, yaw)),
+                    PlainVectorsRules.Scaled(bend.Ahead, roll)
+                );
+                pose.Local[bend.Place] = PlainVectorsRules.Times(pose.Local[bend.Place], Turn(axis, bend.Share));
             }
             var above = body.Parents[hips.Place];
-            var space = above < 0 ? (0.0, 0.0, 0.0, 1.0) : Back(pose.Turned[above]);
-            pose.Moved[hips.Place] = Plus(pose.Moved[hips.Place], ContactSolveRules.Rotated(space, shift));
+            var space = above < 0 ? (0.0, 0.0, 0.0, 1.0) : PlainVectorsRules.Back(pose.Turned[above]);
+            pose.Moved[hips.Place] = PlainVectorsRules.Plus(pose.Moved[hips.Place], PlainVectorsRules.Rotated(space, shift));
             ContactSolveRules.Spread(body, pose);
-            var size = ContactSolveRules.Length((x, y, z)) + 0.1 * rig.Height * ContactSolveRules.Length((yaw, roll, pitch));
+            var size = PlainVectorsRules.Length((x, y, z)) + 0.1 * rig.Height * PlainVectorsRules.Length((yaw, roll, pitch));
             var low = 0.0;
             for (int side = 0; side < feet.Count; side++)
             {
@@ -215,8 +222,8 @@ namespace Metagraph
             }
             if (low > 0.0)
             {
-                var down = ContactSolveRules.Rotated(space, Scaled(rig.Up, -low));
-                pose.Moved[hips.Place] = Plus(pose.Moved[hips.Place], down);
+                var down = PlainVectorsRules.Rotated(space, PlainVectorsRules.Scaled(rig.Up, -low));
+                pose.Moved[hips.Place] = PlainVectorsRules.Plus(pose.Moved[hips.Place], down);
                 ContactSolveRules.Spread(body, pose);
             }
             for (int side = 0; side < feet.Count; side++)
@@ -242,11 +249,12 @@ namespace Metagraph
             var hip = pose.At[leg.Upper];
             var knee = pose.At[leg.Lower];
             var ankle = pose.At[leg.Hand];
-            var whole = ContactSolveRules.Length(Minus(knee, hip)) + ContactSolveRules.Length(Minus(ankle, knee));
+            var whole = PlainVectorsRules.Length(PlainVectorsRules.Minus(knee, hip))
+                + PlainVectorsRules.Length(PlainVectorsRules.Minus(ankle, knee));
             var most = Math.Max(ContactSolveRules.Reached * whole, reach);
-            var way = Minus(hip, foot);
-            var high = Dot(way, rig.Up);
-            var aside = Dot(way, way) - high * high;
+            var way = PlainVectorsRules.Minus(hip, foot);
+            var high = PlainVectorsRules.Dot(way, rig.Up);
+            var aside = PlainVectorsRules.Dot(way, way) - high * high;
             if (high <= 0.0 || aside >= most * most || soft <= 0.0)
             {
                 return 0.0;
@@ -272,7 +280,7 @@ namespace Metagraph
             double x = found.Item1;
             double y = found.Item2;
             double z = found.Item3;
-            var size = ContactSolveRules.Length(axis);
+            var size = PlainVectorsRules.Length(axis);
             if (size <= 0.0)
             {
                 return (0.0, 0.0, 0.0, 1.0);
@@ -280,64 +288,6 @@ namespace Metagraph
             var half = 0.5 * size * angle;
             var k = Math.Sin(half) / size;
             return (x * k, y * k, z * k, Math.Cos(half));
-        }
-
-        private static (double, double, double, double) Back((double, double, double, double) q)
-        {
-            var found = q;
-            double x = found.Item1;
-            double y = found.Item2;
-            double z = found.Item3;
-            double w = found.Item4;
-            return (-x, -y, -z, w);
-        }
-
-        private static (double, double, double) Plus((double, double, double) a, (double, double, double) b)
-        {
-            var found = a;
-            double ax = found.Item1;
-            double ay = found.Item2;
-            double az = found.Item3;
-            var found2 = b;
-            double bx = found2.Item1;
-            double by = found2.Item2;
-            double bz = found2.Item3;
-            return (ax + bx, ay + by, az + bz);
-        }
-
-        private static (double, double, double) Minus((double, double, double) a, (double, double, double) b)
-        {
-            var found = a;
-            double ax = found.Item1;
-            double ay = found.Item2;
-            double az = found.Item3;
-            var found2 = b;
-            double bx = found2.Item1;
-            double by = found2.Item2;
-            double bz = found2.Item3;
-            return (ax - bx, ay - by, az - bz);
-        }
-
-        private static (double, double, double) Scaled((double, double, double) a, double k)
-        {
-            var found = a;
-            double x = found.Item1;
-            double y = found.Item2;
-            double z = found.Item3;
-            return (x * k, y * k, z * k);
-        }
-
-        private static double Dot((double, double, double) a, (double, double, double) b)
-        {
-            var found = a;
-            double ax = found.Item1;
-            double ay = found.Item2;
-            double az = found.Item3;
-            var found2 = b;
-            double bx = found2.Item1;
-            double by = found2.Item2;
-            double bz = found2.Item3;
-            return ax * bx + ay * by + az * bz;
         }
     }
 }

@@ -4,6 +4,7 @@
 
 const ContactSolve = preload("contact_solve.gd")
 const ContactSpans = preload("contact_spans.gd")
+const CueTimes = preload("cue_times.gd")
 const Util = preload("util.gd")
 const LEAST = 1e-06  # of a hand: what shows less than this is not solved
 
@@ -14,7 +15,7 @@ static func layer_goals(rig, project, plan, cue, place, time, strength):
 	var out = []
 	var shown = [0.0, 0.0]
 	if cue != null:
-		var weight = _cue_weight(cue, time)
+		var weight = CueTimes.cue_weight(cue, time)
 		for arm in range(ContactSpans.HANDS.size()):
 			var hand = ContactSpans.HANDS[arm]
 			if _moves(rig, cue.action, arm, hand):
@@ -23,12 +24,12 @@ static func layer_goals(rig, project, plan, cue, place, time, strength):
 			var found = []
 			for w in shown:
 				found.append(strength * w)
-			Util.extend(out, _goals(rig, project, cue.action, _cue_seconds(cue, time), found))
+			Util.extend(out, _goals(rig, project, cue.action, CueTimes.cue_seconds(cue, time), found))
 	if place >= 0:
 		var rest = plan.rests[place]
 		var over = 1.0
 		if place > 0 and rest.fade_start + rest.fade > time:
-			over = _ease((time - rest.fade_start) / rest.fade)
+			over = CueTimes.ease_((time - rest.fade_start) / rest.fade)
 			Util.extend(out, _loop_goals(rig, project, plan.rests[place - 1], time, strength * (1.0 - over), shown))
 		Util.extend(out, _loop_goals(rig, project, rest, time, strength * over, shown))
 	return out
@@ -55,7 +56,7 @@ static func _loop_goals(rig, project, rest, time, strength, shown):
 	phase = phase - period * int(floor(phase / period))
 	var old = 0.0
 	if seam > 0.0 and elapsed >= period:
-		old = 1.0 - _ease(phase / seam)
+		old = 1.0 - CueTimes.ease_(phase / seam)
 	if old > 0.0:
 		var before = start + Util.least(period + phase, end - start)
 		var found = []
@@ -96,25 +97,3 @@ static func _moves(rig, action, arm, hand):
 	if not ["both", hand].has(action.limb):
 		return false
 	return action.joints.size() == 0 or action.joints.has(rig.hands[arm])
-
-
-static func _cue_weight(cue, time):
-	if time < cue.start or time >= cue.end:
-		return 0.0
-	var rise = _ease((time - cue.start) / cue.blend_in) if cue.blend_in > 0.0 else 1.0
-	var fall = _ease((cue.end - time) / cue.blend_out) if cue.blend_out > 0.0 else 1.0
-	return rise * fall
-
-
-static func _cue_seconds(cue, time):
-	var elapsed = time - cue.start
-	if cue.hold <= 0.0:
-		return cue.entry + elapsed * cue.tempo
-	var held = Util.least(Util.most(elapsed - (cue.hold_from - cue.entry) / cue.tempo, 0.0), cue.hold)
-	var more = (elapsed - held) * (cue.tempo - 1.0)
-	return cue.entry + elapsed - held + more + held * ((cue.hold_to - cue.hold_from) / cue.hold)
-
-
-static func _ease(x):
-	x = Util.least(Util.most(x, 0.0), 1.0)
-	return x * x * (3.0 - 2.0 * x)

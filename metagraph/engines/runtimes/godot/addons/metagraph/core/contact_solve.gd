@@ -5,6 +5,7 @@
 #
 # Translated from metagraph/motion/contact_solve.py; change that, and translate anew.
 
+const PlainVectors = preload("plain_vectors.gd")
 const Util = preload("util.gd")
 const REACHED = 0.995  # of an arm's length: it does not snap straight
 const FOLDED = 0.906  # cosine of the least angle inside an elbow, 25 degrees
@@ -127,8 +128,8 @@ static func _join(rig, pose, place):
 		pose.turned[place] = pose.local[place]
 		pose.at[place] = pose.moved[place]
 	else:
-		pose.turned[place] = times(pose.turned[above], pose.local[place])
-		pose.at[place] = _plus(pose.at[above], rotated(pose.turned[above], pose.moved[place]))
+		pose.turned[place] = PlainVectors.times(pose.turned[above], pose.local[place])
+		pose.at[place] = PlainVectors.plus(pose.at[above], PlainVectors.rotated(pose.turned[above], pose.moved[place]))
 
 
 # Bring hands to their goals, then hands and forearms out of the body; return whether anything moved. The joints' places have to
@@ -190,11 +191,11 @@ static func _hold(rig, pose, goals, side, wrist, hand):
 	for goal in goals:
 		if goal.arm == side and goal.weight > 0.0:
 			k = goal.weight
-			var both2 = _plus(pose.at[goal.to], rotated(pose.turned[goal.to], goal.at))
+			var both2 = PlainVectors.plus(pose.at[goal.to], PlainVectors.rotated(pose.turned[goal.to], goal.at))
 			var px = both2[0]
 			var py = both2[1]
 			var pz = both2[2]
-			var both3 = times(pose.turned[goal.to], goal.turn)
+			var both3 = PlainVectors.times(pose.turned[goal.to], goal.turn)
 			var qx = both3[0]
 			var qy = both3[1]
 			var qz = both3[2]
@@ -211,7 +212,7 @@ static func _hold(rig, pose, goals, side, wrist, hand):
 			d = d + k * qw
 	var weight = Util.least(1.0, total)
 	var mean = [x / total, y / total, z / total]
-	var turn = _within_wrist(hand, _unit_turn([a, b, c, d]))
+	var turn = _within_wrist(hand, PlainVectors.unit_turn([a, b, c, d]))
 	var both4 = turn
 	var tx = both4[0]
 	var ty = both4[1]
@@ -219,13 +220,13 @@ static func _hold(rig, pose, goals, side, wrist, hand):
 	var tw = both4[3]
 	var rest = 1.0 - weight
 	k = -weight if tx * hx + ty * hy + tz * hz + tw * hw < 0.0 else weight
-	turn = _unit_turn([hx * rest + tx * k, hy * rest + ty * k, hz * rest + tz * k, hw * rest + tw * k])
-	bring(rig, pose, side, _plus(wrist, _scaled(_minus(mean, wrist), weight)), turn, STRAIGHT)
+	turn = PlainVectors.unit_turn([hx * rest + tx * k, hy * rest + ty * k, hz * rest + tz * k, hw * rest + tw * k])
+	bring(rig, pose, side, PlainVectors.plus(wrist, PlainVectors.scaled(PlainVectors.minus(mean, wrist), weight)), turn, STRAIGHT)
 
 
 # Return a hand's turn, as near to it as the wrist may be turned from how the hand was.
 static func _within_wrist(hand, turn):
-	var both = times(turn, _back(hand))
+	var both = PlainVectors.times(turn, PlainVectors.back(hand))
 	var x = both[0]
 	var y = both[1]
 	var z = both[2]
@@ -238,7 +239,7 @@ static func _within_wrist(hand, turn):
 	if w >= WRIST:
 		return turn
 	var k = sqrt(1.0 - WRIST * WRIST) / Util.most(sqrt(x * x + y * y + z * z), 1e-12)
-	return times([x * k, y * k, z * k, WRIST], hand)
+	return PlainVectors.times([x * k, y * k, z * k, WRIST], hand)
 
 
 # Bring a wrist to a goal, or as near as it reaches, its elbow to the side it is bent to; turn it. side_of: where a straight arm
@@ -248,40 +249,43 @@ static func bring(rig, pose, side, goal, hand, side_of):
 	var root = pose.at[arm.upper]
 	var elbow = pose.at[arm.lower]
 	var wrist = pose.at[arm.hand]
-	var bone = _minus(elbow, root)
-	var fore = _minus(wrist, elbow)
-	var above_elbow = length(bone)
-	var below_elbow = length(fore)
-	var now = length(_minus(wrist, root))
+	var bone = PlainVectors.minus(elbow, root)
+	var fore = PlainVectors.minus(wrist, elbow)
+	var above_elbow = PlainVectors.length(bone)
+	var below_elbow = PlainVectors.length(fore)
+	var now = PlainVectors.length(PlainVectors.minus(wrist, root))
 	if above_elbow < 1e-06 or below_elbow < 1e-06 or now < 1e-06:
 		return
-	var way = _minus(goal, root)
+	var way = PlainVectors.minus(goal, root)
 	var most = Util.most(REACHED * (above_elbow + below_elbow), now)
 	var least = Util.least(
 		sqrt(above_elbow * above_elbow + below_elbow * below_elbow - 2.0 * FOLDED * above_elbow * below_elbow),
 		now
 	)
-	var far = Util.least(Util.most(length(way), least), most)
-	var ahead = _unit(way)
-	var before = _scaled(_minus(wrist, root), 1.0 / now)
-	var aside = _minus(bone, _scaled(before, _dot(bone, before)))
+	var far = Util.least(Util.most(PlainVectors.length(way), least), most)
+	var ahead = PlainVectors.unit(way)
+	var before = PlainVectors.scaled(PlainVectors.minus(wrist, root), 1.0 / now)
+	var aside = PlainVectors.minus(bone, PlainVectors.scaled(before, PlainVectors.dot(bone, before)))
 	# A straight arm has no side: it bends to one that goes with its bone.
-	var spare = rotated(pose.turned[arm.upper], side_of)
-	spare = _minus(spare, _scaled(before, _dot(spare, before)))
-	aside = _plus(aside, _scaled(spare, Util.most(0.0, 0.01 * above_elbow - length(aside))))
-	aside = _unit(rotated(between(before, ahead), aside))
+	var spare = PlainVectors.rotated(pose.turned[arm.upper], side_of)
+	spare = PlainVectors.minus(spare, PlainVectors.scaled(before, PlainVectors.dot(spare, before)))
+	aside = PlainVectors.plus(aside, PlainVectors.scaled(spare, Util.most(0.0, 0.01 * above_elbow - PlainVectors.length(aside))))
+	aside = PlainVectors.unit(PlainVectors.rotated(PlainVectors.between(before, ahead), aside))
 	var along = (above_elbow * above_elbow + far * far - below_elbow * below_elbow) / (2.0 * far)
 	var high = sqrt(Util.most(0.0, above_elbow * above_elbow - along * along))
-	var knee = _plus(_scaled(ahead, along), _scaled(aside, high))
-	var swing = between(_unit(bone), _unit(knee))
-	var fold = between(_unit(rotated(swing, fore)), _unit(_minus(_scaled(ahead, far), knee)))
-	var both = times(fold, swing)
+	var knee = PlainVectors.plus(PlainVectors.scaled(ahead, along), PlainVectors.scaled(aside, high))
+	var swing = PlainVectors.between(PlainVectors.unit(bone), PlainVectors.unit(knee))
+	var fold = PlainVectors.between(
+		PlainVectors.unit(PlainVectors.rotated(swing, fore)),
+		PlainVectors.unit(PlainVectors.minus(PlainVectors.scaled(ahead, far), knee))
+	)
+	var both = PlainVectors.times(fold, swing)
 	var above = _above(rig, pose, arm.upper)
-	pose.local[arm.upper] = times(_back(above), times(swing, pose.turned[arm.upper]))
-	above = times(swing, _above(rig, pose, arm.lower))
-	pose.local[arm.lower] = times(_back(above), times(both, pose.turned[arm.lower]))
-	above = times(both, _above(rig, pose, arm.hand))
-	pose.local[arm.hand] = times(_back(above), hand)
+	pose.local[arm.upper] = PlainVectors.times(PlainVectors.back(above), PlainVectors.times(swing, pose.turned[arm.upper]))
+	above = PlainVectors.times(swing, _above(rig, pose, arm.lower))
+	pose.local[arm.lower] = PlainVectors.times(PlainVectors.back(above), PlainVectors.times(both, pose.turned[arm.lower]))
+	above = PlainVectors.times(both, _above(rig, pose, arm.hand))
+	pose.local[arm.hand] = PlainVectors.times(PlainVectors.back(above), hand)
 	for place in arm.below:
 		_join(rig, pose, place)
 
@@ -306,9 +310,9 @@ static func _guarded(rig, pose, held, across):
 		var found = false
 		for side in range(shifts.size()):
 			var shift = shifts[side]
-			if length(shift) > 0.0:
+			if PlainVectors.length(shift) > 0.0:
 				var hand = rig.arms[side].hand
-				bring(rig, pose, side, _plus(pose.at[hand], shift), pose.turned[hand], STRAIGHT)
+				bring(rig, pose, side, PlainVectors.plus(pose.at[hand], shift), pose.turned[hand], STRAIGHT)
 				found = true
 		if not found:
 			return moved
@@ -320,8 +324,8 @@ static func _guarded(rig, pose, held, across):
 static func capsule_ends(rig, pose):
 	var out = []
 	for capsule in rig.capsules:
-		out.append(_plus(pose.at[capsule.joint], rotated(pose.turned[capsule.joint], capsule.a)))
-		out.append(_plus(pose.at[capsule.to], rotated(pose.turned[capsule.to], capsule.b)))
+		out.append(PlainVectors.plus(pose.at[capsule.joint], PlainVectors.rotated(pose.turned[capsule.joint], capsule.a)))
+		out.append(PlainVectors.plus(pose.at[capsule.to], PlainVectors.rotated(pose.turned[capsule.to], capsule.b)))
 	return out
 
 
@@ -395,9 +399,9 @@ static func _shift(rig, ends, balls, side, held, across):
 			amount = amount * share * inner * inner * (3.0 - 2.0 * inner)
 			var part = s if mine.kind == FOREARM else 1.0
 			var way = [x / gap, y / gap, z / gap]
-			var left = amount - part * _dot(way, shift)
+			var left = amount - part * PlainVectors.dot(way, shift)
 			if left > 0.0:
-				shift = _plus(shift, _scaled(way, left * part / (part * part + ELBOW * (1.0 - part))))
+				shift = PlainVectors.plus(shift, PlainVectors.scaled(way, left * part / (part * part + ELBOW * (1.0 - part))))
 	return shift
 
 
@@ -406,14 +410,14 @@ static func _shift(rig, ends, balls, side, held, across):
 static func apart(ends, i, k):
 	var a = ends[i]
 	var c = ends[k]
-	var u = _minus(ends[i + 1], a)
-	var v = _minus(ends[k + 1], c)
-	var w = _minus(a, c)
-	var uu = _dot(u, u)
-	var uv = _dot(u, v)
-	var vv = _dot(v, v)
-	var uw = _dot(u, w)
-	var vw = _dot(v, w)
+	var u = PlainVectors.minus(ends[i + 1], a)
+	var v = PlainVectors.minus(ends[k + 1], c)
+	var w = PlainVectors.minus(a, c)
+	var uu = PlainVectors.dot(u, u)
+	var uv = PlainVectors.dot(u, v)
+	var vv = PlainVectors.dot(v, v)
+	var uw = PlainVectors.dot(u, w)
+	var vw = PlainVectors.dot(v, w)
 	var s = 0.0
 	var t = 0.0
 	if uu > 1e-12:
@@ -429,138 +433,8 @@ static func apart(ends, i, k):
 			s = Util.least(Util.most(-uw / uu, 0.0), 1.0)
 	elif vv > 1e-12:
 		t = Util.least(Util.most(vw / vv, 0.0), 1.0)
-	var both = _minus(_plus(w, _scaled(u, s)), _scaled(v, t))
+	var both = PlainVectors.minus(PlainVectors.plus(w, PlainVectors.scaled(u, s)), PlainVectors.scaled(v, t))
 	var x = both[0]
 	var y = both[1]
 	var z = both[2]
 	return [x, y, z, s, sqrt(x * x + y * y + z * z)]
-
-
-# --- arithmetic
-# Return the product: rotate by `b`, then by `a`.
-static func times(a, b):
-	var both = a
-	var ax = both[0]
-	var ay = both[1]
-	var az = both[2]
-	var aw = both[3]
-	var both2 = b
-	var bx = both2[0]
-	var by = both2[1]
-	var bz = both2[2]
-	var bw = both2[3]
-	return [
-		aw * bx + ax * bw + ay * bz - az * by,
-		aw * by - ax * bz + ay * bw + az * bx,
-		aw * bz + ax * by - ay * bx + az * bw,
-		aw * bw - ax * bx - ay * by - az * bz
-	]
-
-
-# Return a vector rotated.
-static func rotated(q, v):
-	var both = q
-	var x = both[0]
-	var y = both[1]
-	var z = both[2]
-	var w = both[3]
-	var both2 = v
-	var vx = both2[0]
-	var vy = both2[1]
-	var vz = both2[2]
-	var tx = 2.0 * (y * vz - z * vy)
-	var ty = 2.0 * (z * vx - x * vz)
-	var tz = 2.0 * (x * vy - y * vx)
-	return [vx + w * tx + y * tz - z * ty, vy + w * ty + z * tx - x * tz, vz + w * tz + x * ty - y * tx]
-
-
-# Return the shortest rotation that takes one direction to another, both of length 1.
-static func between(a, b):
-	var both = a
-	var ax = both[0]
-	var ay = both[1]
-	var az = both[2]
-	var both2 = b
-	var bx = both2[0]
-	var by = both2[1]
-	var bz = both2[2]
-	var dot = ax * bx + ay * by + az * bz
-	if dot < -0.999999999:  # half a turn about any axis across
-		return _unit_turn([0.0, az, -ay, 0.0] if Util.absolute(ax) < 0.9 else [-az, 0.0, ax, 0.0])
-	return _unit_turn([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx, 1.0 + dot])
-
-
-# Return how long a vector is.
-static func length(v):
-	var both = v
-	var x = both[0]
-	var y = both[1]
-	var z = both[2]
-	return sqrt(x * x + y * y + z * z)
-
-
-static func _unit(v):
-	return _scaled(v, 1.0 / Util.most(length(v), 1e-12))
-
-
-static func _unit_turn(q):
-	var both = q
-	var x = both[0]
-	var y = both[1]
-	var z = both[2]
-	var w = both[3]
-	var k = 1.0 / Util.most(sqrt(x * x + y * y + z * z + w * w), 1e-12)
-	return [x * k, y * k, z * k, w * k]
-
-
-static func _back(q):
-	var both = q
-	var x = both[0]
-	var y = both[1]
-	var z = both[2]
-	var w = both[3]
-	return [-x, -y, -z, w]
-
-
-static func _plus(a, b):
-	var both = a
-	var ax = both[0]
-	var ay = both[1]
-	var az = both[2]
-	var both2 = b
-	var bx = both2[0]
-	var by = both2[1]
-	var bz = both2[2]
-	return [ax + bx, ay + by, az + bz]
-
-
-static func _minus(a, b):
-	var both = a
-	var ax = both[0]
-	var ay = both[1]
-	var az = both[2]
-	var both2 = b
-	var bx = both2[0]
-	var by = both2[1]
-	var bz = both2[2]
-	return [ax - bx, ay - by, az - bz]
-
-
-static func _scaled(a, k):
-	var both = a
-	var x = both[0]
-	var y = both[1]
-	var z = both[2]
-	return [x * k, y * k, z * k]
-
-
-static func _dot(a, b):
-	var both = a
-	var ax = both[0]
-	var ay = both[1]
-	var az = both[2]
-	var both2 = b
-	var bx = both2[0]
-	var by = both2[1]
-	var bz = both2[2]
-	return ax * bx + ay * by + az * bz

@@ -5,6 +5,7 @@
 #
 # Translated from metagraph/playback/follow_through.py; change that, and translate anew.
 
+const CueTimes = preload("cue_times.gd")
 const Util = preload("util.gd")
 const STEP = 0.08  # seconds between the times that are looked at; the answer comes two of them late
 const OFFSET = 0.0111  # seconds that they lie beside whole steps, where cues begin and end
@@ -50,15 +51,15 @@ static func arm_sway(project, tracks, hands, arms, cue, place, body, body_cue, b
 	var track = tracks.get(cue.action.id)
 	if track == null or track.rows.size() == 0:
 		return out
-	var weight = _cue_weight(cue, time)
+	var weight = CueTimes.cue_weight(cue, time)
 	var share = cue.extent * (1.0 - _shown(tracks, body, body_cue, body_place, track.clip, time))
 	if weight <= 0.0 or share <= 0.0:
 		return out
-	var row = _row(track, _cue_seconds(cue, time))
+	var row = _row(track, CueTimes.cue_seconds(cue, time))
 	var rest = _stance(project, tracks, arms, place, time)
 	var entering = time < cue.start + cue.blend_in
 	if entering or time >= cue.end - cue.blend_out:
-		var edge = _row(track, cue.entry if entering else _cue_seconds(cue, cue.end))
+		var edge = _row(track, cue.entry if entering else CueTimes.cue_seconds(cue, cue.end))
 		var found = []
 		for n3 in range(NUMBERS):
 			found.append(row[n3] + (1.0 - weight) * (rest[n3] - edge[n3]))
@@ -105,7 +106,7 @@ static func _shown(tracks, plan, cue, place, clip, time):
 	var left = 1.0
 	var out = 0.0
 	if cue != null:
-		var weight = _cue_weight(cue, time)
+		var weight = CueTimes.cue_weight(cue, time)
 		left = 1.0 - weight
 		if _is_of(tracks, cue.action, clip):
 			out += weight
@@ -113,7 +114,7 @@ static func _shown(tracks, plan, cue, place, clip, time):
 		var rest = plan.rests[place]
 		var over = 1.0
 		if place > 0 and rest.fade_start + rest.fade > time:
-			over = _ease((time - rest.fade_start) / rest.fade)
+			over = CueTimes.ease_((time - rest.fade_start) / rest.fade)
 			if _is_of(tracks, plan.rests[place - 1].action, clip):
 				out += left * (1.0 - over)
 		if _is_of(tracks, rest.action, clip):
@@ -136,7 +137,7 @@ static func _stance(project, tracks, plan, place, time):
 	var rest = plan.rests[place]
 	var row = _loop(project, tracks, rest, time)
 	if place > 0 and rest.fade_start + rest.fade > time:
-		var over = _ease((time - rest.fade_start) / rest.fade)
+		var over = CueTimes.ease_((time - rest.fade_start) / rest.fade)
 		var before = _loop(project, tracks, plan.rests[place - 1], time)
 		var found2 = []
 		for n in range(NUMBERS):
@@ -166,7 +167,7 @@ static func _loop(project, tracks, rest, time):
 	phase = phase - period * int(floor(phase / period))
 	var row = _row(track, start + phase)
 	if seam > 0.0 and elapsed >= period:
-		var old = 1.0 - _ease(phase / seam)
+		var old = 1.0 - CueTimes.ease_(phase / seam)
 		var before = _row(track, start + Util.least(period + phase, end - start))
 		var found2 = []
 		for n in range(NUMBERS):
@@ -187,25 +188,3 @@ static func _row(track, seconds):
 	for n in range(NUMBERS):
 		found.append(a[n] + (b[n] - a[n]) * part)
 	return found
-
-
-static func _cue_weight(cue, time):
-	if time < cue.start or time >= cue.end:
-		return 0.0
-	var rise = _ease((time - cue.start) / cue.blend_in) if cue.blend_in > 0.0 else 1.0
-	var fall = _ease((cue.end - time) / cue.blend_out) if cue.blend_out > 0.0 else 1.0
-	return rise * fall
-
-
-static func _cue_seconds(cue, time):
-	var elapsed = time - cue.start
-	if cue.hold <= 0.0:
-		return cue.entry + elapsed * cue.tempo
-	var held = Util.least(Util.most(elapsed - (cue.hold_from - cue.entry) / cue.tempo, 0.0), cue.hold)
-	var more = (elapsed - held) * (cue.tempo - 1.0)
-	return cue.entry + elapsed - held + more + held * ((cue.hold_to - cue.hold_from) / cue.hold)
-
-
-static func _ease(x):
-	x = Util.least(Util.most(x, 0.0), 1.0)
-	return x * x * (3.0 - 2.0 * x)

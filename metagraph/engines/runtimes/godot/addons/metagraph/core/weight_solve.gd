@@ -10,6 +10,7 @@
 # Translated from metagraph/motion/weight_solve.py; change that, and translate anew.
 
 const ContactSolve = preload("contact_solve.gd")
+const PlainVectors = preload("plain_vectors.gd")
 const Util = preload("util.gd")
 const BALANCE = 1.4  # of how far the arms carry the centre of mass away, the hips give way
 const HASTE = 0.12  # seconds of the arms' speed that add to that
@@ -99,8 +100,8 @@ static func answer_arms(rig, pose, drive, follow, lift):
 		return false
 	for collar in rig.collars:
 		var turn = _turn(collar.axis, lift * drive[6 + collar.side])
-		pose.local[collar.place] = ContactSolve.times(pose.local[collar.place], turn)
-		pose.local[collar.upper] = ContactSolve.times(_back(turn), pose.local[collar.upper])
+		pose.local[collar.place] = PlainVectors.times(pose.local[collar.place], turn)
+		pose.local[collar.upper] = PlainVectors.times(PlainVectors.back(turn), pose.local[collar.upper])
 	if follow <= 0.0:
 		return true
 	ContactSolve.spread(rig.body, pose)
@@ -118,9 +119,9 @@ static func _stands(rig, pose):
 		var hip = pose.at[leg.upper]
 		var knee = pose.at[leg.lower]
 		var ankle = pose.at[leg.hand]
-		var whole = ContactSolve.length(_minus(knee, hip)) + ContactSolve.length(_minus(ankle, knee))
+		var whole = PlainVectors.length(PlainVectors.minus(knee, hip)) + PlainVectors.length(PlainVectors.minus(ankle, knee))
 		if whole > 1e-06:
-			least = Util.least(least, _dot(_minus(hip, ankle), rig.up) / whole)
+			least = Util.least(least, PlainVectors.dot(PlainVectors.minus(hip, ankle), rig.up) / whole)
 	var x = Util.least(Util.most((least - SITTING) / STANDING, 0.0), 1.0)
 	return x * x * (3.0 - 2.0 * x)
 
@@ -153,24 +154,30 @@ static func _give_way(rig, pose, drive, follow):
 		soles.append(pose.turned[leg.hand])
 	var reaches = []
 	for leg in body.arms:
-		reaches.append(ContactSolve.length(_minus(pose.at[leg.hand], pose.at[leg.upper])))
+		reaches.append(PlainVectors.length(PlainVectors.minus(pose.at[leg.hand], pose.at[leg.upper])))
 	var hips = rig.bends[0]
-	var shift = _plus(_plus(_scaled(hips.left, x), _scaled(hips.up, y)), _scaled(hips.ahead, z))
-	shift = ContactSolve.rotated(pose.turned[hips.place], shift)
+	var shift = PlainVectors.plus(
+		PlainVectors.plus(PlainVectors.scaled(hips.left, x), PlainVectors.scaled(hips.up, y)),
+		PlainVectors.scaled(hips.ahead, z)
+	)
+	shift = PlainVectors.rotated(pose.turned[hips.place], shift)
 	for bend in rig.bends:
-		var axis = _plus(_plus(_scaled(bend.left, pitch), _scaled(bend.up, yaw)), _scaled(bend.ahead, roll))
-		pose.local[bend.place] = ContactSolve.times(pose.local[bend.place], _turn(axis, bend.share))
+		var axis = PlainVectors.plus(
+			PlainVectors.plus(PlainVectors.scaled(bend.left, pitch), PlainVectors.scaled(bend.up, yaw)),
+			PlainVectors.scaled(bend.ahead, roll)
+		)
+		pose.local[bend.place] = PlainVectors.times(pose.local[bend.place], _turn(axis, bend.share))
 	var above = body.parents[hips.place]
-	var space = [0.0, 0.0, 0.0, 1.0] if above < 0 else _back(pose.turned[above])
-	pose.moved[hips.place] = _plus(pose.moved[hips.place], ContactSolve.rotated(space, shift))
+	var space = [0.0, 0.0, 0.0, 1.0] if above < 0 else PlainVectors.back(pose.turned[above])
+	pose.moved[hips.place] = PlainVectors.plus(pose.moved[hips.place], PlainVectors.rotated(space, shift))
 	ContactSolve.spread(body, pose)
-	var size = ContactSolve.length([x, y, z]) + 0.1 * rig.height * ContactSolve.length([yaw, roll, pitch])
+	var size = PlainVectors.length([x, y, z]) + 0.1 * rig.height * PlainVectors.length([yaw, roll, pitch])
 	var low = 0.0
 	for side in range(feet.size()):
 		low = Util.most(low, _too_far(rig, pose, side, feet[side], reaches[side], GIVE * size))
 	if low > 0.0:
-		var down = ContactSolve.rotated(space, _scaled(rig.up, -low))
-		pose.moved[hips.place] = _plus(pose.moved[hips.place], down)
+		var down = PlainVectors.rotated(space, PlainVectors.scaled(rig.up, -low))
+		pose.moved[hips.place] = PlainVectors.plus(pose.moved[hips.place], down)
 		ContactSolve.spread(body, pose)
 	for side in range(feet.size()):
 		ContactSolve.bring(body, pose, side, feet[side], soles[side], rig.knees[side])
@@ -183,11 +190,11 @@ static func _too_far(rig, pose, side, foot, reach, soft):
 	var hip = pose.at[leg.upper]
 	var knee = pose.at[leg.lower]
 	var ankle = pose.at[leg.hand]
-	var whole = ContactSolve.length(_minus(knee, hip)) + ContactSolve.length(_minus(ankle, knee))
+	var whole = PlainVectors.length(PlainVectors.minus(knee, hip)) + PlainVectors.length(PlainVectors.minus(ankle, knee))
 	var most = Util.most(ContactSolve.REACHED * whole, reach)
-	var way = _minus(hip, foot)
-	var high = _dot(way, rig.up)
-	var aside = _dot(way, way) - high * high
+	var way = PlainVectors.minus(hip, foot)
+	var high = PlainVectors.dot(way, rig.up)
+	var aside = PlainVectors.dot(way, way) - high * high
 	if high <= 0.0 or aside >= most * most or soft <= 0.0:
 		return 0.0
 	var over = high - sqrt(most * most - aside)
@@ -207,62 +214,9 @@ static func _turn(axis, angle):
 	var x = both[0]
 	var y = both[1]
 	var z = both[2]
-	var size = ContactSolve.length(axis)
+	var size = PlainVectors.length(axis)
 	if size <= 0.0:
 		return [0.0, 0.0, 0.0, 1.0]
 	var half = 0.5 * size * angle
 	var k = sin(half) / size
 	return [x * k, y * k, z * k, cos(half)]
-
-
-static func _back(q):
-	var both = q
-	var x = both[0]
-	var y = both[1]
-	var z = both[2]
-	var w = both[3]
-	return [-x, -y, -z, w]
-
-
-static func _plus(a, b):
-	var both = a
-	var ax = both[0]
-	var ay = both[1]
-	var az = both[2]
-	var both2 = b
-	var bx = both2[0]
-	var by = both2[1]
-	var bz = both2[2]
-	return [ax + bx, ay + by, az + bz]
-
-
-static func _minus(a, b):
-	var both = a
-	var ax = both[0]
-	var ay = both[1]
-	var az = both[2]
-	var both2 = b
-	var bx = both2[0]
-	var by = both2[1]
-	var bz = both2[2]
-	return [ax - bx, ay - by, az - bz]
-
-
-static func _scaled(a, k):
-	var both = a
-	var x = both[0]
-	var y = both[1]
-	var z = both[2]
-	return [x * k, y * k, z * k]
-
-
-static func _dot(a, b):
-	var both = a
-	var ax = both[0]
-	var ay = both[1]
-	var az = both[2]
-	var both2 = b
-	var bx = both2[0]
-	var by = both2[1]
-	var bz = both2[2]
-	return ax * bx + ay * by + az * bz
