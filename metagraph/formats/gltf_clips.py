@@ -146,20 +146,22 @@ def _channels(
     morphs: list[tuple[int, str, int, int]] = []
     unknown: set[str] = set()
     samplers = animation.samplers
+    places, count = rig.places, len(samplers)
     for channel in animation.channels:
-        node, path = channel.target.node, channel.target.path
-        if channel.sampler >= len(samplers):
+        target = channel.target
+        node, path = target.node, target.path
+        if channel.sampler >= count:
             gltf.fail(f"sampler {channel.sampler} does not exist", where)
         sampler = samplers[channel.sampler]
         mode = sampler.interpolation
-        if mode not in ("LINEAR", "STEP", "CUBICSPLINE"):
+        if mode != "LINEAR" and mode not in ("STEP", "CUBICSPLINE"):
             gltf.fail(f"interpolation '{mode}' is unknown", where)
         if node is None:
             unknown.add(path)
         elif path == "weights":
             morphs.append((sampler.input, mode, node, sampler.output))
         elif path in ("translation", "rotation", "scale"):
-            joint = rig.places.get(node)
+            joint = places.get(node)
             if joint is not None:  # else it animates something that never moves and was folded away
                 groups[sampler.input, mode, path].append((joint, sampler.output))
         else:
@@ -179,6 +181,12 @@ def _key_times(gltf: Gltf, accessor: int, where: str) -> Array:
 
 def _stack(gltf: Gltf, outputs: list[int], count: int, width: int, where: str) -> Array:
     """Return key values `[C, count, width]` of several accessors."""
+    size = len(outputs) * count * width * 4
+    if size > 1 << 20:
+        gltf.spend(size, where)
+    together = gltf.floats(outputs, count, width, where)
+    if together is not None:
+        return together
     arrays = []
     for output in outputs:
         values = gltf.array(output, where)
@@ -189,8 +197,6 @@ def _stack(gltf: Gltf, outputs: list[int], count: int, width: int, where: str) -
                 where,
             )
         arrays.append(values if len(values) == count else values[:count])
-    if sum(a.nbytes for a in arrays) > 1 << 20:
-        gltf.spend(sum(a.nbytes for a in arrays), where)
     return np.stack(arrays)
 
 

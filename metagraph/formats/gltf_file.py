@@ -9,6 +9,7 @@ from __future__ import annotations
 import base64
 import binascii
 import struct
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 from urllib.parse import unquote
@@ -319,6 +320,32 @@ class Gltf:
         if accessor.normalized and dtype.kind != "f":
             out = np.maximum(out.astype(np.float32) / np.float32(np.iinfo(dtype).max), np.float32(-1))
         return out[:, 0] if width == 1 else out
+
+    def floats(self, indices: Sequence[int], count: int, width: int, where: str) -> Array | None:
+        """Return the first `count` elements of several accessors at once, float32 `[C, count, width]`, where
+        each is just such numbers one after another in the first buffer; else None, and `array` reads them one
+        by one or says what is wrong.
+        """
+        accessors, views = self.json.accessors, self.json.buffer_views
+        item, data = width * 4, self.buffer(0, where)
+        starts, last = [], len(data) - count * item
+        for index in indices:
+            if index >= len(accessors):
+                return None
+            a = accessors[index]
+            if a.component_type != 5126 or a.sparse is not None or a.buffer_view is None:
+                return None
+            if a.buffer_view >= len(views) or _WIDTHS.get(a.type) != width or a.count < count:
+                return None
+            view = views[a.buffer_view]
+            start = view.byte_offset + a.byte_offset
+            if view.buffer or (view.byte_stride and view.byte_stride != item) or start > last or start & 3:
+                return None
+            if a.byte_offset + item * a.count > view.byte_length:
+                return None
+            starts.append(start // 4)
+        numbers = np.frombuffer(data, "<f4", len(data) // 4)
+        return numbers[np.array(starts)[:, None] + np.arange(count * width)].reshape(-1, count, width)
 
     def _strided(self, accessor: Accessor, index: int, dtype: np.dtype[Any], width: int, where: str) -> Array:
         assert accessor.buffer_view is not None

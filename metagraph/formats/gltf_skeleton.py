@@ -262,6 +262,8 @@ def _members(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int]
     for a, animation in enumerate(doc.animations):
         for channel in animation.channels:
             node = channel.target.node
+            if node in skinned:
+                continue  # a joint in any case
             if node is None or channel.target.path not in ("translation", "rotation", "scale"):
                 continue
             if node >= len(nodes):
@@ -271,9 +273,7 @@ def _members(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int]
             )
             animated.setdefault(node, []).append((channel.target.path, sampler.output))
     if skinned:
-        moving = {
-            n for n, outputs in animated.items() if n not in skinned and _moves(gltf, nodes[n], outputs)
-        }
+        moving = {n for n, outputs in animated.items() if _moves(gltf, nodes[n], outputs)}
         members = skinned | moving
     else:
         members = _without_skin(nodes, parents, order, set(animated))
