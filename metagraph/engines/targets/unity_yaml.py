@@ -10,10 +10,11 @@ import hashlib
 import math
 import re
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import pairwise
+from itertools import groupby, pairwise
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -139,6 +140,22 @@ def joint_path(skeleton: Skeleton, joint: int) -> str:
 
 # --- clips
 
+_CURVE = """  - curve:
+      serializedVersion: 2
+      m_Curve:
+%s
+      m_PreInfinity: 2
+      m_PostInfinity: 2
+      m_RotationOrder: 4
+    path: %s"""
+_BOUND = """    - serializedVersion: 2
+      path: %d
+      attribute: %d
+      script: {fileID: 0}
+      typeID: 4
+      customType: 0
+      isPPtrCurve: 0"""
+
 
 @dataclass(frozen=True)
 class Moving:
@@ -157,45 +174,32 @@ def clip_asset(
     skeleton, last = clip.skeleton, clip.frames - 1
     turns = rotation.continuous(clip.rotations[:, list(moving.joints)].astype(np.float64)) * [1, -1, -1, 1]
     curves: dict[int, list[str]] = {1: [], 2: []}  # 1: position, 2: rotation
-    bound: list[dict[str, Any]] = []
+    bound: list[str] = []
 
-    def add(kind: int, joint: int, values: Array, tolerance: float) -> None:
-        slopes = np.gradient(values, axis=0)
-        keys = _keys(values, slopes, tolerance)
-        if keys == [0]:
-            slopes = np.zeros_like(slopes)
-            keys = [0, last] if kind == 2 and joint == moving.joints[0] else keys  # keeps the clip's length
-        path = joint_path(skeleton, joint)
-        curves[kind] += ["  - curve:", "      serializedVersion: 2", "      m_Curve:"]
-        into, away = _tangents(values, slopes, keys)
-        times = np.array(keys)[:, None] / clip.fps
-        curves[kind].append(_written(np.hstack([times, values[keys], into * clip.fps, away * clip.fps])))
-        curves[kind] += [
-            "      m_PreInfinity: 2",
-            "      m_PostInfinity: 2",
-            "      m_RotationOrder: 4",
-            f"    path: {text(path)}",
-        ]
-        hashed = zlib.crc32(path.encode())
-        bound.append(
-            {
-                "serializedVersion": 2,
-                "path": hashed,
-                "attribute": kind,
-                "script": NOTHING,
-                "typeID": 4,
-                "customType": 0,
-            }
-        )
-        bound[-1]["isPPtrCurve"] = 0
+    def add(kind: int, joints: Sequence[int], values: Array, tolerance: float) -> None:
+        """Add the curves `[C, F, n]` of joints."""
+        slopes = np.gradient(values, axis=1) if len(joints) else values
+        for joint, own, sloped, keys in zip(
+            joints, values, slopes, _keys(values, slopes, tolerance) if len(joints) else (), strict=True
+        ):
+            if keys == [0]:
+                sloped = np.zeros_like(sloped)
+                keys = [0, last] if kind == 2 and joint == moving.joints[0] else keys  # the clip's length
+            path = joint_path(skeleton, joint)
+            into, away = _tangents(own, sloped, keys)
+            times = np.array(keys)[:, None] / clip.fps
+            written = _written(np.hstack([times, own[keys], into * clip.fps, away * clip.fps]))
+            curves[kind].append(_CURVE % (written, text(path)))
+            bound.append(_BOUND % (zlib.crc32(path.encode()), kind))
 
-    for joint in moving.shifted:
-        track = np.broadcast_to(base.translations[joint], (clip.frames, 3))
+    shifts = np.broadcast_to(
+        base.translations[list(moving.shifted)][:, None], (len(moving.shifted), clip.frames, 3)
+    ).copy()
+    for place, joint in enumerate(moving.shifted):
         if joint in clip.translated:
-            track = clip.translations[:, clip.translated.index(joint)]
-        add(1, joint, track * np.array([-1.0, 1, 1]), SHIFT)
-    for place, joint in enumerate(moving.joints):
-        add(2, joint, turns[:, place], TURN)
+            shifts[place] = clip.translations[:, clip.translated.index(joint)]
+    add(1, moving.shifted, shifts * np.array([-1.0, 1, 1]), SHIFT)
+    add(2, moving.joints, np.ascontiguousarray(turns.swapaxes(0, 1)), TURN)
     zero = Inline(x=0, y=0, z=0)
     whole = fields(0, name, serializedVersion=6, m_Legacy=0, m_Compressed=0, m_UseHighQualityCurve=1)
     whole |= {
@@ -210,7 +214,7 @@ def clip_asset(
         "m_PPtrCurves": [],
     }
     whole |= {"m_SampleRate": clip.fps, "m_WrapMode": 0, "m_Bounds": {"m_Center": zero, "m_Extent": zero}}
-    whole |= {"m_ClipBindingConstant": {"genericBindings": bound, "pptrCurveMapping": []}}
+    whole |= {"m_ClipBindingConstant": {"genericBindings": Written("\n".join(bound)), "pptrCurveMapping": []}}
     whole |= {"m_AnimationClipSettings": _settings(clip.duration, loop, reference)}
     whole |= {
         "m_EditorCurves": [],
@@ -272,32 +276,40 @@ def _written(keys: Array) -> str:
     return ((line * count) % tuple(short.split(" ")[:-1]))[:-1]
 
 
-def _keys(values: Array, slopes: Array, tolerance: float) -> list[int]:
-    """Return the frames of `values [F, n]` to keep, so that cubics through them with their `slopes` (a frame)
-    are within the tolerance of the straight lines between all frames; a stretch of one frame is a straight
-    line. It starts with the ends and is split at the worst frame; only the first is kept where all are the
-    same.
+def _keys(values: Array, slopes: Array, tolerance: float) -> list[list[int]]:
+    """Return for each of several curves `values [C, F, n]` the frames to keep, so that cubics through them
+    with their `slopes` (a frame) are within the tolerance of the straight lines between all frames; a stretch
+    of one frame is a straight line. It starts with the ends and is split at the worst frame; only the first
+    is kept where all are the same. Stretches of one length are looked at together, of all curves.
     """
-    if np.linalg.norm(values - values[0], axis=1).max() <= tolerance:
-        return [0]
-    halves = np.stack([values, np.concatenate([(values[1:] + values[:-1]) / 2, values[-1:]])], 1).reshape(
-        -1, values.shape[1]
-    )
-    corners = np.concatenate([values, slopes])
-    kept, stretches = {0, len(values) - 1}, [(0, len(values) - 1)]
+    count, frames = values.shape[:2]
+    moves = np.linalg.norm(values - values[:, :1], axis=2).max(1) > tolerance
+    halves = np.repeat(values, 2, axis=1)
+    halves[:, 1:-1:2] = (values[:, 1:] + values[:, :-1]) / 2
+    corners = np.concatenate([values, slopes], 1)
+    kept: list[set[int]] = [{0, frames - 1} if moving else {0} for moving in moves.tolist()]
+    stretches = [(frames - 1, curve, 0) for curve in np.flatnonzero(moves).tolist()]
     while stretches:
-        first, last = stretches.pop()
-        if last - first < 2:
-            continue
-        apart = _cubic(last - first) @ corners[[first, last, len(values) + first, len(values) + last]]
-        apart -= halves[2 * first + 1 : 2 * last]
-        off = np.einsum("ij,ij->i", apart, apart)
-        place = int(off.argmax())
-        if off[place] > tolerance**2:
-            worst = min(max((2 * first + 2 + place) // 2, first + 1), last - 1)
-            kept.add(worst)
-            stretches += [(first, worst), (worst, last)]
-    return sorted(kept)
+        stretches.sort()
+        split: list[tuple[int, int, int]] = []
+        for length, group in groupby(stretches, itemgetter(0)):
+            if length < 2:
+                continue
+            curves, firsts = np.array([stretch[1:] for stretch in group]).T
+            lasts = firsts + length
+            ends = np.stack([firsts, lasts, frames + firsts, frames + lasts], 1)
+            apart = _cubic(length) @ corners[curves[:, None], ends]
+            apart -= halves[curves[:, None], 2 * firsts[:, None] + np.arange(1, 2 * length)]
+            off = np.einsum("sij,sij->si", apart, apart)
+            places = off.argmax(1)
+            for row in np.flatnonzero(off[np.arange(len(off)), places] > tolerance**2).tolist():
+                curve, first = int(curves[row]), int(firsts[row])
+                worst = (2 * first + 2 + int(places[row])) // 2
+                worst = min(max(worst, first + 1), first + length - 1)
+                kept[curve].add(worst)
+                split += [(worst - first, curve, first), (first + length - worst, curve, worst)]
+        stretches = split
+    return [sorted(frames_of) for frames_of in kept]
 
 
 @lru_cache(maxsize=1024)
