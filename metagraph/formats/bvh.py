@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -28,6 +28,7 @@ from metagraph.errors import FileError
 from metagraph.files import read_file
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.bvh_space import USUAL, stand, unit, z_up
+from metagraph.formats.decimal_text import decimals
 from metagraph.formats.takes import UNIT, UP, repaired, without_stray_poses
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip, Repair
@@ -36,15 +37,13 @@ from metagraph.motion.skeleton import Skeleton, unique_names
 
 Array = NDArray[Any]
 
-# Where compiling pays: numba takes 0.6 s to import, numpy reads 30 MB/s, the compiled loops 330 MB/s. Many
-# small files count as one large one. Installing numba takes as long as reading some hundred megabytes without
-# it.
-_COMPILED_FROM, _INSTALLED_FROM = 24 << 20, 240 << 20
+# Where compiling pays: numba takes 0.6 s to import, NumPy reads 80 MB/s, the compiled loops 330 MB/s. Many
+# small files count as one large one. Installing numba takes as long as reading some gigabytes without it.
+_COMPILED_FROM, _INSTALLED_FROM = 64 << 20, 2 << 30
 _read_so_far = [0]  # bytes of motion this process has read
 _loops: list[Any] = []  # the module of compiled loops, once it is whole; None where it cannot be had
 _importing = Lock()
 _LONGEST_HEADER = 16 * MIB
-_PIECE = 8 << 20  # bytes of numbers taken apart at once
 _DAMAGED = "The file is damaged: export it again."
 
 
@@ -312,7 +311,7 @@ def _numbers(path: Path, data: bytes, start: int, channels: int) -> Array:
         numbers, stopped = _compiled_numbers(kernels.parse, data, start)
     else:
         try:
-            numbers, stopped = np.concatenate([*_parsed(data, start), np.zeros(0)]), len(data)
+            numbers, stopped = decimals(data, start), len(data)
         except ValueError:
             numbers, stopped = np.zeros(0), start
     bad = ~np.isfinite(numbers) | (np.abs(numbers) > 1e9)
@@ -329,15 +328,6 @@ def _numbers(path: Path, data: bytes, start: int, channels: int) -> Array:
                 text = word[:40].decode("utf-8", "replace")
                 raise FileError(path, f"'{text}' is not a sensible number", f"line {first + i}", _DAMAGED)
     raise FileError(path, "it holds bytes that are not numbers", f"line {_line(data, stopped)}", _DAMAGED)
-
-
-def _parsed(data: bytes, start: int) -> Iterator[Array]:
-    """Yield the numbers a piece at a time: as words they take five times the memory."""
-    while start < len(data):
-        end = data.find(b"\n", start + _PIECE)
-        end = len(data) if end < 0 else end
-        yield np.array(data[start:end].split(), np.float64)
-        start = end
 
 
 def _compiled_numbers(parse: Any, data: bytes, start: int) -> tuple[Array, int]:

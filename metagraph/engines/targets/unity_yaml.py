@@ -282,7 +282,7 @@ def _keys(values: Array, slopes: Array, tolerance: float) -> list[list[int]]:
     of one frame is a straight line. It starts with the ends and is split at the worst frame; only the first
     is kept where all are the same. Stretches of one length are looked at together, of all curves.
     """
-    count, frames = values.shape[:2]
+    frames = values.shape[1]
     moves = np.linalg.norm(values - values[:, :1], axis=2).max(1) > tolerance
     halves = np.repeat(values, 2, axis=1)
     halves[:, 1:-1:2] = (values[:, 1:] + values[:, :-1]) / 2
