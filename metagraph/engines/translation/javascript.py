@@ -166,7 +166,8 @@ class JavaScript(Braces):
 
     def unpacked(self, node: x.Unpack) -> None:
         names = listed("[", [self.target(t) for t in node.targets], "]")
-        self.line(("const " if node.new else "", names, " = ", self.plain(node.value), ";"), node.beside)
+        word = ("let " if node.changes else "const ") if node.new else ""
+        self.line((word, names, " = ", self.plain(node.value), ";"), node.beside)
 
     def each(self, node: x.ForEach) -> None:
         words = [self.local(n) for n in node.names]

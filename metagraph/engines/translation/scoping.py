@@ -36,7 +36,8 @@ def _block(body: Sequence[x.Statement], known: set[str], times: Counter[str]) ->
             case x.Unpack():
                 new = [isinstance(t, x.Local) and t.name not in known for t in node.targets]
                 if all(new):
-                    out.append(replace(node, new=True))
+                    again = any(isinstance(t, x.Local) and times[t.name] > 1 for t in node.targets)
+                    out.append(replace(node, new=True, changes=again))
                 else:
                     out += [
                         x.Declare(t, None)

@@ -260,11 +260,14 @@ class Assign(Statement):
 
 @dataclass(frozen=True)
 class Unpack(Statement):
-    """`a, b = value`, of a tuple. new: the variables are declared here."""
+    """`a, b = value`, of a tuple. new: the variables are declared here. changes: one of them is assigned again
+    later.
+    """
 
     targets: tuple[Expression, ...]
     value: Expression
     new: bool
+    changes: bool = False
 
 
 @dataclass(frozen=True)

@@ -168,6 +168,10 @@ def loops() -> str:
     for a, b in zip([1, 2], [10, 20], strict=True):
         total += a * b
     one, two = _swapped(1, 2)
+    low, high = _swapped(3, 4)  # taken apart, and changed afterwards
+    if low > high:
+        low, high = high, low
+    out += f"<{low}{high}>"
     before = 0
     for n in [1, 2, 3]:
         out += f"/{before}"

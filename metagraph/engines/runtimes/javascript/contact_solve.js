@@ -247,7 +247,7 @@ function _hold(rig, pose, goals, side, wrist, hand) {
  * @returns {[number, number, number, number]}
  */
 function _withinWrist(hand, turn) {
-  const [x, y, z, w] = times(turn, back(hand));
+  let [x, y, z, w] = times(turn, back(hand));
   if (w < 0) {
     x = -x;
     y = -y;
