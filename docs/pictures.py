@@ -349,11 +349,11 @@ def page() -> None:
     samples = ROOT / "sample_clips"
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        web.three_js = lambda folder: ROOT / "tests" / "node_modules" / "three"  # type: ignore[assignment]
+        web.tools = lambda folder: ROOT / "tests" / "node_modules"  # type: ignore[assignment]
         project = open_project(samples / "sample.metagraph.yaml").project
         registry.write(project, "web", folder, samples / "ada.glb", base=samples)
         steps = [
-            {"url": "?seed=7&paused", "until": "window.metagraph"},
+            {"url": "?seed=7&paused&panel", "until": "window.metagraph"},
             {"click": "#panel button:text-is('greeting') >> nth=0"},
             {"run": "metagraph.seek(0.3)"},
             {"click": "#panel button:text-is('arms crossed')"},

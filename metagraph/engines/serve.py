@@ -8,6 +8,7 @@ or what a link leads to elsewhere.
 from __future__ import annotations
 
 import functools
+import gzip
 import os
 import re
 import socket
@@ -24,6 +25,9 @@ from metagraph.files import is_file, is_inside
 WAIT = 10.0  # seconds for a request to be sent
 AT_ONCE = 64  # requests
 MOST_AT_ONCE = 8 << 20  # bytes of a part of a file
+SHRUNK = (".html", ".js", ".mjs", ".css", ".json", ".glb", ".svg", ".txt", ".csv")  # what gzip makes smaller
+SHRUNK_FROM, SHRUNK_TO = 1 << 10, 64 << 20  # bytes
+KEPT = 64 << 20  # bytes of files made smaller that are kept for the next time
 _RANGE = re.compile(r"bytes=([0-9]{0,15})-([0-9]{0,15})")
 
 
@@ -70,11 +74,26 @@ class Quiet(SimpleHTTPRequestHandler):
             self.send_error(HTTPStatus.NOT_FOUND)
             return None
         wanted = _RANGE.fullmatch(self.headers.get("Range", ""))
-        return (
-            super().send_head()
-            if wanted is None or wanted[0] == "bytes=-"
-            else self._part(path, *wanted.groups())
-        )
+        if wanted is not None and wanted[0] != "bytes=-":
+            return self._part(path, *wanted.groups())
+        coded = {
+            word.partition(";")[0].strip() for word in self.headers.get("Accept-Encoding", "").split(",")
+        }
+        if "gzip" in coded and path.suffix.lower() in SHRUNK and "Range" not in self.headers:
+            content = _shrunk(path)
+            if content is not None:
+                return self._whole(path, content)
+        return super().send_head()
+
+    def _whole(self, path: Path, content: bytes) -> BytesIO:
+        """Send what comes before a file that was made smaller."""
+        self.send_response(HTTPStatus.OK)
+        self.send_header("Content-Type", self.guess_type(str(path)))
+        self.send_header("Content-Encoding", "gzip")
+        self.send_header("Vary", "Accept-Encoding")
+        self.send_header("Content-Length", str(len(content)))
+        self.end_headers()
+        return BytesIO(content)
 
     def _part(self, path: Path, first: str, last: str) -> BytesIO | None:
         """Send what comes before a part of a file, which browsers ask for to play a video again."""
@@ -104,6 +123,29 @@ class Quiet(SimpleHTTPRequestHandler):
     def list_directory(self, path: Any) -> None:
         """Show nobody what lies in a folder."""
         self.send_error(HTTPStatus.NOT_FOUND)
+
+
+_small: dict[Path, tuple[tuple[int, int], bytes]] = {}  # by file: its time and size, and what it became
+_one = threading.Lock()
+
+
+def _shrunk(path: Path) -> bytes | None:
+    """Return a file made smaller, kept until it changes; None where that does not pay or cannot be."""
+    with _one:
+        try:
+            told = path.stat()
+            state = (told.st_mtime_ns, told.st_size)
+            if not SHRUNK_FROM <= told.st_size <= SHRUNK_TO:
+                return None
+            known = _small.pop(path, None)
+            if known is None or known[0] != state:
+                known = (state, gzip.compress(path.read_bytes(), 5, mtime=0))
+        except OSError:
+            return None
+        _small[path] = known
+        while len(_small) > 1 and sum(len(content) for _, content in _small.values()) > KEPT:
+            del _small[next(iter(_small))]
+        return known[1]
 
 
 class _Server(ThreadingHTTPServer):

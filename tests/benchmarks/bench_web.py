@@ -26,8 +26,7 @@ RUNS = 5
 def main() -> None:
     path = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "sample_clips" / "sample.metagraph.yaml"
     project = open_whole(path).project
-    three = ROOT / "tests" / "node_modules" / "three"
-    web.three_js = lambda folder: three
+    web.tools = lambda folder: ROOT / "tests" / "node_modules"
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         made = registry.write(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import http.client
 import os
 import socket
@@ -109,6 +110,36 @@ def test_a_folder_is_served_with_the_types_browsers_want(tmp_path: Path) -> None
         served.close()
     with pytest.raises(OSError):
         urllib.request.urlopen(served.url, timeout=2)
+
+
+def test_who_takes_gzip_gets_less_and_the_same_and_what_changed_anew(shown: Served) -> None:
+    def got(path: str, **headers: str) -> tuple[dict[str, str], bytes]:
+        request = urllib.request.Request(
+            shown.url + path, headers={k.replace("_", "-"): v for k, v in headers.items()}
+        )
+        with urllib.request.urlopen(request, timeout=10) as answer:
+            return dict(answer.headers), answer.read()
+
+    for text in (b"metagraph " * 1000, b"character " * 2000):
+        (shown.folder / "large.js").write_bytes(text)
+        told, body = got("large.js", Accept_Encoding="br, gzip;q=0.5")
+        assert told["Content-Encoding"] == "gzip" and told["Content-Type"] == "text/javascript"
+        assert len(body) == int(told["Content-Length"]) < len(text) / 20 and gzip.decompress(body) == text
+        assert got("large.js")[1] == text and "Content-Encoding" not in got("large.js")[0]
+        assert got("large.js", Accept_Encoding="gzip", Range="bytes=0-3")[1] == text[:4]
+    assert got("index.html", Accept_Encoding="gzip")[1] == b"<p>here"  # so little is sent as it is
+    (shown.folder / "large.wav").write_bytes(bytes(5000))
+    assert got("large.wav", Accept_Encoding="gzip")[1] == bytes(5000)
+
+
+def test_what_is_kept_small_has_its_bounds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(serve, "_small", {})
+    monkeypatch.setattr(serve, "KEPT", 100)
+    for name in "abc":
+        (tmp_path / name).write_bytes(os.urandom(2000))
+        assert serve._shrunk(tmp_path / name)
+    assert [path.name for path in serve._small] == ["c"]
+    assert serve._shrunk(tmp_path / "none") is None
 
 
 def test_a_port_that_is_taken_is_an_error(tmp_path: Path) -> None:

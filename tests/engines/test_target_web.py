@@ -18,7 +18,7 @@ import pytest
 from PIL import Image
 
 from metagraph.engines.reading import read_export
-from metagraph.engines.targets import registry, web
+from metagraph.engines.targets import registry, web, web_tools
 from metagraph.graph.model import Project
 from metagraph.playback.extend_performance import hear
 from metagraph.playback.plan import Plan
@@ -57,11 +57,11 @@ def browse(folder: Path, *steps: dict[str, Any]) -> tuple[list[Any], list[str]]:
 
 @pytest.fixture(scope="module")
 def page(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    if not (MODULES / "three").is_dir():
-        pytest.skip("needs three.js (python3 run.py test fetches it where npm is)")
+    if web_tools.esbuild(MODULES) is None or not web_tools.has_three(MODULES):
+        pytest.skip("needs three.js and esbuild (python3 run.py test fetches them where npm is)")
     folder = tmp_path_factory.mktemp("web")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(web, "three_js", lambda place: MODULES / "three")
+        patch.setattr(web, "tools", lambda place: MODULES)
         report = registry.write(sample, "web", folder, SAMPLES / "ada.glb", base=SAMPLES)
     assert report.files[0] == folder / "index.html"
     return folder
@@ -118,7 +118,7 @@ def test_buttons_ask_and_the_answers_and_the_plan_show_it(page: Path) -> None:
     lanes = "(() => { const c = document.getElementById('lanes'); return c.toDataURL().length; })()"
     (before, _, after, pressed), errors = browse(
         page,
-        {"url": f"?seed={SEED}&idle=0", "until": "window.metagraph"},
+        {"url": f"?seed={SEED}&idle=0&panel", "until": "window.metagraph"},
         {"run": lanes},
         {"click": "#panel button:text-is('greeting') >> nth=0"},
         {"click": "#panel button:text-is('arms crossed')"},
@@ -166,7 +166,7 @@ def test_what_is_missing_newer_or_cut_short_is_told_in_the_page(page: Path, tmp_
     (tmp_path / "page" / "newer.json").write_text(json.dumps({**data, "metagraph": 99}))
     (tmp_path / "page" / "cut.json").write_text(json.dumps({**data, "glb": "cut.glb"}))
     (tmp_path / "page" / "cut.glb").write_bytes((page / "sample.glb").read_bytes()[:5000])
-    wrong = "document.querySelector('#message.wrong')?.textContent"
+    wrong = "document.querySelector('metagraph-character[broken]')?.message.textContent"
     told, _ = browse(
         tmp_path / "page",
         *(
@@ -182,9 +182,8 @@ def test_what_is_missing_newer_or_cut_short_is_told_in_the_page(page: Path, tmp_
 
 def test_the_vectors_hold_in_the_browser(page: Path, sample_export: Path, tmp_path: Path) -> None:
     shutil.copytree(page, tmp_path / "page")
-    shutil.copy(
-        HERE.parents[1] / "metagraph" / "engines" / "runtimes" / "javascript" / "conformance.mjs",
-        tmp_path / "page" / "metagraph",
+    shutil.copytree(
+        HERE.parents[1] / "metagraph" / "engines" / "runtimes" / "javascript", tmp_path / "page" / "metagraph"
     )
     shutil.copytree(CONFORMANCE, tmp_path / "page" / "conformance")
     shutil.copytree(sample_export, tmp_path / "page" / "conformance" / "sample")
@@ -205,7 +204,18 @@ def test_the_vectors_hold_in_the_browser(page: Path, sample_export: Path, tmp_pa
 # --- where three.js comes from
 
 
-def test_three_js_is_found_above_the_folder_else_kept_else_named_on_the_net(
+def _fetches(place: Path, *, esbuild: bool) -> None:
+    """Lay out what npm would have put there."""
+    for name in web_tools.NEEDED:
+        (place / "three" / name).parent.mkdir(parents=True, exist_ok=True)
+        (place / "three" / name).write_text("// three")
+    if esbuild:
+        for name in ("esbuild.exe", "bin/esbuild"):
+            (place / "@esbuild" / "any" / name).parent.mkdir(parents=True, exist_ok=True)
+            (place / "@esbuild" / "any" / name).write_text("no program")
+
+
+def test_what_is_not_ours_is_found_above_the_folder_else_kept_else_named_on_the_net(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sample: Project
 ) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
@@ -213,23 +223,82 @@ def test_three_js_is_found_above_the_folder_else_kept_else_named_on_the_net(
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setattr(shutil, "which", lambda name: None)
     monkeypatch.chdir(tmp_path)
-    assert web.three_js(tmp_path / "out") is None
-    report = registry.write(sample, "web", tmp_path / "out")
-    assert web.NET in (tmp_path / "out" / "index.html").read_text()
+    out = tmp_path / "out"
+    assert web_tools.tools(out) is None
+    report = registry.write(sample, "web", out)
+    assert web_tools.NET in (out / "index.html").read_text()
+    assert "./metagraph/element.js" in (out / web.CHARACTER).read_text()
     assert any("three.js is not at hand" in words for words in report.warnings)
-    for place in (web.kept(), tmp_path / "node_modules" / "three"):
-        for name in web.NEEDED:
-            (place / name).parent.mkdir(parents=True, exist_ok=True)
-            (place / name).write_text("// three")
-        assert web.three_js(tmp_path / "out") == place
-    again = registry.write(sample, "web", tmp_path / "out")
-    assert web.NET not in (tmp_path / "out" / "index.html").read_text()
+    modules = tmp_path / "node_modules"
+    _fetches(modules, esbuild=False)
+    assert web_tools.tools(out) == modules
+    again = registry.write(sample, "web", out)
+    page = (out / "index.html").read_text()
+    assert "./three/build/" in page and (out / "three" / "LICENSE").is_file() and web_tools.NET not in page
     assert not any("three.js" in words for words in again.warnings)
+    _fetches(web_tools.kept() / "node_modules", esbuild=True)
+    assert web_tools.tools(out) == web_tools.kept() / "node_modules"  # which has both
+    registry.write(sample, "web", out)  # what is there is no program: as before
+    assert "./three/build/" in (out / "index.html").read_text()
 
 
 def test_an_npm_that_fails_is_as_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shutil, "which", lambda name: "/bin/false")
-    assert web._fetched(tmp_path / "kept") is None
+    assert web_tools._fetched(tmp_path / "kept") is None
+
+
+README = (HERE.parents[1] / "metagraph" / "engines" / "runtimes" / "javascript" / "README.md").read_text()
+FIVE_LINES = README.partition("```html\n")[2].partition("```")[0]
+
+
+def test_a_character_is_in_any_page_in_five_lines(page: Path, tmp_path: Path) -> None:
+    """Offline, from files of the export alone; then in another page three of them."""
+    shutil.copytree(page, tmp_path / "page")
+    shutil.rmtree(tmp_path / "page" / "player")  # which only its own page needs
+    (tmp_path / "page" / "talk.html").write_text(FIVE_LINES.replace('id="ada"', 'id="ada" idle="off"'))
+    assert len(FIVE_LINES.splitlines()) == 5
+    three = "".join(
+        f'<metagraph-character id="{name}" src="{src}" camera="{camera}" style="width: 200px"></metagraph-character>'
+        for name, src, camera in (
+            ("a", "sample.json", "face front"),
+            ("b", "sample.json", ""),
+            ("c", "none.json", ""),
+        )
+    )
+    (tmp_path / "page" / "three.html").write_text(
+        f'{three}<script type="module" src="{web.CHARACTER}"></script>'
+    )
+    heard = """(() => { window.told = []; for (const kind of ["begin", "end"]) ada.addEventListener(kind, (e) => told.push(`${kind} ${e.detail.action}`)); })()"""
+    sound = """(async () => { const rate = 16000, one = new AudioBuffer({ length: rate, sampleRate: rate, numberOfChannels: 1 });
+      one.getChannelData(0).forEach((_, n, all) => (all[n] = n < rate / 2 ? 0 : 0.5 * Math.sin(n / 3)));
+      const id = await ada.say("ah", { audio: one }); let speech;
+      while (!(speech = ada.character.plan.track.speeches.find((s) => s.id === id))) await new Promise(requestAnimationFrame);
+      return [ada.answer(id).state, speech.end - speech.start, Boolean(speech.timing)]; })()"""
+    (_, early, said, told, spoken, asked, one, both, views), errors = browse(
+        tmp_path / "page",
+        {"url": "talk.html", "until": "window.customElements.get('metagraph-character')"},
+        {"run": heard},
+        {"run": "ada.ask({ do: 'gesture', tags: ['greeting'] })"},
+        {"until": "ada.object"},
+        {"click": "button"},
+        {"wait": 500},
+        {"run": "ada.answer('say#1').state"},
+        {"until": "told.includes('begin Hello! How are you?') && told.some((words) => words.startsWith('begin wave'))"},
+        {"run": "told.length > 1"},
+        {"run": sound},
+        {"run": "ada.describe().words.includes('say') && !ada.paused"},
+        {"run": "(async () => { const one = ada; for (let n = 0; n < 3; n++) one.setAttribute('src', 'sample.json?' + n); "
+         "one.remove(); document.body.append(one); await one.ready; return one.object.scene.parent === one.stage.scene; })()"},
+        {"url": "three.html", "until": "a.object && b.object && c.hasAttribute('broken')"},
+        {"run": "[a.character.graph === b.character.graph, c.message.textContent, a.getAttribute('camera')]"},
+        {"run": "[a, b].map(({ stage }) => stage.camera.position.distanceTo(stage.target))"},
+    )  # fmt: skip
+    assert [e for e in errors if "404" not in e and "none.json" not in e] == []
+    assert early.startswith(("early#", "#")) and said == "planned" and told and asked
+    state, seconds, timed = spoken
+    assert state in ("planned", "late") and timed and abs(seconds - 1.0) < 0.1
+    assert one and both[0] and "none.json is not there (404)" in both[1]
+    assert views[0] < views[1] / 2  # the face from near
 
 
 def test_lines_that_cannot_be_read_are_left_out_and_told(sample: Project, tmp_path: Path) -> None:

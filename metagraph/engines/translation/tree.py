@@ -260,8 +260,8 @@ class Assign(Statement):
 
 @dataclass(frozen=True)
 class Unpack(Statement):
-    """`a, b = value`, of a tuple. new: the variables are declared here. changes: one of them is assigned again
-    later.
+    """`a, b = value`, of a tuple. new: the variables are declared here. changes: one of them is assigned
+    again later.
     """
 
     targets: tuple[Expression, ...]

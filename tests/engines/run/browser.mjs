@@ -1,5 +1,5 @@
 // node browser.mjs FOLDER STEPS.json: serves a folder on the loopback, opens it in headless Chromium, and runs steps in the page.
-// STEPS: [{"url": path}, {"run": "JavaScript whose value is printed"}, {"wait": ms}, {"shot": "file.png"}, {"click": selector}, {"press": key}, {"download": [selector, "file"]}, ...]
+// STEPS: [{"url": path}, {"run": "JavaScript whose value is printed"}, {"wait": ms}, {"shot": "file.png"}, {"click": selector}, {"press": key}, {"size": [width, height]}, {"download": [selector, "file"]}, ...]
 import fs from "node:fs";
 import http from "node:http";
 import path from "node:path";
@@ -28,6 +28,7 @@ async function until(words) {  // asked from outside, since a page may forbid ev
 }
 try {
   for (const step of JSON.parse(fs.readFileSync(script))) {
+    if (step.size) await page.setViewportSize({ width: step.size[0], height: step.size[1] });
     if (step.url !== undefined) await page.goto(new URL(step.url, base).href);
     if (step.until) await until(step.until);
     if (step.run) console.log(JSON.stringify({ value: await page.evaluate(step.run) ?? null }));

@@ -13,15 +13,16 @@ function make(tag, properties = {}, ...children) {
 const row = (...children) => make("div", { className: "row" }, ...children);
 
 /**
- * Fill the panel. Returns what the page asks of it each frame: `update()`, and whether the gaze follows the pointer.
- * @param {HTMLElement} panel @param {import("../metagraph/three.js").MetagraphObject} object
+ * Fill the panel. Returns what the page asks of it each frame: `update()`, and `follow()`, the gaze at the pointer where that was asked for.
+ * @param {HTMLElement} panel @param {import("../../javascript/element.js").MetagraphCharacter} element
  */
-export function fillPanel(panel, object, stage, state) {
+export function fillPanel(panel, element) {
+  const { object, stage } = element;
   const { character } = object;
   const { graph } = character;
   const told = [];
   const answers = make("ul", { id: "answers" });
-  const out = { following: false, update };
+  let following = false, placed = -1;
   const stances = new Map(); // button -> [layer, stance]
 
   function ask(request, words) {
@@ -35,12 +36,7 @@ export function fillPanel(panel, object, stage, state) {
   }
 
   const pause = make("button", { type: "button", title: "Pause (Space)" });
-  pause.onclick = () => (state.paused = !state.paused);
-  addEventListener("keydown", (event) => {
-    if (event.code !== "Space" || /INPUT|SELECT|BUTTON|TEXTAREA/.test(event.target.tagName)) return;
-    event.preventDefault();
-    pause.click();
-  });
+  pause.onclick = () => (element.paused = !element.paused);
   panel.append(row(make("h1", { textContent: graph.name, title: graph.name }), pause));
 
   for (const layer of LAYERS) {
@@ -95,17 +91,24 @@ export function fillPanel(panel, object, stage, state) {
   const follow = make("button", { type: "button", textContent: "at the pointer" });
   const gaze = (words, to) => make("button", { type: "button", textContent: words, onclick: () => look(words, to) });
   function look(words, to) {
-    out.following = to === "pointer";
+    following = to === "pointer";
     ask({ do: "look", to, strict: to === "pointer" }, `look ${words}`);
   }
   follow.onclick = () => look("at the pointer", "pointer");
   panel.append(row(follow, gaze("at you", "user"), gaze("ahead", "ahead"), button("blink", { do: "blink" })));
-  stage.canvas.after(answers);
+  element.after(answers);
+
+  function followPointer() {
+    const point = following && stage.pointed(), now = character.now;
+    if (!point || Math.abs(now - placed) < 0.1) return; // ten times a second is enough for eyes
+    placed = now;
+    object.ask({ do: "place", id: "pointer", name: "pointer", point });
+  }
 
   let shown = "";
   function update() {
-    pause.textContent = state.paused ? "Play" : "Pause";
-    follow.setAttribute("aria-pressed", String(out.following));
+    pause.textContent = element.paused ? "Play" : "Pause";
+    follow.setAttribute("aria-pressed", String(following));
     for (const [go, [layer, stance]] of stances) go.setAttribute("aria-pressed", String(resting(character, layer) === stance));
     const rows = told.map(({ id, words }) => ({ words, answer: character.answer(id) }));
     const key = JSON.stringify(rows);
@@ -114,7 +117,7 @@ export function fillPanel(panel, object, stage, state) {
     answers.replaceChildren(...rows.map(({ words, answer }) => make("li", { className: answer.state, textContent: `${words}: ${worded(answer)}` })));
   }
   update();
-  return out;
+  return { update, follow: followPointer };
 }
 
 /** Return the stance a layer is in, or leaves. */

@@ -1,0 +1,44 @@
+import type { Answer, Ask, Character, Description, Happening } from "./index.js";
+import type { MetagraphObject } from "./three.js";
+
+export interface SayOptions {
+  id?: string;
+  /** Its sound: an address, a Blob, the bytes of a file, or an AudioBuffer; played in step with the lips. */
+  audio?: string | Blob | ArrayBuffer | AudioBuffer;
+  words?: (unknown[] | object)[];
+  visemes?: (unknown[] | object)[];
+  set?: "oculus" | "azure" | "sapi" | "polly" | "arkit";
+  gestures?: boolean;
+  mood?: string | [number, number];
+  intensity?: number;
+}
+
+/** `<metagraph-character src="sample.json">`. Importing this module defines it; it imports three.js. */
+export class MetagraphCharacter extends HTMLElement {
+  /** Fulfilled once the character is there; rejected where it cannot be loaded, as the event `error` says, too. */
+  readonly ready: Promise<this>;
+  readonly object: MetagraphObject | null;
+  readonly character: Character | null;
+  /** Seconds of the character's own time. */
+  readonly time: number;
+  paused: boolean;
+  describe(): Description | null;
+  /** Ask for something, before it is loaded, too; returns the request's id. */
+  ask(request: Ask): string;
+  answer(id: string): Answer;
+  /** Say something, with its sound where there is one; returns a promise of the request's id. */
+  say(text: string, options?: SayOptions): Promise<string>;
+  play(): void;
+  pause(): void;
+  /** Move on to a time, and stay there. */
+  seek(seconds: number): void;
+  addEventListener(type: "begin" | "end", listener: (event: CustomEvent<Happening>) => void, options?: boolean | AddEventListenerOptions): void;
+  addEventListener(type: "error", listener: (event: CustomEvent<Error>) => void, options?: boolean | AddEventListenerOptions): void;
+  addEventListener(type: string, listener: EventListenerOrEventListenerObject, options?: boolean | AddEventListenerOptions): void;
+}
+
+declare global {
+  interface HTMLElementTagNameMap {
+    "metagraph-character": MetagraphCharacter;
+  }
+}
