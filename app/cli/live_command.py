@@ -27,15 +27,20 @@ if TYPE_CHECKING:
 def arguments(parser: ArgumentParser) -> None:
     """Add the command's options."""
     parser.add_argument(
-        "--port", type=int, default=PORT, help=f"of the WebSocket, 0 for any that is free (default: {PORT})"
+        "--port", type=int, help=f"of the WebSocket, 0 for any that is free (default: {PORT})"
     )
-    parser.add_argument("--osc-port", type=int, default=OSC_PORT, metavar="PORT",
+    parser.add_argument("--osc-port", type=int, metavar="PORT",
                         help=f"of OSC over UDP, 0 for any that is free (default: {OSC_PORT})")  # fmt: skip
     parser.add_argument("--no-websocket", action="store_true", help="do not listen for WebSocket")
     parser.add_argument("--no-osc", action="store_true", help="do not listen for OSC")
     parser.add_argument(
         "--no-stdin", action="store_true", help="do not read requests from standard input, nor end with it"
     )
+    parser.add_argument(
+        "--mcp", action="store_true",
+        help="speak the Model Context Protocol on standard input and output, for language models; nothing "
+        "else listens but on ports that are named",
+    )  # fmt: skip
     parser.add_argument("--host", default="", help="listen there, not on this machine alone; needs a token")
     parser.add_argument("--token", help="what clients must say first (default: $METAGRAPH_TOKEN)")
     parser.add_argument(
@@ -68,11 +73,12 @@ def run(options: Namespace) -> int:
     wanted = checked(
         Options(
             host=options.host,
-            port=None if options.no_websocket else options.port,
-            osc=None if options.no_osc else options.osc_port,
+            port=_port(options, options.no_websocket, options.port, PORT),
+            osc=_port(options, options.no_osc, options.osc_port, OSC_PORT),
             token=options.token or os.environ.get("METAGRAPH_TOKEN") or None,
             origins=tuple(options.origin),
-            stdio=not options.no_stdin,
+            stdio=options.mcp or not options.no_stdin,
+            mcp=options.mcp,
         )
     )
     live_graph_options.checked(options)
@@ -98,13 +104,20 @@ def run(options: Namespace) -> int:
     return 0
 
 
+def _port(options: Namespace, none: bool, named: int | None, usual: int) -> int | None:
+    """Return the port to listen on, None for none."""
+    if none or (options.mcp and named is None):
+        return None
+    return usual if named is None else named
+
+
 async def _play(
     session: LiveSession, options: Options, as_json: bool, voice: PlayedVoice | None = None
 ) -> None:
     from metagraph.live.server import Server
     from metagraph.live.wire import exchange
 
-    server = Server(options, time.monotonic)
+    server = Server(options, time.monotonic, project=session.project)
     ready = await server.open()
     _end_by_signals(server)
     _greet(server, ready, options, as_json)
@@ -135,7 +148,7 @@ def _greet(server: Server, ready: Ready, options: Options, as_json: bool) -> Non
     """Say where one can be reached: to programs with a line of JSON on standard output, to people in
     words.
     """
-    if as_json:
+    if as_json and not options.mcp:
         import msgspec
 
         line = msgspec.json.encode({"event": "ready"} | msgspec.to_builtins(ready))
@@ -144,7 +157,8 @@ def _greet(server: Server, ready: Ready, options: Options, as_json: bool) -> Non
         else:
             print(line.decode(), flush=True)
         return
-    ways = ["JSON lines on standard input"] if options.stdio else []
+    spoken = "the Model Context Protocol" if options.mcp else "JSON lines"
+    ways = [f"{spoken} on standard input"] if options.stdio else []
     ways += [f"WebSocket on {ready.websocket}"] if ready.websocket is not None else []
     ways += [f"OSC on {ready.osc[0]}, port {ready.osc[1]}"] if ready.osc is not None else []
     token = "; clients need the token" if ready.token else ""

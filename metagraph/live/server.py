@@ -14,6 +14,7 @@ from typing import Any
 
 from msgspec import Struct
 
+from metagraph.graph.model import Project
 from metagraph.live import OSC_PORT, PORT
 from metagraph.live.hub import Hub
 from metagraph.live.stdio import StdioLine
@@ -27,7 +28,8 @@ CHECK = 1.0  # seconds between looks at who is still there
 class Options(Struct, frozen=True):
     """Where to listen. host: loopback, on both IP versions, where it is empty. port, osc: 0 for any free one,
     None for none. origins: web pages that may connect besides those of this machine, "null" for those from
-    files. stdio: whether standard input and output are a client.
+    files. stdio: whether standard input and output are a client. mcp: whether that speaks the Model Context
+    Protocol.
     """
 
     host: str = ""
@@ -36,6 +38,7 @@ class Options(Struct, frozen=True):
     token: str | None = None
     origins: tuple[str, ...] = ()
     stdio: bool = False
+    mcp: bool = False
 
 
 class LiveError(ValueError):
@@ -70,10 +73,17 @@ def is_loopback(host: str) -> bool:
 
 class Server:
     """Opens the lines and passes batches on. clock: seconds, of any beginning. pipes: what to read lines from
-    and write them to.
+    and write them to. project: whose tools are told, where the Model Context Protocol is spoken.
     """
 
-    def __init__(self, options: Options, clock: Callable[[], float], pipes: tuple[int, int] = (0, 1)) -> None:
+    def __init__(
+        self,
+        options: Options,
+        clock: Callable[[], float],
+        pipes: tuple[int, int] = (0, 1),
+        project: Project | None = None,
+    ) -> None:
+        self.project = project
         self.options, self.clock, self.pipes = checked(options), clock, pipes
         self.hub = Hub(options.token)
         self.stopped = asyncio.Event()
@@ -99,7 +109,13 @@ class Server:
                 f"cannot listen on {hosts[0]}: {words}. Choose another port, or 0 for any free one."
             ) from None
         if options.stdio:
-            self._stdio = StdioLine(asyncio.get_running_loop().call_soon_threadsafe, self._line, *self.pipes)
+            call = asyncio.get_running_loop().call_soon_threadsafe
+            if options.mcp and self.project is not None:
+                from metagraph.live.mcp import McpLine
+
+                self._stdio = McpLine(self.project, call, self._line, *self.pipes)
+            else:
+                self._stdio = StdioLine(call, self._line, *self.pipes)
             self._stdio_number = self.hub.open(self._stdio, self.clock(), proven=True)
             self._stdio.start()
         return Ready(websocket, osc, options.token is not None)

@@ -1,0 +1,143 @@
+"""The Model Context Protocol on standard input and output: what may be asked of the character as a language
+model's tools, and what becomes of it as their results.
+
+Revisions 2024-11-05 to 2025-11-25 of the protocol (modelcontextprotocol.io): JSON-RPC 2.0, a message a line;
+`initialize`, `ping`, `tools/list`, `tools/call`. A tool's call is a request of the session like any other.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+import msgspec
+
+from metagraph import __version__
+from metagraph.graph.model import Project
+from metagraph.graph.offered import ENGINES, tools
+from metagraph.live.stdio import StdioLine
+
+VERSIONS = ("2025-11-25", "2025-06-18", "2025-03-26", "2024-11-05")
+BROKEN, NO_REQUEST, NO_METHOD, NO_PARAMETERS = -32700, -32600, -32601, -32602  # JSON-RPC's codes
+_LOOKS = {
+    "status": "What is playing at this moment, and how much waits.",
+    "describe": "All that may be asked of this character: stances, actions and tags by layer, lines, points.",
+}
+
+
+def mcp_tools(project: Project) -> list[dict[str, Any]]:
+    """Return the tools as `tools/list` tells them."""
+    made = [
+        {"name": tool["name"], "description": tool["description"], "inputSchema": tool["input_schema"]}
+        for tool in tools(project, ENGINES)
+    ]
+    for name, words in _LOOKS.items():
+        schema = {"type": "object", "properties": {}, "additionalProperties": False}
+        hints = {"readOnlyHint": True}
+        made.append({"name": name, "description": words, "inputSchema": schema, "annotations": hints})
+    return made
+
+
+class McpLine(StdioLine):
+    """The client that started the session, where it speaks this protocol. take: called with each request as
+    the session has it, and None at the end, on the event loop.
+    """
+
+    def __init__(
+        self,
+        project: Project,
+        call: Callable[..., object],
+        take: Callable[[bytes | None], None],
+        source: int = 0,
+        target: int = 1,
+    ) -> None:
+        super().__init__(call, self._heard, source, target)
+        self._project, self._ask = project, take
+        self._calls: deque[Any] = deque()  # ids of tools' calls that the session has not answered yet
+
+    def _heard(self, line: bytes | None) -> None:
+        if line is None:
+            self._ask(None)
+            return
+        try:
+            message = msgspec.json.decode(line)
+        except (msgspec.DecodeError, RecursionError) as error:
+            self._fail(None, BROKEN, f"it is not JSON ({error})")
+            self.answered(1)
+            return
+        ident = message.get("id") if isinstance(message, dict) else None
+        if not isinstance(message, dict) or not isinstance(message.get("method"), str):
+            if not isinstance(message, dict) or not ("result" in message or "error" in message):
+                self._fail(ident, NO_REQUEST, "a message needs a 'method'")
+            self.answered(1)  # nothing was asked of the client, so no result is awaited
+            return
+        parameters = message.get("params")
+        if not self._called(message["method"], ident, parameters if isinstance(parameters, dict) else {}):
+            self.answered(1)
+
+    def _called(self, method: str, ident: Any, parameters: dict[str, Any]) -> bool:
+        """Do what a message asks for; return whether the session has to answer."""
+        if ident is None:
+            return False  # a notification: that it is there, or that it waits no more
+        if method == "initialize":
+            wanted = parameters.get("protocolVersion")
+            self._answer(ident, {
+                "protocolVersion": wanted if wanted in VERSIONS else VERSIONS[0],
+                "capabilities": {"tools": {}},
+                "serverInfo": {"name": "metagraph", "version": __version__},
+                "instructions": _instructions(self._project),
+            })  # fmt: skip
+        elif method == "ping":
+            self._answer(ident, {})
+        elif method == "tools/list":
+            self._answer(ident, {"tools": mcp_tools(self._project)})
+        elif method == "tools/call":
+            return self._tool(ident, parameters.get("name"), parameters.get("arguments") or {})
+        else:
+            self._fail(ident, NO_METHOD, f"'{method[:80]}' is not understood here")
+        return False
+
+    def _tool(self, ident: Any, name: Any, given: Any) -> bool:
+        if name not in (*ENGINES, *_LOOKS):
+            self._fail(ident, NO_PARAMETERS, f"there is no tool '{str(name)[:80]}'")
+            return False
+        if not isinstance(given, dict):
+            self._fail(ident, NO_PARAMETERS, "'arguments' should be an object")
+            return False
+        request = {key: value for key, value in given.items() if key not in ("do", "after")}
+        if "after" in given:
+            request["in"] = given["after"]  # as the session calls it
+        self._calls.append(ident)
+        self._ask(msgspec.json.encode({**request, "do": name}))
+        return True
+
+    def send(self, messages: list[tuple[bytes, bool]]) -> None:
+        """Answer tools' calls, in their order; what happens later, and poses, are not told here."""
+        for data, binary in messages:
+            if binary or data.startswith(b'{"event"') or not self._calls:
+                continue
+            told = msgspec.json.decode(data)
+            self._answer(self._calls.popleft(), {
+                "content": [{"type": "text", "text": data.decode()}],
+                "structuredContent": told,
+                "isError": "error" in told or told.get("state") == "refused",
+            })  # fmt: skip
+
+    def _answer(self, ident: Any, result: dict[str, Any]) -> None:
+        super().send([(msgspec.json.encode({"jsonrpc": "2.0", "id": ident, "result": result}), False)])
+
+    def _fail(self, ident: Any, code: int, words: str) -> None:
+        error = {"code": code, "message": words}
+        super().send([(msgspec.json.encode({"jsonrpc": "2.0", "id": ident, "error": error}), False)])
+
+
+def _instructions(project: Project) -> str:
+    """Return what a model should know before it calls a tool."""
+    return (
+        f"You move the body of a character ('{project.name}') that stands before whom you talk with. It "
+        "idles, breathes, blinks and looks about by itself. Call `say` with what you say; add a `gesture` "
+        "with a fitting tag now and then, `nod` or `shake`, `look` where it matters, `mode` 'listening' "
+        "while the other speaks, `mood` when it changes. Times are seconds; without `at` or `after` things "
+        "begin as soon as can be. A result tells when it plays, or in `why` why it does not."
+    )
