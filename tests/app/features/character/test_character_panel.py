@@ -24,7 +24,7 @@ def test_a_paused_window_rests_and_playing_goes_on_without_a_leap(toys):
     here, frames = transport.seconds, panel.frames
     drive.pause(600)
     assert transport.seconds == here
-    assert panel.frames <= frames + 2, "what was asked for before"
+    assert panel.frames <= frames + 6, "what was asked for before; 36 if it played on"
     transport.set_playing(True)
     drive.wait(lambda: transport.seconds != here)
     assert transport.seconds - here < 0.3, "the time it rested is not made up for"
