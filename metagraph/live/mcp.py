@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import msgspec
 
@@ -17,6 +17,7 @@ from metagraph import __version__
 from metagraph.graph.model import Project
 from metagraph.graph.offered import ENGINES, tools
 from metagraph.live.stdio import StdioLine
+from metagraph.speech.text_gestures import gesture_requests, proposed, words_of
 
 VERSIONS = ("2025-11-25", "2025-06-18", "2025-03-26", "2024-11-05")
 BROKEN, NO_REQUEST, NO_METHOD, NO_PARAMETERS = -32700, -32600, -32601, -32602  # JSON-RPC's codes
@@ -39,6 +40,17 @@ def mcp_tools(project: Project) -> list[dict[str, Any]]:
     return made
 
 
+_NOBODY = object()  # whose call it is that the line itself made
+
+
+class _Call(NamedTuple):
+    """A request that the session has to answer. text, words: what is said, where gestures go with it."""
+
+    ident: Any
+    text: str = ""
+    words: Any = None
+
+
 class McpLine(StdioLine):
     """The client that started the session, where it speaks this protocol. take: called with each request as
     the session has it, and None at the end, on the event loop.
@@ -54,7 +66,12 @@ class McpLine(StdioLine):
     ) -> None:
         super().__init__(call, self._heard, source, target)
         self._project, self._ask = project, take
-        self._calls: deque[Any] = deque()  # ids of tools' calls that the session has not answered yet
+        self._calls: deque[_Call] = deque()  # what the session has not answered yet
+        self._tags = {
+            layer: {t for x in graph.actions.values() if x.kind == "gesture" for t in x.tags}
+            for layer, graph in project.graphs.items()
+        }
+        self._gestured = 0
 
     def _heard(self, line: bytes | None) -> None:
         if line is None:
@@ -108,9 +125,23 @@ class McpLine(StdioLine):
         request = {key: value for key, value in given.items() if key not in ("do", "after")}
         if "after" in given:
             request["in"] = given["after"]  # as the session calls it
-        self._calls.append(ident)
+        alone = name == "say" and request.get("gestures", True) is True and not request.get("line")
+        text = request.get("text") if alone else None
+        self._calls.append(_Call(ident, text if isinstance(text, str) else "", request.get("words")))
         self._ask(msgspec.json.encode({**request, "do": name}))
         return True
+
+    def _gesture(self, said: _Call, begins: float) -> None:
+        """Ask for the gestures that go with what is said."""
+        try:
+            told = [(str(word), float(start), float(end)) for word, start, end in said.words or ()]
+        except (TypeError, ValueError):
+            told = []  # as objects, or without ends: as long as lips take
+        self._gestured += 1
+        made = proposed(words_of(said.text, told), self._tags, seed=self._gestured)
+        for request in gesture_requests(made, begins, f"said{self._gestured}"):
+            self._calls.append(_Call(_NOBODY))
+            self._ask(msgspec.json.encode(request))
 
     def send(self, messages: list[tuple[bytes, bool]]) -> None:
         """Answer tools' calls, in their order; what happens later, and poses, are not told here."""
@@ -118,7 +149,12 @@ class McpLine(StdioLine):
             if binary or data.startswith(b'{"event"') or not self._calls:
                 continue
             told = msgspec.json.decode(data)
-            self._answer(self._calls.popleft(), {
+            call = self._calls.popleft()
+            if call.ident is _NOBODY:
+                continue
+            if call.text and isinstance(told.get("at"), int | float):
+                self._gesture(call, float(told["at"]))
+            self._answer(call.ident, {
                 "content": [{"type": "text", "text": data.decode()}],
                 "structuredContent": told,
                 "isError": "error" in told or told.get("state") == "refused",
@@ -136,8 +172,9 @@ def _instructions(project: Project) -> str:
     """Return what a model should know before it calls a tool."""
     return (
         f"You move the body of a character ('{project.name}') that stands before whom you talk with. It "
-        "idles, breathes, blinks and looks about by itself. Call `say` with what you say; add a `gesture` "
-        "with a fitting tag now and then, `nod` or `shake`, `look` where it matters, `mode` 'listening' "
-        "while the other speaks, `mood` when it changes. Times are seconds; without `at` or `after` things "
-        "begin as soon as can be. A result tells when it plays, or in `why` why it does not."
+        "idles, breathes, blinks and looks about by itself. Call `say` with what you say: gestures that go "
+        "with its words are made (`gestures` false leaves them to you). `gesture` with a tag, `nod`, `shake` "
+        "and `look` do more where it matters; `mode` 'listening' while the other speaks, `mood` when it "
+        "changes. Times are seconds; without `at` or `after` things begin as soon as can be. A result tells "
+        "when it plays, or in `why` why it does not."
     )

@@ -102,7 +102,7 @@ def test_the_limits_are_the_codes() -> None:
 
 
 def test_the_examples_are_json_as_it_is_sent() -> None:
-    reply, client, pose = (json.loads(x) for x in re.findall(r"^```json\n(.*?)\n```$", PAGE, re.S | re.M))
+    reply, pose, client = (json.loads(x) for x in re.findall(r"^```json\n(.*?)\n```$", PAGE, re.S | re.M))
     (command,) = client["mcpServers"].values()
     assert command["command"] == "metagraph" and _parser("live").parse_args(command["args"]).mcp
     assert set(reply) <= set(messages.Reply.__struct_fields__) and {

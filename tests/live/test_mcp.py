@@ -95,6 +95,22 @@ def test_calls_are_requests_and_answers_find_their_calls_in_order(session: Sessi
     )
 
 
+def test_gestures_go_with_what_is_said_on_its_words_and_answer_to_nobody(session: Session) -> None:
+    text = "Hello everybody, it is really wonderful to see you."
+    for said in ({"text": text}, {"text": text, "gestures": False}, {"line": "hello", "text": text}):
+        session.called("tools/call", json.dumps(said), name="say", arguments=said)
+    session.line.send([(b'{"state":"planned","at":4.0}', False)] * 3)
+    asked = [json.loads(x or b"") for x in session.asked[3:]]
+    assert next(x["tags"] for x in asked if x["do"] == "gesture") == ["greeting"] and len(asked) >= 2
+    assert all(x["stroke"] >= 4.0 and x["late"] > 0 for x in asked if x["do"] == "gesture")
+    session.line.send([(b'{"state":"planned"}', False)] * len(asked))
+    assert len(session.told) == 3  # of the calls alone
+    told = {"text": "Well, hello", "words": [["Well", 0.1, 0.4], ["hello", 3.0, 3.6]]}
+    session.called("tools/call", name="say", arguments=told)
+    session.line.send([(b'{"state":"planned","at":1.0}', False)])
+    assert json.loads(session.asked[-1] or b"")["stroke"] == pytest.approx(4.2)
+
+
 def test_what_cannot_be_understood_is_told_and_what_waits_for_no_answer_gets_none(session: Session) -> None:
     def code(message: Any) -> int | None:
         told = session.heard(message)
