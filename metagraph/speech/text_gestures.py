@@ -28,7 +28,7 @@ from metagraph.speech.language_packs import languages
 
 APART: Mapping[Layer, float] = {"arms": 2.4, "head": 1.8}  # seconds between two strokes of a layer, at least
 LATE = 0.35  # seconds that a stroke may come after its word; later than that none is made
-FIRST = 1.0  # seconds into a text up to which a stroke may come late: a hand needs as long to get there
+FIRST = 1.4  # seconds into a text up to which a stroke may come late: a hand needs as long to get there
 PLAIN = 0.55  # of the clauses that propose nothing, how many get a beat
 LEAD = 0.1  # seconds that a stroke comes before the middle of its word's vowels
 START = 0.35  # seconds before a sentence begins, so that a hand can be where its first stroke needs it
@@ -110,11 +110,15 @@ def gesture_words(language: str = "en") -> GestureWords:
     return msgspec.json.decode(data, type=GestureWords)
 
 
-def words_of(text: str, told: Sequence[tuple[str, float, float]] = ()) -> list[TextWord]:
+def words_of(
+    text: str, told: Sequence[tuple[str, float, float]] = (), seconds: float | None = None
+) -> list[TextWord]:
     """Return a text's words with their times: as a synthesiser told them, else as long as lips would take.
 
-    told: word, start and end, seconds; they are matched to the text in order.
+    told: word, start and end, seconds; they are matched to the text in order. seconds: how long all of it
+    takes, where that alone is known.
     """
+    pace = 1.0 if seconds is None or told else seconds / max(1e-3, float(read_aloud(ALPHABET, text)))
     out: list[TextWord] = []
     left = list(told)
     for word, end, mark in _split(text[:LONGEST]):
@@ -123,8 +127,8 @@ def words_of(text: str, told: Sequence[tuple[str, float, float]] = ()) -> list[T
                 break
             _, start, stop = left.pop(0)
         else:
-            stop = read_aloud(ALPHABET, text[:end])
-            start = max(out[-1].end if out else 0.0, stop - read_aloud(ALPHABET, word))
+            stop = pace * read_aloud(ALPHABET, text[:end])
+            start = max(out[-1].end if out else 0.0, stop - pace * read_aloud(ALPHABET, word))
         out.append(TextWord(word, float(start), float(stop), mark))
     return out
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -151,6 +152,25 @@ def test_the_python_client_runs(port: str, tmp_path: Path) -> None:
     first, second = run("client.py", [sys.executable], port, tmp_path).splitlines()
     assert "'state': 'planned'" in first or "'state': 'late'" in first
     assert "nod" in second
+
+
+def test_the_talking_agent_talks_with_voice_lips_and_gestures(port: str, tmp_path: Path) -> None:
+    """It is told something, and what it does about it is what was played: most gestures on their words."""
+    if shutil.which("espeak-ng") is None:
+        pytest.skip("espeak-ng is not here (python3 run.py test installs it)")
+    text = (CLIENTS / "talking_agent.py").read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= 45
+    (tmp_path / "agent.py").write_text(text.replace("8765", port), encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "agent.py", str(ROOT / "sample_clips" / "sample.metagraph.yaml")],
+        input="let us build a boat\n", capture_output=True, text=True, timeout=60, cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    said, *made = done.stdout.splitlines()
+    assert "let us build a boat" in said and (tmp_path / "said.wav").stat().st_size > 10_000
+    played = [words for words in made if words.strip().startswith("[")]
+    assert len(made) >= 2 and played, made  # what the character was at may leave no time for the first
 
 
 def test_the_javascript_client_runs(port: str, tmp_path: Path) -> None:

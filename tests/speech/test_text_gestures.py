@@ -96,6 +96,8 @@ def test_times_are_those_that_are_told_else_as_long_as_lips_take() -> None:
     assert one.word == "hello" and one.at == pytest.approx(2.2)
     guessed = words_of("Well, hello there")
     assert [w.text for w in guessed] == ["Well", "hello", "there"] and guessed[0].mark == ","
+    slow = words_of("Well, hello there", seconds=10.0)
+    assert slow[-1].end == pytest.approx(10.0, abs=0.5) and slow[1].start > 2 * guessed[1].start
     assert all(a.end <= b.start < b.end for a, b in pairwise(guessed))
 
 
