@@ -58,16 +58,24 @@ class Offscreen:
             return str(self._ctx.info["GL_RENDERER"])
 
     def render(
-        self, scene: Scene, camera: Camera, theme: Theme = DARK, size: tuple[int, int] | None = None
+        self,
+        scene: Scene,
+        camera: Camera,
+        theme: Theme = DARK,
+        size: tuple[int, int] | None = None,
+        upright: bool = True,
     ) -> NDArray[np.uint8]:
-        """Return the picture `[H, W, 4]` uint8, sRGB, first row at the top, alpha premultiplied."""
+        """Return the picture `[H, W, 4]` uint8, sRGB, first row at the top, alpha premultiplied. upright: in
+        memory, too; without, it lies there from below and who uses it turns it, perhaps on another thread.
+        """
         if size is not None and (max(1, size[0]), max(1, size[1])) != self.size:
             self.resize(*size)
         width, height = self.size
         with self._ctx:
             self.renderer.draw(scene, camera, self.size, self._fbo, theme)
             data = self._fbo.read(components=4, alignment=1)
-        return np.ascontiguousarray(np.frombuffer(data, np.uint8).reshape(height, width, 4)[::-1])
+        picture = np.frombuffer(data, np.uint8).reshape(height, width, 4)[::-1]
+        return np.ascontiguousarray(picture) if upright else picture
 
     def draw(self, scene: Scene, camera: Camera, theme: Theme = DARK) -> None:
         """Draw to the end without reading the picture: what a window's frame costs."""

@@ -136,6 +136,7 @@ class ImageView(CameraMouse, QWidget):
         self._init_camera()
         self._compose = compose
         self._offscreen: Any = None
+        self._drawn: tuple[object, Scene, QImage] | None = None  # the last picture, and what it shows
         self._contexts: list[Any] = []  # nobody else gives a context back when the widget goes
         self.destroyed.connect(lambda *_, made=self._contexts: [each.release() for each in made])
         self.theme: Theme = DARK
@@ -156,10 +157,15 @@ class ImageView(CameraMouse, QWidget):
                 self.failed.emit(str(error))
         painter = QPainter(self)
         if self._offscreen:
-            picture = self._offscreen.render(self._compose(), self.camera, self.theme, size)
-            image = to_image(picture)
-            image.setDevicePixelRatio(ratio)
-            painter.drawImage(0, 0, image)
+            scene = self._compose()  # which may move the camera
+            look = self.camera, self.theme, size, ratio
+            drawn = self._drawn
+            if drawn is None or drawn[0] != look or not drawn[1].same(scene):
+                picture = self._offscreen.render(scene, self.camera, self.theme, size)
+                image = to_image(picture)
+                image.setDevicePixelRatio(ratio)
+                drawn = self._drawn = look, scene, image
+            painter.drawImage(0, 0, drawn[2])
         else:
             painter.fillRect(self.rect(), self.palette().window())
         painter.end()
