@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -185,6 +186,8 @@ def make_view(compose: Compose, parent: QWidget | None = None) -> GLView | Image
 
 def _in_software() -> bool:
     """Return whether the window system's OpenGL has no graphics card behind it."""
+    if not any(any(Path("/dev").glob(name)) for name in ("dri/card*", "dri/render*", "nvidia*", "dxg")):
+        return True  # there is none, and asking OpenGL takes long
     context, surface = QOpenGLContext(), QOffscreenSurface()
     if not context.create():
         return True
