@@ -70,9 +70,16 @@ def bounds_of(seen: Sequence[Seen], times: np.ndarray) -> tuple[np.ndarray, np.n
 
 
 def pictures(
-    seen: Sequence[Seen], times: np.ndarray, size: tuple[int, int], look: str, camera: Any = None
+    seen: Sequence[Seen],
+    times: np.ndarray,
+    size: tuple[int, int],
+    look: str,
+    camera: Any = None,
+    into: np.ndarray | None = None,
 ) -> Iterator[np.ndarray]:
-    """Yield one picture `[H, W, 4]` for each time. The camera holds still; by default it sees all."""
+    """Yield one picture `[H, W, 4]` for each time. The camera holds still; by default it sees all. into: an
+    array that all come in, for who is done with one before asking for the next.
+    """
     from app.stage.stools import stools
     from preview.camera import whole_figure
     from preview.offscreen import Offscreen
@@ -86,7 +93,7 @@ def pictures(
         for first in range(0, len(times), TOGETHER):
             some = times[first : first + TOGETHER]
             for actors in zip(*(_actors(figure, shown, some) for figure, shown in seen), strict=True):
-                yield offscreen.render(Scene((*actors, *seats)), camera, THEMES[look], upright=False)
+                yield offscreen.render(Scene((*actors, *seats)), camera, THEMES[look], into=into)
 
 
 def _actors(figure: Any, shown: Shown, times: np.ndarray) -> list[Any]:
@@ -238,7 +245,8 @@ def draw_to(
             if progress:
                 print(f"{count}/{len(times)}", file=sys.stderr, flush=True)
 
-        write_video(out, pictures(seen, times, size, look), fps, size, told, sound=sound)
+        into = np.empty((size[1], size[0], 4), np.uint8)
+        write_video(out, pictures(seen, times, size, look, into=into), fps, size, told, sound=sound)
     elif out.suffix == ".png":
         from preview.sheet import contact_sheet, write_png
 

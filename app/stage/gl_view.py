@@ -137,6 +137,7 @@ class ImageView(CameraMouse, QWidget):
         self._init_camera()
         self._compose = compose
         self._offscreen: Any = None
+        self._pixels: np.ndarray | None = None
         self._drawn: tuple[object, Scene, QImage] | None = None  # the last picture, and what it shows
         self._contexts: list[Any] = []  # nobody else gives a context back when the widget goes
         self.destroyed.connect(lambda *_, made=self._contexts: [each.release() for each in made])
@@ -162,15 +163,20 @@ class ImageView(CameraMouse, QWidget):
             look = self.camera, self.theme, size, ratio
             drawn = self._drawn
             if drawn is None or drawn[0] != look or not drawn[1].same(scene):
-                picture = self._offscreen.render(scene, self.camera, self.theme, size)
-                image = to_image(picture)
-                image.setDevicePixelRatio(ratio)
-                drawn = self._drawn = look, scene, image
+                drawn = self._drawn = look, scene, self._fresh(scene, size)
+                drawn[2].setDevicePixelRatio(ratio)
             painter.drawImage(0, 0, drawn[2])
         else:
             painter.fillRect(self.rect(), self.palette().window())
         painter.end()
         self.painted.emit(0.0)
+
+    def _fresh(self, scene: Scene, size: tuple[int, int]) -> QImage:
+        """Draw, and return the image, whose pixels lie in the same memory as those of the one before."""
+        if self._pixels is None or self._pixels.shape[:2] != size[::-1]:
+            self._pixels = np.empty((size[1], size[0], 4), np.uint8)
+        self._offscreen.render(scene, self.camera, self.theme, size, self._pixels)
+        return QImage(self._pixels.data, *size, size[0] * 4, QImage.Format.Format_RGBA8888_Premultiplied)
 
 
 def make_view(compose: Compose, parent: QWidget | None = None) -> GLView | ImageView:
