@@ -300,10 +300,9 @@ def resting() -> None:
     busy(6)
     rounds = [busy(4) for _ in range(3)]
     share, rate = (statistics.median(x) for x in zip(*rounds, strict=True))
-    print(
-        f"playing: {share:.1%} of a core, {rate:.1f} pictures a second, "
-        f"{share / max(rate, 1e-9) * 1e3:.1f} ms each ({window.preview.view.width()} x {window.preview.view.height()})"
-    )
+    size = f"{window.preview.view.width()} x {window.preview.view.height()}"
+    each = share / max(rate, 1e-9) * 1e3
+    print(f"playing: {share:.1%} of a core, {rate:.1f} pictures a second, {each:.1f} ms each ({size})")
     window.session.transport.set_playing(False)
     busy(22)
     print(f"paused:  {busy(8)[0]:.2%} of a core")
