@@ -12,6 +12,11 @@ from PySide6.QtCore import QCoreApplication, Qt
 from PySide6.QtGui import QSurfaceFormat
 from PySide6.QtWidgets import QApplication
 
+from app.memory import frugal
+from app.quick_imports import without_search
+
+without_search()
+
 if TYPE_CHECKING:
     from app.shell.window import Window
 
@@ -21,6 +26,7 @@ def prepare() -> QApplication:
     found = QApplication.instance()
     if isinstance(found, QApplication):
         return found
+    frugal()
     # Planning and checking run on threads; the window's own must get its turn well within a frame.
     sys.setswitchinterval(0.001)
     surface = QSurfaceFormat()

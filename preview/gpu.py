@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from metagraph.budgets import PICTURE_PIXELS
 from metagraph.pictures import picture_size
-from preview.mesh import Mesh
+from preview.mesh import Mesh, arranged
 from preview.scene import Actor
 
 Array = NDArray[Any]
@@ -35,8 +35,9 @@ _LAYOUTS = {
 
 @dataclass
 class LoadedMesh:
-    """One mesh's buffers, and a vertex array for each program that draws it."""
+    """One mesh's buffers, and a vertex array for each program that draws it. order: the vertices' `[U]`."""
 
+    order: Array
     vertices: moderngl.Buffer
     positions: moderngl.Buffer
     indices: moderngl.Buffer
@@ -143,10 +144,13 @@ class Store:
         loaded = self._meshes.get(mesh)
         if loaded is None:
             buffer = self._ctx.buffer
+            order, triangles = arranged(mesh)
+            vertices = mesh.vertices[order]
             loaded = self._meshes[mesh] = LoadedMesh(
-                buffer(mesh.vertices.tobytes()),
-                buffer(mesh.vertices["position"].tobytes()),
-                buffer(np.ascontiguousarray(mesh.triangles, "<u4").tobytes()),
+                order,
+                buffer(vertices.tobytes()),
+                buffer(vertices["position"].tobytes()),
+                buffer(np.ascontiguousarray(triangles, "<u4").tobytes()),
                 {b.image: self._image(b.image) for b in mesh.batches if b.image is not None},
             )
         loaded.idle = 0
@@ -163,7 +167,7 @@ class Store:
         if wanted.tobytes() != (loaded.morphs or bytes(wanted.nbytes)):  # on change only
             active = np.flatnonzero(np.abs(wanted) > 1e-5)
             moved = mesh.vertices["position"] + np.tensordot(wanted[active], mesh.morphs[active], 1)
-            loaded.positions.write(np.ascontiguousarray(moved, "<f4").tobytes())
+            loaded.positions.write(np.ascontiguousarray(moved[loaded.order], "<f4").tobytes())
             loaded.morphs = wanted.tobytes()
 
     def _image(self, encoded: bytes) -> moderngl.Texture:

@@ -51,6 +51,33 @@ class Mesh:
     morphs: Array | None = None
 
 
+def arranged(mesh: Mesh) -> tuple[Array, Array]:
+    """Return the order vertices are best given to a graphics card in `[U]`, and the triangles `[N, 3]` that
+    count by it, each batch where it was.
+
+    Triangles that lie together come one after the other, so that each vertex is skinned about once instead of
+    twice.
+    """
+    place = mesh.vertices["position"]
+    if not len(mesh.triangles):
+        return np.arange(len(place)), mesh.triangles
+    low, size = place.min(0), max(float(np.ptp(place, axis=0).max()), 1e-9)
+    cell = ((place - low) / size * 1023).astype(np.int64)[mesh.triangles].sum(1) // 3
+    # A curve through all cells that stays close by (Morton's): the bits of x, y and z take turns.
+    for shift, mask in ((16, 0x30000FF), (8, 0x300F00F), (4, 0x30C30C3), (2, 0x9249249)):
+        cell = (cell | cell << shift) & mask
+    code = cell[:, 0] | cell[:, 1] << 1 | cell[:, 2] << 2
+    batch = np.zeros(len(code), np.int64)
+    for n, b in enumerate(mesh.batches):
+        batch[b.first : b.first + b.count] = n
+    triangles = mesh.triangles[np.lexsort((code, batch))]
+    used, first = np.unique(triangles, return_index=True)
+    order = used[np.argsort(first)]
+    number = np.zeros(len(place), np.uint32)
+    number[order] = np.arange(len(order), dtype=np.uint32)
+    return order, number[triangles]
+
+
 def coarse(mesh: Mesh, cells: int = 84) -> Mesh:
     """Return a mesh with vertices merged that share a cell (height / `cells`), a bone and a piece: for
     shadows and crowds.

@@ -58,16 +58,27 @@ class Offscreen:
             return str(self._ctx.info["GL_RENDERER"])
 
     def render(
-        self, scene: Scene, camera: Camera, theme: Theme = DARK, size: tuple[int, int] | None = None
+        self,
+        scene: Scene,
+        camera: Camera,
+        theme: Theme = DARK,
+        size: tuple[int, int] | None = None,
+        into: NDArray[np.uint8] | None = None,
     ) -> NDArray[np.uint8]:
-        """Return the picture `[H, W, 4]` uint8, sRGB, first row at the top, alpha premultiplied."""
+        """Return the picture `[H, W, 4]` uint8, sRGB, first row at the top, alpha premultiplied. into: an
+        array of that size to be filled and returned; fresh memory costs more than the copy.
+        """
         if size is not None and (max(1, size[0]), max(1, size[1])) != self.size:
             self.resize(*size)
         width, height = self.size
         with self._ctx:
             self.renderer.draw(scene, camera, self.size, self._fbo, theme)
-            data = self._fbo.read(components=4, alignment=1)
-        return np.ascontiguousarray(np.frombuffer(data, np.uint8).reshape(height, width, 4)[::-1])
+            self._fbo.read_into(self._read, components=4, alignment=1)
+        picture = self._read.reshape(height, width, 4)[::-1]
+        if into is None:
+            return picture.copy()
+        into[...] = picture
+        return into
 
     def draw(self, scene: Scene, camera: Camera, theme: Theme = DARK) -> None:
         """Draw to the end without reading the picture: what a window's frame costs."""
@@ -83,6 +94,7 @@ class Offscreen:
             color, depth = self._ctx.renderbuffer(self.size, 4), self._ctx.depth_renderbuffer(self.size)
             self._fbo = self._ctx.framebuffer([color], depth)
             self._held = [color, depth, self._fbo]
+        self._read = np.empty(4 * self.size[0] * self.size[1], np.uint8)  # what is read back comes here first
 
     def _give_back(self) -> None:
         while self._held:

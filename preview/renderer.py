@@ -304,12 +304,20 @@ class Renderer:
         if frame.light is not None:
             low, high = frame.bounds
             thrown = -TO_LIGHT / TO_LIGHT[1] * max(0.0, float(high[1]))
-            low, high = np.minimum(low, low + thrown), np.maximum(high, high + thrown)
-            middle, half = (low + high) / 2, (high - low) / 2 * 1.05
-            patch = (middle[0], middle[2], half[0], half[2])
+            fade_low, fade_high = np.minimum(low, low + thrown), np.maximum(high, high + thrown)
+            middle, half = (fade_low + fade_high) / 2, (fade_high - fade_low) / 2 * 1.05
+            # Only a strip along the light can be dark.
+            along = TO_LIGHT[[0, 2]] / np.linalg.norm(TO_LIGHT[[0, 2]])
+            turn = np.stack([along, [-along[1], along[0]]])
+            feet = np.array([(x, z) for x in (low[0], high[0]) for z in (low[2], high[2])])
+            strip = np.concatenate([feet, feet + thrown[[0, 2]]]) @ turn.T
+            least, most = strip.min(0) - 0.05 * half.max(), strip.max(0) + 0.05 * half.max()
+            centre = (least + most) / 2 @ turn
+            patch = (*centre, *((most - least) / 2))
             program = self._program("cast", shaders.GROUND_VERTEX, shaders.CAST)
             self._shadow_map.use(1)
-            _set(program, u_matrix=frame.matrix, u_patch=patch, u_turn=(1.0, 0.0))
+            _set(program, u_matrix=frame.matrix, u_patch=patch, u_turn=tuple(along))
+            _set(program, u_fade=(middle[0], middle[2], max(half[0], half[2])))
             _set(program, u_dark=frame.theme.shadow, u_shadow=1, u_light=frame.light)
             self._bare("cast", program).render(moderngl.TRIANGLE_STRIP, 4)
         program = self._program("spots", shaders.SPOT_VERTEX, shaders.SPOT)

@@ -49,6 +49,14 @@ class Scene:
     shadow: bool = True
     background: tuple[float, float, float, float] | None = None
 
+    def same(self, other: Scene) -> bool:
+        """Return whether both give the same picture, to the last bit of what they are made of."""
+        return (
+            (self.ground, self.shadow, self.background) == (other.ground, other.shadow, other.background)
+            and len(self.actors) == len(other.actors)
+            and all(_same(a, b) for a, b in zip(self.actors, other.actors, strict=True))
+        )
+
     def bounds(self) -> tuple[Array, Array]:
         """Return the lowest and highest corner of a box round all actors; a person's size when there are
         none.
@@ -57,6 +65,16 @@ class Scene:
         if not boxes:
             return np.array([-0.5, 0.0, -0.5]), np.array([0.5, 1.8, 0.5])
         return np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)
+
+
+def _same(a: Actor, b: Actor) -> bool:
+    return a is b or (
+        a.figure is b.figure
+        and (a.bones, a.opacity, a.marks) == (b.bones, b.opacity, b.marks)
+        and np.array_equal(a.rotations, b.rotations)
+        and np.array_equal(a.positions, b.positions)
+        and (a.morphs is b.morphs or (a.morphs is not None and np.array_equal(a.morphs, b.morphs)))  # type: ignore[arg-type]
+    )
 
 
 @dataclass(frozen=True)

@@ -84,13 +84,13 @@ CAST = (
     + _SHADOW
     + """
 uniform vec3 u_dark;
-uniform vec4 u_patch;
+uniform vec3 u_fade;  // x, z and radius of what the shadow fades towards
 in vec2 v_at;
 out vec4 o_color;
 void main() {
     vec3 world = vec3(v_at.x, 0.0, v_at.y);
     float light = 0.5 * (lit(world, vec2(0.0085, 0.0035), 0.002) + lit(world, vec2(-0.0035, 0.0085), 0.002));
-    vec2 off = (v_at - u_patch.xy) / max(u_patch.z, u_patch.w);
+    vec2 off = (v_at - u_fade.xy) / u_fade.z;
     float near = clamp(1.15 - dot(off, off), 0.0, 1.0);
     o_color = vec4(mix(vec3(1.0), u_dark, (1.0 - light) * near * 0.7), 1.0);
 }

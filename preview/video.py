@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
 from fractions import Fraction
@@ -14,6 +15,8 @@ from numpy.typing import NDArray
 from metagraph.errors import FileError
 
 Array = NDArray[Any]
+
+IN_FLIGHT = 3  # pictures that wait for the encoder
 
 
 class Cancelled(Exception):  # noqa: N818 - not an error: the user asked for it
@@ -35,9 +38,9 @@ def write_video(
     size: width and height of the video; by default that of the first frame, made even as H.264 needs. Frames
     that differ are scaled. quality: x264's rate factor, 0 (lossless) .. 51. progress is called with the
     number of frames written. sound: mono samples `[N]`, -1..1, and how many there are a second; cut or filled
-    with silence to the pictures' length. A picture is encoded while the next is drawn; `frames` is asked, and
-    progress told, in the caller's thread. The file appears only when it is complete. Raises FileError (no
-    frames, not writable), Cancelled.
+    with silence to the pictures' length. Pictures are encoded while the next are drawn, `IN_FLIGHT` of them
+    at most; `frames` is asked, and progress told, in the caller's thread. The file appears only when it is
+    complete. Raises FileError (no frames, not writable), Cancelled.
     """
     import av
 
@@ -53,16 +56,17 @@ def write_video(
         ):
             stream: Any = None
             voice: Any = None
-            encoding: Future[None] | None = None
+            encoding: deque[Future[None]] = deque()
 
             def encode(frame: Any) -> None:
-                for packet in stream.encode(frame):  # scales to the stream's size when the frame differs
+                for packet in stream.encode(frame):  # scales to the stream's size where it differs
                     container.mux(packet)
 
-            def encoded() -> None:
+            def encoded(waiting: int) -> None:
+                """Come back when no more than so many wait."""
                 nonlocal count
-                if encoding is not None:
-                    encoding.result()
+                while len(encoding) > waiting:
+                    encoding.popleft().result()
                     count += 1
                     if progress is not None:
                         progress(count)
@@ -79,12 +83,10 @@ def write_video(
                     stream.options = {"preset": "veryfast", "crf": str(quality), "tune": "animation"}
                     if sound is not None:
                         voice = container.add_stream("aac", rate=sound[1], layout="mono")
-                frame = av.VideoFrame.from_ndarray(
-                    np.ascontiguousarray(picture[..., :3], np.uint8), format="rgb24"
-                )
-                encoded()
-                encoding = encoder.submit(encode, frame)
-            encoded()
+                frame = _frame(picture)  # a copy: who draws may draw into the same memory again
+                encoded(IN_FLIGHT - 1)
+                encoding.append(encoder.submit(encode, frame))
+            encoded(0)
             if stream is None:
                 raise FileError(
                     path, "there are no frames to write", remedy="Choose a time span longer than one frame."
@@ -101,6 +103,18 @@ def write_video(
     finally:
         part.unlink(missing_ok=True)
     return count
+
+
+def _frame(picture: Array) -> Any:
+    """Copy a picture to where the encoder takes it from; it may lie in memory from below."""
+    import av
+
+    height, width, channels = picture.shape
+    frame = av.VideoFrame(width, height, "rgba" if channels == 4 else "rgb24")
+    plane: Any = frame.planes[0]
+    rows = np.frombuffer(plane, np.uint8).reshape(height, plane.line_size)
+    rows[:, : width * channels].reshape(height, width, channels)[...] = picture
+    return frame
 
 
 def _write_sound(container: Any, stream: Any, samples: Array, count: int) -> None:

@@ -17,6 +17,7 @@ from metagraph.motion.clip import Clip
 from metagraph.playback.bake import bake
 
 Seen = tuple[Any, Shown]  # a figure, and what it plays
+TOGETHER = 32  # poses of a video made at once
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -69,9 +70,16 @@ def bounds_of(seen: Sequence[Seen], times: np.ndarray) -> tuple[np.ndarray, np.n
 
 
 def pictures(
-    seen: Sequence[Seen], times: np.ndarray, size: tuple[int, int], look: str, camera: Any = None
+    seen: Sequence[Seen],
+    times: np.ndarray,
+    size: tuple[int, int],
+    look: str,
+    camera: Any = None,
+    into: np.ndarray | None = None,
 ) -> Iterator[np.ndarray]:
-    """Yield one picture `[H, W, 4]` for each time. The camera holds still; by default it sees all."""
+    """Yield one picture `[H, W, 4]` for each time. The camera holds still; by default it sees all. into: an
+    array that all come in, for who is done with one before asking for the next.
+    """
     from app.stage.stools import stools
     from preview.camera import whole_figure
     from preview.offscreen import Offscreen
@@ -82,25 +90,41 @@ def pictures(
         box = bounds_of(seen, times)
         camera = whole_figure(box, size[0] / size[1], ASIDE if len(seen) > 1 else 0.0)
     with Offscreen(*size) as offscreen:
-        for at in times:
-            yield offscreen.render(
-                Scene((*(_actor(figure, shown, at) for figure, shown in seen), *seats)), camera, THEMES[look]
-            )
+        for first in range(0, len(times), TOGETHER):
+            some = times[first : first + TOGETHER]
+            for actors in zip(*(_actors(figure, shown, some) for figure, shown in seen), strict=True):
+                yield offscreen.render(Scene((*actors, *seats)), camera, THEMES[look], into=into)
+
+
+def _actors(figure: Any, shown: Shown, times: np.ndarray) -> list[Any]:
+    """Return a figure as it is shown at each of some times."""
+    from preview.scene import Actor
+
+    if shown.over is not None:  # what is laid over is asked for one time after the other
+        return [_actor(figure, shown, at) for at in times]
+    rotations, positions = _placed(shown, times)
+    faces: list[Any] = [None] * len(times)
+    if figure.morphs:
+        faces = [figure.morph_weights(face) for face in shown.faces(times)]
+    return [Actor(figure, *at) for at in zip(rotations, positions, faces, strict=True)]
+
+
+def _placed(shown: Shown, times: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return global rotations `[..., J, 4]` and positions `[..., J, 3]` at one time, or at many."""
+    pose, skeleton = shown.pose(times), shown.skeleton
+    assert pose is not None and skeleton is not None
+    rotations, positions = skeleton.globals(pose)
+    return (rotations, positions) if shown.stand is None else shown.stand.placed(rotations, positions)
 
 
 def _actor(figure: Any, shown: Shown, times: Any) -> Any:
     """Return a figure as it is shown at one time, or at many."""
     from preview.scene import Actor
 
-    pose, skeleton = shown.pose(times), shown.skeleton
-    assert pose is not None and skeleton is not None
-    rotations, positions = skeleton.globals(pose)
-    if shown.stand is not None:
-        rotations, positions = shown.stand.placed(rotations, positions)
     morphs = (
         figure.morph_weights(shown.morphs(float(times))) if figure.morphs and np.ndim(times) == 0 else None
     )
-    return Actor(figure, rotations, positions, morphs)
+    return Actor(figure, *_placed(shown, times), morphs)
 
 
 def run(options: Namespace) -> int:
@@ -221,7 +245,8 @@ def draw_to(
             if progress:
                 print(f"{count}/{len(times)}", file=sys.stderr, flush=True)
 
-        write_video(out, pictures(seen, times, size, look), fps, size, told, sound=sound)
+        into = np.empty((size[1], size[0], 4), np.uint8)
+        write_video(out, pictures(seen, times, size, look, into=into), fps, size, told, sound=sound)
     elif out.suffix == ".png":
         from preview.sheet import contact_sheet, write_png
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 from app.look.plural import parts, short
 from metagraph.graph.model import KINDS, Action, Kind, Layer, Limb, MetaGraph, Project
@@ -91,15 +93,47 @@ def told_names(words: str, name: str) -> str:
     return words if words == name else f"{words}\n{name}"
 
 
-_KEPT: dict[tuple[int, str, Kind], tuple[MetaGraph, dict[str, str]]] = {}  # by a graph, which it holds on to
+@dataclass
+class _Kept:
+    """Names of a node's rows, the graph they were made for last, and all they were made of."""
+
+    graph: MetaGraph
+    of: tuple[Any, ...]
+    names: dict[str, str]
+
+
+_KEPT: dict[tuple[Layer, str, Kind], _Kept] = {}
 
 
 def node_names(project: Project, layer: Layer, stance: str, kind: Kind) -> dict[str, str]:
-    """Return `row_names` of a node, made once as long as its layer is as it is."""
-    graph = project.graphs[layer]
-    key = (id(graph), stance, kind)
-    if key not in _KEPT:
-        if len(_KEPT) >= 64:
-            _KEPT.clear()
-        _KEPT[key] = graph, row_names(project, graph.of(stance, kind))
-    return _KEPT[key][1]
+    """Return `row_names` of a node, made anew only where what is called there is."""
+    graph, key = project.graphs[layer], (layer, stance, kind)
+    kept = _KEPT.get(key)
+    if kept is not None and kept.graph is graph:
+        return kept.names
+    called = tuple((s.id, s.name) for s in graph.stances.values())
+    groups = tuple(graph.of(stance, k) for k in KINDS)
+    if kept is not None and _called_alike(kept.of, called, groups):
+        kept.graph, kept.of = graph, (called, groups)
+        return kept.names
+    if len(_KEPT) >= 64:
+        _KEPT.clear()
+    _KEPT[key] = _Kept(graph, (called, groups), row_names(project, graph.of(stance, kind)))
+    return _KEPT[key].names
+
+
+def _called_alike(
+    kept: tuple[Any, ...], called: tuple[tuple[str, str], ...], groups: tuple[tuple[Action, ...], ...]
+) -> bool:
+    """Return whether stances and actions are called as they were."""
+    if kept[0] != called:
+        return False
+    for before, after in zip(kept[1], groups, strict=True):
+        if before is after:
+            continue
+        if len(before) != len(after):
+            return False
+        for a, b in zip(before, after, strict=True):
+            if a is not b and (a.id, a.name, a.limb, a.end_stance) != (b.id, b.name, b.limb, b.end_stance):
+                return False
+    return True

@@ -224,8 +224,10 @@ def apply(app: QApplication, look: Theme) -> None:
         font = QFont(app.font())
         font.setPixelSize(13)
         app.setFont(font)
-    app.setPalette(palette(look))
-    app.setStyleSheet(style_sheet(look))
+    if app.property("look") != look.name:
+        app.setProperty("look", look.name)
+        app.setPalette(palette(look))
+        app.setStyleSheet(style_sheet(look))
 
 
 def strengthen(button: QPushButton) -> None:

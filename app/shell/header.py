@@ -65,8 +65,10 @@ class Header(QToolBar):
         dim = theme(self.session.look.name).dim
         room = NARROW if self.width() < WIDE else 3 * NARROW
         name = self.name.fontMetrics().elidedText(d.project.name, Qt.TextElideMode.ElideMiddle, room)
+        words = f"<b>{escape(name)}</b>&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>"
         self.name.setToolTip(f"{d.project.name}, {saved}")
-        self.name.setText(f"<b>{escape(name)}</b>&nbsp;&nbsp;<span style='color:{dim}'>{saved}</span>")
+        if words != self.name.text():  # rich text is laid out anew each time
+            self.name.setText(words)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import moderngl
@@ -136,6 +137,8 @@ class ImageView(CameraMouse, QWidget):
         self._init_camera()
         self._compose = compose
         self._offscreen: Any = None
+        self._pixels: np.ndarray | None = None
+        self._drawn: tuple[object, Scene, QImage] | None = None  # the last picture, and what it shows
         self._contexts: list[Any] = []  # nobody else gives a context back when the widget goes
         self.destroyed.connect(lambda *_, made=self._contexts: [each.release() for each in made])
         self.theme: Theme = DARK
@@ -156,14 +159,24 @@ class ImageView(CameraMouse, QWidget):
                 self.failed.emit(str(error))
         painter = QPainter(self)
         if self._offscreen:
-            picture = self._offscreen.render(self._compose(), self.camera, self.theme, size)
-            image = to_image(picture)
-            image.setDevicePixelRatio(ratio)
-            painter.drawImage(0, 0, image)
+            scene = self._compose()  # which may move the camera
+            look = self.camera, self.theme, size, ratio
+            drawn = self._drawn
+            if drawn is None or drawn[0] != look or not drawn[1].same(scene):
+                drawn = self._drawn = look, scene, self._fresh(scene, size)
+                drawn[2].setDevicePixelRatio(ratio)
+            painter.drawImage(0, 0, drawn[2])
         else:
             painter.fillRect(self.rect(), self.palette().window())
         painter.end()
         self.painted.emit(0.0)
+
+    def _fresh(self, scene: Scene, size: tuple[int, int]) -> QImage:
+        """Draw, and return the image, whose pixels lie in the same memory as those of the one before."""
+        if self._pixels is None or self._pixels.shape[:2] != size[::-1]:
+            self._pixels = np.empty((size[1], size[0], 4), np.uint8)
+        self._offscreen.render(scene, self.camera, self.theme, size, self._pixels)
+        return QImage(self._pixels.data, *size, size[0] * 4, QImage.Format.Format_RGBA8888_Premultiplied)
 
 
 def make_view(compose: Compose, parent: QWidget | None = None) -> GLView | ImageView:
@@ -179,6 +192,8 @@ def make_view(compose: Compose, parent: QWidget | None = None) -> GLView | Image
 
 def _in_software() -> bool:
     """Return whether the window system's OpenGL has no graphics card behind it."""
+    if not any(any(Path("/dev").glob(name)) for name in ("dri/card*", "dri/render*", "nvidia*", "dxg")):
+        return True  # there is none, and asking OpenGL takes long
     context, surface = QOpenGLContext(), QOffscreenSurface()
     if not context.create():
         return True

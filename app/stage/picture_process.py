@@ -117,8 +117,10 @@ def _figure(skeleton: Skeleton, character: Path | None, hidden: tuple[str, ...])
 
 if __name__ == "__main__":
     from app.faults import install_in_child
+    from app.memory import frugal
     from app.stage import picture_process  # orders name their class by its module
 
+    frugal()
     install_in_child()
     # Whoever wanted pictures may be gone in the middle of one.
     with contextlib.suppress(BrokenPipeError), sys.stdout.buffer as out:

@@ -17,6 +17,7 @@ from metagraph.graph.model import Action, Layer, Project
 from metagraph.graph.requests import AnyRequest
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.playback.faces import faces_at
 from metagraph.playback.life.evaluate import enliven
 from metagraph.playback.manual_playback import (
     Fire,
@@ -148,6 +149,12 @@ class Shown:
                 self.plan, self.project, seconds, composed=self._overlaid(entry.motion, seconds, False)
             )
         return morphs_at(self.plan, self.project, seconds)
+
+    def faces(self, times: np.ndarray) -> list[dict[str, float]]:
+        """Return face shapes and their weights at each of many times, as `morphs` gives them."""
+        if self.clip is None and self.manual is None and self.motion is None:
+            return faces_at(self.plan, self.project, times)
+        return [self.morphs(float(at)) for at in times]
 
     def _overlaid(self, clip: Clip, seconds: Any, alive: bool = True) -> Pose:
         """Return the pose of a generated clip: it moves what is above the hips, the plan moves the rest."""

@@ -11,7 +11,7 @@ import threading
 from collections import OrderedDict
 from pathlib import Path
 
-from PySide6.QtCore import QObject, Qt, Signal
+from PySide6.QtCore import QObject, Qt, QTimer, Signal
 from PySide6.QtGui import QImage
 
 from app.look.theme import theme
@@ -27,6 +27,7 @@ Key = tuple[str, str, str]  # clip id, what, theme
 MOST = (
     128 * 1024 * 1024
 )  # bytes of pictures that are kept; those not seen for longest go, and are drawn again when they are
+REST = 20_000  # milliseconds without an order after which the process, and its memory, is let go
 TRIES = 3  # times the process is started without drawing anything before it is given up
 
 
@@ -55,6 +56,8 @@ class Thumbnails(QObject):
         self._stopped = False
         self._begun: int | None = None  # the order that is being drawn
         self._fruitless = 0  # starts of the process that have drawn nothing
+        self._rest = QTimer(self, singleShot=True, interval=REST)
+        self._rest.timeout.connect(self._send_home)
         self._ended.connect(self._restart, Qt.ConnectionType.QueuedConnection)
         self._drawn.connect(self._keep, Qt.ConnectionType.QueuedConnection)
         document.changed.connect(self._follow)
@@ -149,6 +152,7 @@ class Thumbnails(QObject):
             character = (self.document.folder or Path()) / project.character
         card = theme(self.session.look.name).field
         r, g, b = (int(card[i : i + 2], 16) / 255 for i in (1, 3, 5))
+        self._rest.start()
         self._number += 1
         self._orders[self._number] = (key, motion)
         self._queue.put(
@@ -197,15 +201,20 @@ class Thumbnails(QObject):
         ):
             while True:
                 number, pictures = pickle.load(pipe)
-                self._drawn.emit(number, None if pictures is None else [to_image(p) for p in pictures])
+                if pictures is not None:  # one after the other, so that a loop is never there twice
+                    pictures = [to_image(pictures.pop(0)) for _ in range(len(pictures))]
+                self._drawn.emit(number, pictures)
+                del pictures  # until the next ones come, which may be long
         with contextlib.suppress(RuntimeError):  # the window is gone
             self._ended.emit(process)
 
     def _restart(self, process: subprocess.Popen[bytes]) -> None:
         """The process has ended by itself: start another, and leave out the picture it ended over."""
-        if self._stopped or process is not self._process:
+        if self._stopped:
             return
         process.wait(5)
+        if process is not self._process:  # it was sent home
+            return
         self._queue.put(None)
         self._process, self._queue = None, queue.SimpleQueue()
         if self._begun is not None:
@@ -218,9 +227,18 @@ class Thumbnails(QObject):
             for key, motion in again.values():
                 self._order(key, motion)
 
+    def _send_home(self) -> None:
+        """Let a process end that has had nothing to do for long; the next order starts another."""
+        if self._orders:
+            self._rest.start()
+        elif self._process is not None:
+            self._queue.put(None)
+            self._process, self._queue = None, queue.SimpleQueue()
+
     def stop(self) -> None:
         """End the process; at closing."""
         self._stopped = True
+        self._rest.stop()
         if self._process is not None:
             self._queue.put(None)
             self._process.kill()

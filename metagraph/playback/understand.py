@@ -5,7 +5,6 @@ section 6 and figure 5).
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from difflib import get_close_matches
 from typing import Any
 
 from metagraph.graph import requests as a
@@ -134,6 +133,8 @@ def _stance_names(project: Project, layer: Layer | None) -> dict[str, None]:
 
 
 def _hint(word: str, known: Mapping[str, Any]) -> str:
+    from difflib import get_close_matches  # it takes long to import, and few words are wrong
+
     near = get_close_matches(word, [str(k) for k in known], 1)
     if near:
         return f"; did you mean '{near[0]}'?"

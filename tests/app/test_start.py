@@ -21,6 +21,8 @@ heavy = {HEAVY!r}
 def first():
     window.shell.stage.painted.disconnect(first)
     assert not window.places.ready
+    import linecache
+    assert len(linecache.cache) < 20, "no source is read of what is imported"
     print("first:", *(m for m in heavy if m in sys.modules), flush=True)
 
 def watch():

@@ -1,11 +1,14 @@
 """How the window feels, in figures: python tests/benchmarks/bench_window.py [cold] [stalls] [edits]
-[proposing]
+[proposing] [resting]
 
 cold: seconds from starting the process to the first painted window, and to the first painted character of
 the sample project. stalls: the longest time the window's thread did not come round while the sample project
 is opened, edited, given 300 lines and looked at, and pictures a second in the preview. edits: milliseconds
 from an edit to the last view that followed it, and to the painted window, in the sample project and in one
-of 10,000 actions. proposing: how late a timer of 5 ms on the window's thread comes while a job proposes
+of 10,000 actions; "own" is the processor time of the window's thread alone, which stays the same when the
+machine is busy. resting: how much of one core the window takes while it is paused and while it plays, and
+what it and the process that draws its pictures hold in memory, half a minute after the sample was opened.
+proposing: how late a timer of 5 ms on the window's thread comes while a job proposes
 labels for 1,000 clips, while all of them are compared with the stances, and while the table of that is
 scrolled; the preview stands still, as drawing it without a graphics card would be all that is seen.
 
@@ -249,10 +252,10 @@ def edit_latency() -> None:
         layer = project.action(action).layer
         window.session.jump(action=action)
         for name, what in changes(action, stance, layer, clips):
-            followed, painted = [], []
+            followed, painted, own = [], [], []
             for _ in range(8):
                 linger(0.4)  # the last edit's plan and check are done
-                start = time.perf_counter()
+                start, busy = time.perf_counter(), time.thread_time()
                 if what is None:
                     window.document.undo()
                 else:
@@ -260,11 +263,59 @@ def edit_latency() -> None:
                 followed.append((time.perf_counter() - start) * 1e3)
                 QApplication.processEvents()
                 painted.append((time.perf_counter() - start) * 1e3)
+                own.append((time.thread_time() - busy) * 1e3)
             print(
                 f"{count:6} actions  {name:16} edit and slots: median {statistics.median(followed):6.1f}, "
                 f"longest {max(followed):6.1f} ms;"
-                f"  painted: median {statistics.median(painted):6.1f}, longest {max(painted):6.1f} ms"
+                f"  painted: median {statistics.median(painted):6.1f}, longest {max(painted):6.1f} ms;"
+                f"  own: median {statistics.median(own):6.1f} ms"
             )
+    _close(window)
+
+
+def resting() -> None:
+    from PySide6.QtCore import QEventLoop, QTimer
+
+    from app.main import prepare
+
+    prepare()
+    from app.main import make_window
+    from tests.app.handles import Handles
+
+    window = Handles(make_window())
+    window.window.resize(1680, 1020)
+    window.window.show()
+    window.make_late_panels()
+    opened(window)
+
+    def busy(seconds: float) -> tuple[float, float]:
+        """Let the window go its way; return how much of a core it took, and pictures a second."""
+        loop = QEventLoop()
+        QTimer.singleShot(round(seconds * 1000), loop.quit)
+        wall, used, frames = time.perf_counter(), time.process_time(), window.preview.frames
+        loop.exec()
+        wall = time.perf_counter() - wall
+        return (time.process_time() - used) / wall, (window.preview.frames - frames) / wall
+
+    busy(6)
+    rounds = [busy(4) for _ in range(3)]
+    share, rate = (statistics.median(x) for x in zip(*rounds, strict=True))
+    size = f"{window.preview.view.width()} x {window.preview.view.height()}"
+    each = share / max(rate, 1e-9) * 1e3
+    print(f"playing: {share:.1%} of a core, {rate:.1f} pictures a second, {each:.1f} ms each ({size})")
+    window.session.transport.set_playing(False)
+    busy(22)
+    print(f"paused:  {busy(8)[0]:.2%} of a core")
+    children = [
+        int(p.name)
+        for p in Path("/proc").glob("[0-9]*")
+        if (p / "stat").exists()
+        and (p / "stat").read_text().rpartition(")")[2].split()[1] == str(os.getpid())
+    ]
+    for name, pid in (("window", os.getpid()), *(("pictures", pid) for pid in children)):
+        found = Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()
+        held = {line.split(":")[0]: int(line.split()[1]) / 1e3 for line in found if line.endswith("kB")}
+        print(f"memory:  {name} {held['Rss']:.0f} MB resident, {held['Pss']:.0f} MB its own share")
     _close(window)
 
 
@@ -386,13 +437,13 @@ def _close(window: object) -> None:
 
 
 def main() -> None:
-    chosen = sys.argv[1:] or ["cold", "stalls", "edits", "proposing"]
+    chosen = sys.argv[1:] or ["cold", "stalls", "edits", "proposing", "resting"]
     if sys.platform.startswith("linux") and not os.environ.get("DISPLAY") and shutil.which("xvfb-run"):
         os.execvp(
             "xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 1920x1200x24", sys.executable, __file__, *chosen]
         )
     if "METAGRAPH_BENCH" in os.environ:
-        {"stalls": stalls, "edits": edit_latency, "proposing": proposing}[chosen[0]]()
+        {"stalls": stalls, "edits": edit_latency, "proposing": proposing, "resting": resting}[chosen[0]]()
         return
     with tempfile.TemporaryDirectory() as folder:
         os.environ.update(

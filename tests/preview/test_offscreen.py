@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import moderngl
+import numpy as np
 import pytest
 
 from preview.camera import Camera
@@ -34,3 +35,14 @@ def test_the_first_row_is_the_top():
         picture = offscreen.render(Scene(), Camera(pitch=0.3)).astype(int)
     top, bottom = picture[:8, :, :3].std(), picture[-16:, :, :3].std()
     assert bottom > top  # the grid's lines are below, the sky above
+
+
+@pytest.mark.gl
+def test_a_picture_can_be_drawn_into_the_memory_of_the_last():
+    scene, camera = Scene(), Camera(pitch=0.3)
+    with Offscreen(32, 24) as offscreen:
+        kept = offscreen.render(scene, camera)
+        into = np.empty_like(kept)
+        assert offscreen.render(scene, camera, into=into) is into
+        offscreen.render(scene, Camera(pitch=0.9))
+    assert (into == kept).all()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import moderngl
 import numpy as np
@@ -276,3 +277,22 @@ def test_meshes_no_longer_drawn_are_let_go(offscreen):
         scene = Scene((resting(StickFigure(mannequin_skeleton())),))
         offscreen.render(scene, whole(scene), DARK, SIZE)
     assert len(offscreen.renderer.store) <= KEEP_MESHES + 2
+
+
+def test_scenes_are_the_same_to_the_last_bit_or_not():
+    figure = StickFigure(mannequin_skeleton())
+    actor = resting(figure)
+    scene = Scene((actor,))
+    copy = replace(actor, rotations=actor.rotations.copy(), positions=actor.positions.copy())
+    assert scene.same(Scene((copy,)))
+    copy.positions[..., 0, 1] += 1e-12
+    assert not scene.same(Scene((copy,)))
+    for other in (
+        Scene((actor, actor)),
+        Scene((actor,), shadow=False),
+        Scene((replace(actor, bones=True),)),
+        Scene((replace(actor, morphs=np.zeros(1)),)),
+        Scene((replace(actor, marks={1: (1.0, 0.0, 0.0)}),)),
+        Scene((replace(actor, figure=StickFigure(mannequin_skeleton())),)),
+    ):
+        assert not scene.same(other)

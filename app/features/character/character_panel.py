@@ -14,7 +14,7 @@ from app.look import icons
 from app.look.names import plain
 from app.look.theme import theme
 from app.stage.figures import Figures
-from app.stage.gl_view import make_view
+from app.stage.gl_view import ImageView, make_view
 from app.stage.performance import Performance
 from app.stage.playback_source import ASIDE
 from app.stage.playhead import Playhead
@@ -34,6 +34,7 @@ SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
 BASE_TIP = "The pose all layers are added to. Right-click a clip in the library to take it from there."
 NOW = 0.03  # seconds from the present moment within which a ghost would only blur the figure
 FRAME = 16  # milliseconds between frames
+SOFT_FRAME = 33  # where the processor draws them, which has other things to do as well
 HINT = 4000  # milliseconds for which it is told how to come back
 WIDE = 560  # pixels from which the playhead stands in the line of the buttons
 
@@ -91,7 +92,8 @@ class PreviewPanel(QWidget):
         layout.addLayout(self._lines)
         self._clock = QElapsedTimer()
         self._clock.start()
-        self._timer = QTimer(self, interval=FRAME)
+        soft = isinstance(self.view, ImageView)
+        self._timer = QTimer(self, interval=max(FRAME, SOFT_FRAME if soft else 0))
         self._timer.setTimerType(Qt.TimerType.PreciseTimer)
         self._timer.timeout.connect(self._tick)
         session.transport.moved.connect(lambda _: self.view.update())

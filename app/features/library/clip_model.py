@@ -103,8 +103,36 @@ class ClipModel(QAbstractListModel):
                 self.beginResetModel()
                 self.entries = fresh
                 self.endResetModel()
-        if before is not after and self.entries:
-            self.dataChanged.emit(self.index(0), self.index(len(self.entries) - 1))
+            if not same:
+                return
+        rows = _changed_rows(before, after, self.entries)
+        for first, last in rows:
+            self.dataChanged.emit(self.index(first), self.index(last))
+
+
+def _changed_rows(before: Project, after: Project, entries: Sequence[ClipEntry]) -> list[tuple[int, int]]:
+    """Return the first and last rows of clips that look otherwise, or are found otherwise, than before."""
+    if before is after or not entries:
+        return []
+    stances = [
+        [(s.id, s.name) for g in p.graphs.values() for s in g.stances.values()] for p in (before, after)
+    ]
+    if stances[0] != stances[1] or before.base is not after.base or before.manual is not after.manual:
+        return [(0, len(entries) - 1)]
+    uses = [(before.graphs[layer].uses, after.graphs[layer].uses) for layer in after.graphs]
+    out: list[tuple[int, int]] = []
+    for row, entry in enumerate(entries):
+        same = before.clips.get(entry.id) is entry and all(
+            (old := was.get(entry.id, ())) is (new := now.get(entry.id, ()))
+            or [(a.layer, a.kind) for a in old] == [(a.layer, a.kind) for a in new]
+            for was, now in uses
+        )
+        if not same:
+            if out and out[-1][1] == row - 1:
+                out[-1] = out[-1][0], row
+            else:
+                out.append((row, row))
+    return out
 
 
 class FilterModel(QSortFilterProxyModel):

@@ -16,6 +16,15 @@ class ClipNames:
 
     def __init__(self, document: Document, shown: FilterModel) -> None:
         self.document, self.shown = document, shown
+        for signal in (
+            shown.dataChanged,
+            shown.layoutChanged,
+            shown.modelReset,
+            shown.rowsInserted,
+            shown.rowsMoved,
+            shown.rowsRemoved,
+        ):
+            signal.connect(self._relisted)
 
     def of(self, entry: ClipEntry) -> tuple[str, str]:
         """Return the stance that a clip's name begins with, "" for none, and the rest, as they are read."""
@@ -26,14 +35,17 @@ class ClipNames:
         return kept[entry.name]
 
     def _names(self) -> dict[str, tuple[str, str]]:
-        """Return what is known of names by now; nothing after the graphs changed."""
+        """Return what is known of names by now; nothing after stances are called otherwise."""
         graphs = self.document.project.graphs
-        if self._named[0] is not graphs:
+        if self._graphs is not graphs:
+            self._graphs = graphs
             some = [(layer, s.name) for layer in LAYERS for s in graphs[layer].stances.values()]
-            names = {name for _, name in some} | {f"{layer} {name}" for layer, name in some}
-            self._named = graphs, tuple(sorted(names, key=len, reverse=True)), {}
+            if self._named[0] != some:
+                names = {name for _, name in some} | {f"{layer} {name}" for layer, name in some}
+                self._named = some, tuple(sorted(names, key=len, reverse=True)), {}
         return self._named[2]
 
+    _graphs: object = None
     _named: tuple[object, tuple[str, ...], dict[str, tuple[str, str]]] = None, (), {}
 
     def stances(self) -> tuple[str, ...]:
@@ -43,6 +55,17 @@ class ClipNames:
 
     def beside(self, row: int) -> tuple[str, ...]:
         """Return what the cards round one are called, as far as names are shown in a line."""
-        near = range(row // NEAR * NEAR - NEAR, row // NEAR * NEAR + 2 * NEAR)
-        entries = (self.shown.index(n, 0).data(ENTRY) for n in near if 0 <= n < self.shown.rowCount())
-        return tuple(dict.fromkeys(self.of(e)[1] for e in entries if e is not None))
+        place, names = row // NEAR, self._names()
+        if self._listed[0] is not names:
+            self._listed = names, {}
+        if place not in self._listed[1]:
+            near = range(max(0, place * NEAR - NEAR), min(self.shown.rowCount(), place * NEAR + 2 * NEAR))
+            entries = (self.shown.index(n, 0).data(ENTRY) for n in near)
+            found = tuple(dict.fromkeys(self.of(e)[1] for e in entries if e is not None))
+            self._listed[1][place] = found
+        return self._listed[1][place]
+
+    def _relisted(self, *_: object) -> None:
+        self._listed = None, {}
+
+    _listed: tuple[object, dict[int, tuple[str, ...]]] = None, {}

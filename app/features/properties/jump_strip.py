@@ -56,6 +56,9 @@ class JumpStrip(pg.PlotWidget):
         self.plotItem.vb.sigXRangeChanged.connect(lambda *_: self._put_words())
 
     def restyle(self, t: Theme, color: QColor) -> None:
+        if self._look == (t.name, color):
+            return
+        self._look = t.name, QColor(color)
         self.setBackground(t.panel)
         axis = self.getAxis("left")
         axis.setPen(pg.mkPen(None))
@@ -104,6 +107,7 @@ class JumpStrip(pg.PlotWidget):
         self._shows = (float(shows[0] + shows[-1]) / 2) if len(shows) else 0.0
         self._put_words()
 
+    _look: tuple[str, QColor] | None = None
     _shows = 0.0  # seconds, the middle of what its words are about
 
     def _put_words(self) -> None:

@@ -84,3 +84,20 @@ def test_a_nodes_names_follow_its_actions_and_its_stance(toy):
     ident = next(iter(first))
     project = edits.update_actions(project, [ident], name="something_else_07")
     assert node_names(project, "arms", rest, "gesture")[ident] == "something else"
+
+
+def test_names_of_a_node_are_made_anew_only_where_something_is_called_otherwise(toy):
+    project = toy.project()
+    layer = "arms"
+    action = next(a for a in project.graphs[layer].actions.values() if a.kind == "gesture")
+    stance = action.stance
+
+    def names(of):
+        return node_names(of, layer, stance, "gesture")
+
+    kept = names(project)
+    louder = edits.update_actions(project, (action.id,), likelihood=2.5)
+    assert names(louder) is kept
+    assert names(edits.rename_stance(louder, stance, "elsewhere")) is not kept
+    gone = edits.remove_actions(project, (action.id,))
+    assert action.id in names(project) and action.id not in names(gone)

@@ -115,3 +115,25 @@ class _Gone:
 
     def kill(self) -> None:
         """There is nothing to end."""
+
+
+def test_a_process_without_orders_goes_home_and_the_next_order_starts_another(pictures, monkeypatch):
+    started = []
+
+    def start() -> None:
+        started.append(_Gone())
+        pictures._process = started[-1]
+
+    monkeypatch.setattr(pictures, "_start", start)
+    first, second = list(pictures.document.project.clips)[:2]
+    pictures.picture(first)
+    pictures._send_home()
+    assert pictures._process is started[0], "it still draws"
+    pictures._keep(1, [QImage(8, 8, QImage.Format.Format_ARGB32)])
+    queue = pictures._queue
+    pictures._send_home()
+    assert pictures._process is None and queue.get() is not None and queue.get() is None
+    pictures._restart(started[0])
+    assert len(started) == 1, "that it has ended is no reason for another"
+    pictures.picture(second)
+    assert len(started) == 2

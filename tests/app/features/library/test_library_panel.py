@@ -7,7 +7,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QFont, QFontMetrics
 
 from app.features.library.clip_card import two_lines
-from app.features.library.clip_model import Filter
+from app.features.library.clip_model import Filter, _changed_rows
 from metagraph.graph import edits
 
 
@@ -113,3 +113,17 @@ def test_after_a_label_by_key_the_next_clip_without_one_is_selected(toys, toy):
     drive.key(Qt.Key.Key_3, widget=drive.library.list)
     last = next(a for a in drive.document.project.actions() if a.clip == ids["more 0"])
     assert drive.session.selection.actions == (last.id,), "there is no other: what was made is selected"
+
+
+def test_an_edit_redraws_the_cards_it_changes_and_no_others(toy):
+    project = toy.project()
+    entries = list(project.clips.values())
+    rows = {e.id: n for n, e in enumerate(entries)}
+    action = next(a for a in project.actions() if a.kind == "gesture")
+    faded = edits.update_actions(project, (action.id,), timing={"blend_in": 0.31})
+    assert _changed_rows(project, faded, entries) == []
+    gone = edits.remove_actions(project, (action.id,))
+    assert _changed_rows(project, gone, entries) == [(rows[action.clip],) * 2]
+    everywhere = [(0, len(entries) - 1)]
+    assert _changed_rows(project, edits.rename_stance(project, action.stance, "x"), entries) == everywhere
+    assert _changed_rows(project, edits.set_base(project, entries[0].id, 1), entries) == everywhere

@@ -1,0 +1,46 @@
+"""Benchmarks do not rot: what they import is there, what they say of themselves is said to whoever measures,
+and a small one runs.
+"""
+
+from __future__ import annotations
+
+import ast
+import runpy
+import sys
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+FOLDER = ROOT / "tests" / "benchmarks"
+SCRIPTS = sorted(p.name for p in FOLDER.glob("*.py"))
+OURS = ("app", "metagraph", "preview", "sample_clips", "tests")
+SEPARATE = ("metagraph.generation.training", "tests.generation.training")  # need torch, which is no test's
+
+
+def imported(source: str) -> set[tuple[str, str]]:
+    """Return module and name of whatever of ours is imported, wherever it stands."""
+    out = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.ImportFrom) and node.module is not None and not node.level:
+            out |= {(node.module, alias.name) for alias in node.names}
+        elif isinstance(node, ast.Import):
+            out |= {(alias.name, "") for alias in node.names}
+    return {found for found in out if found[0].split(".")[0] in OURS and not found[0].startswith(SEPARATE)}
+
+
+@pytest.mark.parametrize("script", SCRIPTS)
+def test_what_a_benchmark_imports_is_there(script, monkeypatch):
+    monkeypatch.syspath_prepend(str(FOLDER))  # they import one another
+    for module, name in sorted(imported((FOLDER / script).read_text())):
+        found = import_module(module)
+        if name and not hasattr(found, name):
+            import_module(f"{module}.{name}")
+
+
+@pytest.mark.gl
+def test_a_video_is_measured(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["bench_video.py"])
+    runpy.run_path(str(FOLDER / "bench_video.py"))["main"](0.1, 1)
+    assert "video of 0.1 s (1 rounds): wall median" in capsys.readouterr().out
