@@ -15,6 +15,7 @@ from metagraph.formats.characters import CharacterFile, character_among
 from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
 from metagraph.formats.store import kept_path, relative
 from metagraph.graph.edits import add_clips
+from metagraph.graph.face_curves import curves_told
 from metagraph.graph.model import Project
 from metagraph.graph.project_retargeting import Bringing
 from metagraph.motion.adopt import SkeletonMismatchError, adopt, bone_difference, difference
@@ -182,7 +183,8 @@ def import_files(
                 Strangers(tuple(clips), reasons[key], *_map(bringing, clips, remembered, contacts)),
                 retarget,
             )
-    return replace(result, failures=tuple(dict.fromkeys(result.failures)))
+    told = curves_told(result.into(project), [clip for *_, clip in result.loaded])
+    return replace(result, failures=tuple(dict.fromkeys(result.failures)), notes=(*result.notes, *told))
 
 
 def _map(

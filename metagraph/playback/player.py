@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
+from metagraph.graph.face_curves import worn
 from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -101,10 +102,14 @@ def loop_seconds(project: Project, action: Action, elapsed: Array) -> tuple[Arra
 
 
 def playable(project: Project, action: Action) -> Clip | None:
-    """Return the motion of an action, None where its clip is missing or has another skeleton."""
+    """Return the motion of an action, its curves on the project's face; None where its clip is missing or
+    has another skeleton.
+    """
     entry = project.clips.get(action.clip)
     motion = entry.motion if entry is not None else None
-    return motion if motion is not None and motion.skeleton == project.skeleton else None
+    if motion is None or motion.skeleton != project.skeleton:
+        return None
+    return worn(project, motion) if motion.morphs else motion
 
 
 Sample = tuple[
