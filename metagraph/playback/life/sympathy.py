@@ -21,7 +21,7 @@ SHORTEST = 0.5  # seconds: what passes sooner is not taken up
 HOSTILE = 0.4  # of how much, for moods that are unpleasant and excited
 # Laughing along.
 LAUGH_DELAY = 0.25  # seconds, at least; as much again by chance
-LAUGH_LASTS = 2.0  # seconds, at least
+LAUGH_LASTS = 2.6  # seconds, at least
 LAUGH_RINGS = 1.0  # seconds a smile stays after the other's laugh, at least; as much again by chance
 LAUGH_VALENCE = 0.9
 LAUGH_AROUSAL = 0.45

@@ -24,7 +24,7 @@ inline constexpr double SHORTEST = 0.5; // seconds: what passes sooner is not ta
 inline constexpr double HOSTILE = 0.4; // of how much, for moods that are unpleasant and excited
 // Laughing along.
 inline constexpr double LAUGH_DELAY = 0.25; // seconds, at least; as much again by chance
-inline constexpr double LAUGH_LASTS = 2.0; // seconds, at least
+inline constexpr double LAUGH_LASTS = 2.6; // seconds, at least
 // seconds a smile stays after the other's laugh, at least; as much again by chance
 inline constexpr double LAUGH_RINGS = 1.0;
 inline constexpr double LAUGH_VALENCE = 0.9;

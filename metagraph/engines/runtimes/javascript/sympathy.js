@@ -19,7 +19,7 @@ export const SHORTEST = 0.5; // seconds: what passes sooner is not taken up
 export const HOSTILE = 0.4; // of how much, for moods that are unpleasant and excited
 // Laughing along.
 export const LAUGH_DELAY = 0.25; // seconds, at least; as much again by chance
-export const LAUGH_LASTS = 2; // seconds, at least
+export const LAUGH_LASTS = 2.6; // seconds, at least
 export const LAUGH_RINGS = 1; // seconds a smile stays after the other's laugh, at least; as much again by chance
 export const LAUGH_VALENCE = 0.9;
 export const LAUGH_AROUSAL = 0.45;

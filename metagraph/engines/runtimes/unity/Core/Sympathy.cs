@@ -25,7 +25,7 @@ namespace Metagraph
         public const double Hostile = 0.4; // of how much, for moods that are unpleasant and excited
         // Laughing along.
         public const double LaughDelay = 0.25; // seconds, at least; as much again by chance
-        public const double LaughLasts = 2.0; // seconds, at least
+        public const double LaughLasts = 2.6; // seconds, at least
         public const double LaughRings = 1.0; // seconds a smile stays after the other's laugh, at least; as much again by chance
         public const double LaughValence = 0.9;
         public const double LaughArousal = 0.45;

@@ -16,7 +16,7 @@ const SHORTEST = 0.5  # seconds: what passes sooner is not taken up
 const HOSTILE = 0.4  # of how much, for moods that are unpleasant and excited
 # Laughing along.
 const LAUGH_DELAY = 0.25  # seconds, at least; as much again by chance
-const LAUGH_LASTS = 2.0  # seconds, at least
+const LAUGH_LASTS = 2.6  # seconds, at least
 const LAUGH_RINGS = 1.0  # seconds a smile stays after the other's laugh, at least; as much again by chance
 const LAUGH_VALENCE = 0.9
 const LAUGH_AROUSAL = 0.45
