@@ -1,4 +1,4 @@
-"""Moods and laughs of others that a listener takes up: how far, how late, how often, in sessions and talks."""
+"""Moods and laughs of others that a listener takes up: how far, how late, how often; in talks and live."""
 
 from __future__ import annotations
 
