@@ -11,7 +11,18 @@ from metagraph import engines
 
 LIVE = Path(__file__).with_name("live.md")
 PAGE = Path(engines.__file__).with_name("runtimes") / "requests.md"
-SESSION_ONLY = {"bml", "keypoints", "generate", "hear", "hello", "status", "describe", "in", "told"}
+SESSION_ONLY = {
+    "bml",
+    "keypoints",
+    "generate",
+    "hear",
+    "partner",
+    "hello",
+    "status",
+    "describe",
+    "in",
+    "told",
+}
 
 
 def page() -> str:

@@ -26,7 +26,7 @@ from metagraph.formats.store import Opened, load_returned
 from metagraph.formats.takes import NAME
 from metagraph.graph.model import Project
 
-CLIPS = "Clips (*.bvh *.glb *.gltf *.vrm *.vrma *.fbx);;All files (*)"
+CLIPS = "Clips (*.bvh *.glb *.gltf *.vrm *.vrma *.fbx *.csv);;All files (*)"
 Retarget = Callable[[Sequence[Strangers], Callable[[Imported], None]], None]
 
 

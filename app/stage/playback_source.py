@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from metagraph.graph.edits import EditError, place
+from metagraph.graph.face_curves import worn
 from metagraph.graph.model import Action, Layer, Project
 from metagraph.graph.requests import AnyRequest
 from metagraph.motion.clip import Clip
@@ -108,7 +109,7 @@ class Shown:
         """Return the pose at a time, or at many, None when there is nothing to show."""
         if self.clip is not None:
             motion = self.project.clips[self.clip].motion
-            return motion.pose_at(seconds) if motion is not None else None
+            return worn(self.project, motion).pose_at(seconds) if motion is not None else None
         if self.project.skeleton is None:
             return None
         if self.manual is not None:
@@ -140,7 +141,7 @@ class Shown:
         """Return face shapes and their weights, 0..1, at a time."""
         if self.clip is not None:
             motion = self.project.clips[self.clip].motion
-            return motion.morphs_at(seconds) if motion is not None else {}
+            return worn(self.project, motion).morphs_at(seconds) if motion is not None else {}
         if self.manual is not None:
             return manual_morphs_at(self.manual, self.project, seconds)
         entry = self.project.clips.get(self.motion or "")

@@ -24,6 +24,7 @@ from metagraph.graph import anatomy
 from metagraph.graph.check import check
 from metagraph.graph.expand import columns
 from metagraph.graph.expression_presets import presets_of
+from metagraph.graph.face_curves import worn
 from metagraph.graph.model import (
     KINDS,
     LAYERS,
@@ -140,7 +141,8 @@ def write(
     glb, json = target / f"{stem}.glb", target / f"{stem}.json"
     names = unique_names([entry.name for entry in used])
     tell(0, 3, "clips")
-    clips = [e.motion.renamed(name) for e, name in zip(used, names, strict=True) if e.motion is not None]
+    motions = [worn(project, e.motion) for e in used if e.motion is not None]
+    clips = [motion.renamed(name) for motion, name in zip(motions, names, strict=True)]
     notes = _write_glb(glb, clips, project, character)
     tell(1, 3, "graph")
     document = to_document(project, glb.name, names, expanded)

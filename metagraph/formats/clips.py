@@ -13,11 +13,12 @@ from pathlib import Path
 from metagraph.budgets import MOTION_FILE, SOUND_FILE
 from metagraph.errors import FileError
 from metagraph.files import guarded, opened, unforeseen
+from metagraph.formats.live_link_face import is_live_link
 from metagraph.formats.stray_poses import is_bind_pose
 from metagraph.formats.takes import NAME, ONE_FRAME, repaired
 from metagraph.motion.clip import Clip, ClipError, Repair
 
-SUFFIXES = (".bvh", ".glb", ".gltf", ".vrm", ".vrma", ".fbx")
+SUFFIXES = (".bvh", ".glb", ".gltf", ".vrm", ".vrma", ".fbx", ".csv")
 
 _GLTF = (".glb", ".gltf", ".vrm", ".vrma")
 _REMEDY = f"Clips are read from {', '.join(SUFFIXES)}."
@@ -49,13 +50,18 @@ def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
     path = Path(path)
     suffix = path.suffix.lower()
     kind = _content(path)
-    wanted = {".bvh": "bvh", ".fbx": "fbx", **dict.fromkeys(_GLTF, "gltf")}.get(suffix)
+    wanted = {".bvh": "bvh", ".fbx": "fbx", ".csv": "live link", **dict.fromkeys(_GLTF, "gltf")}.get(suffix)
     if wanted is None:
         raise FileError(
             path, f"'{path.suffix or path.name}' is not an ending of a clip file", "its name", _REMEDY
         )
     if kind != wanted:
-        names = {"bvh": "a BVH file", "gltf": "a glTF file", "fbx": "an FBX file"}
+        names = {
+            "bvh": "a BVH file",
+            "gltf": "a glTF file",
+            "fbx": "an FBX file",
+            "live link": "a recording of Live Link Face",
+        }
         if kind in names:
             raise FileError(
                 path,
@@ -73,6 +79,10 @@ def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
             from metagraph.formats.gltf import read_gltf_clips
 
             clips = read_gltf_clips(path, as_is)
+        elif wanted == "live link":
+            from metagraph.formats.live_link_face import read_live_link
+
+            clips = [read_live_link(path)]
         else:
             from metagraph.formats.fbx import read_fbx_clips
 
@@ -115,8 +125,8 @@ def _unnamed(clip: Clip) -> bool:
 
 
 def _content(path: Path) -> str:
-    """Return "bvh", "gltf", "fbx", or a description of something else. Raises FileError when it cannot be
-    read.
+    """Return "bvh", "gltf", "fbx", "live link", or a description of something else. Raises FileError when it
+    cannot be read.
     """
     with opened(path, MOTION_FILE) as file:
         head = file.read(4096)
@@ -129,11 +139,21 @@ def _content(path: Path) -> str:
         return "fbx"
     if start[:9].upper() == b"HIERARCHY":
         return "bvh"
+    if is_live_link(head):
+        return "live link"
     if head.startswith(b"version https://git-lfs"):
         return "a Git LFS pointer whose content was never fetched"
     if start[:1] == b"<":
         return "a web page or XML file"
     return "something else"
+
+
+def is_face_recording(path: Path) -> bool:
+    """Whether a table is a recording of Live Link Face."""
+    try:
+        return _content(path) == "live link"
+    except FileError:
+        return False
 
 
 def find_clip_files(folder: str | Path) -> list[Path]:
@@ -147,6 +167,7 @@ def find_clip_files(folder: str | Path) -> list[Path]:
         if p.suffix.lower() in SUFFIXES
         and p.is_file()
         and not any(part.startswith(".") for part in p.relative_to(folder).parts)
+        and (p.suffix.lower() != ".csv" or is_face_recording(p))  # most tables are something else
     ]
     return sorted(found, key=lambda p: (str(p).casefold(), str(p)))
 

@@ -15,6 +15,8 @@ from metagraph.formats.characters import CharacterFile, character_among
 from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
 from metagraph.formats.store import kept_path, relative
 from metagraph.graph.edits import add_clips
+from metagraph.graph.face_curves import curves_told
+from metagraph.graph.face_takes import is_face_take, on_body
 from metagraph.graph.model import Project
 from metagraph.graph.project_retargeting import Bringing
 from metagraph.motion.adopt import SkeletonMismatchError, adopt, bone_difference, difference
@@ -137,14 +139,15 @@ def import_files(
     """
     report = import_clips(gather(paths), progress, cancelled)
     failures = [str(error) for error in report.failures]
-    skeleton = project.skeleton or _skeleton_of_most([clip for _, _, clip in report.clips])
+    bodies = [clip for _, _, clip in report.clips if not is_face_take(clip)]
+    skeleton = project.skeleton or _skeleton_of_most(bodies)
+    faces: list[Loaded] = []
     loaded: list[Loaded] = []
     foreign: dict[str, list[Loaded]] = {}
     reasons: dict[str, str] = {}
     digests: dict[Path, str] = {}
     apart: dict[str, tuple[float, list[str]]] = {}  # by skeleton
     for path, take, clip in _as_known(report.clips, project, folder):
-        assert skeleton is not None
         try:
             if path not in digests:
                 digests[path] = digest(path)
@@ -152,6 +155,10 @@ def import_files(
         except FileError as error:
             failures.append(str(error))
             continue
+        if is_face_take(clip):
+            faces.append((name, take, digests[path], clip))
+            continue
+        assert skeleton is not None
         try:
             loaded.append((name, take, digests[path], adopt(clip, skeleton)))
             key = clip.skeleton.fingerprint
@@ -162,6 +169,11 @@ def import_files(
             key = fingerprint(clip.skeleton)
             foreign.setdefault(key, []).append((name, take, digests[path], clip))
             reasons.setdefault(key, str(error))
+    for name, take, content, clip in faces:
+        try:
+            loaded.append((name, take, content, on_body(add_clips(project, loaded), clip)))
+        except RetargetError as error:
+            failures.append(f"{Path(name).name}: {error}")
     character: CharacterFile | None = None
     stand_ins: tuple[CharacterFile, ...] = ()
     if project.character is None and skeleton is not None:
@@ -182,7 +194,8 @@ def import_files(
                 Strangers(tuple(clips), reasons[key], *_map(bringing, clips, remembered, contacts)),
                 retarget,
             )
-    return replace(result, failures=tuple(dict.fromkeys(result.failures)))
+    told = curves_told(result.into(project), [clip for *_, clip in result.loaded])
+    return replace(result, failures=tuple(dict.fromkeys(result.failures)), notes=(*result.notes, *told))
 
 
 def _map(

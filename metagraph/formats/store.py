@@ -27,6 +27,7 @@ from metagraph.formats.fields import Data, DataError
 from metagraph.formats.text import TextError, as_text, parse, to_text
 from metagraph.graph.clip_source import source_of, with_source
 from metagraph.graph.conversation import Conversation, Side
+from metagraph.graph.face_takes import FACE_TAKE, is_face_take, on_body
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.graph.project_retargeting import Bringing
 from metagraph.graph.requests import Line
@@ -390,10 +391,14 @@ def _load(
                 notes.append(f"'{path}' no longer has take {entry.take + 1} ('{entry.name}')")
                 continue
             motion = takes[entry.take].renamed(entry.name)
-            if skeleton is None:
+            alone = is_face_take(motion)
+            if skeleton is None and not alone:
                 skeleton = motion.skeleton
             try:
-                motion = adopt(motion, skeleton)
+                if skeleton is not None and not alone:
+                    motion = adopt(motion, skeleton)
+                elif alone:
+                    strangers.append(entry.id)
             except SkeletonMismatchError:
                 strangers.append(entry.id)
             clips[entry.id] = with_source(replace(entry, path=path, digest=now), motion)
@@ -411,6 +416,12 @@ def _brought(project: Project, strangers: Iterable[str], notes: list[str]) -> Pr
         entry = clips[ident]
         motion: Clip = source_of(entry)  # type: ignore[assignment]
         joint_map = bringing.known(motion)
+        if is_face_take(motion):
+            try:
+                clips[ident] = with_source(replace(entry, brought_from=FACE_TAKE), on_body(project, motion))
+            except RetargetError as error:
+                notes.append(f"'{entry.path}': {error}")
+            continue
         if joint_map is None:
             if entry.brought_from:
                 notes.append(

@@ -54,13 +54,16 @@ class Segment(Struct, frozen=True, omit_defaults=True, forbid_unknown_fields=Tru
 class Rates(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
     """How often a movement goes with what is said, 0..1: a gesture of the hands with a clause, a nod with a
     response, a nod with the partner's hesitation. The defaults are what the female actor of Yang et al. did
-    (table 1). mirror: the partner's changes of stance that are taken up while listening; ours.
+    (table 1). mirror: the partner's changes of stance that are taken up while listening. mood: how far the
+    partner's mood is. laugh: how many of the others' laughs are joined. These three are ours.
     """
 
     clause: _Share = 0.75
     response: _Share = 0.58
     hesitation: _Share = 0.30
     mirror: _Share = 0.4
+    mood: _Share = 0.35
+    laugh: _Share = 0.6
 
 
 class Side(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):

@@ -13,6 +13,7 @@ from dataclasses import replace
 from typing import Any
 
 from metagraph.graph.clip_source import with_source
+from metagraph.graph.face_takes import FACE_TAKE, face_joints
 from metagraph.graph.manual import without_clips
 from metagraph.graph.model import (
     PARTS,
@@ -216,6 +217,7 @@ def place(
             name=entry.name,
             end_stance=end_stance if kind == "transition" else None,
             timing=default_timing(entry, kind),
+            joints=face_joints(project) if entry.brought_from == FACE_TAKE and kind != "stance" else (),
             limb=limb_of(entry.name) if layer == "arms" and kind in ("gesture", "fidget") else "both",
         )
     first = (

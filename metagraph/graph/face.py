@@ -133,8 +133,12 @@ _found: Remembered[FaceRig] = Remembered(made_of)
 
 
 def morph_names(project: Project, morphs: Sequence[str] = ()) -> tuple[str, ...]:
-    """Return the names of all morph targets that are known of."""
+    """Return the names of all morph targets that are known of: the character's, else those that clips move
+    where no character is drawn.
+    """
     names = dict.fromkeys((*project.face.morphs, *morphs))
+    if project.character is not None:
+        return tuple(names)
     for entry in project.clips.values():
         if entry.motion is not None and entry.motion.morphs:
             names.update(dict.fromkeys(entry.motion.morphs))
@@ -159,8 +163,11 @@ def _find(project: Project, morphs: Sequence[str]) -> FaceRig:
         return _rig((), {}, [-1] * 4, targets, None)
     reader = _Reader(project, skeleton)
     eyes = reader.eyes()
-    if eyes:  # eyes that are joints are not turned twice
-        targets = {c: t for c, t in targets.items() if not c.startswith("look_") or c in bound}
+    twice = ["look_"] if eyes else []  # eyes that are joints are not turned twice
+    looks = sum(c.startswith("look_") for c in targets)
+    if len(eyes) == 2 and looks == 8 and len(reader.lid_groups()) == len(LIDS):
+        twice += ["blink", "wide_"]  # all that the joints of eyes and lids do is there again as targets
+    targets = {c: t for c, t in targets.items() if not c.startswith(tuple(twice)) or c in bound}
     shapes: dict[str, Shape] = {}
     if not {"blink", "blink_left", "blink_right"} & targets.keys():
         shapes |= reader.lids()

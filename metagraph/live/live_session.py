@@ -48,12 +48,14 @@ from metagraph.live.messages import (
     Keypoints,
     OwnMessage,
     Part,
+    Partner,
     Reply,
     Status,
     read,
     rounded,
     split,
 )
+from metagraph.live.partner_mood import LAUGH, MOOD, partner_feel
 from metagraph.live.pose_stream import Stream, due
 from metagraph.live.said_sound import SaidSounds, said_on
 from metagraph.live.tape import Tape
@@ -198,6 +200,8 @@ class LiveSession:
             ):
                 return Reply(id=message.id or None, state="refused", why=BUSY)
             return self.generating.answer(client.number, message, self.project, self.now)
+        if isinstance(message, Partner):
+            return self._partner(client, message, work, place)
         if isinstance(message, OwnMessage):
             return self._own(client, message)
         ident = message.id
@@ -217,6 +221,15 @@ class LiveSession:
             return Reply(id=ident, state="refused", why=why)
         work.open[key] = Open(place, ident, key)
         return None
+
+    def _partner(self, client: Client, message: Partner, work: TickWork, place: int) -> Reply | bytes | None:
+        """Take up what the partner feels, or laugh along."""
+        ident = message.id or (MOOD if message.laughs is None else LAUGH)
+        key = key_of(client.number, ident)
+        feel = partner_feel(message, ident, key, self.project, self.plan.track, self.now)
+        if feel is None:
+            return Reply(id=message.id or None, state="done", why="it does not laugh along")
+        return self._take(client, HeardMessage(feel), work, place)
 
     def _own(self, client: Client, message: Hello | Status | Describe) -> Reply | bytes:
         """Answer what is asked of the session itself."""

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.graph.face_curves import worn
 from metagraph.graph.model import Project
 from metagraph.graph.requests import RequestError
 from metagraph.live.messages import Poses, encode
@@ -61,7 +62,7 @@ class Stream:
             name
             for entry in project.clips.values()
             if entry.motion is not None
-            for name in entry.motion.morphs
+            for name in worn(project, entry.motion).morphs
         )
         places = np.array([skeleton.names.index(name) for name in names], np.int64)
         return cls(

@@ -29,7 +29,7 @@ from metagraph.playback.life.evaluate import enliven, face_weights
 from metagraph.playback.life.schedule import Schedule, schedule
 from metagraph.playback.life.track import Track
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Report
-from metagraph.playback.player import Sample, ease, mix, playable, sample
+from metagraph.playback.player import Sample, add_life, ease, mix, playable, sample
 
 Array = NDArray[Any]
 LEAST = 1 / 30  # seconds a state plays at least: links in a circle without length take their time
@@ -381,6 +381,5 @@ def manual_morphs_at(
         composed = (
             manual_pose_at(plan, project, seconds, alive=False) if by_morphs else None
         )  # what the eyes hold against
-        for name, value in face_weights(project, plan.life, Track(), seconds, composed).items():
-            out[name] = out.get(name, 0.0) + value
+        add_life(out, face_weights(project, plan.life, Track(), seconds, composed))
     return {name: min(1.0, max(0.0, value)) for name, value in out.items()}

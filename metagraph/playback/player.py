@@ -5,12 +5,14 @@ Preview, video, export and tests all come here, so scrubbing, live play and a ba
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
+from metagraph.graph.face_curves import worn
 from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
@@ -101,10 +103,14 @@ def loop_seconds(project: Project, action: Action, elapsed: Array) -> tuple[Arra
 
 
 def playable(project: Project, action: Action) -> Clip | None:
-    """Return the motion of an action, None where its clip is missing or has another skeleton."""
+    """Return the motion of an action, its curves on the project's face; None where its clip is missing or
+    has another skeleton.
+    """
     entry = project.clips.get(action.clip)
     motion = entry.motion if entry is not None else None
-    return motion if motion is not None and motion.skeleton == project.skeleton else None
+    if motion is None or motion.skeleton != project.skeleton:
+        return None
+    return worn(project, motion) if motion.morphs else motion
 
 
 Sample = tuple[
@@ -269,11 +275,20 @@ def sample(ground: Ground, reach: Reach, clip: Clip, seconds: Array) -> Sample:
     return mixed, away
 
 
+def add_life(out: dict[str, float], found: Mapping[str, float]) -> None:
+    """Add the life layers' morph target weights to what clips show: as far as that leaves them room, so that
+    a face that was made for a moment stays as it was made.
+    """
+    for name, value in found.items():
+        played = out.get(name, 0.0)
+        out[name] = played + value * (1 - min(1.0, max(0.0, played)))
+
+
 def morphs_at(
     plan: Plan, project: Project, seconds: float, alive: bool = True, composed: Pose | None = None
 ) -> dict[str, float]:
     """Return morph target weights, 0..1, at one time: the layers' sums, and with `alive` the life layers' on
-    top. composed: the pose `[J]` before `enliven`, where it is not the plan's alone.
+    top (`add_life`). composed: the pose `[J]` before `enliven`, where it is not the plan's alone.
     """
     out: dict[str, float] = {}
     playing: list[Playing] = []
@@ -307,6 +322,5 @@ def morphs_at(
         if by_morphs and composed is None:  # what the eyes hold against
             composed = _weighed_at(plan, project, seconds)
         found = face_weights(project, plan.life, plan.track, seconds, composed, playing)
-        for name, value in found.items():
-            out[name] = out.get(name, 0.0) + value
+        add_life(out, found)
     return {name: min(1.0, max(0.0, value)) for name, value in out.items()}

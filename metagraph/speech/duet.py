@@ -18,7 +18,7 @@ from metagraph.errors import FileError
 from metagraph.graph import anatomy
 from metagraph.graph.conversation import Conversation, Side, others_of
 from metagraph.graph.model import Project
-from metagraph.graph.requests import Line, Performance, Point
+from metagraph.graph.requests import AnyRequest, Line, Performance, Point
 from metagraph.motion import rotation
 from metagraph.playback.life.body import body_of
 from metagraph.playback.life.voice import Voice
@@ -28,6 +28,7 @@ from metagraph.speech.drive import drive
 from metagraph.speech.gaze_shares import GazeShare, gaze_shares
 from metagraph.speech.lines import read_spoken
 from metagraph.speech.mirroring import Mover, mirrored
+from metagraph.speech.sympathies import sympathies
 
 Array = NDArray[Any]
 HEAD = 1.6  # metres up, of a skeleton whose head is not known
@@ -159,7 +160,10 @@ def duet(
     parts = []
     for n, (known, heads, performance) in enumerate(driven):
         others, plan = [m for m in movers if m.side != n], movers[n].plan
-        taken_up = tuple(mirrored(conversation, movers[n], others))
+        taken_up: tuple[AnyRequest, ...] = (
+            *mirrored(conversation, movers[n], others),
+            *sympathies(conversation, movers[n], others),
+        )
         if taken_up:
             performance, plan = drive(conversation, n, *known, heads, more=taken_up)
         told = delivered(conversation, n, known[0], plan)

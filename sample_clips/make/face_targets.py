@@ -1,11 +1,12 @@
-"""The morph targets of our characters' faces, by ARKit's names: what each moves, and where to.
+"""The morph targets of our characters' faces, by ARKit's names, all 52: what each moves, and where to.
 
-Eyes and lids are joints; so is the jaw for who has no targets. Places are those of the rest pose (metres).
+Eyes and lids are joints too, which is what moves them here; their targets are for programs that drive a face
+by its targets alone. So is the jaw, for who has no targets. Places are those of the rest pose (metres).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,12 @@ Array = NDArray[Any]
 Target = Callable[["Face"], Array]
 
 JAW_OPEN = 20.0  # degrees at 1
+LOOK = 30.0  # degrees an eye turns at 1, and what the lids do with it
+LOOK_UPPER, LOOK_LOWER = 18.0, 10.5
+UPPER_SHUT, LOWER_SHUT = 40.0, -15.0  # degrees of the lids about the eye, to the left: as their joints
+UPPER_WIDE, LOWER_WIDE = -10.0, 4.0
+_BULGE = 0.035  # of its radius a shut lid is farther out: half way there it goes straight, through the eye
+_TONGUE_OUT = (0.0, 0.0052, 0.0330)  # over the lower lip
 _CORNER = (MOUTH_HALF, MOUTH_Y + 0.001, 0.0745)
 _CHEEK = (0.0370, 1.5720, 0.0600)
 _NOSTRIL = (0.0120, 1.5740, 0.0900)
@@ -26,10 +33,12 @@ _BROW_OUTER = (0.0440, 1.6320, 0.0790)
 
 
 class Face:
-    """Points of a face `[V, 3]` at rest, and how much each is moved by the jaw `[V]`."""
+    """Points of a face `[V, 3]` at rest, how much each is moved by the jaw `[V]`, and how much it is `of`
+    eyes, lids and the tongue, each `[V]` by name.
+    """
 
-    def __init__(self, p: Array, jaw: Array) -> None:
-        self.p, self.jaw = p, jaw
+    def __init__(self, p: Array, jaw: Array, of: Mapping[str, Array] | None = None) -> None:
+        self.p, self.jaw, self.of = p, jaw, of or {}
         line = mouth_line(p[:, 0])
         front = step(0.045, 0.062, p[:, 2])
         across = step(MOUTH_HALF + 0.010, MOUTH_HALF - 0.004, np.abs(p[:, 0]))
@@ -87,6 +96,28 @@ def _pucker(f: Face, forward: float, narrow: float, apart: float) -> Array:
     return out
 
 
+def _turned(f: Face, name: str, axis: int, degrees: float, bulge: float = 0.0) -> Array:
+    """Return what points of an eye or a lid are moved by, turned about the eye; bulge: and farther from it,
+    of their distance.
+    """
+    away = f.p - JOINT[("Left" if name.startswith("Left") else "Right") + "Eye"]
+    turn = np.tile(rotation.from_axis_angle(np.eye(3)[axis], np.radians(degrees)), (len(away), 1))
+    share = f.of.get(name, np.zeros(len(away)))
+    return np.asarray(share[:, None] * ((1 + bulge) * rotation.rotate(turn, away) - away))
+
+
+def _lids(f: Face, s: float, upper: float, lower: float, bulge: float = 0.0) -> Array:
+    side = "Left" if s > 0 else "Right"
+    return _turned(f, f"{side}UpperLid", 0, upper, bulge) + _turned(f, f"{side}LowerLid", 0, lower, bulge)
+
+
+def _look(f: Face, s: float, axis: int, degrees: float) -> Array:
+    out = _turned(f, ("Left" if s > 0 else "Right") + "Eye", axis, degrees)
+    if axis == 0:
+        out = out + _lids(f, s, degrees / LOOK * LOOK_UPPER, degrees / LOOK * LOOK_LOWER)
+    return out
+
+
 def _sided(make: Callable[[Face, float], Array]) -> dict[str, Target]:
     return {"Left": lambda f: make(f, 1.0), "Right": lambda f: make(f, -1.0)}
 
@@ -112,6 +143,22 @@ _PAIRS: dict[str, Callable[[Face, float], Array]] = {
     ),
     "browOuterUp": lambda f, s: _moved(f.near(_BROW_OUTER, 0.020, s), (0.0, 0.0072, 0.0)),
 }  # fmt: skip
+
+
+# Of eyes and lids, which no other target moves.
+_EYES: dict[str, Callable[[Face, float], Array]] = {
+    "eyeBlink": lambda f, s: _lids(f, s, UPPER_SHUT, LOWER_SHUT, _BULGE),
+    "eyeWide": lambda f, s: _lids(f, s, UPPER_WIDE, LOWER_WIDE),
+    "eyeLookUp": lambda f, s: _look(f, s, 0, -LOOK),
+    "eyeLookDown": lambda f, s: _look(f, s, 0, LOOK),
+    "eyeLookIn": lambda f, s: _look(f, s, 1, -s * LOOK),
+    "eyeLookOut": lambda f, s: _look(f, s, 1, s * LOOK),
+}
+
+
+def _tongue_out(f: Face) -> Array:
+    share = f.of.get("Tongue", np.zeros(len(f.p))) * step(0.042, 0.062, f.p[:, 2])
+    return _moved(share, _TONGUE_OUT) + _moved(share * step(0.060, 0.071, f.p[:, 2]), (0.0, -0.0026, 0.0))
 
 
 def _flat(f: Face, share: float) -> Array:
@@ -144,14 +191,19 @@ TARGETS: dict[str, Target] = {
         + _moved(f.near((0.0400, 1.5450, 0.0560), 0.022, -1.0), (-0.0068, 0, 0.0040))
     ),
     **{name + side: make for name, pair in _PAIRS.items() for side, make in _sided(pair).items()},
+    **{name + side: make for name, pair in _EYES.items() for side, make in _sided(pair).items()},
+    "tongueOut": _tongue_out,
 }
 
 
-def offsets(p: Array, jaw: Array, chosen: Array) -> Array:
+def offsets(p: Array, jaw: Array, chosen: Array, of: Mapping[str, Array] | None = None) -> Array:
     """Return `[K, V, 3]` what each target moves points `[V, 3]` by, in the order of `TARGETS`. jaw: how much
-    each is moved by the jaw. chosen `[V]`: which are of the face; the others stay.
+    each is moved by the jaw. chosen `[V]`: which are of the face; the others stay. of: how much each is of
+    LeftEye, LeftUpperLid, LeftLowerLid, the same of the right, and Tongue.
     """
-    face = Face(p, jaw)
-    out = np.stack([target(face) for target in TARGETS.values()]) * chosen[None, :, None]
+    face = Face(p, jaw, of)
+    free = [name.startswith(tuple(_EYES)) for name in TARGETS]  # what these move is not of the face
+    out = np.stack([target(face) for target in TARGETS.values()])
+    out *= np.where(np.array(free)[:, None], 1.0, chosen)[:, :, None]
     out[np.abs(out).max(2) < 2e-5] = 0
     return np.asarray(out, np.float32)

@@ -88,6 +88,7 @@ _WEIGHTS: dict[str, Callable[[Array], weights.Weights]] = {
     "hair": lambda p: {"Head": np.ones(len(p))},
 }  # fmt: skip
 _BOTH = ("palm", "shoe", "forearm")  # made for the left, and mirrored
+_LOOSE = ("Eye", "UpperLid", "LowerLid")
 _ROW_OF = {"palm": "skin", "forearm": "skin"}
 Sculpt = Callable[[shapes.Part], tuple[Array, Array]]
 
@@ -118,6 +119,7 @@ def _pieces(look: Look, sculpt: Sculpt) -> list[Piece]:
         *([pieces.earring()] if look.earrings else []),
     ]
     worn = pieces.glasses() if look.glasses else []
+    worn += [pieces.tongue()] if look.targets else []
     return [*out, *left, *(p.mirrored() for p in left), pieces.collar(), pieces.hem(), pieces.teeth(), *worn]
 
 
@@ -192,7 +194,9 @@ def _targets(positions: Array, dense: Array, made: list[Piece]) -> Array:
     of = {n: dense[:, SKELETON.index(n)] for n in ("Head", "Jaw", "LeftBrow", "RightBrow")}
     face = step(0.5, 0.9, sum(of.values(), np.zeros(len(positions))))
     still = _of(made, "hair", "eyes") & (of["Head"] > 0.5)  # but brows are hair that moves
-    return face_targets.offsets(positions, of["Jaw"], np.where(still, 0.0, face))
+    loose = {s + n: dense[:, SKELETON.index(s + n)] for s in ("Left", "Right") for n in _LOOSE}
+    loose["Tongue"] = np.concatenate([np.full(len(p.positions), float(p.tongue)) for p in made])
+    return face_targets.offsets(positions, of["Jaw"], np.where(still, 0.0, face), loose)
 
 
 def _of(made: list[Piece], *materials: str) -> Array:

@@ -34,6 +34,7 @@ class Piece:
     rows: Array
     weights: dict[str, Array]
     material: str = "skin"
+    tongue: bool = False
 
     def mirrored(self) -> Piece:
         flip = np.array([-1.0, 1, 1])
@@ -307,6 +308,23 @@ def teeth() -> Piece:
     return rigid(
         tube(path, np.full(9, 0.0050), np.full(9, 0.0020), np.tile([0.0, 1, 0], (9, 1)), 6), "Head", "teeth"
     )
+
+
+def tongue() -> Piece:
+    """Flat on the floor of the mouth, behind the lips while they are shut."""
+    around, along = np.linspace(0, 2 * np.pi, 13)[:-1], np.linspace(0, np.pi, 9)
+    a, b = np.meshgrid(along, around, indexing="ij")
+    ball = np.stack([np.sin(a) * np.cos(b), np.sin(a) * np.sin(b), np.cos(a)], -1).reshape(-1, 3)
+    radii = np.array([0.0125, 0.0030, 0.0150])
+    i, j = np.meshgrid(np.arange(len(along) - 1), np.arange(len(around)), indexing="ij")
+    first, beside = (i * 12 + j).ravel(), (i * 12 + (j + 1) % 12).ravel()
+    triangles = np.concatenate(
+        [np.stack([first, beside, beside + 12], -1), np.stack([first, beside + 12, first + 12], -1)]
+    )
+    normals = ball / radii
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    made = rigid((ball * radii + [0.0, 1.5382, 0.0560], normals, triangles), "Jaw", "lip")
+    return replace(made, tongue=True)
 
 
 def glasses() -> list[Piece]:

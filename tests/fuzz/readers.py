@@ -72,6 +72,10 @@ def mutated(chance: random.Random, seeds: list[bytes], one: Fuzzed) -> bytes:
 
 # --- the readers
 
+_LIVE_LINK = b"Timecode,BlendShapeCount,JawOpen,EyeLookOutLeft,HeadYaw,LeftEyeYaw\r\n" + b"".join(
+    b"12:00:%02d:%02d.5,61,0.5,0.%d,-0.1,0.2\r\n" % (n // 60, n % 60, n % 10) for n in range(150)
+)
+
 
 def _clip_seeds(ending: str) -> Callable[[], dict[str, bytes]]:
     def make() -> dict[str, bytes]:
@@ -208,6 +212,7 @@ def _readers() -> dict[str, Fuzzed]:
     from metagraph.formats.gltf import has_skinned_mesh, morph_targets, read_character, vrm_roles
     from metagraph.formats.keypoints import read_keypoints
     from metagraph.formats.language_files import read_pack
+    from metagraph.formats.live_link_face import read_live_link
     from metagraph.formats.recovery import read_journal
     from metagraph.formats.store import read_project
     from metagraph.formats.transcripts import read_transcript
@@ -282,6 +287,7 @@ def _readers() -> dict[str, Fuzzed]:
         "bml": Fuzzed(bml, _fixed(a_xml=BML), XML, spoilt_words),
         "fbx": Fuzzed(read_fbx_clips, _fixed(a_fbx=ascii_fbx()), (b"{", b"}", b"*9", b"Model:", b'"'), spoilt_words),
         "bvh": Fuzzed(read_clips, _clip_seeds(".bvh"), bvh, spoilt_words),
+        "live link": Fuzzed(read_live_link, _fixed(a_csv=_LIVE_LINK), (b",", b"\n", b"12:00:00:01", b";", b"nan", b"-"), spoilt_words),
         "gltf": Fuzzed(read_clips, _clip_seeds(".glb"), JSON, spoilt_glb),
         "character": Fuzzed(drawn, _clip_seeds(".glb"), JSON, spoilt_glb),
         "textgrid": Fuzzed(voice_from_phones, _only(".TextGrid"), (b'"', b"<exists>", b"IntervalTier"), spoilt_words),

@@ -40,6 +40,11 @@ RATES = {
         "mirrors the other's stance",
         "How often the partner's change of stance is taken up while listening",
     ),
+    "mood": (
+        "of the other's mood",
+        "How far the partner's mood shows on this one's face and posture, a moment later",
+    ),
+    "laugh": ("laughs along", "How many of the others' laughs are answered with a laughing face"),
 }
 BLINKS = {
     "life": ("As in Life, and on stresses", "The life layer's blinks, and one on many of the clauses' peaks"),

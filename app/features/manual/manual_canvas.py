@@ -470,7 +470,7 @@ class ManualCanvas(QWidget):
         event.acceptProposedAction()
         if load.clips:
             self.place(load.clips, QPointF(event.position()))
-        elif load.files and all(str(f).lower().endswith(manual_many.SUFFIXES) for f in load.files):
+        elif load.files and all(manual_many.is_table(Path(f)) for f in load.files):
             for file in load.files:
                 manual_many.import_table(self, Path(file))
         elif load.files:

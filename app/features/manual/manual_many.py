@@ -10,12 +10,18 @@ from app.features.manual.manual_host import ManualHost
 from app.look.plural import many
 from metagraph.errors import FileError
 from metagraph.formats import manual_table
+from metagraph.formats.clips import is_face_recording
 from metagraph.graph import manual_groups
 from metagraph.graph.manual import Link
 from metagraph.graph.model import Project
 
 TABLES = "Tables (*.csv *.tsv *.txt)"
 SUFFIXES = (".csv", ".tsv")
+
+
+def is_table(path: Path) -> bool:
+    """Whether a file is a table of a machine's links, by its name; recordings of faces are none."""
+    return path.suffix.lower() in SUFFIXES and not is_face_recording(path)
 
 
 def make_alias(canvas: ManualHost, every: bool = False) -> None:

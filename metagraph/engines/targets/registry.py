@@ -27,6 +27,7 @@ MODULES = (
     "interactivity",
     "statecharts",
     "agents",
+    "vrm",
 )
 DEFAULT = "metagraph"
 

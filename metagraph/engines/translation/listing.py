@@ -83,6 +83,7 @@ LISTING = (
     Translated("metagraph.playback.life.track", "track", ("Track",), without=("Track.items", "Track.plus")),
     Translated("metagraph.playback.life.wanted", "wanted"),
     Translated("metagraph.playback.life.expressions", "expressions"),
+    Translated("metagraph.playback.life.sympathy", "sympathy"),
     Translated("metagraph.playback.life.schedule", "schedule"),
     Translated("metagraph.playback.hearing", "hearing"),
     Translated("metagraph.playback.finding", "finding"),

@@ -86,7 +86,8 @@ def compared(character: Character, vectors: dict[str, Any]) -> Iterator[tuple[se
                 weighs = answer is not made
                 made, more = life.added(answer, t, said)
                 for name, value in more.items():
-                    weights[name] = min(max(weights.get(name, 0.0) + value, 0.0), 1.0)
+                    shown = weights.get(name, 0.0)
+                    weights[name] = min(max(shown + value * (1 - shown), 0.0), 1.0)
                 plays = {"with life"} | ({"the arms' weight"} if weighs else set())
             names = weights.keys() | wanted["morphs"].keys()
             off = (abs(weights.get(name, 0.0) - wanted["morphs"].get(name, 0.0)) for name in names)

@@ -98,7 +98,10 @@ public:
         for (const MorphShare& share : body_.face.morphs) {
             if (values[share.value] > 1e-4) lang::at(added_, share.target) += values[share.value] * share.weight;
         }
-        for (std::size_t n = 0; n < added_.size(); n++) out[n] += std::min(1.0, added_[n]);
+        // As far as clips leave them room.
+        for (std::size_t n = 0; n < added_.size(); n++) {
+            out[n] += std::min(1.0, added_[n]) * (1.0 - std::clamp(out[n], 0.0, 1.0));
+        }
     }
 
 private:

@@ -161,7 +161,7 @@ export class Enlivener {
   }
 
   /**
-   * Add the morph target weights of what was found, by their places in `graph.morphs`.
+   * Add the morph target weights of what was found, by their places in `graph.morphs`: as far as clips leave them room.
    * @param {Float32Array} out @param {import("../plan.js").Plan} plan @param {number} time @param {object[]} cues those that play then
    */
   morphs(out, plan, time, cues) {
@@ -189,7 +189,7 @@ export class Enlivener {
       const { value, morph, weight } = this.targets[n];
       if (values[value] > 1e-4) added[morph] += values[value] * weight;
     }
-    for (let n = 0; n < added.length; n++) out[n] += Math.min(1, added[n]);
+    for (let n = 0; n < added.length; n++) out[n] += Math.min(1, added[n]) * (1 - Math.min(1, Math.max(0, out[n])));
   }
 }
 

@@ -180,7 +180,8 @@ namespace Metagraph
             }
             for (int n = 0; n < weights.Length; n++)
             {
-                morphs[n] += (float)Math.Min(1.0, weights[n]);
+                // As far as clips leave them room.
+                morphs[n] += (float)(Math.Min(1.0, weights[n]) * (1.0 - Math.Min(1.0, Math.Max(0.0, morphs[n]))));
             }
         }
 

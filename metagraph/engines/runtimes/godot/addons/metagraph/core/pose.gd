@@ -24,7 +24,8 @@ static func pose_at(graph, plan, time, alive = true):
 				cues.append(cue)
 		composed = Evaluate.enliven(graph, plan, time, composed, cues)
 		for name in composed.morphs:
-			morphs[name] = morphs.get(name, 0.0) + composed.morphs[name]
+			var played = morphs.get(name, 0.0)  # clips leave the rest of it to life
+			morphs[name] = played + composed.morphs[name] * (1.0 - Util.least(1.0, Util.most(0.0, played)))
 	if graph.contact_rig != null:
 		Contacts.touch(graph, _playing(graph, plan, time), time, composed)
 	for name in morphs:

@@ -1,0 +1,217 @@
+"""VRM 1.0: the character as an avatar that programs for avatars load, with the clips as glTF's animations.
+
+The nodes stand in a T, as VRM asks for; the skin stays bound to the rest pose, so the mesh is not touched
+and clips, whose rotations are local and whole, need no change. What may be done with it is written as it
+stands in `vrm_meta.json` beside the project (VRM's own names, `meta`); without, as little as VRM knows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from metagraph.engines.export import ExportError
+from metagraph.engines.targets.meshes import mesh_of
+from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
+from metagraph.errors import FileError
+from metagraph.files import read_file
+from metagraph.formats.gltf_writer import write_glb
+from metagraph.graph import anatomy
+from metagraph.graph.expression_presets import presets_of
+from metagraph.graph.face import axes_of
+from metagraph.graph.face_curves import worn
+from metagraph.graph.model import Project
+from metagraph.motion.joint_map import known_roles
+from metagraph.motion.roles import REQUIRED
+from metagraph.motion.skeleton import Pose, Skeleton, unique_names
+from metagraph.motion.t_pose import t_pose
+
+META = "vrm_meta.json"
+LICENCE = "https://vrm.dev/licenses/1.0/"
+_LARGEST = 1 << 20
+# What VRM's `meta` may hold: texts, lists of texts, truth values, and words to choose from.
+_TEXTS = ("name", "version", "copyrightInformation", "contactInformation", "thirdPartyLicenses",
+          "otherLicenseUrl")  # fmt: skip
+_LISTS = ("authors", "references")
+_FLAGS = (
+    "allowExcessivelyViolentUsage", "allowExcessivelySexualUsage", "allowPoliticalOrReligiousUsage",
+    "allowAntisocialOrHateUsage", "allowRedistribution",
+)  # fmt: skip
+_WORDS = {
+    "avatarPermission": ("onlyAuthor", "onlySeparatelyLicensedPerson", "everyone"),
+    "commercialUsage": ("personalNonProfit", "personalProfit", "corporation"),
+    "creditNotation": ("required", "unnecessary"),
+    "modification": ("prohibited", "allowModification", "allowModificationRedistribution"),
+}
+_FINGER = {"thumb": ("Metacarpal", "Proximal", "Distal")}
+_USUAL = ("Proximal", "Intermediate", "Distal")
+# Degrees an eye turns for one that looks aside by 90, as life turns them at most.
+_EYE_REACH = 30.0
+
+
+def humanoid(skeleton: Skeleton, roles: Mapping[str, int]) -> dict[str, int]:
+    """Return VRM's bone -> joint. A bone without the one VRM wants above it is left out."""
+    out: dict[str, int] = {}
+    for role, joint in known_roles(skeleton, roles).items():
+        parts = role.split("_")
+        if len(parts) == 3 and parts[2].isdigit():
+            side, finger, number = parts
+            if int(number) <= 3:
+                out[f"{side}{finger.capitalize()}{_FINGER.get(finger, _USUAL)[int(number) - 1]}"] = joint
+        elif "lid" not in parts:
+            out[parts[0] + "".join(p.capitalize() for p in parts[1:])] = joint
+    if "chest" not in out:
+        out.pop("upperChest", None)
+    for side in ("left", "right"):
+        for finger in ("Thumb", "Index", "Middle", "Ring", "Little"):
+            names = [f"{side}{finger}{part}" for part in _FINGER.get(finger.lower(), _USUAL)]
+            if not all(name in out for name in names):
+                for name in names:
+                    out.pop(name, None)
+    known = {
+        *(r.split("_")[0] + "".join(p.capitalize() for p in r.split("_")[1:]) for r in _BONES),
+        *(n for n in out if n.endswith(("Metacarpal", *_USUAL))),
+    }
+    return {bone: joint for bone, joint in out.items() if bone in known}
+
+
+_BONES = (
+    "hips", "spine", "chest", "upper_chest", "neck", "head", "jaw",
+    *(f"{s}_{r}" for s in ("left", "right") for r in (
+        "eye", "shoulder", "upper_arm", "lower_arm", "hand", "upper_leg", "lower_leg", "foot", "toes")),
+)  # fmt: skip
+
+
+def meta_of(project: Project, folder: Path | None) -> tuple[dict[str, Any], bool]:
+    """Return VRM's `meta`, and whether anybody said what may be done. Raises FileError."""
+    meta: dict[str, Any] = {"name": project.name or "character", "authors": ["unknown"]}
+    usual = {word: choices[0] for word, choices in _WORDS.items()} | dict.fromkeys(_FLAGS, False)
+    path = folder / META if folder is not None else None
+    if path is None or not path.is_file():
+        return {**meta, **usual, "licenseUrl": LICENCE}, False
+    try:
+        said = msgspec.json.decode(read_file(path, _LARGEST), type=dict[str, Any])
+    except msgspec.MsgspecError as error:
+        raise FileError(path, f"it is no JSON object ({error})", "its content", _remedy()) from None
+    for key, value in said.items():
+        fits = (
+            (key in _TEXTS and isinstance(value, str))
+            or (key in _LISTS and isinstance(value, list) and all(isinstance(v, str) and v for v in value))
+            or (key in _FLAGS and isinstance(value, bool))
+            or (key in _WORDS and value in _WORDS[key])
+        )
+        if not fits or (key == "authors" and not value):
+            allowed = f"one of {', '.join(_WORDS[key])}" if key in _WORDS else "known to VRM"
+            raise FileError(path, f"what it says is not {allowed}", f"field '{key}'", _remedy())
+    return {**meta, **usual, **said, "licenseUrl": LICENCE}, True
+
+
+def _remedy() -> str:
+    fields = (*_TEXTS, *_LISTS, *_WORDS, *_FLAGS)
+    return f"Its fields are VRM 1.0's: {', '.join(fields)}."
+
+
+def extension(
+    project: Project, bones: Mapping[str, int], targets: tuple[str, ...], mesh: int, meta: dict[str, Any]
+) -> dict[str, Any]:
+    """Return `VRMC_vrm`. targets: the mesh's; mesh: its node."""
+    presets: dict[str, Any] = {}
+    for name, mix in presets_of(targets, project.face.channels).items():
+        binds = [{"node": mesh, "index": targets.index(t), "weight": w} for t, w in mix.items()]
+        presets[name] = {"morphTargetBinds": binds, "isBinary": False}
+        presets[name] |= dict.fromkeys(("overrideBlink", "overrideLookAt", "overrideMouth"), "none")
+    out: dict[str, Any] = {
+        "specVersion": "1.0",
+        "meta": meta,
+        "humanoid": {"humanBones": {bone: {"node": joint} for bone, joint in bones.items()}},
+        "firstPerson": {"meshAnnotations": [{"node": mesh, "type": "auto"}]},
+    }
+    if presets:
+        out["expressions"] = {"preset": presets}
+    eyes = [bones[b] for b in ("leftEye", "rightEye") if b in bones]
+    if len(eyes) == 2 or "lookUp" in presets:
+        ranges = {"inputMaxValue": 90.0, "outputScale": _EYE_REACH if eyes else 1.0}
+        out["lookAt"] = {
+            "type": "bone" if len(eyes) == 2 else "expression",
+            "offsetFromHeadBone": _between_eyes(project, bones, eyes),
+            **{
+                f"rangeMap{way}": ranges
+                for way in ("HorizontalInner", "HorizontalOuter", "VerticalDown", "VerticalUp")
+            },
+        }
+    return out
+
+
+def _between_eyes(project: Project, bones: Mapping[str, int], eyes: list[int]) -> list[float]:
+    if len(eyes) < 2 or project.skeleton is None:
+        return [0.0, 0.06, 0.0]
+    _, at = project.skeleton.globals(project.skeleton.rest)
+    return [round(float(x), 6) for x in at[eyes].mean(0) - at[bones["head"]]]
+
+
+def _write(order: ExportOrder) -> Made:
+    project, skeleton = order.project, order.project.skeleton
+    assert skeleton is not None
+    roles = anatomy.roles(project)
+    lacking = [role for role in REQUIRED if role not in roles]
+    if lacking:
+        raise ExportError(
+            f"VRM needs a humanoid: no joint was found for {', '.join(lacking[:3])}. Say which it is "
+            "under the character's joints"
+        )
+    _, at = skeleton.globals(skeleton.rest)
+    axes = axes_of(skeleton, roles, at)
+    if axes[2] @ [0, 0, 1] < 0.95:
+        raise ExportError("VRM's figures look along +Z in their rest pose, and this one does not")
+    body, notes = mesh_of(order)
+    if body is None:
+        raise ExportError("VRM is a character: choose a mesh that fits the clips, and export with it")
+    order.tell(0, 2, "clips")
+    bones = humanoid(skeleton, roles)
+    meta, said = meta_of(project, order.base)
+    mesh = len(skeleton) + (sum(int(p) < 0 for p in skeleton.parents) > 1)
+    used = [project.clips[c] for c in project.uses if c in project.clips]
+    clips = [worn(project, e.motion) for e in used if e.motion is not None]
+    names = unique_names([clip.name for clip in clips])
+    path = order.folder / f"{order.stem}.vrm"
+    stand = t_pose(skeleton, roles, axes[0])
+    write_glb(
+        path,
+        [replace(c.renamed(n), skeleton=skeleton) for c, n in zip(clips, names, strict=True)],
+        replace(body, skeleton=skeleton),
+        stand=_grounded(stand, skeleton, roles),
+        extensions={"VRMC_vrm": extension(project, bones, body.morphs, mesh, meta)},
+    )
+    order.tell(2, 2, "done")
+    if not said:
+        notes = (*notes, f"nobody said what may be done with it: the strictest terms stand in it ({META})")
+    return Made((path,), notes)
+
+
+def _grounded(pose: Pose, skeleton: Skeleton, roles: Mapping[str, int]) -> Pose:
+    """Return the pose with its feet as high as they are at rest."""
+    feet = [roles["left_foot"], roles["right_foot"]]
+    _, was = skeleton.globals(skeleton.rest)
+    _, now = skeleton.globals(pose)
+    translations = np.array(pose.translations)
+    translations[0, 1] += float((was[feet, 1] - now[feet, 1]).mean())
+    return Pose(pose.rotations, translations)
+
+
+TARGETS = (
+    ExportTarget(
+        "vrm",
+        "VRM 1.0 avatar",
+        "a VRM: the character in a T, its bones, expressions and licence, clips as animations",
+        _write,
+        (
+            Loss("no meta-graph: an avatar's program moves it, the clips are there by their names"),
+            Loss("no life layers: breathing, gaze, blinks and lips are the program's"),
+        ),
+    ),
+)
