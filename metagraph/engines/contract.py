@@ -54,7 +54,9 @@ class ExportedClip(Struct, omit_defaults=True, forbid_unknown_fields=True):
     """A clip. animation: its place in the GLB's list of animations, where it bears the same name. sha256: of
     the file it came from. made_by, made_seed: the learned model that generated it, and its seed; left out of
     others. arms: what its arms weigh, a row of eight numbers for each tenth of a second; left out where the
-    arms' layer does not play it, or no body answers its arms.
+    arms' layer does not play it, or no body answers its arms. feet: where its feet are and when they stand, a
+    row of sixteen numbers for each tenth of a second, or one for all; left out where the body's layer does
+    not play it, or feet are not kept planted.
     """
 
     id: Id
@@ -67,6 +69,7 @@ class ExportedClip(Struct, omit_defaults=True, forbid_unknown_fields=True):
     made_by: str = ""
     made_seed: Annotated[int, Meta(ge=0)] = 0
     arms: list[Annotated[list[int], Meta(min_length=8, max_length=8)]] = []
+    feet: list[Annotated[list[int], Meta(min_length=16, max_length=16)]] = []
 
 
 class ExportedStance(Struct, forbid_unknown_fields=True):
