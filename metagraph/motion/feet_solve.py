@@ -30,8 +30,8 @@ from metagraph.motion.weight_solve import GIVE, WeightRig, hips_sink, stands_by
 NEAR = 0.0001  # metres that a foot may be away before it is brought
 NEARLY = 0.001  # radians that it may be turned away
 FOLLOWS = 0.7  # of the feet's way the hips come along
-LEANS = 0.15  # of the way to the foot that stands, while the other is
-HIGH = 0.03  # metres in the air
+LEANS = 0.1  # of the way to the foot that stands, while the other is
+HIGH = 0.05  # metres in the air
 TURNING = 0.15  # metres that a turn of a radian counts as way
 
 
@@ -49,7 +49,7 @@ class FootGoal:
 
 def foot_way(a: FootGoal, b: FootGoal) -> float:
     """Return how far it is from one place of a foot to another, metres, a turn counted in."""
-    x, y, z, w = times(b.turn, back(a.turn))
+    x, y, z, _ = times(b.turn, back(a.turn))
     return length(minus(b.at, a.at)) + TURNING * 2.0 * sqrt(x * x + y * y + z * z)
 
 
@@ -79,7 +79,7 @@ def plant_feet(rig: WeightRig, pose: ContactPose, goals: Sequence[FootGoal], str
         far = length(way)
         if far > NEAR and part > 0.0:
             way = scaled(way, part * (far - NEAR) / far)
-            lean = LEANS * part * min(1.0, goal.lift / HIGH)
+            lean = LEANS * part * goal.lift / HIGH
             shift = plus(shift, plus(scaled(way, 0.5 * FOLLOWS), scaled(minus(feet[1 - side], middle), lean)))
             feet[side] = plus(feet[side], way)
             size += length(way)

@@ -99,7 +99,7 @@ class FeetOfPlan:
         if cue is not None and motion_of(project, cue.action) is None:
             cue = None
         place = max(int(layer.fade_starts.searchsorted(time, "right")) - 1, 0)
-        nearby = range(max(0, place - 2), min(len(layer.rests), place + 3))
+        nearby = range(max(0, place - 4), min(len(layer.rests), place + 5))
         for action in [layer.rests[n].action for n in nearby] + ([cue.action] if cue is not None else []):
             if action.id not in self.tracks:
                 self.tracks[action.id] = FootTrack(self.rows(project, action.clip))

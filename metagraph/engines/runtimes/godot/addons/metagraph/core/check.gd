@@ -10,7 +10,7 @@ const OPTIONAL = {
 const EMPTY = ["life", "face", "points", "lines", "voices"]  # where these are not there
 const BASE = {rotations = "list", translations = "list"}
 const JOINT = {name = "text", parent = "text?", part = "text", side = "text", translation = "3", rotation = "4", scales = "text?"}
-const CLIP = {id = "text", name = "text", animation = "number", fps = "number", frames = "number", arms = "list?"}
+const CLIP = {id = "text", name = "text", animation = "number", fps = "number", frames = "number", arms = "list?", feet = "list?"}
 const LAYER = {start = "text?", weights = "record", stances = "list", actions = "list", markov = "record"}
 const STANCE = {id = "text", name = "text"}
 const ACTION = {
@@ -123,6 +123,9 @@ static func _unlike(data):
 		for row in clip.arms if clip.arms != null else []:
 			if not _is(row, "8"):
 				return "$.clips.arms: should be rows of eight numbers"
+		for row in clip.feet if clip.feet != null else []:
+			if not _is(row, "16"):
+				return "$.clips.feet: should be rows of sixteen numbers"
 	return "" if data.rig == null else _strays(data.rig, data.joints.size())
 
 
