@@ -49,8 +49,11 @@ class FootGoal:
 
 def foot_way(a: FootGoal, b: FootGoal) -> float:
     """Return how far it is from one place of a foot to another, metres, a turn counted in."""
-    x, y, z, _ = times(b.turn, back(a.turn))
-    return length(minus(b.at, a.at)) + TURNING * 2.0 * sqrt(x * x + y * y + z * z)
+    ax, ay, az, aw = a.turn
+    bx, by, bz, bw = b.turn
+    along = abs(ax * bx + ay * by + az * bz + aw * bw)
+    turn = 2.0 * sqrt(max(0.0, 2.0 - 2.0 * along))
+    return length(minus(b.at, a.at)) + TURNING * turn
 
 
 def plant_feet(rig: WeightRig, pose: ContactPose, goals: Sequence[FootGoal], strength: float) -> bool:

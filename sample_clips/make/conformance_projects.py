@@ -551,7 +551,7 @@ def stepping() -> Project:
         b.project = edits.update_actions(b.project, [action.id], timing=timing, likelihood=1.0 + n)
     b.act("body", "transition", stand, m.clip("to wide", 14, 1.3, still, apart, ("Hips", *LEGS), 0.1), wide)
     b.act("body", "transition", wide, m.clip("to stand", 15, 1.1, apart, still, sway, 0.1), stand)
-    for n, (name, size) in enumerate((("near", 0.02), ("far", 0.12), ("too far", 0.5))):
+    for n, (name, size) in enumerate((("near", 0.02), ("far", 0.1), ("too far", 0.22))):
         there = m.stance(20 + n, LEGS, size)
         b.act("body", "gesture", stand, m.clip(name, 30 + n, 2.2 + 0.3 * n, there, None, sway, 0.2))
         b.act("body", "fidget", wide, m.clip(f"{name} again", 40 + n, 0.6 + 0.2 * n, there, None, sway, 0.1))

@@ -95,8 +95,8 @@ def glide(off: Watched, on: Watched, lifted: Array) -> None:
         knees = np.abs(np.diff(of.knees, axis=0)).max() * FPS
         hips = np.linalg.norm(np.diff(of.hips, 2, axis=0), axis=-1) * FPS**2
         print(
-            f"    {name}: on the ground {np.percentile(some, (50, 95)).round(1)} mm/s (50, 95 %); knees at most "
-            f"{knees:.0f} degrees/s; hips {np.percentile(hips[changed[1:-1]], 99.9):.1f} m/s2 (99.9 %)"
+            f"    {name}: on the ground {np.percentile(some, (50, 95)).round(1)} mm/s (50, 95 %); "
+            f"knees {knees:.0f} degrees/s; hips {np.percentile(hips[changed[1:-1]], 99.9):.1f} m/s2 (99.9 %)"
         )
     rise = (on.at - off.at)[..., 1].max() * 1000
     sink = (off.hips - on.hips)[:, 1].max() * 1000

@@ -55,9 +55,11 @@ namespace feet_solve {
 
 /// Return how far it is from one place of a foot to another, metres, a turn counted in.
 inline double foot_way(const Ref<FootGoal>& a, const Ref<FootGoal>& b) {
-    auto [x, y, z, w] = plain_vectors::times(b->turn, plain_vectors::back(a->turn));
-    return plain_vectors::length(plain_vectors::minus(b->at, a->at))
-        + feet_solve::TURNING * 2.0 * std::sqrt(x * x + y * y + z * z);
+    auto [ax, ay, az, aw] = a->turn;
+    auto [bx, by, bz, bw] = b->turn;
+    double along = std::abs(ax * bx + ay * by + az * bz + aw * bw);
+    double turn = 2.0 * std::sqrt(std::max(0.0, 2.0 - 2.0 * along));
+    return plain_vectors::length(plain_vectors::minus(b->at, a->at)) + feet_solve::TURNING * turn;
 }
 
 /// Bring feet to their goals, as much as those are planted; return whether anything moved. goals: left, right, or none.

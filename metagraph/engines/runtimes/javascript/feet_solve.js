@@ -41,8 +41,11 @@ export class FootGoal {
  * @returns {number}
  */
 export function footWay(a, b) {
-  const [x, y, z, w] = times(b.turn, back(a.turn));
-  return length(minus(b.at, a.at)) + TURNING * 2 * Math.sqrt(x * x + y * y + z * z);
+  const [ax, ay, az, aw] = a.turn;
+  const [bx, by, bz, bw] = b.turn;
+  const along = Math.abs(ax * bx + ay * by + az * bz + aw * bw);
+  const turn = 2 * Math.sqrt(Math.max(0, 2 - 2 * along));
+  return length(minus(b.at, a.at)) + TURNING * turn;
 }
 
 /**

@@ -37,13 +37,19 @@ namespace Metagraph
         /// <summary>Return how far it is from one place of a foot to another, metres, a turn counted in.</summary>
         public static double FootWay(FootGoal a, FootGoal b)
         {
-            var found = PlainVectorsRules.Times(b.Turn, PlainVectorsRules.Back(a.Turn));
-            double x = found.Item1;
-            double y = found.Item2;
-            double z = found.Item3;
-            double w = found.Item4;
-            return PlainVectorsRules.Length(PlainVectorsRules.Minus(b.At, a.At))
-                + Turning * 2.0 * Math.Sqrt(x * x + y * y + z * z);
+            var found = a.Turn;
+            double ax = found.Item1;
+            double ay = found.Item2;
+            double az = found.Item3;
+            double aw = found.Item4;
+            var found2 = b.Turn;
+            double bx = found2.Item1;
+            double by = found2.Item2;
+            double bz = found2.Item3;
+            double bw = found2.Item4;
+            var along = Math.Abs(ax * bx + ay * by + az * bz + aw * bw);
+            var turn = 2.0 * Math.Sqrt(Math.Max(0.0, 2.0 - 2.0 * along));
+            return PlainVectorsRules.Length(PlainVectorsRules.Minus(b.At, a.At)) + Turning * turn;
         }
 
         /// <summary>

@@ -35,12 +35,19 @@ class FootGoal:
 
 # Return how far it is from one place of a foot to another, metres, a turn counted in.
 static func foot_way(a, b):
-	var both = PlainVectors.times(b.turn, PlainVectors.back(a.turn))
-	var x = both[0]
-	var y = both[1]
-	var z = both[2]
-	var w = both[3]
-	return PlainVectors.length(PlainVectors.minus(b.at, a.at)) + TURNING * 2.0 * sqrt(x * x + y * y + z * z)
+	var both = a.turn
+	var ax = both[0]
+	var ay = both[1]
+	var az = both[2]
+	var aw = both[3]
+	var both2 = b.turn
+	var bx = both2[0]
+	var by = both2[1]
+	var bz = both2[2]
+	var bw = both2[3]
+	var along = Util.absolute(ax * bx + ay * by + az * bz + aw * bw)
+	var turn = 2.0 * sqrt(Util.most(0.0, 2.0 - 2.0 * along))
+	return PlainVectors.length(PlainVectors.minus(b.at, a.at)) + TURNING * turn
 
 
 # Bring feet to their goals, as much as those are planted; return whether anything moved. goals: left, right, or none. strength:
