@@ -270,10 +270,13 @@ class RigEye(Struct, forbid_unknown_fields=True):
 
 
 class RigShoulder(Struct, forbid_unknown_fields=True):
-    """A joint that breathing lifts. turn: its rotation vector at the top of a breath, in its own space."""
+    """A joint that breathing lifts or tension turns. turn: its rotation vector at the top of a breath, in its
+    own space; tense: at full tension.
+    """
 
     joint: Place
     turn: Radians
+    tense: Radians = []
 
 
 class RigLooker(Struct, forbid_unknown_fields=True):
@@ -309,7 +312,7 @@ class Rig(Struct, forbid_unknown_fields=True):
     radians at the top of a breath. trunk: its place in the chain; trunk_ahead, head_ahead: ahead in their own
     space. eyes: left, right. partner: where "user" is unless a point of that name says otherwise, metres;
     eyes_at_rest: between the eyes in the base pose. bowed: for each joint of the chain the radians of a bowed
-    posture, about the axis of its breath; none where empty.
+    posture, about the axis of its breath, thrust: of one that leans into it; none where empty.
     """
 
     left: Direction
@@ -327,6 +330,7 @@ class Rig(Struct, forbid_unknown_fields=True):
     eyes_at_rest: Vector
     face: RigFace
     bowed: list[Number] = []
+    thrust: list[Number] = []
 
 
 class ExportedCapsule(Struct, forbid_unknown_fields=True):
