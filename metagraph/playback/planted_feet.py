@@ -22,6 +22,7 @@ FOOT_UNIT = 1e-5  # what 1 in a row stands for
 FOOT_NUMBERS = 8  # in a row, of each foot
 STEPPING = 0.5  # seconds that two steps take where a cue leaves them time
 LEAST_PART = 0.15  # of that time for the foot that has the shorter way
+NEARBY = 0.015  # metres: feet with less way than that are taken over together, slowly
 WAITS = 0.12  # of a step's time: before it goes ahead a foot is lifted, and lowered after it
 LIFT = 0.25  # how high a foot is lifted for a short step, of its way
 MOST_LIFT = 0.08  # metres that it is never lifted to
@@ -126,10 +127,12 @@ def _stepped(
     # To the left the left foot goes first: the other would have to pass it.
     moved = plus(minus(last[0].at, first[0].at), minus(last[1].at, first[1].at))
     left_first = dot(moved, minus(first[0].at, first[1].at)) >= -1e-9
-    far = 1.0 - ease((max(ways[0], ways[1]) / height - FAR) / TOO_FAR)
+    longer = max(ways[0], ways[1])
+    far = 1.0 - ease((longer / height - FAR) / TOO_FAR)
+    apart = ease(longer / NEARBY)
     out: list[FootGoal] = []
     for side in range(2):
-        share = part if side == 0 else 1.0 - part
+        share = 1.0 - apart * (1.0 - part if side == 0 else part)
         begin = 0.0 if left_first == (side == 0) else 1.0 - share
         x = min(max((u - begin) / share, 0.0), 1.0)
         go = ease((x - WAITS) / (1.0 - 2.0 * WAITS))

@@ -52,9 +52,9 @@ def step(height: float, *feet: Any) -> Feet | None:
     p = min(max(ways[0] / sum(ways), 0.15), 0.85) if sum(ways) > 0.0 else 0.5
     shift = last[0].place - first[0].place + last[1].place - first[1].place
     leads = 0 if shift @ (first[0].place - first[1].place) >= -1e-9 else 1
-    far = 1.0 - ease((max(ways) / height - 0.25) / 0.1)
+    far, apart = 1.0 - ease((max(ways) / height - 0.25) / 0.1), ease(max(ways) / 0.015)
     out = []
-    for n, share in enumerate((p, 1.0 - p)):
+    for n, share in enumerate((1.0 - apart * (1.0 - p), 1.0 - apart * p)):
         x = min(max((u - (0.0 if n == leads else 1.0 - share)) / share, 0.0), 1.0)
         g, v = ease((x - 0.12) / 0.76), 0.25 * ways[n]
         air = 16.0 * x * x * (1.0 - x) ** 2 * v / (1.0 + v / 0.08)

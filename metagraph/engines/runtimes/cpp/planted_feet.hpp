@@ -26,6 +26,7 @@ inline constexpr double FOOT_UNIT = 1e-05; // what 1 in a row stands for
 inline constexpr int FOOT_NUMBERS = 8; // in a row, of each foot
 inline constexpr double STEPPING = 0.5; // seconds that two steps take where a cue leaves them time
 inline constexpr double LEAST_PART = 0.15; // of that time for the foot that has the shorter way
+inline constexpr double NEARBY = 0.015; // metres: feet with less way than that are taken over together, slowly
 inline constexpr double WAITS = 0.12; // of a step's time: before it goes ahead a foot is lifted, and lowered after it
 inline constexpr double LIFT = 0.25; // how high a foot is lifted for a short step, of its way
 inline constexpr double MOST_LIFT = 0.08; // metres that it is never lifted to
@@ -196,13 +197,12 @@ inline List<Ref<FootGoal>> _stepped(
     );
     bool left_first = plain_vectors::dot(moved, plain_vectors::minus(lang::at(first, 0)->at, lang::at(first, 1)->at))
         >= -1e-09;
-    double far = 1.0
-        - cue_times::ease(
-            (std::max(lang::at(ways, 0), lang::at(ways, 1)) / height - planted_feet::FAR) / planted_feet::TOO_FAR
-        );
+    double longer = std::max(lang::at(ways, 0), lang::at(ways, 1));
+    double far = 1.0 - cue_times::ease((longer / height - planted_feet::FAR) / planted_feet::TOO_FAR);
+    double apart = cue_times::ease(longer / planted_feet::NEARBY);
     List<Ref<FootGoal>> out;
     for (int side = 0; side < 2; side++) {
-        double share = side == 0 ? part : 1.0 - part;
+        double share = 1.0 - apart * (side == 0 ? 1.0 - part : part);
         double begin = left_first == (side == 0) ? 0.0 : 1.0 - share;
         double x = std::min(std::max((u - begin) / share, 0.0), 1.0);
         double go = cue_times::ease((x - planted_feet::WAITS) / (1.0 - 2.0 * planted_feet::WAITS));

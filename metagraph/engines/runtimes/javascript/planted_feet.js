@@ -18,6 +18,7 @@ export const FOOT_UNIT = 1e-05; // what 1 in a row stands for
 export const FOOT_NUMBERS = 8; // in a row, of each foot
 export const STEPPING = 0.5; // seconds that two steps take where a cue leaves them time
 export const LEAST_PART = 0.15; // of that time for the foot that has the shorter way
+export const NEARBY = 0.015; // metres: feet with less way than that are taken over together, slowly
 export const WAITS = 0.12; // of a step's time: before it goes ahead a foot is lifted, and lowered after it
 export const LIFT = 0.25; // how high a foot is lifted for a short step, of its way
 export const MOST_LIFT = 0.08; // metres that it is never lifted to
@@ -162,10 +163,12 @@ function _stepped(height, before, after, first, last, u) {
   // To the left the left foot goes first: the other would have to pass it.
   const moved = plus(minus(last[0].at, first[0].at), minus(last[1].at, first[1].at));
   const leftFirst = dot(moved, minus(first[0].at, first[1].at)) >= -1e-09;
-  const far = 1 - ease((Math.max(ways[0], ways[1]) / height - FAR) / TOO_FAR);
+  const longer = Math.max(ways[0], ways[1]);
+  const far = 1 - ease((longer / height - FAR) / TOO_FAR);
+  const apart = ease(longer / NEARBY);
   const out = [];
   for (let side = 0; side < 2; side++) {
-    const share = side === 0 ? part : 1 - part;
+    const share = 1 - apart * (side === 0 ? 1 - part : part);
     const begin = leftFirst === (side === 0) ? 0 : 1 - share;
     const x = Math.min(Math.max((u - begin) / share, 0), 1);
     const go = ease((x - WAITS) / (1 - 2 * WAITS));

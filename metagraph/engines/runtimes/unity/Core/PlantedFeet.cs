@@ -26,6 +26,7 @@ namespace Metagraph
         public const int FootNumbers = 8; // in a row, of each foot
         public const double Stepping = 0.5; // seconds that two steps take where a cue leaves them time
         public const double LeastPart = 0.15; // of that time for the foot that has the shorter way
+        public const double Nearby = 0.015; // metres: feet with less way than that are taken over together, slowly
         public const double Waits = 0.12; // of a step's time: before it goes ahead a foot is lifted, and lowered after it
         public const double Lift = 0.25; // how high a foot is lifted for a short step, of its way
         public const double MostLift = 0.08; // metres that it is never lifted to
@@ -154,11 +155,13 @@ namespace Metagraph
                 PlainVectorsRules.Minus(last[1].At, first[1].At)
             );
             var leftFirst = PlainVectorsRules.Dot(moved, PlainVectorsRules.Minus(first[0].At, first[1].At)) >= -1e-09;
-            var far = 1.0 - CueTimesRules.Ease((Math.Max(ways[0], ways[1]) / height - Far) / TooFar);
+            var longer = Math.Max(ways[0], ways[1]);
+            var far = 1.0 - CueTimesRules.Ease((longer / height - Far) / TooFar);
+            var apart = CueTimesRules.Ease(longer / Nearby);
             var out_ = new List<FootGoal>();
             for (int side = 0; side < 2; side++)
             {
-                var share = side == 0 ? part : 1.0 - part;
+                var share = 1.0 - apart * (side == 0 ? 1.0 - part : part);
                 var begin = leftFirst == (side == 0) ? 0.0 : 1.0 - share;
                 var x = Math.Min(Math.Max((u - begin) / share, 0.0), 1.0);
                 var go = CueTimesRules.Ease((x - Waits) / (1.0 - 2.0 * Waits));

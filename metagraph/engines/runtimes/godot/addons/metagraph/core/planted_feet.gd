@@ -15,6 +15,7 @@ const FOOT_UNIT = 1e-05  # what 1 in a row stands for
 const FOOT_NUMBERS = 8  # in a row, of each foot
 const STEPPING = 0.5  # seconds that two steps take where a cue leaves them time
 const LEAST_PART = 0.15  # of that time for the foot that has the shorter way
+const NEARBY = 0.015  # metres: feet with less way than that are taken over together, slowly
 const WAITS = 0.12  # of a step's time: before it goes ahead a foot is lifted, and lowered after it
 const LIFT = 0.25  # how high a foot is lifted for a short step, of its way
 const MOST_LIFT = 0.08  # metres that it is never lifted to
@@ -107,10 +108,12 @@ static func _stepped(height, before, after, first, last, u):
 	# To the left the left foot goes first: the other would have to pass it.
 	var moved = PlainVectors.plus(PlainVectors.minus(last[0].at, first[0].at), PlainVectors.minus(last[1].at, first[1].at))
 	var left_first = PlainVectors.dot(moved, PlainVectors.minus(first[0].at, first[1].at)) >= -1e-09
-	var far = 1.0 - CueTimes.ease_((Util.most(ways[0], ways[1]) / height - FAR) / TOO_FAR)
+	var longer = Util.most(ways[0], ways[1])
+	var far = 1.0 - CueTimes.ease_((longer / height - FAR) / TOO_FAR)
+	var apart = CueTimes.ease_(longer / NEARBY)
 	var out = []
 	for side in range(2):
-		var share = part if side == 0 else 1.0 - part
+		var share = 1.0 - apart * (1.0 - part if side == 0 else part)
 		var begin = 0.0 if left_first == (side == 0) else 1.0 - share
 		var x = Util.least(Util.most((u - begin) / share, 0.0), 1.0)
 		var go = CueTimes.ease_((x - WAITS) / (1.0 - 2.0 * WAITS))
