@@ -82,7 +82,7 @@ def test_the_hips_go_against_the_arms() -> None:
 
 
 def test_turned_off_poses_are_the_composed_ones_to_the_bit() -> None:
-    layers = pose_at(plan(), with_dials(rigid(), planted_feet=0.0), TIMES)
+    layers = pose_at(plan(), with_dials(stiff(), planted_feet=0.0), TIMES)
     still = with_dials(sample(), stillness=1.0)
     dead = replace(sample(), life=msgspec.structs.replace(sample().life, on=False))
     for project in (with_dials(still, planted_feet=0.0), dead):
