@@ -53,3 +53,6 @@ def feet_cases(project: Project) -> Iterator[Case]:
         yield once(
             f"feet from stance to stance {seed}", about, asks, 19.0, seed=seed, times=every, alive=(True,)
         )
+    about = "nothing is asked: loops take over from one another, and begin anew"
+    often = tuple(np.round(np.arange(0.2, 9.0, 0.17), 3).tolist())
+    yield once("feet at rest", about, [], 20.0, seed=3, times=often, alive=(True,))
