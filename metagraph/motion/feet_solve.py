@@ -88,12 +88,12 @@ def plant_feet(rig: WeightRig, pose: ContactPose, goals: Sequence[FootGoal], str
             size += length(way)
             moved = True
         x, y, z, w = times(goal.turn, back(soles[side]))
-        if w < 0.0:
-            x, y, z, w = -x, -y, -z, -w
         turn = 2.0 * sqrt(x * x + y * y + z * z)
         if turn > NEARLY and part > 0.0:
             k = part * (turn - NEARLY) / turn
-            soles[side] = times(unit_turn((x * k, y * k, z * k, 1.0 - k + w * k)), soles[side])
+            along = -k if w < 0.0 else k  # the shorter way
+            turned = unit_turn((x * along, y * along, z * along, 1.0 - k + abs(w) * k))
+            soles[side] = times(turned, soles[side])
             moved = True
     if not moved:
         return False

@@ -545,7 +545,11 @@ def stepping() -> Project:
     still, sway, apart = m.stance(0, ()), ("Spine", "Chest"), m.stance(2, LEGS, 0.09)
     loose = m.clip("sway", 11, 2.0, still, m.stance(6, LEGS, 0.03), sway, 0.05)  # its ends do not meet
     stand = b.stance("body", "stand", m.clip("stand", 12, 1.7, still, None, sway, 0.05), loose)
-    wide = b.stance("body", "wide", m.clip("wide", 13, 1.5, apart, None, sway, 0.05))
+    spread = m.clip("wide", 13, 1.5, apart, None, sway, 0.05)
+    turns = np.array(spread.rotations)
+    turns[:, spread.skeleton.index("LeftFoot")] *= -1  # a quaternion and its negative are one rotation
+    spread = replace(spread, rotations=turns)
+    wide = b.stance("body", "wide", spread)
     for n, action in enumerate([*b.project.graphs["body"].of(stand, "stance")]):
         timing = replace(action.timing, blend_in=0.4 * n)
         b.project = edits.update_actions(b.project, [action.id], timing=timing, likelihood=1.0 + n)

@@ -121,21 +121,14 @@ inline bool plant_feet(
             moved = true;
         }
         auto [x, y, z, w] = plain_vectors::times(goal->turn, plain_vectors::back(lang::at(soles, side)));
-        if (w < 0.0) {
-            x = -x;
-            y = -y;
-            z = -z;
-            w = -w;
-        }
         double turn = 2.0 * std::sqrt(x * x + y * y + z * z);
         if (turn > feet_solve::NEARLY && part > 0.0) {
             double k = part * (turn - feet_solve::NEARLY) / turn;
-            lang::at(soles, side) = plain_vectors::times(
-                plain_vectors::unit_turn(
-                    std::tuple<double, double, double, double>{x * k, y * k, z * k, 1.0 - k + w * k}
-                ),
-                lang::at(soles, side)
+            double along = w < 0.0 ? -k : k; // the shorter way
+            std::tuple<double, double, double, double> turned = plain_vectors::unit_turn(
+                std::tuple<double, double, double, double>{x * along, y * along, z * along, 1.0 - k + std::abs(w) * k}
             );
+            lang::at(soles, side) = plain_vectors::times(turned, lang::at(soles, side));
             moved = true;
         }
     }

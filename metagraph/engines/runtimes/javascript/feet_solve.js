@@ -89,16 +89,12 @@ export function plantFeet(rig, pose, goals, strength) {
       moved = true;
     }
     const [x, y, z, w] = times(goal.turn, back(soles[side]));
-    if (w < 0) {
-      x = -x;
-      y = -y;
-      z = -z;
-      w = -w;
-    }
     const turn = 2 * Math.sqrt(x * x + y * y + z * z);
     if (turn > NEARLY && part > 0) {
       const k = part * (turn - NEARLY) / turn;
-      soles[side] = times(unitTurn([x * k, y * k, z * k, 1 - k + w * k]), soles[side]);
+      const along = w < 0 ? -k : k; // the shorter way
+      const turned = unitTurn([x * along, y * along, z * along, 1 - k + Math.abs(w) * k]);
+      soles[side] = times(turned, soles[side]);
       moved = true;
     }
   }

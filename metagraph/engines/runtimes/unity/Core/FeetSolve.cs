@@ -108,21 +108,13 @@ namespace Metagraph
                 double y = found.Item2;
                 double z = found.Item3;
                 double w = found.Item4;
-                if (w < 0.0)
-                {
-                    x = -x;
-                    y = -y;
-                    z = -z;
-                    w = -w;
-                }
                 var turn = 2.0 * Math.Sqrt(x * x + y * y + z * z);
                 if (turn > Nearly && part > 0.0)
                 {
                     var k = part * (turn - Nearly) / turn;
-                    soles[side] = PlainVectorsRules.Times(
-                        PlainVectorsRules.UnitTurn((x * k, y * k, z * k, 1.0 - k + w * k)),
-                        soles[side]
-                    );
+                    var along = w < 0.0 ? -k : k; // the shorter way
+                    var turned = PlainVectorsRules.UnitTurn((x * along, y * along, z * along, 1.0 - k + Math.Abs(w) * k));
+                    soles[side] = PlainVectorsRules.Times(turned, soles[side]);
                     moved = true;
                 }
             }

@@ -97,15 +97,12 @@ static func plant_feet(rig, pose, goals, strength):
 		var y = both[1]
 		var z = both[2]
 		var w = both[3]
-		if w < 0.0:
-			x = -x
-			y = -y
-			z = -z
-			w = -w
 		var turn = 2.0 * sqrt(x * x + y * y + z * z)
 		if turn > NEARLY and part > 0.0:
 			var k = part * (turn - NEARLY) / turn
-			soles[side] = PlainVectors.times(PlainVectors.unit_turn([x * k, y * k, z * k, 1.0 - k + w * k]), soles[side])
+			var along = -k if w < 0.0 else k  # the shorter way
+			var turned = PlainVectors.unit_turn([x * along, y * along, z * along, 1.0 - k + Util.absolute(w) * k])
+			soles[side] = PlainVectors.times(turned, soles[side])
 			moved = true
 	if not moved:
 		return false
