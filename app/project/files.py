@@ -34,6 +34,7 @@ from metagraph.graph.model import Project
 RECENT = 10
 FILTER = f"Metagraph projects (*{SUFFIX} *.yaml);;All files (*)"
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / f"sample{SUFFIX}"
+SEATED = Path(__file__).resolve().parents[2] / "sample_clips" / f"seated{SUFFIX}"
 PRACTICE = Path(__file__).resolve().parents[2] / "sample_clips" / f"practice{SUFFIX}"
 
 

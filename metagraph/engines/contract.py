@@ -54,7 +54,9 @@ class ExportedClip(Struct, omit_defaults=True, forbid_unknown_fields=True):
     """A clip. animation: its place in the GLB's list of animations, where it bears the same name. sha256: of
     the file it came from. made_by, made_seed: the learned model that generated it, and its seed; left out of
     others. arms: what its arms weigh, a row of eight numbers for each tenth of a second; left out where the
-    arms' layer does not play it, or no body answers its arms.
+    arms' layer does not play it, or no body answers its arms. feet: where its feet are and when they stand, a
+    row of sixteen numbers for each tenth of a second, or one for all; left out where the body's layer does
+    not play it, or feet are not kept planted.
     """
 
     id: Id
@@ -67,6 +69,7 @@ class ExportedClip(Struct, omit_defaults=True, forbid_unknown_fields=True):
     made_by: str = ""
     made_seed: Annotated[int, Meta(ge=0)] = 0
     arms: list[Annotated[list[int], Meta(min_length=8, max_length=8)]] = []
+    feet: list[Annotated[list[int], Meta(min_length=16, max_length=16)]] = []
 
 
 class ExportedStance(Struct, forbid_unknown_fields=True):
@@ -267,10 +270,13 @@ class RigEye(Struct, forbid_unknown_fields=True):
 
 
 class RigShoulder(Struct, forbid_unknown_fields=True):
-    """A joint that breathing lifts. turn: its rotation vector at the top of a breath, in its own space."""
+    """A joint that breathing lifts or tension turns. turn: its rotation vector at the top of a breath, in its
+    own space; tense: at full tension.
+    """
 
     joint: Place
     turn: Radians
+    tense: Radians = []
 
 
 class RigLooker(Struct, forbid_unknown_fields=True):
@@ -306,7 +312,7 @@ class Rig(Struct, forbid_unknown_fields=True):
     radians at the top of a breath. trunk: its place in the chain; trunk_ahead, head_ahead: ahead in their own
     space. eyes: left, right. partner: where "user" is unless a point of that name says otherwise, metres;
     eyes_at_rest: between the eyes in the base pose. bowed: for each joint of the chain the radians of a bowed
-    posture, about the axis of its breath; none where empty.
+    posture, about the axis of its breath, thrust: of one that leans into it; none where empty.
     """
 
     left: Direction
@@ -324,6 +330,7 @@ class Rig(Struct, forbid_unknown_fields=True):
     eyes_at_rest: Vector
     face: RigFace
     bowed: list[Number] = []
+    thrust: list[Number] = []
 
 
 class ExportedCapsule(Struct, forbid_unknown_fields=True):

@@ -14,7 +14,7 @@ from metagraph.budgets import SOUND_FILE
 from metagraph.engines import contract as c
 from metagraph.engines.export_contacts import contact_rig_of, contacts_of
 from metagraph.engines.export_rig import rig_of, voices_of
-from metagraph.engines.export_weight import arms_of, weight_rig_of
+from metagraph.engines.export_weight import arms_of, feet_of, weight_rig_of
 from metagraph.errors import FileError
 from metagraph.file_names import file_stem, file_stems
 from metagraph.files import is_inside, read_file, unforeseen
@@ -283,7 +283,7 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
     ]
     pose = anatomy.base_pose(project)
     base = c.Base(project.base.clip, project.base.frame, pose.rotations.tolist(), pose.translations.tolist())
-    arms = arms_of(project)
+    arms, feet = arms_of(project), feet_of(project)
     clips = [
         c.ExportedClip(
             e.id,
@@ -296,6 +296,7 @@ def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bo
             e.made_by,
             e.made_seed if e.made_by else 0,
             arms.get(e.id, []),
+            feet.get(e.id, []),
         )
         for n, (e, name) in enumerate(zip(_used(project), names, strict=True))
     ]

@@ -33,7 +33,8 @@ def rig_of(project: Project) -> c.Rig | None:
         chain=body.chain.tolist(),
         breath=[[*axis, angle] for axis, angle in body.breath],
         shoulders=[
-            c.RigShoulder(joint, list(turn)) for joint, turn in zip(shoulders, body.shoulders, strict=True)
+            c.RigShoulder(joint, list(turn), list(tense))
+            for joint, turn, tense in zip(shoulders, body.shoulders, body.tense, strict=True)
         ],
         lookers=[c.RigLooker(x.place, x.share) for x in body.lookers],
         trunk=body.trunk,
@@ -52,6 +53,7 @@ def rig_of(project: Project) -> c.Rig | None:
             morphs={channel: dict(targets) for channel, targets in face.morphs.items()},
         ),
         bowed=list(body.bowed),
+        thrust=list(body.thrust),
     )
 
 
@@ -105,9 +107,11 @@ def read_rig(rig: c.Rig) -> Body:
         chain=np.array(rig.chain, int),
         breath=tuple((_three(row[:3]), row[3]) for row in rig.breath),
         bowed=tuple(rig.bowed) or (0.0,) * len(rig.chain),
+        thrust=tuple(rig.thrust) or (0.0,) * len(rig.chain),
         joints=np.array(joints, int),
         read=np.array(read, int),
         shoulders=tuple(_three(s.turn) for s in rig.shoulders),
+        tense=tuple(_three(s.tense) for s in rig.shoulders),
         lookers=tuple(Looker(x.place, x.share) for x in rig.lookers),
         trunk=rig.trunk,
         trunk_ahead=_three(rig.trunk_ahead),
@@ -132,8 +136,10 @@ def _lifeless() -> Body:
         first,
         breath,
         (0.0,),
+        (0.0,),
         first,
         first,
+        (),
         (),
         (),
         0,

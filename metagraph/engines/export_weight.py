@@ -1,4 +1,4 @@
-"""What answers the arms in an export, and read back."""
+"""What answers the arms in an export, and where feet stand, and both read back."""
 
 from __future__ import annotations
 
@@ -12,13 +12,16 @@ from metagraph.motion.contact_solve import ContactArm, ContactRig
 from metagraph.motion.plain_vectors import Vector
 from metagraph.motion.skeleton import Skeleton
 from metagraph.motion.weight_solve import WeightBend, WeightCollar, WeightRig
-from metagraph.playback.weight import Weight, rows_of, weighs, weight_of
+from metagraph.playback.feet import moved_alone
+from metagraph.playback.weight import Weight, foot_rows_of, plants, rows_of, sways, weight_of
 
 
 def weight_rig_of(project: Project) -> c.ExportedWeightRig | None:
-    """Return what runtimes need for bodies that answer their arms, None where none does."""
-    rig = weight_of(project).rig if weighs(project) else None
-    if rig is None or rig.strength <= 0:
+    """Return what runtimes need for bodies that answer their arms or whose feet stay planted, None where none
+    does.
+    """
+    rig = weight_of(project).rig
+    if rig is None or not (_sways(project, rig) or _plants(project, rig)):
         return None
     return c.ExportedWeightRig(
         list(rig.body.joints),
@@ -37,10 +40,28 @@ def weight_rig_of(project: Project) -> c.ExportedWeightRig | None:
 
 def arms_of(project: Project) -> dict[str, list[list[int]]]:
     """Return the rows of the clips that the arms' layer plays, none where no body answers its arms."""
-    if weight_rig_of(project) is None:
+    rig = weight_of(project).rig
+    if rig is None or not _sways(project, rig):
         return {}
     clips = {action.clip for action in project.graphs["arms"].actions.values()}
     return {clip: [[int(x) for x in row] for row in rows_of(project, clip)] for clip in clips}
+
+
+def feet_of(project: Project) -> dict[str, list[list[int]]]:
+    """Return where the feet of the clips are that the body's layer plays, none where none stays planted."""
+    rig = weight_of(project).rig
+    if rig is None or not _plants(project, rig):
+        return {}
+    clips = {action.clip for action in project.graphs["body"].actions.values()}
+    return {clip: [[int(x) for x in row] for row in foot_rows_of(project, clip)] for clip in clips}
+
+
+def _sways(project: Project, rig: WeightRig) -> bool:
+    return sways(project) and rig.strength > 0
+
+
+def _plants(project: Project, rig: WeightRig) -> bool:
+    return plants(project) and moved_alone(project, rig)
 
 
 def read_weight(
@@ -50,8 +71,9 @@ def read_weight(
     joints.
     """
     rows: Mapping[str, list[list[int]]] = {clip.id: clip.arms for clip in clips}
+    feet: Mapping[str, list[list[int]]] = {clip.id: clip.feet for clip in clips}
     if rig is None:
-        return Weight(None, {})
+        return Weight(None, {}, {})
     count = len(rig.joints)
     places = [
         *(p for leg in rig.legs for p in leg),
@@ -80,7 +102,11 @@ def read_weight(
         rig.height,
         rig.strength,
     )
-    return Weight(found, {clip: [[float(x) for x in row] for row in each] for clip, each in rows.items()})
+    return Weight(found, _floats(rows), _floats(feet))
+
+
+def _floats(rows: Mapping[str, list[list[int]]]) -> dict[str, Sequence[Sequence[float]]]:
+    return {clip: [[float(x) for x in row] for row in each] for clip, each in rows.items()}
 
 
 def _three(values: Sequence[float]) -> Vector:

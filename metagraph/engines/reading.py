@@ -182,6 +182,7 @@ def _body(rig: c.Rig, skeleton: Skeleton) -> Body:
         rig.chain
         and len(rig.breath) == len(rig.chain)
         and len(rig.bowed) in (0, len(rig.chain))
+        and len(rig.thrust) in (0, len(rig.chain))
         and max(joints) < len(skeleton)
         and max(places) < len(rig.chain)
     )

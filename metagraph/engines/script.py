@@ -10,6 +10,7 @@ from typing import Any
 
 from metagraph.engines.script_chatter import chatter_cases
 from metagraph.engines.script_faces import face_cases
+from metagraph.engines.script_feet import feet_cases
 from metagraph.engines.script_life import life_cases
 from metagraph.engines.script_moods import mood_cases
 from metagraph.engines.script_parts import Ask, Case, ScriptStep
@@ -42,6 +43,7 @@ def cases(project: Project) -> Iterator[Case]:
         replaced_cases,
         chatter_cases,
         weight_cases,
+        feet_cases,
     ):
         yield from part(project)
 

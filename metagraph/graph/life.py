@@ -73,6 +73,7 @@ class Life(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown
     lip_smoothing: Annotated[float, Meta(ge=0, le=0.2)] = 0.03
     follow_through: Annotated[float, Meta(ge=0, le=2)] = 1.0
     shoulder_lift: Annotated[float, Meta(ge=0, le=2)] = 1.0
+    planted_feet: Annotated[float, Meta(ge=0, le=1)] = 1.0
     expressions: Annotated[float, Meta(ge=0, le=2)] = 1.0
     accent_brows: Annotated[float, Meta(ge=0, le=1)] = 0.4
     valence: Annotated[float, Meta(ge=-1, le=1)] = 0.0
@@ -225,6 +226,17 @@ DIALS: tuple[Dial, ...] = (
         0.05,
         0,
         "How far collar bones that a clip leaves still rise with raised arms.",
+    ),
+    Dial(
+        "planted_feet",
+        "Weight",
+        "Planted feet",
+        "",
+        0,
+        1,
+        0.01,
+        0,
+        "How far feet that stand are held in blends, and step where the poses have them elsewhere.",
     ),
     Dial(
         "expressions",

@@ -107,14 +107,14 @@ def answer_arms(
     if follow <= 0.0:
         return True
     spread(rig.body, pose)
-    follow = follow * _stands(rig, pose)
+    follow = follow * stands_by(rig, pose)
     if follow <= 0.0:
         return True
     _give_way(rig, pose, drive, follow)
     return True
 
 
-def _stands(rig: WeightRig, pose: ContactPose) -> float:
+def stands_by(rig: WeightRig, pose: ContactPose) -> float:
     """Return how much a figure stands, 0 for one that sits or lies, 1 on straight legs."""
     least = 1.0
     for leg in rig.body.arms:
@@ -157,7 +157,7 @@ def _give_way(rig: WeightRig, pose: ContactPose, drive: Sequence[float], follow:
     size = length((x, y, z)) + 0.1 * rig.height * length((yaw, roll, pitch))
     low = 0.0
     for side in range(len(feet)):
-        low = max(low, _too_far(rig, pose, side, feet[side], reaches[side], GIVE * size))
+        low = max(low, hips_sink(rig, pose, side, feet[side], reaches[side], GIVE * size))
     if low > 0.0:
         down = rotated(space, scaled(rig.up, -low))
         pose.moved[hips.place] = plus(pose.moved[hips.place], down)
@@ -166,7 +166,7 @@ def _give_way(rig: WeightRig, pose: ContactPose, drive: Sequence[float], follow:
         bring(body, pose, side, feet[side], soles[side], rig.knees[side])
 
 
-def _too_far(rig: WeightRig, pose: ContactPose, side: int, foot: Vector, reach: float, soft: float) -> float:
+def hips_sink(rig: WeightRig, pose: ContactPose, side: int, foot: Vector, reach: float, soft: float) -> float:
     """Return by how much the hips have to sink for a foot to be within a leg's reach; from a little before
     that on, so that it sets in gently. reach: how far hip and foot were apart.
     """

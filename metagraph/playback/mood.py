@@ -107,7 +107,8 @@ class LifeMood:
 @dataclass(frozen=True, slots=True)
 class Bearing:
     """Posture and face of a mood. droop: -0.4 upright .. 1 bowed. lift: of the shoulders, in breaths. lids:
-    how far they hang, 0..1. smile, frown, brow_down, brow_up: weights of the face, 0..1.
+    how far they hang, 0..1. smile, frown, brow_down, brow_up: weights of the face, 0..1. thrust: how far the
+    body leans into it, 0..1. tension: of shoulders, arms and hands, 0..1.
     """
 
     droop: float = 0.0
@@ -117,6 +118,8 @@ class Bearing:
     frown: float = 0.0
     brow_down: float = 0.0
     brow_up: float = 0.0
+    thrust: float = 0.0
+    tension: float = 0.0
 
 
 def changed(mood: Mood, valence: float | None, arousal: float | None, intensity: float | None) -> Mood:
@@ -296,7 +299,8 @@ def life_of(mood: Mood) -> LifeMood:
 
 def bearing(mood: Mood) -> Bearing:
     """Return posture and face of a mood, stronger with its intensity. The head bows with sadness (Roether et
-    al. 2009); shoulders rise with arousal that is not joy; the amounts are ours.
+    al. 2009); shoulders rise, fists close and the body goes ahead with arousal that is not joy; the amounts
+    are ours.
     """
     v, a, i = mood.valence, mood.arousal, mood.intensity
     up, down = max(0.0, a), max(0.0, -a)
@@ -309,4 +313,6 @@ def bearing(mood: Mood) -> Bearing:
         within(i * ill, 0.0, 1.0),
         within(i * 1.8 * up * max(0.0, 0.4 - v), 0.0, 1.0),
         within(i * ill * max(0.0, 0.6 - a), 0.0, 1.0),
+        within(i * 2.2 * up * max(0.0, 0.3 - v), 0.0, 1.0),
+        within(i * 1.2 * up * max(0.0, 1.0 - 2.0 * well), 0.0, 1.0),
     )

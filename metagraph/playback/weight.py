@@ -1,7 +1,8 @@
-"""Hips, spine and legs that answer the arms: what of a skeleton does, what its clips' arms weigh, and what
-comes of it at a time.
+"""Hips, spine and legs that answer the arms, and feet that stay planted: what of a skeleton does, what its
+clips' arms weigh, and what comes of it at a time.
 
-The rules are `follow_through`'s and `motion.weight_solve`'s, which all runtimes share; here they meet arrays.
+The rules are `follow_through`'s, `planted_feet`'s and those of `motion`'s solvers, which all runtimes share;
+here they meet arrays.
 """
 
 from __future__ import annotations
@@ -23,8 +24,10 @@ from metagraph.graph.remembered import Remembered
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.contact_solve import ContactArm, ContactPose, ContactRig
+from metagraph.motion.feet_solve import FootGoal, plant_feet
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.motion.weight_solve import WeightBend, WeightCollar, WeightRig, answer_arms, moves_body
+from metagraph.playback.feet import FeetOfPlan, moved_alone, rows_of_feet
 from metagraph.playback.follow_through import (
     KNOTS,
     NUMBERS,
@@ -60,10 +63,13 @@ KEPT = 4096  # times that are remembered of a plan
 
 @dataclass(frozen=True, eq=False)
 class Weight:
-    """What of a project's body answers its arms. rows: by clip, as far as found: an `ArmTrack`'s."""
+    """What of a project's body answers its arms. rows: by clip, as far as found: an `ArmTrack`'s. feet: the
+    same of a `FootTrack`.
+    """
 
     rig: WeightRig | None
     rows: dict[str, Sequence[Sequence[float]]]
+    feet: dict[str, Sequence[Sequence[float]]]
 
 
 _known: Remembered[Weight] = Remembered(made_of)
@@ -75,7 +81,9 @@ def weight_of(project: Project) -> Weight:
         return project.weight
     arms = project.graphs["arms"]
     strength = min(1.0, arms.weight("arms")) * max(0.0, 1.0 - arms.weight("legs"))
-    return _known.of(project, (project.base, strength), lambda: Weight(_rig(project, strength), {}))
+    body = tuple(tuple(sorted(project.graphs[layer].weights.items())) for layer in ("body", "head"))
+    depends = (project.base, strength, *body)
+    return _known.of(project, depends, lambda: Weight(_rig(project, strength), {}, {}))
 
 
 def _rig(project: Project, strength: float) -> WeightRig | None:
@@ -169,6 +177,24 @@ def rows_of(project: Project, clip: str) -> Sequence[Sequence[float]]:
     return found
 
 
+def foot_rows_of(project: Project, clip: str) -> Sequence[Sequence[float]]:
+    """Return the rows of a clip's `FootTrack`; none of one that is missing, of another skeleton, or where
+    more than the body's layer moves the legs.
+    """
+    weight = weight_of(project)
+    found = weight.feet.get(clip)
+    if found is None:
+        entry = project.clips.get(clip)
+        motion = entry.motion if entry is not None else None
+        fits = motion is not None and motion.skeleton == project.skeleton
+        if fits and motion is not None and weight.rig is not None and moved_alone(project, weight.rig):
+            found = rows_of_feet(project, motion, weight.rig)
+        else:
+            found = ()
+        weight.feet[clip] = found
+    return found
+
+
 def _rows(project: Project, clip: Clip) -> tuple[tuple[float, ...], ...]:
     skeleton, roles = clip.skeleton, anatomy.roles(project)
     base = anatomy.base_pose(project)
@@ -237,6 +263,7 @@ class _Swaying:
         self.plan, self.project, self.weight = ref(plan), ref(project), weight
         self.tracks: dict[str, ArmTrack] = {}
         self.found: dict[int, list[float]] = {}
+        self.feet = FeetOfPlan(foot_rows_of, weight.rig.height if weight.rig is not None else 1.0)
 
     def drive(self, plan: Plan, project: Project, time: float) -> list[float]:
         """Return what moves the body at a time."""
@@ -299,37 +326,63 @@ def _swaying(plan: Plan, project: Project, weight: Weight) -> _Swaying:
     return made
 
 
-def weighs(project: Project) -> bool:
+def sways(project: Project) -> bool:
     """Whether the bodies of a project answer their arms."""
     life = project.life
     return life.on and life.stillness < 1 and (life.follow_through > 0 or life.shoulder_lift > 0)
 
 
+def plants(project: Project) -> bool:
+    """Whether the feet of a project stay planted in blends."""
+    return project.life.on and project.life.planted_feet > 0
+
+
+def weighs(project: Project) -> bool:
+    """Whether the bodies of a project answer their arms, or keep their feet where they are."""
+    return sways(project) or plants(project)
+
+
 def weighed(pose: Pose, plan: Plan, project: Project, times: Array, shown: Array | None = None) -> Pose:
-    """Return composed poses `[N, J]` in which the body answers its arms at `times [N]`; the very same arrays
-    where it has nothing to answer. shown `[N]`: how much of what the plan does with arms is seen, 0..1; None
-    for all.
+    """Return composed poses `[N, J]` at `times [N]` in which feet stay planted and the body answers its arms;
+    the very same arrays where nothing moves them. shown `[N]`: how much of what the plan does with arms is
+    seen, 0..1; None for all.
     """
-    if not weighs(project) or project.skeleton is None or not plan.layers["arms"].cues or not len(times):
+    if not weighs(project) or project.skeleton is None or not len(times):
         return pose
     weight = weight_of(project)
     rig = weight.rig
-    if rig is None or rig.strength <= 0:
+    if rig is None:
         return pose
-    swaying, life = _swaying(plan, project, weight), project.life
+    known, life = _swaying(plan, project, weight), project.life
     calm = 1.0 - life.stillness
     parts = [calm] * len(times) if shown is None else (calm * shown).tolist()
-    drives = [swaying.drive(plan, project, t) for t in np.asarray(times, np.float64).tolist()]
-    busy = [n for n, drive in enumerate(drives) if parts[n] > 0 and moves_body(drive)]
+    if rig.strength <= 0 or not sways(project) or not plan.layers["arms"].cues:
+        parts = [0.0] * len(times)
+    drives: list[list[float]] = []
+    feet: list[list[FootGoal]] = []
+    for n, time in enumerate(np.asarray(times, np.float64).tolist()):
+        drives.append(known.drive(plan, project, time) if parts[n] > 0 else [])
+        feet.append(known.feet.goals(plan, project, time) if plants(project) else [])
+    busy = [n for n in range(len(times)) if feet[n] or moves_body(drives[n])]
     if not busy:
         return pose
     joints, hips = list(rig.body.joints), rig.bends[0].place
     rotations, translations = np.array(pose.rotations), np.array(pose.translations)
     locals_, moved = rotations[busy][:, joints].tolist(), translations[busy][:, joints].tolist()
+    changed = []
     for k, n in enumerate(busy):
         one = ContactPose([tuple(q) for q in locals_[k]], [tuple(v) for v in moved[k]])
-        answer_arms(rig, one, drives[n], life.follow_through * parts[n], life.shoulder_lift * parts[n])
-        locals_[k], moved[k] = one.local, one.moved[hips]
-    rotations[np.ix_(busy, joints)] = rotation.normalize(np.array(locals_))
-    translations[busy, joints[hips]] = moved
+        found = plant_feet(rig, one, feet[n], life.planted_feet)
+        if parts[n] > 0 and answer_arms(
+            rig, one, drives[n], life.follow_through * parts[n], life.shoulder_lift * parts[n]
+        ):
+            found = True
+        if found:
+            changed.append(k)
+            locals_[k], moved[k] = one.local, one.moved[hips]
+    if not changed:
+        return pose
+    here = [busy[k] for k in changed]
+    rotations[np.ix_(here, joints)] = rotation.normalize(np.array([locals_[k] for k in changed]))
+    translations[here, joints[hips]] = [moved[k] for k in changed]
     return Pose(rotations, translations)

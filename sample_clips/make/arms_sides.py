@@ -393,7 +393,7 @@ BESIDE_NECK = Hand(  # on the way there and back: the fingers upwards, clear of 
     fingers=(-0.38, 0.88, -0.28),
     palm=(-0.90, -0.40, -0.05),
     shape="cupped",
-    elbow=(0.50, -0.62, 0.58),
+    elbow=(0.40, -0.72, 0.50),
 )
 SLEEVE = Hand(at=(0.060, 1.120, 0.290), turn=-40, bend=-4, elbow=(0.8, -0.6, -0.2))
 PLUCKED = Hand(  # the sleeve of the other arm, held in SLEEVE
@@ -523,7 +523,7 @@ FIDGETS = (
         "rt",
         go(
             0.44,
-            rt=Hand(at=(0.235, 1.335, 0.225), turn=-4, bend=-6, elbow=(0.45, -0.7, 0.35)),
+            rt=Hand(at=(0.190, 1.310, 0.235), turn=-4, bend=-6, elbow=(0.30, -0.85, 0.20)),
             head=(3, 2, 0),
             flow=0.34,
             overshoot=0.0,
@@ -552,7 +552,7 @@ FIDGETS = (
         ),
         go(
             0.42,
-            rt=Hand(at=(0.265, 1.285, 0.215), turn=-14, bend=6, elbow=(0.5, -0.75, 0.15)),
+            rt=Hand(at=(0.205, 1.270, 0.235), turn=-14, bend=6, elbow=(0.30, -0.85, 0.10)),
             head=(2, 1, 0),
             spine=(0, 0, 0),
             flow=0.3,

@@ -18,6 +18,7 @@ from sample_clips.make.conformance_projects import (
     BOTH_EYES,
     sparse,
     standing,
+    stepping,
     stick,
     still,
     touching,
@@ -90,7 +91,7 @@ def without_authors(path: Path) -> None:
 
 def main() -> None:
     touched = touching(randomised(1)), touching(randomised(2, BOTH_EYES))
-    for project in (stick(), varied(), sparse(), standing(), *touched, *still()):
+    for project in (stick(), varied(), sparse(), standing(), stepping(), *touched, *still()):
         folder = FOLDER / project.name
         shutil.rmtree(folder, ignore_errors=True)
         made = write(
@@ -103,6 +104,8 @@ def main() -> None:
             chosen = [case for case in every_case(project) if case.name in LIVING]
         if project.name == "standing":  # all else in "stick"
             chosen = [case for case in every_case(project) if case.name.startswith(STANDING)]
+        if project.name == "stepping":
+            chosen = [case for case in every_case(project) if case.name.startswith("feet")]
         path = write_vectors(made.json, chosen)
         print(
             f"{path.parent.name}: {path.stat().st_size / 1e3:.0f} kB of vectors, "

@@ -15,6 +15,7 @@ from sample_clips.make.mannequin_rig import ARM_AXIS, PALM, REST, SKELETON, Arra
 
 FOREARM_SHARE = 0.65  # of a hand's turning is done by the forearm, the rest shows at the wrist
 FULL_REACH = 0.9985  # of a limb's length: a limb that is quite straight snaps
+SOFT_REACH = 0.002  # metres
 _COLLAR = SKELETON.rest_translations[at("LeftShoulder")]
 _SHOULDER = SKELETON.rest_translations[at("LeftUpperArm")]
 _UPPER = float(np.linalg.norm(SKELETON.rest_translations[at("LeftLowerArm")]))
@@ -130,6 +131,21 @@ def leg(
         rotation.multiply(inverse(hips), thigh),
         rotation.multiply(inverse(thigh), shin),
         rotation.multiply(inverse(shin), foot),
+    )
+
+
+def out_of_reach(side: str, hips: Array, hips_place: Array, ankle: Array) -> Array:
+    """Return by how many metres `[...]` the pelvis has to sink for an ankle to be within the leg's reach;
+    from `SOFT_REACH` before that on, so that it sets in gently.
+    """
+    offsets = [SKELETON.rest_translations[at(side + joint)] for joint in ("UpperLeg", "LowerLeg", "Foot")]
+    way = hips_place + rotation.rotate(hips, offsets[0]) - ankle
+    most = FULL_REACH * float(np.linalg.norm(offsets[1]) + np.linalg.norm(offsets[2]))
+    aside = way[..., 0] ** 2 + way[..., 2] ** 2
+    over = way[..., 1] - np.sqrt(np.maximum(1e-6, most**2 - aside))
+    gently = (over + SOFT_REACH) ** 2 / (4 * SOFT_REACH)
+    return np.asarray(
+        np.where(over >= SOFT_REACH, over, np.where(over <= -SOFT_REACH, 0.0, gently)), np.float64
     )
 
 

@@ -172,6 +172,7 @@ def legs(rotations: Array, numbers: Array) -> tuple[Array, Array]:
     out = rotations.copy()
     root = REST[0] + numbers[:, :3]
     hips = out[:, 0]
+    targets = []
     for side, sign, first in (("Left", 1.0, 3), ("Right", -1.0, 8)):
         sideways, forwards, turn, lift, heel = numbers[:, first : first + 5].T
         yaw = about((0, 1, 0), sign * turn)
@@ -179,6 +180,10 @@ def legs(rotations: Array, numbers: Array) -> tuple[Array, Array]:
         ball = ik.BALL[side] + np.stack([sign * sideways, lift, forwards], -1)
         ankle = ball + rotation.rotate(foot, ik.ANKLE[side] - ik.BALL[side])
         knee = rotation.rotate(about((0, 1, 0), sign * (turn * 0.8 + 2)), np.array([0.0, 0, 1.0]))
+        targets.append((side, ankle, knee, foot, heel))
+    sinks = [ik.out_of_reach(side, hips, root, ankle) for side, ankle, *_ in targets]
+    root[:, 1] -= np.max(sinks, axis=0)  # feet stay, hips give
+    for side, ankle, knee, foot, heel in targets:
         thigh, shin, foot_local = ik.leg(side, hips, root, ankle, knee, foot)
         for joint, q in (("UpperLeg", thigh), ("LowerLeg", shin), ("Foot", foot_local)):
             out[:, at(side + joint)] = q

@@ -105,7 +105,9 @@ def seated() -> Project:
         for a in project.graphs["body"].actions.values()
         if a.name == "to sitting forward"
     }
-    return edits.set_character(edits.update_each(project, again), "ben.glb")
+    # What leans forwards turns the arms back, so that they hang.
+    project = edits.set_weight(edits.update_each(project, again), "body", "arms", 1.0)
+    return edits.set_character(project, "ben.glb")
 
 
 def _finished(name: str, project: Project, entries: Sequence[Entry], starts: Mapping[str, str]) -> Project:

@@ -149,6 +149,10 @@ def drifts(recipe: Recipe) -> dict[str, float]:
     return {k: v * scale for k, v in sizes.items()}
 
 
+SITS = {"sitting", "sitting_forward"}
+HANGS = 0.85  # of a lean of the trunk of one who sits, the arms do not take part in
+
+
 def animate(recipe: Recipe) -> Clip:
     """Return the clip. It begins and ends exactly in its stances, and moves only the joints its layer
     reaches.
@@ -181,6 +185,9 @@ def animate(recipe: Recipe) -> Clip:
             numbers[:, :3] += sway * (0.0065, 0.0012, 0.0045) * (recipe.life * recipe.sway)
         rotations, root = key_poses.legs(rotations, numbers)
     only = [at(name) for name in REACH[recipe.layer]]
+    if recipe.layer == "body" and SITS & {recipe.stance, recipe.end}:
+        rotations = secondary.hanging(rotations, base[0], HANGS)
+        only += [at(side + "UpperArm") for side in SIDES]
     out = np.broadcast_to(base, (frames, len(SKELETON), 4)).copy()
     out[:, only] = rotations[:, only]
     return Clip(recipe.name, SKELETON, FPS, out, root[:, None])

@@ -37,6 +37,25 @@ def globals_of(rotations: Array) -> tuple[Array, Array]:
     return SKELETON.globals(Pose(rotations, translations))
 
 
+def hanging(rotations: Array, base: Array, share: float) -> Array:
+    """Return `rotations [F, J, 4]` whose upper arms are turned back by a share of how far the trunk bends
+    forwards, so that arms hang, or lie on what they lie on. base `[J, 4]`: how the arms are upright.
+    """
+    out = rotations.copy()
+    turned, _ = globals_of(rotations)
+    upright, _ = globals_of(base[None])
+    for side in SIDES:
+        collar, upper = at(side + "Shoulder"), at(side + "UpperArm")
+        leans = []
+        for turn in (turned[:, at("UpperChest")], upright[:, at("UpperChest")]):
+            up = rotation.rotate(turn, np.broadcast_to(np.array([0.0, 1.0, 0.0]), (len(turn), 3)))
+            leans.append(np.degrees(np.arctan2(up[:, 2], up[:, 1])))
+        back = about((1, 0, 0), -share * (leans[0] - leans[1]))
+        inside = rotation.multiply(rotation.conjugate(turned[:, collar]), back)
+        out[:, upper] = rotation.multiply(rotation.multiply(inside, turned[:, collar]), base[upper])
+    return out
+
+
 def _springy(target: Array) -> Array:
     """Return `target [F, N]` followed by a damped spring, from rest."""
     out, value, speed = np.empty_like(target), target[0] * 0, target[0] * 0

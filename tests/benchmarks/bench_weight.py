@@ -205,11 +205,12 @@ def upright(at: Array, roles: dict[str, int]) -> float:
     return min(found)
 
 
-def shared(name: str) -> None:
+def shared_project(name: str) -> Project | None:
+    """Return a project of a set of clips, none where it is not there."""
     files = gather([SHARED / name])[:MOST] if (SHARED / name).exists() else []
     if not files:
         print(f"{name}: not there")
-        return
+        return None
     project = import_files(Project(), None, files).into(Project())
     roles, still, high = anatomy.roles(project), {}, {}
     for entry in [*project.clips.values()][:MOST]:
@@ -227,9 +228,16 @@ def shared(name: str) -> None:
         project = edits.add_stance(project, layer, "stance", [calm])
         some = others if layer == "arms" else others[:6]
         project = edits.place(project, some, layer, "gesture", [*project.graphs[layer].stances][-1])
-    rig = weight_of(project).rig
     height = project.skeleton.height if project.skeleton is not None else 0.0
     print(f"{name}: {len(still)} clips, {height:.2f} m high")
+    return project
+
+
+def shared(name: str) -> None:
+    project = shared_project(name)
+    if project is None:
+        return
+    rig = weight_of(project).rig
     if rig is None:
         print("  no body that answers its arms")
         return

@@ -82,13 +82,11 @@ def test_the_hips_go_against_the_arms() -> None:
 
 
 def test_turned_off_poses_are_the_composed_ones_to_the_bit() -> None:
-    layers = posed(False)
+    layers = pose_at(plan(), with_dials(stiff(), planted_feet=0.0), TIMES)
     still = with_dials(sample(), stillness=1.0)
     dead = replace(sample(), life=msgspec.structs.replace(sample().life, on=False))
-    for project in (still, dead):
-        rigid = replace(
-            project, life=msgspec.structs.replace(project.life, follow_through=0, shoulder_lift=0)
-        )
+    for project in (with_dials(still, planted_feet=0.0), dead):
+        rigid = with_dials(project, follow_through=0.0, shoulder_lift=0.0)
         a, b = (pose_at(plan(), p, TIMES[:200]) for p in (project, rigid))
         assert_array_equal(a.rotations, b.rotations)
         assert_array_equal(a.translations, b.translations)

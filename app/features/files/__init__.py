@@ -9,7 +9,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QMenu, QMessageBox
 
 from app.features.files.import_line import ImportLine
-from app.project.files import PRACTICE, SAMPLE, Files
+from app.project.files import PRACTICE, SAMPLE, SEATED, Files
 from app.project.importing import Importing
 from app.project.watching import Watcher
 from app.shell.actions import Command, Standard
@@ -65,6 +65,14 @@ def contribute(shell: Shell) -> Contribution:
                 "project",
                 "Open the &sample project",
                 lambda: files.open(SAMPLE, template=True),
+            ),
+            Command(
+                "seated",
+                menu,
+                "project",
+                "Open the seate&d project",
+                lambda: files.open(SEATED, template=True),
+                tip="Somebody who sits on a stool, and gets up when asked",
             ),
             Command(
                 "practice",

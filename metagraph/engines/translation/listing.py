@@ -33,6 +33,8 @@ LISTING = (
     Translated("metagraph.playback.contact_goals", "contact_goals"),
     Translated("metagraph.motion.weight_solve", "weight_solve"),
     Translated("metagraph.playback.follow_through", "follow_through"),
+    Translated("metagraph.motion.feet_solve", "feet_solve"),
+    Translated("metagraph.playback.planted_feet", "planted_feet"),
     Translated("metagraph.playback.choice", "choice"),
     Translated(
         "metagraph.playback.plan",

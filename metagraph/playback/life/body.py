@@ -14,7 +14,9 @@ from metagraph.graph.face import SIDES, FaceRig, axes_of, find_face, made_of
 from metagraph.graph.model import Project
 from metagraph.graph.remembered import Remembered
 from metagraph.motion import rotation
+from metagraph.motion.joint_map import known_roles
 from metagraph.motion.skeleton import Skeleton
+from metagraph.playback.life.tension import tensed
 
 Array = NDArray[Any]
 
@@ -23,7 +25,9 @@ Array = NDArray[Any]
 BREATH = {"spine": -0.2, "chest": -0.9, "upper_chest": -0.7, "neck": 0.75, "head": 0.85}
 SHOULDERS = 1.3
 # Degrees a bowed posture bends each forwards (`mood.Bearing.droop` of 1): the head most; ours.
-BOWED = {"spine": 2.0, "chest": 3.0, "upper_chest": 3.0, "neck": 3.0, "head": 8.0}
+BOWED = {"spine": 3.0, "chest": 4.0, "upper_chest": 4.0, "neck": 4.0, "head": 9.0}
+# The same of a body that leans into it (`mood.Bearing.thrust` of 1): trunk ahead, face level.
+THRUST = {"spine": 4.0, "chest": 4.0, "upper_chest": 3.0, "neck": 7.0, "head": -18.0}
 # Who takes how much of a turn of the head; what a skeleton lacks, the others take.
 SHARES = {"chest": 0.04, "upper_chest": 0.06, "neck": 0.35, "head": 0.55}
 PARTNER_AWAY = 1.2  # metres ahead, at the height of the eyes: where "user" is unless somebody says otherwise
@@ -69,9 +73,10 @@ class Body:
 
     chain: the joints from the root to the head, or to the chest where there is none. breath: for each of them
     the axis it turns about in its own space and by how many radians at the top of a breath. bowed: by how
-    many in a bowed posture. joints: all that
-    life may turn: the chain, then shoulders, eyes that are joints, the face's. read: whose rotations it must
-    know: the chain, eyes that are joints, lids. shoulders: their rotation vectors at the top of a breath.
+    many in a bowed posture, thrust: in one that leans into it. joints: all that life may turn: the chain,
+    then shoulders and what else tightens, eyes that are joints, the face's. read: whose rotations it must
+    know: the chain, eyes that are joints, lids. shoulders: their rotation vectors at the top of a breath;
+    tense: those of the same joints at full tension.
     lookers: empty where there is no head, from the root upwards. trunk: its place in the chain; trunk_ahead,
     head_ahead: ahead in their own space. eyes: left, right. partner: where "user" is; eyes_at_rest: between
     the eyes in the base pose.
@@ -83,9 +88,11 @@ class Body:
     chain: Array
     breath: tuple[tuple[Vector, float], ...]
     bowed: tuple[float, ...]
+    thrust: tuple[float, ...]
     joints: Array
     read: Array
     shoulders: tuple[Vector, ...]
+    tense: tuple[Vector, ...]
     lookers: tuple[Looker, ...]
     trunk: int
     trunk_ahead: Vector
@@ -141,16 +148,21 @@ def _find(project: Project) -> Body:
     for role, degrees in BREATH.items():
         if roles.get(role) in chain:
             breath[chain.index(roles[role])] = (_vector(local(roles[role], left)), float(np.radians(degrees)))
-    bowed = [0.0] * len(chain)
-    for role, degrees in BOWED.items():
-        if roles.get(role) in chain:
-            bowed[chain.index(roles[role])] = float(np.radians(degrees))
+    bowed, thrust = [0.0] * len(chain), [0.0] * len(chain)
+    for degrees_of, radians in ((BOWED, bowed), (THRUST, thrust)):
+        for role, degrees in degrees_of.items():
+            if roles.get(role) in chain:
+                radians[chain.index(roles[role])] = float(np.radians(degrees))
     collars = [
         (roles[f"{s}_shoulder"], sign)
         for s, sign in zip(SIDES, (1, -1), strict=True)
         if f"{s}_shoulder" in roles
     ]
-    lifts = tuple(_vector(np.radians(SHOULDERS) * sign * local(j, ahead)) for j, sign in collars)
+    lifts = {j: np.radians(SHOULDERS) * sign * local(j, ahead) for j, sign in collars}
+    tight = tensed(known_roles(skeleton, roles), at, axes, local)
+    seen = {*chain, *(e.joint for e in face.eyes), *face.joints.tolist()}
+    rising = [*lifts, *(j for j in tight if j not in lifts and j not in seen)]
+    none = np.zeros(3)
     found = {r: chain.index(roles[r]) for r in SHARES if roles.get(r) in chain} if head is not None else {}
     whole = sum(SHARES[r] for r in found)
     lookers = sorted((Looker(place, SHARES[r] / whole) for r, place in found.items()), key=lambda x: x.place)
@@ -160,7 +172,7 @@ def _find(project: Project) -> Body:
     eyes = _eyes(skeleton, face, top, axes, local)
     middle = np.mean([eye.at for eye in eyes], axis=0) if head is not None else np.zeros(3)
     rest = at[top] + rotation.rotate(turned[top], middle)
-    joints = [*chain, *(j for j, _ in collars), *(e.joint for e in face.eyes), *face.joints.tolist()]
+    joints = [*chain, *rising, *(e.joint for e in face.eyes), *face.joints.tolist()]
     read = [*chain, *(e.joint for e in face.eyes), *(j for j in face.lid_joints.tolist() if j >= 0)]
     return Body(
         _vector(left),
@@ -169,9 +181,11 @@ def _find(project: Project) -> Body:
         np.array(chain),
         tuple(breath),
         tuple(bowed),
+        tuple(thrust),
         np.array(joints),
         np.array(read),
-        lifts,
+        tuple(_vector(lifts.get(j, none)) for j in rising),
+        tuple(_vector(tight.get(j, none)) for j in rising),
         tuple(lookers),
         chain.index(trunk),
         _vector(local(trunk, ahead)),

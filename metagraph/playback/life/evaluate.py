@@ -11,7 +11,8 @@ translation.
     eyes        = the turn that aims each eye at the target from where head and body have it, so they hold
     while the head nods
     lid         = follow x pitch of the eye + blink x (1 - how far it is shut already)
-    posture     = the mood's droop x bowed, its lift of the shoulders, on top of the breath: `mood.bearing`
+    posture     = the mood's droop x bowed, its thrust and tension, its lift of the shoulders, on top of the
+                  breath: `mood.bearing`
     expressions = of moods, speech and cues: `expressions.shown_face`, `expressions.answer`
     mouth       = sum over mouth shapes of weight x shape: `lips`
 """
@@ -152,16 +153,22 @@ class _Found:
             full = breath_at(schedule.breaths, life, time)
             mood = mood_shown(schedule.moods.times, schedule.moods.rows, time)
             bears = UNMOVED if mood.neutral else bearing(mood)
-            if full or bears.droop:
-                breathe(body, chain, full, bears.droop)
+            if full or bears.droop or bears.thrust:
+                breathe(body, chain, full, bears.droop, bears.thrust)
             turn: list[Any] = [_NONE] * long
             eyes = [(0.0, 0.0), (0.0, 0.0)]
             if moving and gaze is not None:
                 towards, eyes = look(body, chain, places[n], gaze.at(time), life.gaze, calm, life.head_share)
                 for looker, vector in zip(body.lookers, towards, strict=True):
                     turn[looker.place] = vector
-            lifted = full + bears.lift
-            turn += [(lifted * x, lifted * y, lifted * z) for x, y, z in body.shoulders]
+            lifted, tight = full + bears.lift, bears.tension
+            if tight:
+                turn += [
+                    (lifted * x + tight * a, lifted * y + tight * b, lifted * z + tight * c)
+                    for (x, y, z), (a, b, c) in zip(body.shoulders, body.tense, strict=True)
+                ]
+            else:
+                turn += [(lifted * x, lifted * y, lifted * z) for x, y, z in body.shoulders]
             down = [-eyes[0][1], -eyes[1][1]]
             place = long
             for side, eye in enumerate(body.eyes):

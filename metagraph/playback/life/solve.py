@@ -28,11 +28,13 @@ NEAREST = 0.25  # metres; nearer things are looked at as if they were there
 WIDEST = -0.8  # how far lids open beyond rest, of their shutting turn
 
 
-def breathe(body: Body, chain: list[Quaternion], full: float, droop: float) -> None:
-    """Turn the chain's joints as a breath and a posture do; full: how full the chest is; droop: how bowed."""
+def breathe(body: Body, chain: list[Quaternion], full: float, droop: float, thrust: float) -> None:
+    """Turn the chain's joints as a breath and a posture do; full: how full the chest is; droop: how bowed;
+    thrust: how far it leans into it.
+    """
     for n, (axis, angle) in enumerate(body.breath):
         if angle:
-            half = 0.5 * (full * angle + droop * body.bowed[n])
+            half = 0.5 * (full * angle + droop * body.bowed[n] + thrust * body.thrust[n])
             s = sin(half)
             chain[n] = times(chain[n], (axis[0] * s, axis[1] * s, axis[2] * s, cos(half)))
 

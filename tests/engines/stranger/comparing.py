@@ -14,10 +14,11 @@ import numpy as np
 from tests.engines.stranger.enlivening import Life
 from tests.engines.stranger.posing import loop_seconds, morphs, playing, pose, positions, resting
 from tests.engines.stranger.reading import Character, read_character
+from tests.engines.stranger.stepping import planted
 from tests.engines.stranger.weighing import answered
 
 SHIPPED = Path(__file__).resolve().parents[3] / "metagraph" / "engines" / "conformance"
-NAMES = ("stick", "sparse", "varied", "standing")
+NAMES = ("stick", "sparse", "varied", "standing", "stepping")
 Vectors = tuple[Character, dict[str, Any]]
 
 
@@ -82,13 +83,15 @@ def compared(character: Character, vectors: dict[str, Any]) -> Iterator[tuple[se
                 said = told(case, character, t)
                 if said is None:
                     continue
-                answer = answered(character, layers, made, t)
-                weighs = answer is not made
+                held = planted(character, layers, made, t)
+                answer = answered(character, layers, held, t)
+                weighs, steps = answer is not held, held is not made
                 made, more = life.added(answer, t, said)
                 for name, value in more.items():
                     shown = weights.get(name, 0.0)
                     weights[name] = min(max(shown + value * (1 - shown), 0.0), 1.0)
                 plays = {"with life"} | ({"the arms' weight"} if weighs else set())
+                plays |= {"planted feet"} if steps else set()
             names = weights.keys() | wanted["morphs"].keys()
             off = (abs(weights.get(name, 0.0) - wanted["morphs"].get(name, 0.0)) for name in names)
             found.append((wanted, made, plays, max(off, default=0.0)))

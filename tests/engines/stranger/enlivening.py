@@ -286,13 +286,19 @@ class Life:
         v, a, i = self.mood(t)
         up, down_, well, ill = max(0.0, a), max(0.0, -a), max(0.0, v), max(0.0, -v)
         droop = clamp(i * (-0.7 * v - 0.5 * a), -0.4, 1.0)
-        bowed = self.rig.get("bowed") or [0.0] * len(chain)
-        for joint, (*axis, angle), bow in zip(chain, self.rig["breath"], bowed, strict=True):
-            rotations[joint] = times(rotations[joint], about((full * angle + droop * bow) * np.array(axis)))
+        bowed, thrusts = (self.rig.get(name) or [0.0] * len(chain) for name in ("bowed", "thrust"))
+        thrust = clamp(i * 2.2 * up * max(0.0, 0.3 - v), 0.0, 1.0)
+        tension = clamp(i * 1.2 * up * max(0.0, 1.0 - 2.0 * well), 0.0, 1.0)
+        for joint, (*axis, angle), bow, lean in zip(chain, self.rig["breath"], bowed, thrusts, strict=True):
+            turn = full * angle + droop * bow + thrust * lean
+            rotations[joint] = times(rotations[joint], about(turn * np.array(axis)))
         full += clamp(i * (2.0 * up * (1.0 - well) - down_), -1.0, 2.0)
         for shoulder in self.rig["shoulders"]:
             joint = shoulder["joint"]
-            rotations[joint] = times(rotations[joint], about(full * np.array(shoulder["turn"])))
+            turn = full * np.array(shoulder["turn"]) + tension * np.array(
+                shoulder.get("tense") or [0.0, 0, 0]
+            )
+            rotations[joint] = times(rotations[joint], about(turn))
         ij = [np.zeros(2), np.zeros(2)]
         if self.rig["lookers"] and self.events["targets"]:
             turns, ij = self.look(t, rotations[chain], translations[chain])

@@ -139,19 +139,10 @@ def answered(character: Character, layers: dict[str, Any], made: Pose, t: float)
         rotations[upper] = times(inverse(q), rotations[upper])
     legs = [[joints[p] for p in leg] for leg in rig["legs"]]
 
-    def spread() -> tuple[Numbers, Numbers]:
-        worlds, places = np.zeros_like(rotations), np.zeros_like(translations)
-        for joint, parent in enumerate(character.parents):
-            worlds[joint], places[joint] = rotations[joint], translations[joint]
-            if parent >= 0:
-                worlds[joint] = times(worlds[parent], rotations[joint])
-                places[joint] = places[parent] + turned(worlds[parent], translations[joint])
-        return worlds, places
-
     def far(places: Numbers, a: int, b: int) -> float:
         return float(np.linalg.norm(places[a] - places[b]))
 
-    worlds, places = spread()
+    worlds, places = worlds_of(character, rotations, translations)
     bones = [far(places, a, b) + far(places, b, c) for a, b, c in legs]
     apart = [far(places, a, c) for a, _, c in legs]
     heights = [float((places[a] - places[c]) @ np.array(rig["up"])) for a, _, c in legs]
@@ -177,21 +168,46 @@ def answered(character: Character, layers: dict[str, Any], made: Pose, t: float)
         joint = joints[bend["place"]]
         turn = about(bend["share"] * (pitch * left + yaw * up + roll * ahead))
         rotations[joint] = times(rotations[joint], turn)
-    worlds, places = spread()
+    worlds, places = worlds_of(character, rotations, translations)
     s = 0.5 * (np.linalg.norm([x, y, z]) + 0.1 * h * np.linalg.norm([yaw, roll, pitch]))
     reaches = [max(0.995 * whole, n) for whole, n in zip(bones, apart, strict=True)]
+    translations[hips] += turned(
+        inverse(above), -sunk(places, legs, feet, reaches, np.array(rig["up"]), s) * np.array(rig["up"])
+    )
+    for leg, foot, knee in zip(legs, feet, rig["knees"], strict=True):
+        worlds, places = worlds_of(character, rotations, translations)
+        bring(character, rotations, worlds, places, leg, foot, np.array(knee))
+    return rotations, translations
+
+
+def worlds_of(character: Character, rotations: Numbers, translations: Numbers) -> tuple[Numbers, Numbers]:
+    """Turns and places in the character's space."""
+    worlds, places = np.zeros_like(rotations), np.zeros_like(translations)
+    for joint, parent in enumerate(character.parents):
+        worlds[joint], places[joint] = rotations[joint], translations[joint]
+        if parent >= 0:
+            worlds[joint] = times(worlds[parent], rotations[joint])
+            places[joint] = places[parent] + turned(worlds[parent], translations[joint])
+    return worlds, places
+
+
+def sunk(
+    places: Numbers,
+    legs: list[list[int]],
+    feet: list[tuple[Numbers, Numbers]],
+    reaches: list[float],
+    up: Numbers,
+    s: float,
+) -> float:
+    """ "Legs": by how much the hips sink."""
     sinks = [0.0]
     for (a, _, _), (foot, _), reach in zip(legs, feet, reaches, strict=True):
-        high = float((places[a] - foot) @ np.array(rig["up"]))
+        high = float((places[a] - foot) @ up)
         beside = float((places[a] - foot) @ (places[a] - foot)) - high * high
         if high > 0.0 and beside < reach * reach and s > 0.0:
             over = high - sqrt(reach * reach - beside)
             sinks.append(over if over >= s else 0.0 if over <= -s else (over + s) ** 2 / (4 * s))
-    translations[hips] += turned(inverse(above), -max(sinks) * np.array(rig["up"]))
-    for leg, foot, knee in zip(legs, feet, rig["knees"], strict=True):
-        worlds, places = spread()
-        bring(character, rotations, worlds, places, leg, foot, np.array(knee))
-    return rotations, translations
+    return max(sinks)
 
 
 def bring(

@@ -23,10 +23,11 @@ struct Looker {
     double share = 0.0;
 };
 
-/// A shoulder that rises with the breath. turn: rotation vector at the top of a breath.
+/// A shoulder that rises with the breath, or another joint that tightens. turn: rotation vector at the top of a breath; tense: at full
+/// tension.
 struct Shoulder {
     int joint = 0;
-    Vec turn;
+    Vec turn, tense;
 };
 
 /// Part of a morph target that shows a value of the face: its place among `Face::SHOWN`, the target's among the graph's.
@@ -50,12 +51,12 @@ struct Face {
 /// Directions are the character's; metres, radians.
 ///
 /// chain: joints from the root to the head. breath: axis (xyz) and angle (w) of each at the top of a breath.
-/// bowed: angle of each in a bowed posture.
+/// bowed: angle of each in a bowed posture, thrust: in one that leans into it.
 struct Body {
     Vec left, up, ahead;
     List<int> chain;
     List<Quat> breath;
-    List<double> bowed;
+    List<double> bowed, thrust;
     List<Shoulder> shoulders;
     List<Looker> lookers;
     int trunk = 0;
@@ -140,7 +141,8 @@ inline Body read(const Node& json, int joints, List<std::string>& morphs) {
     for (const Node& one : json["chain"].items()) out.chain.push_back(joint(one, joints, 0));
     for (const Node& one : json["breath"].items()) out.breath.push_back(quaternion(one));
     for (const Node& one : json["shoulders"].items()) {
-        out.shoulders.push_back({joint(one["joint"], joints, 0), vector(one["turn"])});
+        const Node tense = one.maybe("tense");
+        out.shoulders.push_back({joint(one["joint"], joints, 0), vector(one["turn"]), tense.empty() ? Vec{} : vector(tense)});
     }
     const int count = lang::len(out.chain);
     if (count == 0 || lang::len(out.breath) != count) json.wrong("should have a chain of joints, and a breath for each");
@@ -148,6 +150,9 @@ inline Body read(const Node& json, int joints, List<std::string>& morphs) {
     const Node bowed = json.maybe("bowed");
     if (!bowed.empty() && !bowed.items().empty()) out.bowed = bowed.numbers(count);
     out.bowed.resize(out.chain.size(), 0.0);
+    const Node thrust = json.maybe("thrust");
+    if (!thrust.empty() && !thrust.items().empty()) out.thrust = thrust.numbers(count);
+    out.thrust.resize(out.chain.size(), 0.0);
     for (const Node& one : json["lookers"].items()) {
         out.lookers.push_back({one["place"].count(0, std::max(0, count - 1)), one["share"].number()});
     }

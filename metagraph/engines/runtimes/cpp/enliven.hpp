@@ -35,7 +35,7 @@ public:
         for (std::size_t n = 0; n < body_.chain.size(); n++) {
             solver_.chain[n] = lang::at(pose, body_.chain[n]);
             const Quat& breath = body_.breath[n];
-            const double half = 0.5 * (full_ * breath.w + bears_.droop * body_.bowed[n]);
+            const double half = 0.5 * (full_ * breath.w + bears_.droop * body_.bowed[n] + bears_.thrust * body_.thrust[n]);
             if (half == 0) continue;
             const double s = std::sin(half);
             const Quat turn{s * breath.x, s * breath.y, s * breath.z, std::cos(half)};
@@ -63,7 +63,9 @@ public:
             turn(static_cast<std::size_t>(body_.lookers[n].place), solver_.turns[n]);
         }
         std::size_t place = chained;
-        for (const Shoulder& shoulder : body_.shoulders) turn(place++, shoulder.turn * (full_ + bears_.lift));
+        for (const Shoulder& shoulder : body_.shoulders) {
+            turn(place++, shoulder.turn * (full_ + bears_.lift) + shoulder.tense * bears_.tension);
+        }
         for (std::size_t n = 0; n < 2; n++) {
             const Eye& eye = body_.eyes[n];
             const double left = solver_.eyes[2 * n], up = solver_.eyes[2 * n + 1];

@@ -4,6 +4,7 @@
 #include "body.hpp"
 #include "contact_solve.hpp"
 #include "follow_through.hpp"
+#include "planted_feet.hpp"
 #include "project.hpp"
 #include "voice.hpp"
 #include "weight_solve.hpp"
@@ -81,6 +82,7 @@ struct Graph {
     Ref<ContactRig> contact_rig;
     Ref<WeightRig> weight_rig;
     Map<std::string, Ref<ArmTrack>> arm_tracks;
+    Map<std::string, Ref<FootTrack>> foot_tracks;
 
     const LayerGraph& layer(const std::string& word) const { return *layers.at(word); }
 };

@@ -20,7 +20,7 @@ struct Life {
     double saccades = 1.0, saccade_rate = 60.0, lids = 1.0, blinks = 17.0, accent_blinks = 1.0;
     double blink_close = 0.07, blink_open = 0.1, lips = 1.0, lip_smoothing = 0.03, expressions = 1.0, accent_brows = 0.4;
     double valence = 0.0, arousal = 0.0, intensity = 1.0;
-    double follow_through = 1.0, shoulder_lift = 1.0;
+    double follow_through = 1.0, shoulder_lift = 1.0, planted_feet = 1.0;
     List<Ref<Manner>> manners = {
         lang::made<Manner>(Manner{1.0, 1.0, 1.1, 2.4, 1.4, 1.0, 0.85, 1.0}),
         lang::made<Manner>(Manner{1.0, 1.0, 0.6, 0.46, 0.8, 0.9, 1.0, 1.0}),
@@ -70,6 +70,7 @@ inline Ref<Life> read(const Node& json) {
     dial("intensity", out.intensity, 0, 2);
     dial("follow_through", out.follow_through, 0, 2);
     dial("shoulder_lift", out.shoulder_lift, 0, 2);
+    dial("planted_feet", out.planted_feet, 0, 1);
     const Node modes = json.maybe("modes");
     if (modes.empty()) return made;
     for (int n = 0; n < lang::len(words::MODES); n++) {

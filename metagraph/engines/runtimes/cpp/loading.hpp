@@ -289,6 +289,7 @@ inline Ref<const Graph> read(const Node& root, const std::uint8_t* glb, std::siz
     if (!root.maybe("contact_rig").empty()) out->contact_rig = contacts::read_rig(root["contact_rig"], out->joints);
     if (!root.maybe("weight_rig").empty()) out->weight_rig = weight::read_rig(root["weight_rig"], lang::len(out->joints));
     out->arm_tracks = weight::read_tracks(*out, root["clips"]);
+    out->foot_tracks = weight::read_feet(*out, root["clips"]);
     return trouble.found() ? nullptr : out;
 }
 

@@ -142,7 +142,8 @@ struct LifeMood {
 };
 
 /// Posture and face of a mood. droop: -0.4 upright .. 1 bowed. lift: of the shoulders, in breaths. lids: how far they
-/// hang, 0..1. smile, frown, brow_down, brow_up: weights of the face, 0..1.
+/// hang, 0..1. smile, frown, brow_down, brow_up: weights of the face, 0..1. thrust: how far the body leans into it,
+/// 0..1. tension: of shoulders, arms and hands, 0..1.
 struct Bearing {
     double droop;
     double lift;
@@ -151,6 +152,8 @@ struct Bearing {
     double frown;
     double brow_down;
     double brow_up;
+    double thrust;
+    double tension;
 
     explicit Bearing(
         double droop_ = 0.0,
@@ -159,7 +162,9 @@ struct Bearing {
         double smile_ = 0.0,
         double frown_ = 0.0,
         double brow_down_ = 0.0,
-        double brow_up_ = 0.0
+        double brow_up_ = 0.0,
+        double thrust_ = 0.0,
+        double tension_ = 0.0
     )
         : droop(droop_),
             lift(lift_),
@@ -167,7 +172,9 @@ struct Bearing {
             smile(smile_),
             frown(frown_),
             brow_down(brow_down_),
-            brow_up(brow_up_) {}
+            brow_up(brow_up_),
+            thrust(thrust_),
+            tension(tension_) {}
 };
 
 inline bool Mood::neutral() const {
@@ -386,7 +393,7 @@ inline Ref<LifeMood> life_of(const Ref<Mood>& mood) {
 }
 
 /// Return posture and face of a mood, stronger with its intensity. The head bows with sadness (Roether et al. 2009);
-/// shoulders rise with arousal that is not joy; the amounts are ours.
+/// shoulders rise, fists close and the body goes ahead with arousal that is not joy; the amounts are ours.
 inline Ref<Bearing> bearing(const Ref<Mood>& mood) {
     double v = mood->valence;
     double a = mood->arousal;
@@ -402,7 +409,9 @@ inline Ref<Bearing> bearing(const Ref<Mood>& mood) {
         mood::within(i * well, 0.0, 1.0),
         mood::within(i * ill, 0.0, 1.0),
         mood::within(i * 1.8 * up * std::max(0.0, 0.4 - v), 0.0, 1.0),
-        mood::within(i * ill * std::max(0.0, 0.6 - a), 0.0, 1.0)
+        mood::within(i * ill * std::max(0.0, 0.6 - a), 0.0, 1.0),
+        mood::within(i * 2.2 * up * std::max(0.0, 0.3 - v), 0.0, 1.0),
+        mood::within(i * 1.2 * up * std::max(0.0, 1.0 - 2.0 * well), 0.0, 1.0)
     );
 }
 

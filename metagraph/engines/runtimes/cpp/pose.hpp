@@ -145,18 +145,34 @@ private:
         return {cue, plan->rests.empty() ? -1 : rest_at(layers_[n], time)};
     }
 
-    /// Let the body in the composed pose answer its arms.
+    /// Let the feet of the composed pose stay planted, and its body answer its arms.
     void weigh(double time) {
         const Life& life = *graph_->life;
         const double calm = 1 - life.stillness;
-        if (graph_->weight_rig == nullptr || !life.on || plan_->life->end <= 0 || calm <= 0) return;
-        if (life.follow_through <= 0 && life.shoulder_lift <= 0) return;
-        if (plan_->layers.at(graph::LAYERS[1])->cues.empty()) return;
+        if (graph_->weight_rig == nullptr || !life.on || plan_->life->end <= 0) return;
+        const List<double> drive = drive_at(time);
+        List<Ref<FootGoal>> feet;
+        if (life.planted_feet > 0) {
+            const auto [cue, place] = playing(0, time);
+            feet = planted_feet::foot_goals(
+                graph_->project, graph_->foot_tracks, graph_->weight_rig->height, plan_->layers.at(graph::LAYERS[0]), cue, place, time
+            );
+        }
+        if (feet.empty() && !weight_solve::moves_body(drive)) return;
+        weight::answer(
+            graph_->weight_rig, feet, drive, life.planted_feet, life.follow_through * calm, life.shoulder_lift * calm, pose_
+        );
+    }
+
+    /// What of the arms moves the body at a time, nothing where it does not answer them.
+    List<double> drive_at(double time) {
+        const Life& life = *graph_->life;
+        if (life.stillness >= 1 || (life.follow_through <= 0 && life.shoulder_lift <= 0)) return {};
+        if (graph_->weight_rig->strength <= 0 || plan_->layers.at(graph::LAYERS[1])->cues.empty()) return {};
         const int last = follow_through::knot_before(time);
         List<List<double>> sways;
         for (int n = last - follow_through::KNOTS + 1; n <= last; n++) sways.push_back(sway(n));
-        const List<double> drive = follow_through::driven(sways, time);
-        if (weight_solve::moves_body(drive)) weight::answer(graph_->weight_rig, drive, life.follow_through * calm, life.shoulder_lift * calm, pose_);
+        return follow_through::driven(sways, time);
     }
 
     List<double> sway(int number) {

@@ -1,4 +1,4 @@
-// Hips, spine and legs that answer the arms: what an export says of them, and what comes of it in a pose.
+// Hips, spine and legs that answer the arms, and feet that stay planted: what an export says of them, and what comes of it in a pose.
 #pragma once
 
 #include "contacts.hpp"
@@ -87,15 +87,35 @@ inline Map<std::string, Ref<ArmTrack>> read_tracks(const Graph& graph, const Nod
     return out;
 }
 
-/// Change a pose as the body answers its arms. drive: what moves it; follow, lift: the dials.
-inline void answer(const Ref<WeightRig>& rig, const List<double>& drive, double follow, double lift, List<Joined>& pose) {
+/// Where the feet of the body's actions are, by action.
+inline Map<std::string, Ref<FootTrack>> read_feet(const Graph& graph, const Node& clips) {
+    Map<std::string, List<List<double>>> rows;
+    for (const Node& one : clips.items()) {
+        const Node feet = one.maybe("feet");
+        List<List<double>>& own = rows[one["id"].text()];
+        if (feet.empty()) continue;
+        for (const Node& row : feet.items()) own.push_back(row.numbers(2 * planted_feet::FOOT_NUMBERS));
+    }
+    Map<std::string, Ref<FootTrack>> out;
+    for (const auto& [id, action] : graph.layer("body").graph->actions) out[id] = lang::made<FootTrack>(rows[action->clip]);
+    return out;
+}
+
+/// Change a pose as its feet stay planted, and as the body answers its arms. feet: where they should be, if anywhere; drive: what
+/// moves the body, if anything; planted, follow, lift: the dials.
+inline void answer(
+    const Ref<WeightRig>& rig, const List<Ref<FootGoal>>& feet, const List<double>& drive, double planted, double follow, double lift,
+    List<Joined>& pose
+) {
     auto found = lang::made<ContactPose>();
     for (const int joint : rig->body->joints) {
         const Joined& one = lang::at(pose, joint);
         found->local.push_back({one.rotation.x, one.rotation.y, one.rotation.z, one.rotation.w});
         found->moved.push_back({one.translation.x, one.translation.y, one.translation.z});
     }
-    if (!weight_solve::answer_arms(rig, found, drive, follow, lift)) return;
+    bool moved = feet_solve::plant_feet(rig, found, feet, planted);
+    if (!drive.empty() && weight_solve::answer_arms(rig, found, drive, follow, lift)) moved = true;
+    if (!moved) return;
     for (int place = 0; place < lang::len(found->local); place++) {
         const auto [x, y, z, w] = lang::at(found->local, place);
         lang::at(pose, lang::at(rig->body->joints, place)).rotation = {x, y, z, w};

@@ -42,14 +42,14 @@ inline bool answer_arms(
     double follow,
     double lift
 );
-inline double _stands(const Ref<WeightRig>& rig, const Ref<ContactPose>& pose);
+inline double stands_by(const Ref<WeightRig>& rig, const Ref<ContactPose>& pose);
 inline void _give_way(
     const Ref<WeightRig>& rig,
     const Ref<ContactPose>& pose,
     const List<double>& drive,
     double follow
 );
-inline double _too_far(
+inline double hips_sink(
     const Ref<WeightRig>& rig,
     const Ref<ContactPose>& pose,
     int side,
@@ -170,7 +170,7 @@ inline bool answer_arms(
         return true;
     }
     contact_solve::spread(rig->body, pose);
-    follow = follow * weight_solve::_stands(rig, pose);
+    follow = follow * weight_solve::stands_by(rig, pose);
     if (follow <= 0.0) {
         return true;
     }
@@ -179,7 +179,7 @@ inline bool answer_arms(
 }
 
 /// Return how much a figure stands, 0 for one that sits or lies, 1 on straight legs.
-inline double _stands(const Ref<WeightRig>& rig, const Ref<ContactPose>& pose) {
+inline double stands_by(const Ref<WeightRig>& rig, const Ref<ContactPose>& pose) {
     double least = 1.0;
     for (const auto& leg : rig->body->arms) {
         std::tuple<double, double, double> hip = lang::at(pose->at, leg->upper);
@@ -273,7 +273,7 @@ inline void _give_way(
     for (int side = 0; side < lang::len(feet); side++) {
         low = std::max(
             low,
-            weight_solve::_too_far(
+            weight_solve::hips_sink(
                 rig,
                 pose,
                 side,
@@ -295,7 +295,7 @@ inline void _give_way(
 
 /// Return by how much the hips have to sink for a foot to be within a leg's reach; from a little before that on, so
 /// that it sets in gently. reach: how far hip and foot were apart.
-inline double _too_far(
+inline double hips_sink(
     const Ref<WeightRig>& rig,
     const Ref<ContactPose>& pose,
     int side,

@@ -11,7 +11,7 @@ import { emptyPlan } from "./plan.js";
 import { morphsAt, poseAt } from "./pose.js";
 import { multiply } from "./rotation.js";
 import { Voices } from "./voice.js";
-import { readArmTracks, readWeightRig } from "./weight.js";
+import { readArmTracks, readFootTracks, readWeightRig } from "./weight.js";
 import { LAYERS, inRange } from "./words.js";
 
 export const FORMAT = 1; // the newest version of the export that is read here
@@ -103,6 +103,7 @@ export class Graph {
     this.contactRig = readContactRig(data.contact_rig, this.joints);
     this.weightRig = readWeightRig(data.weight_rig, this.joints.length);
     this.armTracks = readArmTracks(this.layers, data.clips);
+    this.footTracks = readFootTracks(this.layers, data.clips);
     const own = [...this.clips.values()].flatMap((clip) => clip.morphs.map((morph) => morph.name));
     /** Names of all morph targets that anything here moves. */
     this.morphs = [...new Set([...own, ...(this.body?.face.morphs ?? []).map((morph) => morph.name)])];

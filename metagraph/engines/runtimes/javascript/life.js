@@ -8,7 +8,7 @@ const LIFE = {
   aversion_length: [0.93, 0, 5], aversion_angle: [14, 0, 40], saccades: [1, 0, 2], saccade_rate: [60, 0, 180], lids: [1, 0, 2],
   blinks: [17, 0, 60], accent_blinks: [1, 0, 1], blink_close: [0.07, 0.02, 1], blink_open: [0.1, 0.02, 1], lips: [1, 0, 2],
   lip_smoothing: [0.03, 0, 0.2], expressions: [1, 0, 2], accent_brows: [0.4, 0, 1], valence: [0, -1, 1], arousal: [0, -1, 1], intensity: [1, 0, 2],
-  follow_through: [1, 0, 2], shoulder_lift: [1, 0, 2],
+  follow_through: [1, 0, 2], shoulder_lift: [1, 0, 2], planted_feet: [1, 0, 1],
 };
 const FACTORS = [
   "breathing", "breath_rate", "aversion_rate", "aversion_length", "aversion_angle", "saccades", "saccade_rate", "blinks",

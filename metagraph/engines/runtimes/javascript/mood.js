@@ -113,12 +113,14 @@ export class LifeMood {
 
 /**
  * Posture and face of a mood. droop: -0.4 upright .. 1 bowed. lift: of the shoulders, in breaths. lids: how far they hang,
- * 0..1. smile, frown, brow_down, brow_up: weights of the face, 0..1.
+ * 0..1. smile, frown, brow_down, brow_up: weights of the face, 0..1. thrust: how far the body leans into it, 0..1. tension:
+ * of shoulders, arms and hands, 0..1.
  *
- * droop: number; lift: number; lids: number; smile: number; frown: number; browDown: number; browUp: number.
+ * droop: number; lift: number; lids: number; smile: number; frown: number; browDown: number; browUp: number; thrust: number;
+ * tension: number.
  */
 export class Bearing {
-  constructor(droop = 0, lift = 0, lids = 0, smile = 0, frown = 0, browDown = 0, browUp = 0) {
+  constructor(droop = 0, lift = 0, lids = 0, smile = 0, frown = 0, browDown = 0, browUp = 0, thrust = 0, tension = 0) {
     this.droop = droop;
     this.lift = lift;
     this.lids = lids;
@@ -126,6 +128,8 @@ export class Bearing {
     this.frown = frown;
     this.browDown = browDown;
     this.browUp = browUp;
+    this.thrust = thrust;
+    this.tension = tension;
   }
 }
 
@@ -407,7 +411,7 @@ export function lifeOf(mood) {
 
 /**
  * Return posture and face of a mood, stronger with its intensity. The head bows with sadness (Roether et al. 2009);
- * shoulders rise with arousal that is not joy; the amounts are ours.
+ * shoulders rise, fists close and the body goes ahead with arousal that is not joy; the amounts are ours.
  * @param {Mood} mood
  * @returns {Bearing}
  */
@@ -427,5 +431,7 @@ export function bearing(mood) {
     within(i * ill, 0, 1),
     within(i * 1.8 * up * Math.max(0, 0.4 - v), 0, 1),
     within(i * ill * Math.max(0, 0.6 - a), 0, 1),
+    within(i * 2.2 * up * Math.max(0, 0.3 - v), 0, 1),
+    within(i * 1.2 * up * Math.max(0, 1 - 2 * well), 0, 1),
   );
 }

@@ -1,7 +1,9 @@
-/** Hips, spine and legs that answer the arms: what an export says of them, and what comes of it at a time. */
+/** Hips, spine and legs that answer the arms, and feet that stay planted: what an export says of them, and what comes of it at a time. */
 
 import { ContactArm, ContactPose, ContactRig } from "./contact_solve.js";
+import { plantFeet } from "./feet_solve.js";
 import { ArmTrack, KNOTS, armSway, driven, knotBefore, knotTime } from "./follow_through.js";
+import { FootTrack, footGoals } from "./planted_feet.js";
 import { WeightBend, WeightCollar, WeightRig, answerArms, movesBody } from "./weight_solve.js";
 
 const KEPT = 4096; // times that are remembered of a plan
@@ -37,6 +39,12 @@ export function readArmTracks(layers, clips) {
   return new Map(actions.map(({ id, clip }) => [id, new ArmTrack(clip, rows.get(clip) ?? [])]));
 }
 
+/** Return where the feet of the body's actions are, by action. @param {object[]} clips the export's */
+export function readFootTracks(layers, clips) {
+  const rows = new Map(clips.map((clip) => [clip.id, clip.feet ?? []]));
+  return new Map([...layers.body.actions.values()].map(({ id, clip }) => [id, new FootTrack(rows.get(clip) ?? [])]));
+}
+
 /** What the arms of a plan do at the times that are looked at, worked out once each. */
 export class Swaying {
   constructor(graph) {
@@ -50,28 +58,38 @@ export class Swaying {
   }
 
   /**
-   * Change a pose in place as the body answers its arms at a time.
+   * Change a pose in place as its feet stay planted, and the body answers its arms, at a time.
    * @param {(time: number, layer: string) => [cue, place]} playing the cue with motion that plays in a layer, or null, and the place
    * of the rest in force, -1 for none
    */
   answer(plan, playing, time, rotations, translations) {
-    const { weightRig: rig, life } = this.graph;
+    const { weightRig: rig, footTracks, life } = this.graph;
     const calm = 1 - life.stillness;
-    if (calm <= 0 || (life.followThrough <= 0 && life.shoulderLift <= 0) || !plan.layers.arms.cues.length) return;
-    const last = knotBefore(time);
-    const sways = [];
-    for (let n = last - KNOTS + 1; n <= last; n++) sways.push(this.at(plan, playing, n));
-    const drive = driven(sways, time);
-    if (!movesBody(drive)) return;
+    const drive = this.drive(plan, playing, time);
+    const feet = life.plantedFeet > 0 ? footGoals(this.graph, footTracks, rig.height, plan.layers.body, ...playing(time, "body"), time) : [];
+    if (!feet.length && !movesBody(drive)) return;
     const { joints } = rig.body;
     const pose = new ContactPose(
       joints.map((j) => [rotations[4 * j], rotations[4 * j + 1], rotations[4 * j + 2], rotations[4 * j + 3]]),
       joints.map((j) => [translations[3 * j], translations[3 * j + 1], translations[3 * j + 2]]),
     );
-    if (!answerArms(rig, pose, drive, life.followThrough * calm, life.shoulderLift * calm)) return;
+    let moved = plantFeet(rig, pose, feet, life.plantedFeet);
+    if (drive.length && answerArms(rig, pose, drive, life.followThrough * calm, life.shoulderLift * calm)) moved = true;
+    if (!moved) return;
     for (let place = 0; place < joints.length; place++) rotations.set(pose.local[place], 4 * joints[place]);
     const hips = rig.bends[0].place;
     translations.set(pose.moved[hips], 3 * joints[hips]);
+  }
+
+  /** Return what of the arms moves the body at a time, nothing where it does not answer them. */
+  drive(plan, playing, time) {
+    const { weightRig: rig, life } = this.graph;
+    if (life.stillness >= 1 || (life.followThrough <= 0 && life.shoulderLift <= 0)) return [];
+    if (rig.strength <= 0 || !plan.layers.arms.cues.length) return [];
+    const last = knotBefore(time);
+    const sways = [];
+    for (let n = last - KNOTS + 1; n <= last; n++) sways.push(this.at(plan, playing, n));
+    return driven(sways, time);
   }
 
   at(plan, playing, number) {

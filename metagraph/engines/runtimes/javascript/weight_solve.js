@@ -114,7 +114,7 @@ export function answerArms(rig, pose, drive, follow, lift) {
     return true;
   }
   spread(rig.body, pose);
-  follow = follow * _stands(rig, pose);
+  follow = follow * standsBy(rig, pose);
   if (follow <= 0) {
     return true;
   }
@@ -128,7 +128,7 @@ export function answerArms(rig, pose, drive, follow, lift) {
  * @param {ContactPose} pose
  * @returns {number}
  */
-function _stands(rig, pose) {
+export function standsBy(rig, pose) {
   let least = 1;
   for (const leg of rig.body.arms) {
     const hip = pose.at[leg.upper];
@@ -184,7 +184,7 @@ function _giveWay(rig, pose, drive, follow) {
   const size = length([x, y, z]) + 0.1 * rig.height * length([yaw, roll, pitch]);
   let low = 0;
   for (let side = 0; side < feet.length; side++) {
-    low = Math.max(low, _tooFar(rig, pose, side, feet[side], reaches[side], GIVE * size));
+    low = Math.max(low, hipsSink(rig, pose, side, feet[side], reaches[side], GIVE * size));
   }
   if (low > 0) {
     const down = rotated(space, scaled(rig.up, -low));
@@ -207,7 +207,7 @@ function _giveWay(rig, pose, drive, follow) {
  * @param {number} soft
  * @returns {number}
  */
-function _tooFar(rig, pose, side, foot, reach, soft) {
+export function hipsSink(rig, pose, side, foot, reach, soft) {
   const leg = rig.body.arms[side];
   const hip = pose.at[leg.upper];
   const knee = pose.at[leg.lower];

@@ -7,7 +7,8 @@ import { CHANNELS } from "../words.js";
  *
  * chain: joints from the root to the head. breath [c, 4]: axis and angle of each at the top of a breath. joints: all that life may turn:
  * the chain, then shoulders, eyes that are joints, the face's; `turned` of them before the face's. lookers: `place` in the chain, and
- * `share` of a turn of the head. eyes: left, right. bowed [c]: radians of a bowed posture about the breath's axes. face: see `readFace`.
+ * `share` of a turn of the head. eyes: left, right. bowed, thrust [c]: radians of a bowed posture, and of one that
+ * leans into it, about the breath's axes. face: see `readFace`.
  * @param {object} rig
  */
 export function readBody(rig) {
@@ -20,7 +21,8 @@ export function readBody(rig) {
   return {
     left: rig.left, up: rig.up, ahead: rig.ahead,
     chain: rig.chain, breath: Float64Array.from(rig.breath.flat()),
-    bowed: Float64Array.from(rig.chain, (_, n) => rig.bowed?.[n] ?? 0), shoulders: rig.shoulders, lookers: rig.lookers,
+    bowed: Float64Array.from(rig.chain, (_, n) => rig.bowed?.[n] ?? 0), thrust: Float64Array.from(rig.chain, (_, n) => rig.thrust?.[n] ?? 0),
+    shoulders: rig.shoulders.map((s) => ({ ...s, tense: s.tense ?? [0, 0, 0] })), lookers: rig.lookers,
     trunk: rig.trunk, trunkAhead: rig.trunk_ahead, headAhead: rig.head_ahead, eyes,
     partner: rig.partner, eyesAtRest: rig.eyes_at_rest, face, turned: turned.length, joints: Int32Array.from([...turned, ...face.joints]),
   };

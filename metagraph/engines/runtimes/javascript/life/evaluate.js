@@ -70,7 +70,7 @@ export class Enlivener {
       const joint = body.chain[n];
       for (let k = 0; k < 4; k++) chain[4 * n + k] = rotations[4 * joint + k];
       for (let k = 0; k < 3; k++) places[3 * n + k] = translations[3 * joint + k];
-      const half = 0.5 * (this.full * body.breath[4 * n + 3] + this.bears.droop * body.bowed[n]);
+      const half = 0.5 * (this.full * body.breath[4 * n + 3] + this.bears.droop * body.bowed[n] + this.bears.thrust * body.thrust[n]);
       if (half === 0) continue;
       const s = Math.sin(half);
       for (let k = 0; k < 3; k++) this.turn[k] = s * body.breath[4 * n + k];
@@ -112,6 +112,7 @@ export class Enlivener {
   apply(rotations, translations) {
     const { body, results, solver } = this;
     const full = this.full + this.bears.lift;
+    const tight = this.bears.tension;
     const { chain, eyes } = solver;
     const count = body.joints.length;
     const chained = body.chain.length;
@@ -123,8 +124,8 @@ export class Enlivener {
     }
     let place = chained;
     for (let n = 0; n < body.shoulders.length; n++) {
-      const { turn } = body.shoulders[n];
-      this.add(place++, full * turn[0], full * turn[1], full * turn[2]);
+      const { turn, tense } = body.shoulders[n];
+      this.add(place++, full * turn[0] + tight * tense[0], full * turn[1] + tight * tense[1], full * turn[2] + tight * tense[2]);
     }
     for (let n = 0; n < 2; n++) {
       const { isJoint, turnLeft: a, turnUp: b } = body.eyes[n];

@@ -160,6 +160,8 @@ namespace Metagraph
         public WeightRig WeightRig;
         /// <summary>What the actions of arms and body weigh, by action.</summary>
         public Dictionary<string, ArmTrack> ArmTracks;
+        /// <summary>Where the feet of the body's actions are, by action.</summary>
+        public Dictionary<string, FootTrack> FootTracks;
         public readonly Dictionary<string, double[]> Points = new Dictionary<string, double[]>();
         public readonly Dictionary<string, Line> Lines = new Dictionary<string, Line>();
         public readonly Voices Voices = new Voices();

@@ -86,6 +86,7 @@ namespace Metagraph
             ContactRig = root.Maybe("contact_rig", out found) && !found.IsNull ? Contacts.ReadRig(found, Joints) : null;
             WeightRig = root.Maybe("weight_rig", out found) && !found.IsNull ? Weight.ReadRig(found, Joints.Length) : null;
             ArmTracks = Weight.ReadTracks(this, root["clips"]);
+            FootTracks = Weight.ReadFeet(this, root["clips"]);
         }
 
         private void ReadJoints(Node root)

@@ -100,7 +100,8 @@ namespace Metagraph
 
     /// <summary>
     /// Posture and face of a mood. droop: -0.4 upright .. 1 bowed. lift: of the shoulders, in breaths. lids: how far they hang,
-    /// 0..1. smile, frown, brow_down, brow_up: weights of the face, 0..1.
+    /// 0..1. smile, frown, brow_down, brow_up: weights of the face, 0..1. thrust: how far the body leans into it, 0..1. tension:
+    /// of shoulders, arms and hands, 0..1.
     /// </summary>
     public sealed class Bearing
     {
@@ -111,6 +112,8 @@ namespace Metagraph
         public readonly double Frown;
         public readonly double BrowDown;
         public readonly double BrowUp;
+        public readonly double Thrust;
+        public readonly double Tension;
 
         public Bearing(
             double droop = 0.0,
@@ -119,7 +122,9 @@ namespace Metagraph
             double smile = 0.0,
             double frown = 0.0,
             double browDown = 0.0,
-            double browUp = 0.0
+            double browUp = 0.0,
+            double thrust = 0.0,
+            double tension = 0.0
         )
         {
             Droop = droop;
@@ -129,6 +134,8 @@ namespace Metagraph
             Frown = frown;
             BrowDown = browDown;
             BrowUp = browUp;
+            Thrust = thrust;
+            Tension = tension;
         }
     }
 
@@ -402,7 +409,7 @@ namespace Metagraph
 
         /// <summary>
         /// Return posture and face of a mood, stronger with its intensity. The head bows with sadness (Roether et al. 2009);
-        /// shoulders rise with arousal that is not joy; the amounts are ours.
+        /// shoulders rise, fists close and the body goes ahead with arousal that is not joy; the amounts are ours.
         /// </summary>
         public static Bearing Bearing(Mood mood)
         {
@@ -420,7 +427,9 @@ namespace Metagraph
                 Within(i * well, 0.0, 1.0),
                 Within(i * ill, 0.0, 1.0),
                 Within(i * 1.8 * up * Math.Max(0.0, 0.4 - v), 0.0, 1.0),
-                Within(i * ill * Math.Max(0.0, 0.6 - a), 0.0, 1.0)
+                Within(i * ill * Math.Max(0.0, 0.6 - a), 0.0, 1.0),
+                Within(i * 2.2 * up * Math.Max(0.0, 0.3 - v), 0.0, 1.0),
+                Within(i * 1.2 * up * Math.Max(0.0, 1.0 - 2.0 * well), 0.0, 1.0)
             );
         }
     }

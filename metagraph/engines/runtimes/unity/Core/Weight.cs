@@ -4,7 +4,8 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// Hips, spine and legs that answer the arms: what comes of what an export says of them. Made of an export; one for each player.
+    /// Hips, spine and legs that answer the arms, and feet that stay planted: what comes of what an export says of them. Made of an
+    /// export; one for each player.
     /// </summary>
     public sealed class Weight
     {
@@ -15,6 +16,8 @@ namespace Metagraph
         private readonly ContactPose pose = new ContactPose();
         private readonly List<List<double>> sways = new List<List<double>>();
         private readonly Dictionary<int, List<double>> found = new Dictionary<int, List<double>>();
+        private static readonly List<double> Nothing = new List<double>();
+        private static readonly List<FootGoal> Nowhere = new List<FootGoal>();
         private Plan known;
 
         public Weight(Graph graph)
@@ -23,28 +26,14 @@ namespace Metagraph
             rig = graph.WeightRig;
         }
 
-        /// <summary>Change a composed pose so that the body answers its arms.</summary>
+        /// <summary>Change a composed pose so that its feet stay planted and the body answers its arms.</summary>
         public void Answer(Plan plan, double time, BodyPose body)
         {
             LifeSettings life = graph.Life;
             double calm = 1 - life.Stillness;
-            if (calm <= 0 || (life.FollowThrough <= 0 && life.ShoulderLift <= 0) || plan.Layers["arms"].Cues.Count == 0)
-            {
-                return;
-            }
-            if (known != plan || found.Count >= Kept)
-            {
-                found.Clear();
-                known = plan;
-            }
-            int last = FollowThroughRules.KnotBefore(time);
-            sways.Clear();
-            for (int n = last - FollowThroughRules.Knots + 1; n <= last; n++)
-            {
-                sways.Add(At(plan, n));
-            }
-            List<double> drive = FollowThroughRules.Driven(sways, time);
-            if (!WeightSolveRules.MovesBody(drive))
+            List<double> drive = Drive(plan, time);
+            List<FootGoal> feet = Feet(plan, time);
+            if (feet.Count == 0 && !WeightSolveRules.MovesBody(drive))
             {
                 return;
             }
@@ -56,7 +45,12 @@ namespace Metagraph
                 pose.Local.Add((r[4 * j], r[4 * j + 1], r[4 * j + 2], r[4 * j + 3]));
                 pose.Moved.Add((t[3 * j], t[3 * j + 1], t[3 * j + 2]));
             }
-            if (!WeightSolveRules.AnswerArms(rig, pose, drive, life.FollowThrough * calm, life.ShoulderLift * calm))
+            bool moved = FeetSolveRules.PlantFeet(rig, pose, feet, life.PlantedFeet);
+            if (drive.Count > 0 && WeightSolveRules.AnswerArms(rig, pose, drive, life.FollowThrough * calm, life.ShoulderLift * calm))
+            {
+                moved = true;
+            }
+            if (!moved)
             {
                 return;
             }
@@ -74,6 +68,45 @@ namespace Metagraph
             t[at] = (float)hips.Item1;
             t[at + 1] = (float)hips.Item2;
             t[at + 2] = (float)hips.Item3;
+        }
+
+        /// <summary>What of the arms moves the body at a time, nothing where it does not answer them.</summary>
+        private List<double> Drive(Plan plan, double time)
+        {
+            LifeSettings life = graph.Life;
+            if (life.Stillness >= 1 || (life.FollowThrough <= 0 && life.ShoulderLift <= 0) || rig.Strength <= 0)
+            {
+                return Nothing;
+            }
+            if (plan.Layers["arms"].Cues.Count == 0)
+            {
+                return Nothing;
+            }
+            if (known != plan || found.Count >= Kept)
+            {
+                found.Clear();
+                known = plan;
+            }
+            int last = FollowThroughRules.KnotBefore(time);
+            sways.Clear();
+            for (int n = last - FollowThroughRules.Knots + 1; n <= last; n++)
+            {
+                sways.Add(At(plan, n));
+            }
+            return FollowThroughRules.Driven(sways, time);
+        }
+
+        /// <summary>Where both feet should be at a time, nothing where nothing blends.</summary>
+        private List<FootGoal> Feet(Plan plan, double time)
+        {
+            if (graph.Life.PlantedFeet <= 0)
+            {
+                return Nowhere;
+            }
+            LayerPlan body = plan.Layers["body"];
+            int place;
+            Cue cue = Playing(body, time, out place);
+            return PlantedFeetRules.FootGoals(graph, graph.FootTracks, rig.Height, body, cue, place, time);
         }
 
         private List<double> At(Plan plan, int number)
@@ -162,6 +195,25 @@ namespace Metagraph
                 {
                     tracks[action.Id] = new ArmTrack(action.Clip.Id, rows[action.Clip.Id]);
                 }
+            }
+            return tracks;
+        }
+
+        /// <summary>Where the feet of the body's actions are, by action. clips: the export's.</summary>
+        internal static Dictionary<string, FootTrack> ReadFeet(Graph graph, Node clips)
+        {
+            var rows = new Dictionary<string, List<List<double>>>();
+            foreach (Node clip in clips.Items)
+            {
+                Node feet;
+                rows[clip["id"].Text] = clip.Maybe("feet", out feet)
+                    ? feet.Items.ConvertAll(row => row.Numbers(2 * PlantedFeetRules.FootNumbers).ToList())
+                    : new List<List<double>>();
+            }
+            var tracks = new Dictionary<string, FootTrack>();
+            foreach (GraphAction action in graph.Layers["body"].Actions.Values)
+            {
+                tracks[action.Id] = new FootTrack(rows[action.Clip.Id]);
             }
             return tracks;
         }

@@ -136,7 +136,7 @@ namespace Metagraph
                 return true;
             }
             ContactSolveRules.Spread(rig.Body, pose);
-            follow = follow * Stands(rig, pose);
+            follow = follow * StandsBy(rig, pose);
             if (follow <= 0.0)
             {
                 return true;
@@ -146,7 +146,7 @@ namespace Metagraph
         }
 
         /// <summary>Return how much a figure stands, 0 for one that sits or lies, 1 on straight legs.</summary>
-        private static double Stands(WeightRig rig, ContactPose pose)
+        public static double StandsBy(WeightRig rig, ContactPose pose)
         {
             var least = 1.0;
             foreach (ContactArm leg in rig.Body.Arms)
@@ -218,7 +218,7 @@ namespace Metagraph
             var low = 0.0;
             for (int side = 0; side < feet.Count; side++)
             {
-                low = Math.Max(low, TooFar(rig, pose, side, feet[side], reaches[side], Give * size));
+                low = Math.Max(low, HipsSink(rig, pose, side, feet[side], reaches[side], Give * size));
             }
             if (low > 0.0)
             {
@@ -236,7 +236,7 @@ namespace Metagraph
         /// Return by how much the hips have to sink for a foot to be within a leg's reach; from a little before that on, so that
         /// it sets in gently. reach: how far hip and foot were apart.
         /// </summary>
-        private static double TooFar(
+        public static double HipsSink(
             WeightRig rig,
             ContactPose pose,
             int side,

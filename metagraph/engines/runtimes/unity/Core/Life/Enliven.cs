@@ -98,7 +98,8 @@ namespace Metagraph
             }
             for (int n = 0; n < shoulders.Length; n++)
             {
-                (shoulders[n] * Quat.Turn(body.ShoulderTurns[n] * (full + bears.Lift))).Write(rotations, body.Shoulders[n]);
+                Vec turn = body.ShoulderTurns[n] * (full + bears.Lift) + body.ShoulderTenses[n] * bears.Tension;
+                (shoulders[n] * Quat.Turn(turn)).Write(rotations, body.Shoulders[n]);
             }
             for (int n = 0; n < 2; n++)
             {
@@ -197,9 +198,10 @@ namespace Metagraph
                 int joint = body.Chain[n];
                 chain[n] = Quat.Of(rotations, joint);
                 places[n] = new Vec(translations[3 * joint], translations[3 * joint + 1], translations[3 * joint + 2]);
-                if (body.Angles[n] != 0 && (full != 0 || bears.Droop != 0))
+                if (body.Angles[n] != 0 && (full != 0 || bears.Droop != 0 || bears.Thrust != 0))
                 {
-                    chain[n] *= Quat.About(body.Breath[n], full * body.Angles[n] + bears.Droop * body.Bowed[n]);
+                    double angle = full * body.Angles[n] + bears.Droop * body.Bowed[n] + bears.Thrust * body.Thrust[n];
+                    chain[n] *= Quat.About(body.Breath[n], angle);
                 }
             }
             eyeLeft[0] = eyeLeft[1] = eyeUp[0] = eyeUp[1] = 0.0;

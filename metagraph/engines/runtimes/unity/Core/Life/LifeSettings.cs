@@ -73,7 +73,7 @@ namespace Metagraph
         public double Stillness, Breathing = 1.0, BreathRate = 14.0, Gaze = 1.0, HeadShare = 0.6;
         public double AversionRate = 12.0, AversionLength = 0.93, AversionAngle = 14.0, Saccades = 1.0, SaccadeRate = 60.0;
         public double Lids = 1.0, Blinks = 17.0, AccentBlinks = 1.0, BlinkClose = 0.07, BlinkOpen = 0.10, Lips = 1.0, LipSmoothing = 0.03;
-        public double FollowThrough = 1.0, ShoulderLift = 1.0;
+        public double FollowThrough = 1.0, ShoulderLift = 1.0, PlantedFeet = 1.0;
         public double Expressions = 1.0, AccentBrows = 0.4;
         public double Valence, Arousal, Intensity = 1.0;
 
@@ -122,6 +122,7 @@ namespace Metagraph
                     case "intensity": life.Intensity = value.Within(0, 2); break;
                     case "follow_through": life.FollowThrough = value.Within(0, 2); break;
                     case "shoulder_lift": life.ShoulderLift = value.Within(0, 2); break;
+                    case "planted_feet": life.PlantedFeet = value.Within(0, 1); break;
                     case "modes":
                         foreach (string mode in value.Names)
                         {

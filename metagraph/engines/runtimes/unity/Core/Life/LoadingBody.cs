@@ -16,20 +16,28 @@ namespace Metagraph
                 Angles = breath.ConvertAll(row => row.Numbers(4)[3]).ToArray(),
                 Shoulders = shoulders.ConvertAll(one => Index(one["joint"], 0)).ToArray(),
                 ShoulderTurns = shoulders.ConvertAll(one => Vector(one["turn"])).ToArray(),
+                ShoulderTenses = shoulders.ConvertAll(Tense).ToArray(),
                 Lookers = lookers.ConvertAll(one => new Looker { Place = one["place"].Count, Share = one["share"].Number }).ToArray(),
                 Trunk = json["trunk"].Count, TrunkAhead = Vector(json["trunk_ahead"]), HeadAhead = Vector(json["head_ahead"]),
                 Partner = Vector(json["partner"]), EyesAtRest = Vector(json["eyes_at_rest"]),
                 Eyes = json["eyes"].Items.ConvertAll(ReadEye).ToArray(), Face = ReadFace(json["face"]),
             };
             int count = body.Chain.Length;
-            Node bowed;
+            Node bowed, thrust;
             body.Bowed = json.Maybe("bowed", out bowed) && bowed.Items.Count > 0 ? bowed.Numbers(count) : new double[count];
+            body.Thrust = json.Maybe("thrust", out thrust) && thrust.Items.Count > 0 ? thrust.Numbers(count) : new double[count];
             bool placed = Array.TrueForAll(body.Lookers, x => x.Place >= 0 && x.Place < count) && body.Trunk >= 0 && body.Trunk < count;
             if (!placed || body.Angles.Length != count || body.Eyes.Length != 2)
             {
                 throw json.Wrong("should have a chain of joints, a breath for each, two eyes, and lookers within the chain");
             }
             return body;
+        }
+
+        private static Vec Tense(Node json)
+        {
+            Node tense;
+            return json.Maybe("tense", out tense) ? Vector(tense) : new Vec(0, 0, 0);
         }
 
         private EyeAt ReadEye(Node json)

@@ -10,7 +10,7 @@ const OPTIONAL = {
 const EMPTY = ["life", "face", "points", "lines", "voices"]  # where these are not there
 const BASE = {rotations = "list", translations = "list"}
 const JOINT = {name = "text", parent = "text?", part = "text", side = "text", translation = "3", rotation = "4", scales = "text?"}
-const CLIP = {id = "text", name = "text", animation = "number", fps = "number", frames = "number", arms = "list?"}
+const CLIP = {id = "text", name = "text", animation = "number", fps = "number", frames = "number", arms = "list?", feet = "list?"}
 const LAYER = {start = "text?", weights = "record", stances = "list", actions = "list", markov = "record"}
 const STANCE = {id = "text", name = "text"}
 const ACTION = {
@@ -27,10 +27,10 @@ const PLANNER = {
 }
 const RIG = {
 	left = "3", up = "3", ahead = "3", chain = "list", breath = "list", shoulders = "list", lookers = "list", trunk = "number",
-	trunk_ahead = "3", head_ahead = "3", eyes = "list", partner = "3", eyes_at_rest = "3", face = "record", bowed = "list?"
+	trunk_ahead = "3", head_ahead = "3", eyes = "list", partner = "3", eyes_at_rest = "3", face = "record", bowed = "list?", thrust = "list?"
 }
 const EYE = {at = "3", left = "3", up = "3", ahead = "3", joint = "number", turn_left = "3", turn_up = "3", down = "4"}
-const SHOULDER = {joint = "number", turn = "3"}
+const SHOULDER = {joint = "number", turn = "3", tense = "3?"}
 const LOOKER = {place = "number", share = "number"}
 const FACE = {joints = "list", turns = "list", shifts = "list", follows = "4", lid_joints = "4", shut_by = "list", morphs = "record"}
 const CONTACT_RIG = {contacts = "switch", guard = "switch", joints = "list", parents = "list", arms = "list", capsules = "list"}
@@ -123,6 +123,9 @@ static func _unlike(data):
 		for row in clip.arms if clip.arms != null else []:
 			if not _is(row, "8"):
 				return "$.clips.arms: should be rows of eight numbers"
+		for row in clip.feet if clip.feet != null else []:
+			if not _is(row, "16"):
+				return "$.clips.feet: should be rows of sixteen numbers"
 	return "" if data.rig == null else _strays(data.rig, data.joints.size())
 
 
@@ -204,6 +207,9 @@ static func _strays(rig, count):
 	for angle in rig.bowed if rig.bowed != null else []:
 		if not Util.is_number(angle):
 			return "$.rig.bowed: should be numbers"
+	for angle in rig.thrust if rig.thrust != null else []:
+		if not Util.is_number(angle):
+			return "$.rig.thrust: should be numbers"
 	return ""
 
 

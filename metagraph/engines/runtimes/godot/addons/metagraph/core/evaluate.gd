@@ -31,7 +31,8 @@ static func enliven(graph, plan, time, pose, cues = []):
 		rotations[rig.chain[n]] = found.chain[n] * Turns.of(found.turns[n], rig.one)
 	for n in range(rig.shoulders.size()):
 		var joint = rig.shoulders[n].joint
-		rotations[joint] = pose.rotations[joint] * Turns.of(rig.shoulders[n].turn * (found.full + found.bears.lift), rig.one)
+		var turn = rig.shoulders[n].turn * (found.full + found.bears.lift) + rig.shoulders[n].tense * found.bears.tension
+		rotations[joint] = pose.rotations[joint] * Turns.of(turn, rig.one)
 	for n in range(2):
 		var eye = rig.eyes[n]
 		if eye.joint >= 0:
@@ -63,7 +64,7 @@ static func _found(graph, plan, time, pose):
 	var turns = []
 	for n in range(rig.chain.size()):
 		var joint = rig.chain[n]
-		var turn = rig.breath[n] * full + rig.bowed[n] * bears.droop
+		var turn = rig.breath[n] * full + rig.bowed[n] * bears.droop + rig.thrust[n] * bears.thrust
 		chain.append(pose.rotations[joint] * Turns.of(turn, rig.one) if turn != Vector3() else pose.rotations[joint])
 		places.append(pose.translations[joint])
 		turns.append(Vector3())

@@ -106,7 +106,8 @@ class LifeMood:
 
 
 # Posture and face of a mood. droop: -0.4 upright .. 1 bowed. lift: of the shoulders, in breaths. lids: how far they hang, 0..1.
-# smile, frown, brow_down, brow_up: weights of the face, 0..1.
+# smile, frown, brow_down, brow_up: weights of the face, 0..1. thrust: how far the body leans into it, 0..1. tension: of
+# shoulders, arms and hands, 0..1.
 class Bearing:
 	var droop
 	var lift
@@ -115,8 +116,20 @@ class Bearing:
 	var frown
 	var brow_down
 	var brow_up
+	var thrust
+	var tension
 
-	func _init(droop_ = 0.0, lift_ = 0.0, lids_ = 0.0, smile_ = 0.0, frown_ = 0.0, brow_down_ = 0.0, brow_up_ = 0.0):
+	func _init(
+		droop_ = 0.0,
+		lift_ = 0.0,
+		lids_ = 0.0,
+		smile_ = 0.0,
+		frown_ = 0.0,
+		brow_down_ = 0.0,
+		brow_up_ = 0.0,
+		thrust_ = 0.0,
+		tension_ = 0.0
+	):
 		self.droop = droop_
 		self.lift = lift_
 		self.lids = lids_
@@ -124,6 +137,8 @@ class Bearing:
 		self.frown = frown_
 		self.brow_down = brow_down_
 		self.brow_up = brow_up_
+		self.thrust = thrust_
+		self.tension = tension_
 
 
 # Return a mood with what is told of it changed, each within its range.
@@ -303,8 +318,8 @@ static func life_of(mood):
 	)
 
 
-# Return posture and face of a mood, stronger with its intensity. The head bows with sadness (Roether et al. 2009); shoulders rise
-# with arousal that is not joy; the amounts are ours.
+# Return posture and face of a mood, stronger with its intensity. The head bows with sadness (Roether et al. 2009); shoulders
+# rise, fists close and the body goes ahead with arousal that is not joy; the amounts are ours.
 static func bearing(mood):
 	var v = mood.valence
 	var a = mood.arousal
@@ -320,5 +335,7 @@ static func bearing(mood):
 		within(i * well, 0.0, 1.0),
 		within(i * ill, 0.0, 1.0),
 		within(i * 1.8 * up * Util.most(0.0, 0.4 - v), 0.0, 1.0),
-		within(i * ill * Util.most(0.0, 0.6 - a), 0.0, 1.0)
+		within(i * ill * Util.most(0.0, 0.6 - a), 0.0, 1.0),
+		within(i * 2.2 * up * Util.most(0.0, 0.3 - v), 0.0, 1.0),
+		within(i * 1.2 * up * Util.most(0.0, 1.0 - 2.0 * well), 0.0, 1.0)
 	)

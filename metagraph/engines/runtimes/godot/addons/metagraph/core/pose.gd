@@ -14,7 +14,7 @@ const Weight = preload("weight.gd")
 static func pose_at(graph, plan, time, alive = true):
 	var composed = _compose(graph, plan, time)
 	var morphs = _layers_morphs(graph, plan, time)
-	if alive and plan.life.end > 0 and Weight.is_on(graph) and plan.layers.arms.cues.size() > 0:
+	if alive and plan.life.end > 0 and graph.weight_rig != null and graph.life.on:
 		_weigh(graph, plan, time, composed)
 	if alive and graph.life.on and graph.rig != null and not graph.rig.empty and plan.life.end > 0:
 		var cues = []
@@ -47,13 +47,14 @@ static func _playing(graph, plan, time):
 	return out
 
 
-# Lets the body in a composed pose answer its arms.
+# Lets the feet of a composed pose stay planted, and its body answer its arms.
 static func _weigh(graph, plan, time, composed):
 	var playing = []
-	for at in Weight.knots(time):
-		var found = _playing(graph, plan, at)
-		playing.append([found[Util.LAYERS.find("arms")], found[Util.LAYERS.find("body")]])
-	Weight.answer(graph, playing, time, composed)
+	if Weight.sways(graph) and plan.layers.arms.cues.size() > 0:
+		for at in Weight.knots(time):
+			var found = _playing(graph, plan, at)
+			playing.append([found[Util.LAYERS.find("arms")], found[Util.LAYERS.find("body")]])
+	Weight.answer(graph, playing, _playing(graph, plan, time)[Util.LAYERS.find("body")], time, composed)
 
 
 static func _compose(graph, plan, time):

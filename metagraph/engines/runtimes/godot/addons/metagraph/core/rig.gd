@@ -7,7 +7,7 @@ const Util = preload("util.gd")
 static func rig_of(data, shim):
 	var out = {
 		left = Util.vector(data.left), up = Util.vector(data.up), ahead = Util.vector(data.ahead), chain = _whole(data.chain), breath = [],
-		bowed = [], shoulders = [], lookers = [], trunk = int(data.trunk), trunk_ahead = Util.vector(data.trunk_ahead),
+		bowed = [], thrust = [], shoulders = [], lookers = [], trunk = int(data.trunk), trunk_ahead = Util.vector(data.trunk_ahead),
 		head_ahead = Util.vector(data.head_ahead), eyes = [], partner = Util.vector(data.partner),
 		eyes_at_rest = Util.vector(data.eyes_at_rest), one = shim.quat(0.0, 0.0, 0.0, 1.0)
 	}
@@ -16,8 +16,11 @@ static func rig_of(data, shim):
 	for n in range(data.breath.size()):
 		var bowed = data.bowed[n] if data.bowed != null and data.bowed.size() > n else 0.0
 		out.bowed.append(Util.vector(data.breath[n]) * bowed)
+		var thrust = data.thrust[n] if data.thrust != null and data.thrust.size() > n else 0.0
+		out.thrust.append(Util.vector(data.breath[n]) * thrust)
 	for each in data.shoulders:
-		out.shoulders.append({joint = int(each.joint), turn = Util.vector(each.turn)})
+		var tense = Util.vector(each.tense) if each.tense != null else Vector3()
+		out.shoulders.append({joint = int(each.joint), turn = Util.vector(each.turn), tense = tense})
 	for each in data.lookers:
 		out.lookers.append({place = int(each.place), share = each.share})
 	for eye in data.eyes:

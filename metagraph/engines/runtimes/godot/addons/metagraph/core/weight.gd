@@ -1,8 +1,10 @@
-# Hips, spine and legs that answer the arms: what an export says of them, and what comes of it in a pose.
+# Hips, spine and legs that answer the arms, and feet that stay planted: what an export says of them, and what comes of it in a pose.
 
 const Util = preload("util.gd")
 const ContactSolve = preload("contact_solve.gd")
+const FeetSolve = preload("feet_solve.gd")
 const FollowThrough = preload("follow_through.gd")
+const PlantedFeet = preload("planted_feet.gd")
 const WeightSolve = preload("weight_solve.gd")
 
 
@@ -39,6 +41,17 @@ static func tracks_of(layers, clips):
 	return out
 
 
+# Returns where the feet of the body's actions are, by action; clips: the export's.
+static func feet_of(layers, clips):
+	var rows = {}
+	for clip in clips:
+		rows[clip.id] = clip.feet if clip.feet != null else []
+	var out = {}
+	for action in layers.body.actions.values():
+		out[action.id] = PlantedFeet.FootTrack.new(rows[action.clip])
+	return out
+
+
 static func _whole(numbers):
 	var out = []
 	for n in numbers:
@@ -55,9 +68,44 @@ static func knots(time):
 	return out
 
 
-# Changes a composed pose so that the body answers its arms. playing: for each of `knots`, what plays in arms and body: [the layer's
-# plan, its cue with motion or null, the place of its rest or -1].
-static func answer(graph, playing, time, pose):
+# Changes a composed pose so that its feet stay planted and the body answers its arms. playing: for each of `knots`, what plays in arms
+# and body: [the layer's plan, its cue with motion or null, the place of its rest or -1]; empty where nothing is answered. body: the
+# same of the body at that time.
+static func answer(graph, playing, body, time, pose):
+	var rig = graph.weight_rig
+	var life = graph.life
+	var drive = _drive(graph, playing, time)
+	var feet = []
+	if life.planted_feet > 0:
+		feet = PlantedFeet.foot_goals(graph, graph.foot_tracks, rig.height, body[0], body[1], body[2], time)
+	if feet.size() == 0 and not WeightSolve.moves_body(drive):
+		return
+	var local = []
+	var moved = []
+	for joint in rig.body.joints:
+		var q = pose.rotations[joint]
+		var v = pose.translations[joint]
+		local.append([q.x, q.y, q.z, q.w])
+		moved.append([v.x, v.y, v.z])
+	var found = ContactSolve.ContactPose.new(local, moved)
+	var calm = 1.0 - life.stillness
+	var changed = FeetSolve.plant_feet(rig, found, feet, life.planted_feet)
+	if drive.size() > 0 and WeightSolve.answer_arms(rig, found, drive, life.follow_through * calm, life.shoulder_lift * calm):
+		changed = true
+	if not changed:
+		return
+	for place in range(found.local.size()):
+		var q = found.local[place]
+		pose.rotations[rig.body.joints[place]] = graph.shim.quat(q[0], q[1], q[2], q[3])
+	var hips = rig.bends[0].place
+	var v = found.moved[hips]
+	pose.translations[rig.body.joints[hips]] = Vector3(v[0], v[1], v[2])
+
+
+# Returns what of the arms moves the body at a time, nothing where it does not answer them.
+static func _drive(graph, playing, time):
+	if playing.size() == 0:
+		return []
 	var rig = graph.weight_rig
 	var at = knots(time)
 	var sways = []
@@ -69,29 +117,10 @@ static func answer(graph, playing, time, pose):
 				graph, graph.arm_tracks, rig.body.hands, arms[0], arms[1], arms[2], body[0], body[1], body[2], at[n]
 			)
 		)
-	var drive = FollowThrough.driven(sways, time)
-	if not WeightSolve.moves_body(drive):
-		return
-	var local = []
-	var moved = []
-	for joint in rig.body.joints:
-		var q = pose.rotations[joint]
-		var v = pose.translations[joint]
-		local.append([q.x, q.y, q.z, q.w])
-		moved.append([v.x, v.y, v.z])
-	var found = ContactSolve.ContactPose.new(local, moved)
-	var calm = 1.0 - graph.life.stillness
-	if not WeightSolve.answer_arms(rig, found, drive, graph.life.follow_through * calm, graph.life.shoulder_lift * calm):
-		return
-	for place in range(found.local.size()):
-		var q = found.local[place]
-		pose.rotations[rig.body.joints[place]] = graph.shim.quat(q[0], q[1], q[2], q[3])
-	var hips = rig.bends[0].place
-	var v = found.moved[hips]
-	pose.translations[rig.body.joints[hips]] = Vector3(v[0], v[1], v[2])
+	return FollowThrough.driven(sways, time)
 
 
 # Whether the bodies of a graph answer their arms.
-static func is_on(graph):
+static func sways(graph):
 	var life = graph.life
-	return graph.weight_rig != null and life.on and life.stillness < 1 and (life.follow_through > 0 or life.shoulder_lift > 0)
+	return graph.weight_rig.strength > 0 and life.stillness < 1 and (life.follow_through > 0 or life.shoulder_lift > 0)

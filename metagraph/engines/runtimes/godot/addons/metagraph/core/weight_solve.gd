@@ -105,7 +105,7 @@ static func answer_arms(rig, pose, drive, follow, lift):
 	if follow <= 0.0:
 		return true
 	ContactSolve.spread(rig.body, pose)
-	follow = follow * _stands(rig, pose)
+	follow = follow * stands_by(rig, pose)
 	if follow <= 0.0:
 		return true
 	_give_way(rig, pose, drive, follow)
@@ -113,7 +113,7 @@ static func answer_arms(rig, pose, drive, follow, lift):
 
 
 # Return how much a figure stands, 0 for one that sits or lies, 1 on straight legs.
-static func _stands(rig, pose):
+static func stands_by(rig, pose):
 	var least = 1.0
 	for leg in rig.body.arms:
 		var hip = pose.at[leg.upper]
@@ -174,7 +174,7 @@ static func _give_way(rig, pose, drive, follow):
 	var size = PlainVectors.length([x, y, z]) + 0.1 * rig.height * PlainVectors.length([yaw, roll, pitch])
 	var low = 0.0
 	for side in range(feet.size()):
-		low = Util.most(low, _too_far(rig, pose, side, feet[side], reaches[side], GIVE * size))
+		low = Util.most(low, hips_sink(rig, pose, side, feet[side], reaches[side], GIVE * size))
 	if low > 0.0:
 		var down = PlainVectors.rotated(space, PlainVectors.scaled(rig.up, -low))
 		pose.moved[hips.place] = PlainVectors.plus(pose.moved[hips.place], down)
@@ -185,7 +185,7 @@ static func _give_way(rig, pose, drive, follow):
 
 # Return by how much the hips have to sink for a foot to be within a leg's reach; from a little before that on, so that it sets in
 # gently. reach: how far hip and foot were apart.
-static func _too_far(rig, pose, side, foot, reach, soft):
+static func hips_sink(rig, pose, side, foot, reach, soft):
 	var leg = rig.body.arms[side]
 	var hip = pose.at[leg.upper]
 	var knee = pose.at[leg.lower]

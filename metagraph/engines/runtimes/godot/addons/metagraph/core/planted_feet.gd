@@ -1,0 +1,233 @@
+# Where the feet of a standing body should be while the body's layer blends: not gliding from one pose to the other, but held, and
+# taken over one after the other in a step.
+#
+# A clip says where its feet are, and when they stand. A pose is a function of plan and time alone, so each step's time, order and
+# height follow from the two poses it leads between.
+#
+# Translated from metagraph/playback/planted_feet.py; change that, and translate anew.
+
+const FeetSolve = preload("feet_solve.gd")
+const PlainVectors = preload("plain_vectors.gd")
+const CueTimes = preload("cue_times.gd")
+const Util = preload("util.gd")
+const FOOT_RATE = 10.0  # rows of a track in a second of its clip
+const FOOT_UNIT = 1e-05  # what 1 in a row stands for
+const FOOT_NUMBERS = 8  # in a row, of each foot
+const STEPPING = 0.5  # seconds that two steps take where a cue leaves them time
+const LEAST_PART = 0.15  # of that time for the foot that has the shorter way
+const NEARBY = 0.015  # metres: feet with less way than that are taken over together, slowly
+const WAITS = 0.12  # of a step's time: before it goes ahead a foot is lifted, and lowered after it
+const LIFT = 0.25  # how high a foot is lifted for a short step, of its way
+const MOST_LIFT = 0.08  # metres that it is never lifted to
+const FAR = 0.25  # of the height: no foot steps that much farther than
+const TOO_FAR = 0.1
+
+
+# Where a clip's feet are. rows: of each tenth of a second, for the left foot and the right: whether it stands (0 to 1), its
+# joint's place and turn in the character's space; in units of `FOOT_UNIT`.
+class FootTrack:
+	var rows
+
+	func _init(rows_):
+		self.rows = rows_
+
+
+# Return where both feet should be at a time; nothing where nothing blends, or nobody can say.
+#
+# tracks: by action. height: of the figure. plan: the body's layer. cue: the one that plays, if it has motion; place: of the rest
+# in force, -1 for none.
+static func foot_goals(project, tracks, height, plan, cue, place, time):
+	if place < 0:
+		return []
+	if cue == null:
+		if not _changes(project, plan, place, time):
+			return []
+		return _stance(project, tracks, height, plan, place, time)
+	var track = tracks.get(cue.action.id)
+	if track == null or track.rows.size() == 0 or cue.action.joints.size() > 0:
+		return []
+	var came = cue.start + _entering(track, cue)
+	var goes = cue.end - _leaving(track, cue)
+	if time >= came and time < goes:
+		return []
+	var here = _row(track, CueTimes.cue_seconds(cue, time))
+	var at
+	var first
+	var last
+	if time < came:
+		at = Util.least(time, cue.start + cue.blend_in)
+		var before = _stance(project, tracks, height, plan, place, at)
+		first = _stance(project, tracks, height, plan, place, cue.start)
+		last = _row(track, CueTimes.cue_seconds(cue, came))
+		return _stepped(height, before, here, first, last, (time - cue.start) / (came - cue.start))
+	at = Util.most(time, cue.end - cue.blend_out)
+	var after = _stance(project, tracks, height, plan, place, at)
+	first = _row(track, CueTimes.cue_seconds(cue, goes))
+	last = _stance(project, tracks, height, plan, place, cue.end)
+	return _stepped(height, here, after, first, last, (time - goes) / (cue.end - goes))
+
+
+# Return how long the feet take to come into a cue: its blend, and longer while it stands.
+static func _entering(track, cue):
+	return _lasting(track, cue, cue.blend_in, cue.start, 1.0)
+
+
+# Return how long the feet take to leave a cue.
+static func _leaving(track, cue):
+	return _lasting(track, cue, cue.blend_out, cue.end, -1.0)
+
+
+static func _lasting(track, cue, blend, edge, way):
+	if blend <= 0.0:
+		return 0.0
+	var spare = Util.most(0.0, cue.end - cue.start - cue.blend_in - cue.blend_out)
+	var most = Util.least(STEPPING, blend + 0.5 * spare)
+	var out = blend
+	var step = 1.0 / FOOT_RATE
+	while out < most and _stands(track, CueTimes.cue_seconds(cue, edge + way * Util.least(out + step, most))):
+		out = Util.least(out + step, most)
+	return out
+
+
+static func _stands(track, seconds):
+	var goals = _row(track, seconds)
+	return goals[0].planted >= 1.0 and goals[1].planted >= 1.0
+
+
+# Return both feet on their way, u being how much of the time has gone, 0..1. first, last: where they are when it begins and ends,
+# from which order and size of the steps follow.
+static func _stepped(height, before, after, first, last, u):
+	if before.size() == 0 or after.size() == 0 or first.size() == 0 or last.size() == 0:
+		return []
+	var ways = []
+	for side2 in range(2):
+		ways.append(FeetSolve.foot_way(first[side2], last[side2]))
+	var part = 0.5
+	if ways[0] + ways[1] > 0.0:
+		part = Util.least(Util.most(ways[0] / (ways[0] + ways[1]), LEAST_PART), 1.0 - LEAST_PART)
+	# To the left the left foot goes first: the other would have to pass it.
+	var moved = PlainVectors.plus(PlainVectors.minus(last[0].at, first[0].at), PlainVectors.minus(last[1].at, first[1].at))
+	var left_first = PlainVectors.dot(moved, PlainVectors.minus(first[0].at, first[1].at)) >= -1e-09
+	var longer = Util.most(ways[0], ways[1])
+	var far = 1.0 - CueTimes.ease_((longer / height - FAR) / TOO_FAR)
+	var apart = CueTimes.ease_(longer / NEARBY)
+	var out = []
+	for side in range(2):
+		var share = 1.0 - apart * (1.0 - part if side == 0 else part)
+		var begin = 0.0 if left_first == (side == 0) else 1.0 - share
+		var x = Util.least(Util.most((u - begin) / share, 0.0), 1.0)
+		var go = CueTimes.ease_((x - WAITS) / (1.0 - 2.0 * WAITS))
+		var rise = LIFT * ways[side]
+		var air = 16.0 * x * x * (1.0 - x) * (1.0 - x) * rise / (1.0 + rise / MOST_LIFT)
+		out.append(_mixed(before[side], after[side], go, air, far))
+	return out
+
+
+# Return a foot between two places.
+static func _mixed(a, b, x, air, share):
+	var both = a.turn
+	var ax = both[0]
+	var ay = both[1]
+	var az = both[2]
+	var aw = both[3]
+	var both2 = b.turn
+	var bx = both2[0]
+	var by = both2[1]
+	var bz = both2[2]
+	var bw = both2[3]
+	var k = -x if ax * bx + ay * by + az * bz + aw * bw < 0.0 else x
+	var rest = 1.0 - x
+	var turn = PlainVectors.unit_turn([ax * rest + bx * k, ay * rest + by * k, az * rest + bz * k, aw * rest + bw * k])
+	var at = PlainVectors.plus(a.at, PlainVectors.scaled(PlainVectors.minus(b.at, a.at), x))
+	return FeetSolve.FootGoal.new(at, turn, share * a.planted * b.planted, a.lift * rest + b.lift * x + air)
+
+
+# Return the place of the rest in force at a time, near another.
+static func _resting(plan, place, time):
+	while place > 0 and plan.rests[place].fade_start > time:
+		place -= 1
+	while place + 1 < plan.rests.size() and plan.rests[place + 1].fade_start <= time:
+		place += 1
+	return place
+
+
+static func _fades(plan, place, time):
+	var rest = plan.rests[place]
+	return place > 0 and rest.fade_start + rest.fade > time
+
+
+# Whether a stance is not one loop at one place of it.
+static func _changes(project, plan, place, time):
+	var rest = plan.rests[place]
+	if _fades(plan, place, time):
+		return true
+	var both = project.span(rest.action)
+	var start = both[0]
+	var end = both[1]
+	var seam = Util.least(Util.most(0.0, rest.action.timing.blend_in), (end - start) / 2.0)
+	var period = end - start - seam
+	var elapsed = time - rest.start
+	if seam <= 0.0 or period <= 0.0 or elapsed < period:
+		return false
+	return elapsed - period * int(floor(elapsed / period)) < seam
+
+
+# Return where the stance's feet are that lies under the cues at a time.
+static func _stance(project, tracks, height, plan, place, time):
+	place = _resting(plan, place, time)
+	var rest = plan.rests[place]
+	var goals = _loop(project, tracks, height, rest, time)
+	if not _fades(plan, place, time):
+		return goals
+	var old = plan.rests[place - 1]
+	var ends = rest.fade_start + rest.fade
+	return _stepped(
+		height,
+		_loop(project, tracks, height, old, time),
+		goals,
+		_loop(project, tracks, height, old, rest.fade_start),
+		_loop(project, tracks, height, rest, ends),
+		(time - rest.fade_start) / rest.fade
+	)
+
+
+# Return where the feet of a loop are, taken from its end to its beginning in steps, too.
+static func _loop(project, tracks, height, rest, time):
+	var action = rest.action
+	var track = tracks.get(action.id)
+	if track == null or track.rows.size() == 0:
+		return []
+	var both = project.span(action)
+	var start = both[0]
+	var end = both[1]
+	var seam = Util.least(Util.most(0.0, action.timing.blend_in), (end - start) / 2.0)
+	var period = end - start - seam
+	if period <= 0.0:
+		return _row(track, start)
+	var elapsed = time - rest.start
+	var phase = Util.most(elapsed, 0.0) if seam > 0.0 else elapsed
+	phase = phase - period * int(floor(phase / period))
+	var here = _row(track, start + phase)
+	if seam <= 0.0 or elapsed < period or phase >= seam:
+		return here
+	var before = _row(track, start + Util.least(period + phase, end - start))
+	return _stepped(height, before, here, _row(track, start + period), _row(track, start + seam), phase / seam)
+
+
+# Return where a clip's feet are at clip seconds, on the straight line between rows.
+static func _row(track, seconds):
+	var last = track.rows.size() - 1
+	var at = Util.least(Util.most(seconds * FOOT_RATE, 0.0), float(last))
+	var low = Util.least(int(floor(at)), Util.most(0, last - 1))
+	var part = at - low
+	var a = track.rows[low]
+	var b = track.rows[Util.least(low + 1, last)]
+	var v = []
+	for n2 in range(2 * FOOT_NUMBERS):
+		v.append(FOOT_UNIT * (a[n2] + (b[n2] - a[n2]) * part))
+	var out = []
+	for side in range(2):
+		var n = FOOT_NUMBERS * side
+		var turn = PlainVectors.unit_turn([v[n + 4], v[n + 5], v[n + 6], v[n + 7]])
+		out.append(FeetSolve.FootGoal.new([v[n + 1], v[n + 2], v[n + 3]], turn, v[n], 0.0))
+	return out

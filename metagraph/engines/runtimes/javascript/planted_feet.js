@@ -1,0 +1,334 @@
+/**
+ * Where the feet of a standing body should be while the body's layer blends: not gliding from one pose to the other, but
+ * held, and taken over one after the other in a step.
+ *
+ * A clip says where its feet are, and when they stand. A pose is a function of plan and time alone, so each step's time,
+ * order and height follow from the two poses it leads between.
+ *
+ * Translated from metagraph/playback/planted_feet.py; change that, and translate anew.
+ */
+
+import { FootGoal, footWay } from "./feet_solve.js";
+import { dot, minus, plus, scaled, unitTurn } from "./plain_vectors.js";
+import { cueSeconds, ease } from "./cue_times.js";
+import { range } from "./basics.js";
+
+export const FOOT_RATE = 10; // rows of a track in a second of its clip
+export const FOOT_UNIT = 1e-05; // what 1 in a row stands for
+export const FOOT_NUMBERS = 8; // in a row, of each foot
+export const STEPPING = 0.5; // seconds that two steps take where a cue leaves them time
+export const LEAST_PART = 0.15; // of that time for the foot that has the shorter way
+export const NEARBY = 0.015; // metres: feet with less way than that are taken over together, slowly
+export const WAITS = 0.12; // of a step's time: before it goes ahead a foot is lifted, and lowered after it
+export const LIFT = 0.25; // how high a foot is lifted for a short step, of its way
+export const MOST_LIFT = 0.08; // metres that it is never lifted to
+export const FAR = 0.25; // of the height: no foot steps that much farther than
+export const TOO_FAR = 0.1;
+
+/**
+ * Where a clip's feet are. rows: of each tenth of a second, for the left foot and the right: whether it stands (0 to 1), its
+ * joint's place and turn in the character's space; in units of `FOOT_UNIT`.
+ *
+ * rows: number[][].
+ */
+export class FootTrack {
+  constructor(rows) {
+    this.rows = rows;
+  }
+}
+
+/**
+ * Return where both feet should be at a time; nothing where nothing blends, or nobody can say.
+ *
+ * tracks: by action. height: of the figure. plan: the body's layer. cue: the one that plays, if it has motion; place: of the
+ * rest in force, -1 for none.
+ * @param {Project} project
+ * @param {Map<string, FootTrack>} tracks
+ * @param {number} height
+ * @param {LayerPlan} plan
+ * @param {?Cue} cue
+ * @param {number} place
+ * @param {number} time
+ * @returns {FootGoal[]}
+ */
+export function footGoals(project, tracks, height, plan, cue, place, time) {
+  if (place < 0) {
+    return [];
+  }
+  if (cue === null) {
+    if (!_changes(project, plan, place, time)) {
+      return [];
+    }
+    return _stance(project, tracks, height, plan, place, time);
+  }
+  const track = tracks.get(cue.action.id) ?? null;
+  if (track === null || track.rows.length === 0 || cue.action.joints.length > 0) {
+    return [];
+  }
+  const came = cue.start + _entering(track, cue);
+  const goes = cue.end - _leaving(track, cue);
+  if (time >= came && time < goes) {
+    return [];
+  }
+  const here = _row(track, cueSeconds(cue, time));
+  let at;
+  let first;
+  let last;
+  if (time < came) {
+    at = Math.min(time, cue.start + cue.blendIn);
+    const before = _stance(project, tracks, height, plan, place, at);
+    first = _stance(project, tracks, height, plan, place, cue.start);
+    last = _row(track, cueSeconds(cue, came));
+    return _stepped(height, before, here, first, last, (time - cue.start) / (came - cue.start));
+  }
+  at = Math.max(time, cue.end - cue.blendOut);
+  const after = _stance(project, tracks, height, plan, place, at);
+  first = _row(track, cueSeconds(cue, goes));
+  last = _stance(project, tracks, height, plan, place, cue.end);
+  return _stepped(height, here, after, first, last, (time - goes) / (cue.end - goes));
+}
+
+/**
+ * Return how long the feet take to come into a cue: its blend, and longer while it stands.
+ * @param {FootTrack} track
+ * @param {Cue} cue
+ * @returns {number}
+ */
+function _entering(track, cue) {
+  return _lasting(track, cue, cue.blendIn, cue.start, 1);
+}
+
+/**
+ * Return how long the feet take to leave a cue.
+ * @param {FootTrack} track
+ * @param {Cue} cue
+ * @returns {number}
+ */
+function _leaving(track, cue) {
+  return _lasting(track, cue, cue.blendOut, cue.end, -1);
+}
+
+/**
+ * @param {FootTrack} track
+ * @param {Cue} cue
+ * @param {number} blend
+ * @param {number} edge
+ * @param {number} way
+ * @returns {number}
+ */
+function _lasting(track, cue, blend, edge, way) {
+  if (blend <= 0) {
+    return 0;
+  }
+  const spare = Math.max(0, cue.end - cue.start - cue.blendIn - cue.blendOut);
+  const most = Math.min(STEPPING, blend + 0.5 * spare);
+  let out = blend;
+  const step = 1 / FOOT_RATE;
+  while (out < most && _stands(track, cueSeconds(cue, edge + way * Math.min(out + step, most)))) {
+    out = Math.min(out + step, most);
+  }
+  return out;
+}
+
+/**
+ * @param {FootTrack} track
+ * @param {number} seconds
+ * @returns {boolean}
+ */
+function _stands(track, seconds) {
+  const goals = _row(track, seconds);
+  return goals[0].planted >= 1 && goals[1].planted >= 1;
+}
+
+/**
+ * Return both feet on their way, u being how much of the time has gone, 0..1. first, last: where they are when it begins and
+ * ends, from which order and size of the steps follow.
+ * @param {number} height
+ * @param {FootGoal[]} before
+ * @param {FootGoal[]} after
+ * @param {FootGoal[]} first
+ * @param {FootGoal[]} last
+ * @param {number} u
+ * @returns {FootGoal[]}
+ */
+function _stepped(height, before, after, first, last, u) {
+  if (before.length === 0 || after.length === 0 || first.length === 0 || last.length === 0) {
+    return [];
+  }
+  const ways = range(2).map((side) => footWay(first[side], last[side]));
+  let part = 0.5;
+  if (ways[0] + ways[1] > 0) {
+    part = Math.min(Math.max(ways[0] / (ways[0] + ways[1]), LEAST_PART), 1 - LEAST_PART);
+  }
+  // To the left the left foot goes first: the other would have to pass it.
+  const moved = plus(minus(last[0].at, first[0].at), minus(last[1].at, first[1].at));
+  const leftFirst = dot(moved, minus(first[0].at, first[1].at)) >= -1e-09;
+  const longer = Math.max(ways[0], ways[1]);
+  const far = 1 - ease((longer / height - FAR) / TOO_FAR);
+  const apart = ease(longer / NEARBY);
+  const out = [];
+  for (let side = 0; side < 2; side++) {
+    const share = 1 - apart * (side === 0 ? 1 - part : part);
+    const begin = leftFirst === (side === 0) ? 0 : 1 - share;
+    const x = Math.min(Math.max((u - begin) / share, 0), 1);
+    const go = ease((x - WAITS) / (1 - 2 * WAITS));
+    const rise = LIFT * ways[side];
+    const air = 16 * x * x * (1 - x) * (1 - x) * rise / (1 + rise / MOST_LIFT);
+    out.push(_mixed(before[side], after[side], go, air, far));
+  }
+  return out;
+}
+
+/**
+ * Return a foot between two places.
+ * @param {FootGoal} a
+ * @param {FootGoal} b
+ * @param {number} x
+ * @param {number} air
+ * @param {number} share
+ * @returns {FootGoal}
+ */
+function _mixed(a, b, x, air, share) {
+  const [ax, ay, az, aw] = a.turn;
+  const [bx, by, bz, bw] = b.turn;
+  const k = ax * bx + ay * by + az * bz + aw * bw < 0 ? -x : x;
+  const rest = 1 - x;
+  const turn = unitTurn([ax * rest + bx * k, ay * rest + by * k, az * rest + bz * k, aw * rest + bw * k]);
+  const at = plus(a.at, scaled(minus(b.at, a.at), x));
+  return new FootGoal(at, turn, share * a.planted * b.planted, a.lift * rest + b.lift * x + air);
+}
+
+/**
+ * Return the place of the rest in force at a time, near another.
+ * @param {LayerPlan} plan
+ * @param {number} place
+ * @param {number} time
+ * @returns {number}
+ */
+function _resting(plan, place, time) {
+  while (place > 0 && plan.rests[place].fadeStart > time) {
+    place -= 1;
+  }
+  while (place + 1 < plan.rests.length && plan.rests[place + 1].fadeStart <= time) {
+    place += 1;
+  }
+  return place;
+}
+
+/**
+ * @param {LayerPlan} plan
+ * @param {number} place
+ * @param {number} time
+ * @returns {boolean}
+ */
+function _fades(plan, place, time) {
+  const rest = plan.rests[place];
+  return place > 0 && rest.fadeStart + rest.fade > time;
+}
+
+/**
+ * Whether a stance is not one loop at one place of it.
+ * @param {Project} project
+ * @param {LayerPlan} plan
+ * @param {number} place
+ * @param {number} time
+ * @returns {boolean}
+ */
+function _changes(project, plan, place, time) {
+  const rest = plan.rests[place];
+  if (_fades(plan, place, time)) {
+    return true;
+  }
+  const [start, end] = project.span(rest.action);
+  const seam = Math.min(Math.max(0, rest.action.timing.blendIn), (end - start) / 2);
+  const period = end - start - seam;
+  const elapsed = time - rest.start;
+  if (seam <= 0 || period <= 0 || elapsed < period) {
+    return false;
+  }
+  return elapsed - period * Math.floor(elapsed / period) < seam;
+}
+
+/**
+ * Return where the stance's feet are that lies under the cues at a time.
+ * @param {Project} project
+ * @param {Map<string, FootTrack>} tracks
+ * @param {number} height
+ * @param {LayerPlan} plan
+ * @param {number} place
+ * @param {number} time
+ * @returns {FootGoal[]}
+ */
+function _stance(project, tracks, height, plan, place, time) {
+  place = _resting(plan, place, time);
+  const rest = plan.rests[place];
+  const goals = _loop(project, tracks, height, rest, time);
+  if (!_fades(plan, place, time)) {
+    return goals;
+  }
+  const old = plan.rests[place - 1];
+  const ends = rest.fadeStart + rest.fade;
+  return _stepped(
+    height,
+    _loop(project, tracks, height, old, time),
+    goals,
+    _loop(project, tracks, height, old, rest.fadeStart),
+    _loop(project, tracks, height, rest, ends),
+    (time - rest.fadeStart) / rest.fade,
+  );
+}
+
+/**
+ * Return where the feet of a loop are, taken from its end to its beginning in steps, too.
+ * @param {Project} project
+ * @param {Map<string, FootTrack>} tracks
+ * @param {number} height
+ * @param {Rest} rest
+ * @param {number} time
+ * @returns {FootGoal[]}
+ */
+function _loop(project, tracks, height, rest, time) {
+  const action = rest.action;
+  const track = tracks.get(action.id) ?? null;
+  if (track === null || track.rows.length === 0) {
+    return [];
+  }
+  const [start, end] = project.span(action);
+  const seam = Math.min(Math.max(0, action.timing.blendIn), (end - start) / 2);
+  const period = end - start - seam;
+  if (period <= 0) {
+    return _row(track, start);
+  }
+  const elapsed = time - rest.start;
+  let phase = seam > 0 ? Math.max(elapsed, 0) : elapsed;
+  phase = phase - period * Math.floor(phase / period);
+  const here = _row(track, start + phase);
+  if (seam <= 0 || elapsed < period || phase >= seam) {
+    return here;
+  }
+  const before = _row(track, start + Math.min(period + phase, end - start));
+  return _stepped(height, before, here, _row(track, start + period), _row(track, start + seam), phase / seam);
+}
+
+/**
+ * Return where a clip's feet are at clip seconds, on the straight line between rows.
+ * @param {FootTrack} track
+ * @param {number} seconds
+ * @returns {FootGoal[]}
+ */
+function _row(track, seconds) {
+  const last = track.rows.length - 1;
+  const at = Math.min(Math.max(seconds * FOOT_RATE, 0), last);
+  const low = Math.min(Math.floor(at), Math.max(0, last - 1));
+  const part = at - low;
+  const a = track.rows[low];
+  const b = track.rows[Math.min(low + 1, last)];
+  const v = range(2 * FOOT_NUMBERS).map((n) => FOOT_UNIT * (a[n] + (b[n] - a[n]) * part));
+  const out = [];
+  for (let side = 0; side < 2; side++) {
+    const n = FOOT_NUMBERS * side;
+    const turn = unitTurn([v[n + 4], v[n + 5], v[n + 6], v[n + 7]]);
+    out.push(new FootGoal([v[n + 1], v[n + 2], v[n + 3]], turn, v[n], 0));
+  }
+  return out;
+}

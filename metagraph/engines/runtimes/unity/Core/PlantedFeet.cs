@@ -1,0 +1,323 @@
+// Translated from metagraph/playback/planted_feet.py; change that, and translate anew.
+using System;
+using System.Collections.Generic;
+using System.Linq;
+
+namespace Metagraph
+{
+    /// <summary>
+    /// Where a clip's feet are. rows: of each tenth of a second, for the left foot and the right: whether it stands (0 to 1), its
+    /// joint's place and turn in the character's space; in units of `FOOT_UNIT`.
+    /// </summary>
+    public sealed class FootTrack
+    {
+        public readonly List<List<double>> Rows;
+
+        public FootTrack(List<List<double>> rows)
+        {
+            Rows = rows;
+        }
+    }
+
+    public static class PlantedFeetRules
+    {
+        public const double FootRate = 10.0; // rows of a track in a second of its clip
+        public const double FootUnit = 1e-05; // what 1 in a row stands for
+        public const int FootNumbers = 8; // in a row, of each foot
+        public const double Stepping = 0.5; // seconds that two steps take where a cue leaves them time
+        public const double LeastPart = 0.15; // of that time for the foot that has the shorter way
+        public const double Nearby = 0.015; // metres: feet with less way than that are taken over together, slowly
+        public const double Waits = 0.12; // of a step's time: before it goes ahead a foot is lifted, and lowered after it
+        public const double Lift = 0.25; // how high a foot is lifted for a short step, of its way
+        public const double MostLift = 0.08; // metres that it is never lifted to
+        public const double Far = 0.25; // of the height: no foot steps that much farther than
+        public const double TooFar = 0.1;
+
+        /// <summary>
+        /// Return where both feet should be at a time; nothing where nothing blends, or nobody can say.
+        ///
+        /// tracks: by action. height: of the figure. plan: the body's layer. cue: the one that plays, if it has motion; place: of
+        /// the rest in force, -1 for none.
+        /// </summary>
+        public static List<FootGoal> FootGoals(
+            Graph project,
+            Dictionary<string, FootTrack> tracks,
+            double height,
+            LayerPlan plan,
+            Cue cue,
+            int place,
+            double time
+        )
+        {
+            if (place < 0)
+            {
+                return new List<FootGoal>();
+            }
+            if (cue == null)
+            {
+                if (!Changes(project, plan, place, time))
+                {
+                    return new List<FootGoal>();
+                }
+                return Stance(project, tracks, height, plan, place, time);
+            }
+            var track = PlainMaps.Get(tracks, cue.Action.Id);
+            if (track == null || track.Rows.Count == 0 || cue.Action.Joints.Count > 0)
+            {
+                return new List<FootGoal>();
+            }
+            var came = cue.Start + Entering(track, cue);
+            var goes = cue.End - Leaving(track, cue);
+            if (time >= came && time < goes)
+            {
+                return new List<FootGoal>();
+            }
+            var here = Row(track, CueTimesRules.CueSeconds(cue, time));
+            double at = default(double);
+            List<FootGoal> first = default(List<FootGoal>);
+            List<FootGoal> last = default(List<FootGoal>);
+            if (time < came)
+            {
+                at = Math.Min(time, cue.Start + cue.BlendIn);
+                var before = Stance(project, tracks, height, plan, place, at);
+                first = Stance(project, tracks, height, plan, place, cue.Start);
+                last = Row(track, CueTimesRules.CueSeconds(cue, came));
+                return Stepped(height, before, here, first, last, (time - cue.Start) / (came - cue.Start));
+            }
+            at = Math.Max(time, cue.End - cue.BlendOut);
+            var after = Stance(project, tracks, height, plan, place, at);
+            first = Row(track, CueTimesRules.CueSeconds(cue, goes));
+            last = Stance(project, tracks, height, plan, place, cue.End);
+            return Stepped(height, here, after, first, last, (time - goes) / (cue.End - goes));
+        }
+
+        /// <summary>Return how long the feet take to come into a cue: its blend, and longer while it stands.</summary>
+        private static double Entering(FootTrack track, Cue cue)
+        {
+            return Lasting(track, cue, cue.BlendIn, cue.Start, 1.0);
+        }
+
+        /// <summary>Return how long the feet take to leave a cue.</summary>
+        private static double Leaving(FootTrack track, Cue cue)
+        {
+            return Lasting(track, cue, cue.BlendOut, cue.End, -1.0);
+        }
+
+        private static double Lasting(FootTrack track, Cue cue, double blend, double edge, double way)
+        {
+            if (blend <= 0.0)
+            {
+                return 0.0;
+            }
+            var spare = Math.Max(0.0, cue.End - cue.Start - cue.BlendIn - cue.BlendOut);
+            var most = Math.Min(Stepping, blend + 0.5 * spare);
+            var out_ = blend;
+            var step = 1.0 / FootRate;
+            while (out_ < most && Stands(track, CueTimesRules.CueSeconds(cue, edge + way * Math.Min(out_ + step, most))))
+            {
+                out_ = Math.Min(out_ + step, most);
+            }
+            return out_;
+        }
+
+        private static bool Stands(FootTrack track, double seconds)
+        {
+            var goals = Row(track, seconds);
+            return goals[0].Planted >= 1.0 && goals[1].Planted >= 1.0;
+        }
+
+        /// <summary>
+        /// Return both feet on their way, u being how much of the time has gone, 0..1. first, last: where they are when it begins
+        /// and ends, from which order and size of the steps follow.
+        /// </summary>
+        private static List<FootGoal> Stepped(
+            double height,
+            List<FootGoal> before,
+            List<FootGoal> after,
+            List<FootGoal> first,
+            List<FootGoal> last,
+            double u
+        )
+        {
+            if (before.Count == 0 || after.Count == 0 || first.Count == 0 || last.Count == 0)
+            {
+                return new List<FootGoal>();
+            }
+            var ways = PlainNumbers.Range(2).Select(side => FeetSolveRules.FootWay(first[side], last[side])).ToList();
+            var part = 0.5;
+            if (ways[0] + ways[1] > 0.0)
+            {
+                part = Math.Min(Math.Max(ways[0] / (ways[0] + ways[1]), LeastPart), 1.0 - LeastPart);
+            }
+            // To the left the left foot goes first: the other would have to pass it.
+            var moved = PlainVectorsRules.Plus(
+                PlainVectorsRules.Minus(last[0].At, first[0].At),
+                PlainVectorsRules.Minus(last[1].At, first[1].At)
+            );
+            var leftFirst = PlainVectorsRules.Dot(moved, PlainVectorsRules.Minus(first[0].At, first[1].At)) >= -1e-09;
+            var longer = Math.Max(ways[0], ways[1]);
+            var far = 1.0 - CueTimesRules.Ease((longer / height - Far) / TooFar);
+            var apart = CueTimesRules.Ease(longer / Nearby);
+            var out_ = new List<FootGoal>();
+            for (int side = 0; side < 2; side++)
+            {
+                var share = 1.0 - apart * (side == 0 ? 1.0 - part : part);
+                var begin = leftFirst == (side == 0) ? 0.0 : 1.0 - share;
+                var x = Math.Min(Math.Max((u - begin) / share, 0.0), 1.0);
+                var go = CueTimesRules.Ease((x - Waits) / (1.0 - 2.0 * Waits));
+                var rise = Lift * ways[side];
+                var air = 16.0 * x * x * (1.0 - x) * (1.0 - x) * rise / (1.0 + rise / MostLift);
+                out_.Add(Mixed(before[side], after[side], go, air, far));
+            }
+            return out_;
+        }
+
+        /// <summary>Return a foot between two places.</summary>
+        private static FootGoal Mixed(FootGoal a, FootGoal b, double x, double air, double share)
+        {
+            var found = a.Turn;
+            double ax = found.Item1;
+            double ay = found.Item2;
+            double az = found.Item3;
+            double aw = found.Item4;
+            var found2 = b.Turn;
+            double bx = found2.Item1;
+            double by = found2.Item2;
+            double bz = found2.Item3;
+            double bw = found2.Item4;
+            var k = ax * bx + ay * by + az * bz + aw * bw < 0.0 ? -x : x;
+            var rest = 1.0 - x;
+            var turn = PlainVectorsRules.UnitTurn(
+                (ax * rest + bx * k, ay * rest + by * k, az * rest + bz * k, aw * rest + bw * k)
+            );
+            var at = PlainVectorsRules.Plus(a.At, PlainVectorsRules.Scaled(PlainVectorsRules.Minus(b.At, a.At), x));
+            return new FootGoal(at, turn, share * a.Planted * b.Planted, a.Lift * rest + b.Lift * x + air);
+        }
+
+        /// <summary>Return the place of the rest in force at a time, near another.</summary>
+        private static int Resting(LayerPlan plan, int place, double time)
+        {
+            while (place > 0 && plan.Rests[place].FadeStart > time)
+            {
+                place -= 1;
+            }
+            while (place + 1 < plan.Rests.Count && plan.Rests[place + 1].FadeStart <= time)
+            {
+                place += 1;
+            }
+            return place;
+        }
+
+        private static bool Fades(LayerPlan plan, int place, double time)
+        {
+            var rest = plan.Rests[place];
+            return place > 0 && rest.FadeStart + rest.Fade > time;
+        }
+
+        /// <summary>Whether a stance is not one loop at one place of it.</summary>
+        private static bool Changes(Graph project, LayerPlan plan, int place, double time)
+        {
+            var rest = plan.Rests[place];
+            if (Fades(plan, place, time))
+            {
+                return true;
+            }
+            var found = project.Span(rest.Action);
+            double start = found.Item1;
+            double end = found.Item2;
+            var seam = Math.Min(Math.Max(0.0, rest.Action.Timing.BlendIn), (end - start) / 2.0);
+            var period = end - start - seam;
+            var elapsed = time - rest.Start;
+            if (seam <= 0.0 || period <= 0.0 || elapsed < period)
+            {
+                return false;
+            }
+            return elapsed - period * (int)Math.Floor(elapsed / period) < seam;
+        }
+
+        /// <summary>Return where the stance's feet are that lies under the cues at a time.</summary>
+        private static List<FootGoal> Stance(
+            Graph project,
+            Dictionary<string, FootTrack> tracks,
+            double height,
+            LayerPlan plan,
+            int place,
+            double time
+        )
+        {
+            place = Resting(plan, place, time);
+            var rest = plan.Rests[place];
+            var goals = Loop(project, tracks, height, rest, time);
+            if (!Fades(plan, place, time))
+            {
+                return goals;
+            }
+            var old = plan.Rests[place - 1];
+            var ends = rest.FadeStart + rest.Fade;
+            return Stepped(
+                height,
+                Loop(project, tracks, height, old, time),
+                goals,
+                Loop(project, tracks, height, old, rest.FadeStart),
+                Loop(project, tracks, height, rest, ends),
+                (time - rest.FadeStart) / rest.Fade
+            );
+        }
+
+        /// <summary>Return where the feet of a loop are, taken from its end to its beginning in steps, too.</summary>
+        private static List<FootGoal> Loop(
+            Graph project,
+            Dictionary<string, FootTrack> tracks,
+            double height,
+            Rest rest,
+            double time
+        )
+        {
+            var action = rest.Action;
+            var track = PlainMaps.Get(tracks, action.Id);
+            if (track == null || track.Rows.Count == 0)
+            {
+                return new List<FootGoal>();
+            }
+            var found = project.Span(action);
+            double start = found.Item1;
+            double end = found.Item2;
+            var seam = Math.Min(Math.Max(0.0, action.Timing.BlendIn), (end - start) / 2.0);
+            var period = end - start - seam;
+            if (period <= 0.0)
+            {
+                return Row(track, start);
+            }
+            var elapsed = time - rest.Start;
+            var phase = seam > 0.0 ? Math.Max(elapsed, 0.0) : elapsed;
+            phase = phase - period * (int)Math.Floor(phase / period);
+            var here = Row(track, start + phase);
+            if (seam <= 0.0 || elapsed < period || phase >= seam)
+            {
+                return here;
+            }
+            var before = Row(track, start + Math.Min(period + phase, end - start));
+            return Stepped(height, before, here, Row(track, start + period), Row(track, start + seam), phase / seam);
+        }
+
+        /// <summary>Return where a clip's feet are at clip seconds, on the straight line between rows.</summary>
+        private static List<FootGoal> Row(FootTrack track, double seconds)
+        {
+            var last = track.Rows.Count - 1;
+            var at = Math.Min(Math.Max(seconds * FootRate, 0.0), last);
+            var low = Math.Min((int)Math.Floor(at), Math.Max(0, last - 1));
+            var part = at - low;
+            var a = track.Rows[low];
+            var b = track.Rows[Math.Min(low + 1, last)];
+            var v = PlainNumbers.Range(2 * FootNumbers).Select(n => FootUnit * (a[n] + (b[n] - a[n]) * part)).ToList();
+            var out_ = new List<FootGoal>();
+            for (int side = 0; side < 2; side++)
+            {
+                var n = FootNumbers * side;
+                var turn = PlainVectorsRules.UnitTurn((v[n + 4], v[n + 5], v[n + 6], v[n + 7]));
+                out_.Add(new FootGoal((v[n + 1], v[n + 2], v[n + 3]), turn, v[n], 0.0));
+            }
+            return out_;
+        }
+    }
+}
