@@ -44,3 +44,18 @@ def test_a_video_is_measured(monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["bench_video.py"])
     runpy.run_path(str(FOLDER / "bench_video.py"))["main"](0.1, 1)
     assert "video of 0.1 s (1 rounds): wall median" in capsys.readouterr().out
+
+
+def test_they_are_listed_and_run_by_name(monkeypatch, capsys):
+    main = runpy.run_path(str(FOLDER / "__main__.py"))["main"]
+    assert main([]) == 0
+    told = capsys.readouterr().out
+    assert all(
+        name.removeprefix("bench_").removesuffix(".py") in told for name in SCRIPTS if name[:6] == "bench_"
+    )
+    ran = []
+    monkeypatch.setattr(
+        "subprocess.run", lambda command, **_: ran.append(command[1]) or type("D", (), {"returncode": 3})()
+    )
+    assert main(["formats", "web"]) == 2 and [Path(x).stem for x in ran] == ["bench_formats", "bench_web"]
+    assert main(["none"]) == 2 and "there is no benchmark 'none'" in capsys.readouterr().err
