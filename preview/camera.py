@@ -18,6 +18,7 @@ Array = NDArray[Any]
 
 PITCH_LIMIT = math.radians(89.0)
 NEAREST, FARTHEST = 0.05, 500.0  # of `distance`
+FLAT = math.radians(1.0)  # a field of view so narrow that near and far are of one size, to half a percent
 
 
 @dataclass(frozen=True)
@@ -126,6 +127,23 @@ class Camera:
             target=(float(centre[0]), float(centre[1]), float(centre[2])),
             distance=max(NEAREST, float(distance)),
         )
+
+    @property
+    def flat(self) -> bool:
+        """Whether it is as good as orthographic."""
+        return self.fov <= FLAT
+
+    def flattened(self) -> Camera:
+        """Return a camera as good as orthographic, for which what is at the target is as large as before."""
+        return self._through(FLAT)
+
+    def deepened(self) -> Camera:
+        """Return one with the usual lens, likewise."""
+        return self._through(Camera().fov) if self.flat else self
+
+    def _through(self, fov: float) -> Camera:
+        distance = self.distance * math.tan(self.fov / 2) / math.tan(fov / 2)
+        return replace(self, fov=fov, distance=min(FARTHEST, max(NEAREST, distance)))
 
     def facing(self, yaw: float, pitch: float) -> Camera:
         """Look from another side."""

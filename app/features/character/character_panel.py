@@ -9,6 +9,7 @@ from PySide6.QtCore import QElapsedTimer, QMargins, Qt, QTimer
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
+from app.features.character.looking import Looking
 from app.features.character.no_mesh import NoMesh
 from app.look import icons
 from app.look.names import plain
@@ -70,6 +71,7 @@ class PreviewPanel(QWidget):
         self._hint_goes = QTimer(self, singleShot=True, interval=HINT)
         self._hint_goes.timeout.connect(self.hint.hide)
         self.no_mesh = NoMesh(self.view, choose, may_choose)
+        self.looking = Looking(self)
         self.frames = 0
         self.view.painted.connect(self._painted)
         layout = QVBoxLayout(self)
@@ -299,6 +301,7 @@ class PreviewPanel(QWidget):
     def stop(self) -> None:
         """Draw no more by itself; at closing."""
         self._timer.stop()
+        self.looking.set_turning(False)
 
     # --- commands
 
@@ -326,8 +329,14 @@ class PreviewPanel(QWidget):
         else:
             self._hint_goes.stop()
 
+    @property
+    def drawn(self) -> tuple[Figure, np.ndarray, np.ndarray] | None:
+        """Figure, rotations `[J, 4]` and positions `[J, 3]` of what was drawn last."""
+        return self._last
+
     def frame_all(self) -> None:
         self.view.moved_by_hand = False
+        self.view.camera = self.view.camera.deepened()
         self._framed = ()
         self.view.update()
 

@@ -1,0 +1,105 @@
+"""Where the character is looked at from: sides by key as in other 3D programs, hands near, a flat view, a
+turntable; and the picture as it stands, on the clipboard.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QObject, QTimer
+from PySide6.QtGui import QGuiApplication
+
+from app.features.character.trails import Trails
+from metagraph.graph import anatomy
+from preview.camera import Camera
+
+if TYPE_CHECKING:
+    from app.features.character.character_panel import PreviewPanel
+
+SIDES: dict[str, tuple[float, float]] = {  # yaw and pitch, degrees
+    "front": (0.0, 5.0), "back": (180.0, 5.0), "left": (90.0, 5.0), "right": (-90.0, 5.0),
+    "quarter": (28.0, 7.0), "above": (0.0, 89.0),
+}  # fmt: skip
+ROUND = 8.0  # seconds of a turn of the turntable
+TURN = 33  # milliseconds between its steps
+HANDS = 0.16  # metres round the hands that are in the picture
+
+
+class Looking(QObject):
+    """What moves the camera of a preview panel by command. A camera that was moved stays where it is until
+    the whole character is framed again.
+    """
+
+    def __init__(self, panel: PreviewPanel) -> None:
+        super().__init__(panel)
+        self.panel = panel
+        self.trails = Trails(panel)
+        self._turntable = QTimer(self, interval=TURN)
+        self._turntable.timeout.connect(self._turn)
+
+    def _aim(self, camera: Camera) -> None:
+        self.panel.view.camera = camera
+        self.panel.view.moved_by_hand = True
+        self.panel.view.update()
+
+    @property
+    def _heading(self) -> float:
+        stand = self.panel.performance.shown.stand
+        return stand.turn if stand is not None else 0.0
+
+    def see_from(self, side: str) -> None:
+        """Look from one of SIDES, as near as before."""
+        yaw, pitch = (math.radians(x) for x in SIDES[side])
+        self._aim(self.panel.view.camera.facing(yaw + self._heading, pitch))
+
+    def see_hands(self) -> None:
+        """Go near both hands, or to the one there is; nothing happens where no hand is known."""
+        last, project = self.panel.drawn, self.panel.performance.shown.project
+        if last is None or project.skeleton is None or len(last[2]) != len(project.skeleton):
+            return
+        roles = anatomy.roles(project)
+        hands = [last[2][roles[role]] for role in ("left_hand", "right_hand") if role in roles]
+        if hands:
+            low, high = np.min(hands, axis=0) - HANDS, np.max(hands, axis=0) + HANDS
+            view = self.panel.view
+            self._aim(view.camera.frame((low, high), view.width() / max(1, view.height())))
+
+    @property
+    def flat(self) -> bool:
+        """Whether things far away are as large as near ones."""
+        return self.panel.view.camera.flat
+
+    def set_flat(self, on: bool) -> None:
+        view = self.panel.view
+        moved = view.moved_by_hand
+        self._aim(view.camera.flattened() if on else view.camera.deepened())
+        view.moved_by_hand = moved
+
+    @property
+    def turning(self) -> bool:
+        return self._turntable.isActive()
+
+    def set_turning(self, on: bool) -> None:
+        """Turn round the character, or stop."""
+        if on:
+            self._turntable.start()
+        else:
+            self._turntable.stop()
+
+    def _turn(self) -> None:
+        if self.panel.isVisible():
+            self._aim(self.panel.view.camera.orbit(2.0 * TURN / 1000 / ROUND, 0.0))
+
+    @property
+    def trailing(self) -> bool:
+        """Whether the trails of hands and head are shown."""
+        return not self.trails.isHidden()
+
+    def set_trailing(self, on: bool) -> None:
+        self.trails.show_or_hide(on)
+
+    def copy(self) -> None:
+        """Put the picture on the clipboard."""
+        QGuiApplication.clipboard().setPixmap(self.panel.view.grab())

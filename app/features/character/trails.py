@@ -1,0 +1,112 @@
+"""Trails of hands and head over the character: where they were and will be within a second and a half, by
+which arcs, spacing and pops are seen at a glance.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from PySide6.QtCore import QPointF, Qt
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QWidget
+
+from app.look.theme import theme
+from metagraph.graph import anatomy
+
+if TYPE_CHECKING:
+    from app.features.character.character_panel import PreviewPanel
+
+RATE = 30  # samples a second: dots are as far apart as frames, so what is quick has gaps
+SPAN = 1.5  # seconds before and after now
+ROLES = (
+    ("left_hand", "transition"),
+    ("right_hand", "gesture"),
+    ("head", "stance"),
+)  # and whose colour each has
+KEPT = 600  # samples
+
+
+class Trails(QWidget):
+    """A pane over the view of a preview panel that lets everything through but what it draws."""
+
+    def __init__(self, panel: PreviewPanel) -> None:
+        super().__init__(panel.view)
+        self.panel = panel
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self._of: Any = None  # whose samples they are
+        self._samples: dict[int, np.ndarray] = {}  # number of the sample -> places `[roles, 3]`
+        self.hide()
+        panel.view.painted.connect(self._follow)
+        panel.performance.changed.connect(self._forget)
+        panel.performance.document.changed.connect(self._forget)
+
+    def _forget(self, *_: object) -> None:
+        self._of = None
+        self._samples.clear()
+
+    def show_or_hide(self, on: bool) -> None:
+        self.setVisible(on)
+        self._follow()
+
+    def _follow(self, *_: object) -> None:
+        if self.isVisible():
+            self.setGeometry(self.panel.view.rect())
+            self.update()
+
+    def places(self) -> tuple[np.ndarray, np.ndarray, list[str]]:
+        """Return times `[N]`, places `[N, R, 3]` and the roles: of those that the character has."""
+        shown = self.panel.performance.shown
+        nothing: tuple[np.ndarray, np.ndarray, list[str]] = (np.zeros(0), np.zeros((0, 0, 3)), [])
+        skeleton = shown.skeleton
+        if skeleton is None or skeleton != shown.project.skeleton:
+            return nothing
+        roles = anatomy.roles(shown.project)
+        known = [role for role, _ in ROLES if role in roles]
+        if shown is not self._of:
+            self._forget()
+            self._of = shown
+        now = round(self.panel.session.transport.seconds * RATE)
+        last = int(shown.length * RATE)
+        wanted = range(max(0, now - int(SPAN * RATE)), min(last, now + int(SPAN * RATE)) + 1)
+        missing = [n for n in wanted if n not in self._samples]
+        if missing and known:
+            pose = shown.pose(np.array(missing) / RATE)
+            if pose is None:
+                return nothing
+            rotations, places = skeleton.globals(pose)
+            if shown.stand is not None:
+                rotations, places = shown.stand.placed(rotations, places)
+            joints = [roles[role] for role in known]
+            if len(self._samples) > KEPT:
+                self._samples.clear()
+                return self.places()
+            self._samples.update(zip(missing, places[:, joints], strict=True))
+        if not known or not len(wanted):
+            return nothing
+        return np.array(wanted) / RATE, np.array([self._samples[n] for n in wanted]), known
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        times, places, known = self.places()
+        if len(times) < 2:
+            return
+        look, view = theme(self.panel.session.look.name), self.panel.view
+        seen = view.camera.project(places, view.width() / max(1, view.height()))
+        seen = seen * [self.width(), self.height()]
+        now = self.panel.session.transport.seconds
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        kinds = dict(ROLES)
+        for n, role in enumerate(known):
+            color = QColor(look.fill(kinds[role]))
+            for k in range(len(times) - 1):
+                a, b = seen[k, n], seen[k + 1, n]
+                if not (np.isfinite(a).all() and np.isfinite(b).all()):
+                    continue
+                away = abs(times[k] - now) / SPAN
+                color.setAlphaF(max(0.08, (1 - away) * (0.9 if times[k] < now else 0.5)))
+                painter.setPen(QPen(color, 2.0, c=Qt.PenCapStyle.RoundCap))
+                painter.drawLine(QPointF(*a), QPointF(*b))
+                painter.setPen(QPen(color, 5.0, c=Qt.PenCapStyle.RoundCap))
+                painter.drawPoint(QPointF(*a))
+        painter.end()
