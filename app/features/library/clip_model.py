@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from PySide6.QtCore import (
     QAbstractListModel,
@@ -14,6 +15,7 @@ from PySide6.QtCore import (
     Qt,
 )
 
+from app.features.library.clip_order import GIVEN, ORDERS
 from app.project.document import Document
 from app.widgets.mime import mime
 from metagraph.graph.generated import origin
@@ -22,6 +24,7 @@ from metagraph.graph.name_search import fits
 
 Index = QModelIndex | QPersistentModelIndex
 ENTRY = Qt.ItemDataRole.UserRole
+UP, DOWN = Qt.SortOrder.AscendingOrder, Qt.SortOrder.DescendingOrder
 
 
 @dataclass(frozen=True)
@@ -139,7 +142,10 @@ class FilterModel(QSortFilterProxyModel):
     def __init__(self, model: ClipModel) -> None:
         super().__init__(model)
         self.filter = Filter()
+        self.order, self.backwards = GIVEN, False
+        self._keys: dict[str, Any] = {}  # of clips, what they are compared by
         self.setSourceModel(model)
+        model.document.changed.connect(lambda *_: self._keys.clear())
 
     def set_filter(self, rule: Filter) -> None:
         if rule != self.filter:
@@ -150,6 +156,38 @@ class FilterModel(QSortFilterProxyModel):
             else:
                 self.filter = rule
                 self.invalidateFilter()
+
+    def set_order(self, order: str, backwards: bool = False) -> None:
+        """List clips in one of ORDERS, or the other way round."""
+        self.order, self.backwards = order, backwards
+        self._keys.clear()
+        sorted_at_all = order != GIVEN or backwards
+        self.sort(0 if sorted_at_all else -1, DOWN if backwards else UP)
+        self.invalidate()
+
+    def listed(self) -> list[str]:
+        """Return all clips of the project in this order, those that are not shown, too."""
+        entries = list(self.document.project.clips.values())
+        if self.order != GIVEN:
+            entries.sort(key=self._key)
+        return [entry.id for entry in (reversed(entries) if self.backwards else entries)]
+
+    @property
+    def document(self) -> Document:
+        model = self.sourceModel()
+        assert isinstance(model, ClipModel)
+        return model.document
+
+    def _key(self, entry: ClipEntry) -> Any:
+        if entry.id not in self._keys:
+            self._keys[entry.id] = ORDERS[self.order][1](self.document.project, entry)
+        return self._keys[entry.id]
+
+    def lessThan(self, left: Index, right: Index) -> bool:
+        if self.order == GIVEN:
+            return left.row() < right.row()
+        one, other = self._key(left.data(ENTRY)), self._key(right.data(ENTRY))
+        return bool(one < other or (one == other and left.row() < right.row()))
 
     def filterAcceptsRow(self, row: int, parent: Index) -> bool:
         model = self.sourceModel()

@@ -13,6 +13,7 @@ from PySide6.QtCore import (
     Signal,
 )
 from PySide6.QtGui import (
+    QActionGroup,
     QDragEnterEvent,
     QDropEvent,
 )
@@ -31,6 +32,7 @@ from app.features.library.clip_card import CardDelegate
 from app.features.library.clip_list import ClipList, Search
 from app.features.library.clip_model import ENTRY, ClipModel, Filter, FilterModel
 from app.features.library.clip_names import ClipNames
+from app.features.library.clip_order import GIVEN, ORDERS
 from app.look.theme import KIND_MARKS
 from app.project.document import Document
 from app.project.load import readable
@@ -105,7 +107,7 @@ class LibraryPanel(QWidget):
         chip("all", "All", "All clips")
         chip("unlabelled", "Unlabelled", "Clips that were not placed yet")
         chip("labelled", "Placed", "Clips that are in the graph")
-        tip = "Show the clips of a layer or kind only"
+        tip = "Show the clips of a layer or kind only, or sort them"
         self.more = MoreButton(self.session.look, "Layer or kind", tip, self)
         menu = self.more.menu_of
         menu.addAction("Any kind, any layer", lambda: self._narrow(None, None))
@@ -115,6 +117,18 @@ class LibraryPanel(QWidget):
         menu.addSeparator()
         for layer in LAYERS:
             menu.addAction(f"{layer.capitalize()} layer", partial(self._narrow, layer, None))
+        menu.addSeparator()
+        self.orders = menu.addMenu("&Sort by")
+        group = QActionGroup(self)
+        for order, (words, _) in ORDERS.items():
+            action = self.orders.addAction(words, partial(self.sort, order))
+            action.setCheckable(True)
+            action.setChecked(order == GIVEN)
+            action.setData(order)
+            group.addAction(action)
+        self.orders.addSeparator()
+        self.backwards = self.orders.addAction("The other way &round", lambda: self.sort(self.proxy.order))
+        self.backwards.setCheckable(True)
         OneStop(tuple(self.chips.values()), self)
         self.chips["all"].setChecked(True)
         return row
@@ -157,6 +171,16 @@ class LibraryPanel(QWidget):
         self.more.show_words((word or "").capitalize())
         self._refilter(layer=layer, kind=kind)
 
+    def sort(self, order: str) -> None:
+        """List the clips in one of `clip_order.ORDERS`."""
+        for action in self.orders.actions():
+            if action.data() is not None:
+                action.setChecked(action.data() == order)
+        self._following = True  # what is chosen stays chosen
+        self.proxy.set_order(order, self.backwards.isChecked())
+        self._following = False
+        self._show_selection()
+
     def _refilter(self, *_: object, **more: str | None) -> None:
         checked = next((k for k, b in self.chips.items() if b.isChecked()), "all")
         labelled = {"all": None, "unlabelled": False, "labelled": True}[checked]
@@ -189,7 +213,7 @@ class LibraryPanel(QWidget):
         on where none comes after it. None where there is no other.
         """
         project, filtered = self.document.project, self.proxy.filter
-        ids = [i for i, e in project.clips.items() if i == clip or self._open(e, filtered)]
+        ids = [i for i in self.proxy.listed() if i == clip or self._open(project.clips[i], filtered)]
         at = ids.index(clip) if clip in ids else -1
         return next((i for i in (*ids[at + 1 :], *ids[: max(0, at)]) if i != clip), None)
 
@@ -202,6 +226,8 @@ class LibraryPanel(QWidget):
     def forget(self) -> None:
         """Show all clips: what was searched was of another project."""
         self.search.clear()
+        self.backwards.setChecked(False)
+        self.sort(GIVEN)
         self._narrow(None, None)
         self._chip("all")
 

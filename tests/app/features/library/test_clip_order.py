@@ -1,0 +1,60 @@
+"""Clips in the library, sorted: by name as people count, length, use, stance, folder; what is chosen stays so."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.features.library.clip_model import ENTRY
+from app.features.library.clip_order import GIVEN, ORDERS, natural
+
+
+def shown(panel):
+    return [panel.proxy.index(row, 0).data(ENTRY) for row in range(panel.proxy.rowCount())]
+
+
+def test_names_are_sorted_as_people_count():
+    assert sorted(["beat 10", "Beat 2", "beat 1", "arm"], key=natural) == [
+        "arm",
+        "beat 1",
+        "Beat 2",
+        "beat 10",
+    ]
+
+
+@given(st.lists(st.text(max_size=8)))
+def test_any_names_can_be_compared(names):
+    found = sorted(names, key=natural)
+    assert all(natural(a) <= natural(b) for a, b in pairwise(found))
+
+
+@pytest.mark.parametrize("order", [order for order in ORDERS if order != GIVEN])
+def test_clips_are_listed_in_the_order_that_is_chosen_and_back(toys, order):
+    panel, project = toys.library, toys.document.project
+    given_order = [e.id for e in shown(panel)]
+    action = next(a for a in panel.orders.actions() if a.data() == order)
+    action.trigger()
+    found = shown(panel)
+    keys = [ORDERS[order][1](project, entry) for entry in found]
+    assert keys == sorted(keys) and {e.id for e in found} == set(given_order) and action.isChecked()
+    assert [e.id for e in found] == panel.proxy.listed()
+    panel.backwards.trigger()
+    assert [e.id for e in shown(panel)] == panel.proxy.listed()
+    assert [ORDERS[order][1](project, e) for e in shown(panel)] == sorted(keys, reverse=True)
+    panel.forget()
+    assert [e.id for e in shown(panel)] == given_order
+
+
+def test_what_is_chosen_stays_chosen_and_comes_back(toys):
+    panel, session = toys.library, toys.session
+    chosen = shown(panel)[-1].id
+    session.selection.select_clips((chosen,))
+    panel.sort("name")
+    assert session.selection.clips == (chosen,)
+    assert [i.data(ENTRY).id for i in panel.list.selectedIndexes()] == [chosen]
+    names = [natural(e.name) for e in shown(panel)]
+    assert names == sorted(names)
+    panel.forget()
