@@ -6,6 +6,8 @@ edit, and the old one plays until the new one is there.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
 from PySide6.QtCore import QObject, QTimer, Signal
@@ -17,7 +19,7 @@ from app.stage.live_control import LiveControl
 from app.stage.playback_source import Shown, alone, by_hand, in_context
 from app.stage.request_edits import SOON, RequestEdits
 from app.stage.session import Session
-from metagraph.graph.model import LAYERS, Project
+from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.extend_performance import Answer, answers
@@ -32,7 +34,8 @@ AHEAD = 15.0  # seconds before the end at which more is planned
 
 class Performance(QObject):
     """changed: something else plays, or the same was planned anew. requests: edits what is asked for. live:
-    begins and ends live play. before: the state of the project that clips and actions are shown of instead.
+    begins and ends live play. muted: layers that rest while one looks. before: the state of the project that
+    clips and actions are shown of instead.
     staged: the whole performance as it was last shown, None before; a clip or an action may be shown now.
     """
 
@@ -46,6 +49,7 @@ class Performance(QObject):
         self.length = LENGTH
         self.shown = Shown(document.project, Plan(1, 0.0), LENGTH)
         self.staged: Shown | None = None
+        self.muted: frozenset[Layer] = frozenset()
         self._busy = self._again = False
         self._soon = QTimer(self, singleShot=True, interval=0)
         self._soon.timeout.connect(self._replan)
@@ -73,6 +77,16 @@ class Performance(QObject):
         """Plan anew, soon; many calls in a row make one plan."""
         self._soon.start()
 
+    def mute(self, layers: Iterable[Layer]) -> None:
+        """Let these layers rest in their stances, and no others, while one looks; plans and exports stay as
+        they are.
+        """
+        muted = frozenset(layers)
+        if muted != self.muted:
+            self.muted = muted
+            self.shown = replace(self.shown, muted=muted)
+            self.changed.emit()
+
     def compare(self, before: Project | None) -> None:
         """Show clips and actions alone as they were in another state of the project, or, for None, as they
         are.
@@ -83,6 +97,7 @@ class Performance(QObject):
 
     def _loaded(self) -> None:
         self.before = self.staged = None
+        self.muted = frozenset()
         self.live.end()
         self.live.last = None
         self.length = LENGTH
@@ -209,7 +224,7 @@ class Performance(QObject):
         self._busy = False
         if self.live.stage is not None and self.session.transport.show == "plan":
             return
-        self.shown = shown
+        self.shown = replace(shown, muted=self.muted) if self.muted else shown
         if self.session.transport.show == "plan":
             self.staged = shown
         if shown.notes and shown.notes != self._noted:
@@ -235,7 +250,9 @@ class Performance(QObject):
         )
         over = live.session.overlay if self.live.following else None
         if plan is not self.shown.plan or (over is None) != (self.shown.over is None):
-            self.shown = self.staged = Shown(live.session.project, plan, plan.end, over=over)
+            self.shown = self.staged = Shown(
+                live.session.project, plan, plan.end, over=over, muted=self.muted
+            )
             self.changed.emit()
 
     def plan_beyond(self, seconds: float) -> None:

@@ -6,7 +6,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -55,6 +56,7 @@ class Shown:
     motion: the clip it moves with instead of its plan, which still says where it looks and what it says; of
     one that was generated, what is above the hips. told: what becomes of its rates, where a plan moves it.
     looks: of three or more, where it looks. over: what generated motion lays over the plan at a time, live.
+    muted: layers that rest in their stances while one looks at the others.
     """
 
     project: Project
@@ -72,6 +74,18 @@ class Shown:
     told: tuple[Delivered, ...] = ()
     looks: tuple[GazeShare, ...] = ()
     over: Callable[[float], Overlay | None] | None = None
+    muted: frozenset[Layer] = frozenset()
+
+    @cached_property
+    def moving(self) -> Plan:
+        """The plan without what muted layers play."""
+        if not self.muted:
+            return self.plan
+        layers = {
+            layer: replace(of, cues=()) if layer in self.muted else of
+            for layer, of in self.plan.layers.items()
+        }
+        return replace(self.plan, layers=layers)
 
     @property
     def everyone(self) -> tuple[Shown, ...]:
@@ -119,8 +133,8 @@ class Shown:
         if self.over is not None and (laid := self.over(seconds)) is not None:
             from metagraph.playback.overlay import overlaid
 
-            return overlaid(self.plan, self.project, seconds, laid)
-        return pose_at(self.plan, self.project, seconds)
+            return overlaid(self.moving, self.project, seconds, laid)
+        return pose_at(self.moving, self.project, seconds)
 
     def _moved(self, seconds: Any) -> Pose | None:
         """Return the pose of the clip it moves with, alive: eyes, lids and lips are the plan's."""
@@ -149,12 +163,12 @@ class Shown:
             return morphs_at(
                 self.plan, self.project, seconds, composed=self._overlaid(entry.motion, seconds, False)
             )
-        return morphs_at(self.plan, self.project, seconds)
+        return morphs_at(self.moving, self.project, seconds)
 
     def faces(self, times: np.ndarray) -> list[dict[str, float]]:
         """Return face shapes and their weights at each of many times, as `morphs` gives them."""
         if self.clip is None and self.manual is None and self.motion is None:
-            return faces_at(self.plan, self.project, times)
+            return faces_at(self.moving, self.project, times)
         return [self.morphs(float(at)) for at in times]
 
     def _overlaid(self, clip: Clip, seconds: Any, alive: bool = True) -> Pose:

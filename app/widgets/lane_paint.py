@@ -51,13 +51,21 @@ def paint(painter: QPainter, t: Theme, scene: LaneScene) -> None:
     for name, lane in lanes(scene.height).items():
         painter.setPen(QColor(t.line))
         painter.drawLine(QPointF(0, lane.bottom()), QPointF(scene.width, lane.bottom()))
-        painter.setPen(QColor(t.text if name == scene.layer else t.dim))
+        muted = name in scene.shown.muted
+        painter.setPen(QColor(t.text if name == scene.layer and not muted else t.dim))
+        font = painter.font()
+        font.setStrikeOut(muted)
+        painter.setFont(font)
         painter.drawText(QRectF(14, lane.top(), LEFT - 16, lane.height()), MIDDLE, TITLES[name])
+        font.setStrikeOut(False)
+        painter.setFont(font)
     painter.setClipRect(QRectF(LEFT, 0, scene.width - LEFT, scene.height))
     if scene.shown.clip is None:
         _stage(painter, t, scene)
         for layer in LAYERS:
+            painter.setOpacity(0.3 if layer in scene.shown.muted else 1.0)
             _layer(painter, t, scene, layer)
+        painter.setOpacity(1.0)
         _ties(painter, t, scene)
         for mark in scene.marks:
             if mark.rect.right() >= LEFT and mark.rect.left() <= scene.width:

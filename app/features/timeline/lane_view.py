@@ -25,10 +25,11 @@ from app.look.theme import theme
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.widgets.gesture import Hand
-from app.widgets.lane_geometry import LEFT, RULER, Mark, Scale, cue_at, lane_at, mark_at, marks, told
+from app.widgets.lane_geometry import LEFT, RULER, Mark, Scale, cue_at, lane_at, lanes, mark_at, marks, told
 from app.widgets.lane_paint import LaneScene, badge, cue_words, paint, playhead
 from app.widgets.memo import Once
 from app.widgets.request_menu import request_menu
+from metagraph.graph.model import LAYERS, Layer
 
 NUDGE, FAR = 0.1, 1.0  # seconds an arrow key moves what is selected, and with Shift
 CATCH = 3  # pixels the mouse must move for a press to become a drag
@@ -186,7 +187,13 @@ class Lanes(QWidget):
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         self._grip = event.position().x()
-        if event.button() != Qt.MouseButton.LeftButton or event.position().x() < LEFT:
+        if event.button() != Qt.MouseButton.LeftButton:
+            return
+        if event.position().x() < LEFT:
+            layer = self._titled(event.position())
+            if layer is not None:
+                alone = bool(event.modifiers() & Qt.KeyboardModifier.AltModifier)
+                self.performance.mute(self._others(layer) if alone else self.performance.muted ^ {layer})
             return
         mark = mark_at(self.marks(), event.position())
         if mark is not None:
@@ -225,6 +232,31 @@ class Lanes(QWidget):
             over = mark_at(self.marks(), event.position()) is not None and self.performance.requests.editable
             self.setCursor(Qt.CursorShape.SizeHorCursor if over else Qt.CursorShape.ArrowCursor)
         self._grip = x
+
+    def _titled(self, at: QPointF) -> Layer | None:
+        """Return the layer whose title a point is on."""
+        return next(
+            (n for n in LAYERS if at.x() < LEFT and lanes(self.height())[n].contains(QPointF(LEFT, at.y()))),
+            None,
+        )
+
+    def _others(self, layer: Layer) -> set[Layer]:
+        """Return the layers to mute for one to be seen alone; none where it is alone already."""
+        others = set(LAYERS) - {layer}
+        return set() if self.performance.muted == others else others
+
+    def _title_menu(self, layer: Layer) -> QMenu:
+        menu, muted = QMenu(self), self.performance.muted
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        mute = menu.addAction("Mute\tclick", lambda: self.performance.mute(muted ^ {layer}))
+        mute.setCheckable(True)
+        mute.setChecked(layer in muted)
+        alone = menu.addAction("Solo\tAlt+click", lambda: self.performance.mute(self._others(layer)))
+        alone.setCheckable(True)
+        alone.setChecked(muted == set(LAYERS) - {layer})
+        menu.addSeparator()
+        menu.addAction("Let all be seen", lambda: self.performance.mute(())).setEnabled(bool(muted))
+        return menu
 
     _grip = 0.0
 
@@ -284,6 +316,8 @@ class Lanes(QWidget):
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         if event.reason() == QContextMenuEvent.Reason.Keyboard:
             self._ask_here()
+        elif (layer := self._titled(QPointF(event.pos()))) is not None:
+            self._title_menu(layer).popup(event.globalPos())
         elif event.pos().x() >= LEFT:
             self._menu(QPointF(event.pos()), QPointF(event.globalPos()))
 
@@ -385,6 +419,11 @@ class Lanes(QWidget):
         return super().event(event)
 
     def _tip(self, at: QPointF) -> str:
+        titled = self._titled(at)
+        if titled is not None:
+            state = "rests while you look" if titled in self.performance.muted else "is seen"
+            how = "Click mutes it, Alt+click leaves it alone; exports do not change"
+            return f"The {titled} layer {state}\n{how}"
         mark = mark_at(self.marks(), at)
         if mark is not None:
             return told(mark, self.performance.requests.editable)
