@@ -19,17 +19,17 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QApplication, QMenu, QToolTip, QWidget
 
+from app.features.timeline.lane_titles import LaneTitles
 from app.features.timeline.request_drag import RequestDrag
 from app.look.names import told_names
 from app.look.theme import theme
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.widgets.gesture import Hand
-from app.widgets.lane_geometry import LEFT, RULER, Mark, Scale, cue_at, lane_at, lanes, mark_at, marks, told
+from app.widgets.lane_geometry import LEFT, RULER, Mark, Scale, cue_at, lane_at, mark_at, marks, told
 from app.widgets.lane_paint import LaneScene, badge, cue_words, paint, playhead
 from app.widgets.memo import Once
 from app.widgets.request_menu import request_menu
-from metagraph.graph.model import LAYERS, Layer
 
 NUDGE, FAR = 0.1, 1.0  # seconds an arrow key moves what is selected, and with Shift
 CATCH = 3  # pixels the mouse must move for a press to become a drag
@@ -55,6 +55,7 @@ class Lanes(QWidget):
         self.first = 0.0
         self.follow = True
         self.hand = Hand()
+        self.titles = LaneTitles(self, performance)
         self._marks: Once[list[Mark]] = Once()
         self._still: Once[QPixmap] = Once()  # all but what moves while it plays
         self.painted = 0  # how often that was made
@@ -190,10 +191,9 @@ class Lanes(QWidget):
         if event.button() != Qt.MouseButton.LeftButton:
             return
         if event.position().x() < LEFT:
-            layer = self._titled(event.position())
+            layer = self.titles.at(event.position())
             if layer is not None:
-                alone = bool(event.modifiers() & Qt.KeyboardModifier.AltModifier)
-                self.performance.mute(self._others(layer) if alone else self.performance.muted ^ {layer})
+                self.titles.click(layer, bool(event.modifiers() & Qt.KeyboardModifier.AltModifier))
             return
         mark = mark_at(self.marks(), event.position())
         if mark is not None:
@@ -232,31 +232,6 @@ class Lanes(QWidget):
             over = mark_at(self.marks(), event.position()) is not None and self.performance.requests.editable
             self.setCursor(Qt.CursorShape.SizeHorCursor if over else Qt.CursorShape.ArrowCursor)
         self._grip = x
-
-    def _titled(self, at: QPointF) -> Layer | None:
-        """Return the layer whose title a point is on."""
-        return next(
-            (n for n in LAYERS if at.x() < LEFT and lanes(self.height())[n].contains(QPointF(LEFT, at.y()))),
-            None,
-        )
-
-    def _others(self, layer: Layer) -> set[Layer]:
-        """Return the layers to mute for one to be seen alone; none where it is alone already."""
-        others = set(LAYERS) - {layer}
-        return set() if self.performance.muted == others else others
-
-    def _title_menu(self, layer: Layer) -> QMenu:
-        menu, muted = QMenu(self), self.performance.muted
-        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        mute = menu.addAction("Mute\tclick", lambda: self.performance.mute(muted ^ {layer}))
-        mute.setCheckable(True)
-        mute.setChecked(layer in muted)
-        alone = menu.addAction("Solo\tAlt+click", lambda: self.performance.mute(self._others(layer)))
-        alone.setCheckable(True)
-        alone.setChecked(muted == set(LAYERS) - {layer})
-        menu.addSeparator()
-        menu.addAction("Let all be seen", lambda: self.performance.mute(())).setEnabled(bool(muted))
-        return menu
 
     _grip = 0.0
 
@@ -316,8 +291,8 @@ class Lanes(QWidget):
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         if event.reason() == QContextMenuEvent.Reason.Keyboard:
             self._ask_here()
-        elif (layer := self._titled(QPointF(event.pos()))) is not None:
-            self._title_menu(layer).popup(event.globalPos())
+        elif (layer := self.titles.at(QPointF(event.pos()))) is not None:
+            self.titles.menu(layer).popup(event.globalPos())
         elif event.pos().x() >= LEFT:
             self._menu(QPointF(event.pos()), QPointF(event.globalPos()))
 
@@ -419,11 +394,9 @@ class Lanes(QWidget):
         return super().event(event)
 
     def _tip(self, at: QPointF) -> str:
-        titled = self._titled(at)
+        titled = self.titles.at(at)
         if titled is not None:
-            state = "rests while you look" if titled in self.performance.muted else "is seen"
-            how = "Click mutes it, Alt+click leaves it alone; exports do not change"
-            return f"The {titled} layer {state}\n{how}"
+            return self.titles.tip(titled)
         mark = mark_at(self.marks(), at)
         if mark is not None:
             return told(mark, self.performance.requests.editable)

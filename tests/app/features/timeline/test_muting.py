@@ -65,7 +65,7 @@ def test_a_muted_layer_rests_while_others_play_on(stage):
 
 def test_the_title_s_menu_and_tip_say_what_a_click_does(stage):
     view = stage.timeline.lanes
-    menu = view._title_menu("arms")
+    menu = view.titles.menu("arms")
     assert [a.text().split("\t")[0] for a in menu.actions() if not a.isSeparator()] == [
         "Mute",
         "Solo",
@@ -74,5 +74,5 @@ def test_the_title_s_menu_and_tip_say_what_a_click_does(stage):
     menu.actions()[1].trigger()
     assert stage.performance.muted == {"body", "head"}
     assert "rests" in view._tip(title(view, "body")) and "is seen" in view._tip(title(view, "arms"))
-    view._title_menu("arms").actions()[-1].trigger()
+    view.titles.menu("arms").actions()[-1].trigger()
     assert stage.performance.muted == set()
