@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
+from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,17 +48,30 @@ def pose_at(plan: Plan, project: Project, seconds: Any, alive: bool = True) -> P
     pose = frame.compose(layers_at(plan, project, times), len(times))
     if alive and project.life.on and plan.life.end > 0 and len(times):
         pose = weighed(pose, plan, project, times)
+        if len(times) == 1:  # whose face is mostly asked for next
+            _latest[:] = [(ref(plan), ref(project), float(times[0]), _alone(pose))]
         pose = enliven(pose, project, plan.life, plan.track, times)
     pose = touched(pose, plan, project, times)
     shape = (*at.shape, len(frame.ground.skeleton))
     return Pose(pose.rotations.reshape(*shape, 4), pose.translations.reshape(*shape, 3))
 
 
+# The latest pose at one time that life was added to: plan, project, time and pose.
+_latest: list[tuple[ref[Plan], ref[Project], float, Pose]] = []
+
+
 def _weighed_at(plan: Plan, project: Project, seconds: float) -> Pose:
     """Return the pose `[J]` at one time that the other life layers are added to."""
+    for of, whose, when, pose in tuple(_latest):
+        if of() is plan and whose() is project and when == seconds:
+            return pose
     times = np.array([float(seconds)])
-    pose = weighed(rig(project).compose(layers_at(plan, project, times), 1), plan, project, times)
-    return Pose(pose.rotations[0], pose.translations[0])
+    return _alone(weighed(rig(project).compose(layers_at(plan, project, times), 1), plan, project, times))
+
+
+def _alone(pose: Pose) -> Pose:
+    """Return the only pose of several, in memory of its own."""
+    return Pose(pose.rotations[0].copy(), pose.translations[0].copy())
 
 
 def layers_at(plan: Plan, project: Project, times: Array) -> dict[Layer, Sample]:

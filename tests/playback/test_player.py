@@ -351,3 +351,14 @@ def _project(toy: Any) -> None:
     global PROJECT
     PROJECT = toy.project()
     assert list(PROJECT.graphs) == list(LAYERS)
+
+
+def test_a_face_that_is_asked_for_after_its_pose_is_the_one_it_would_be_alone(sample):
+    plan, other = make_plan(sample, 20.0, seed=3), make_plan(sample, 20.0, seed=4)
+    alone = {seconds: morphs_at(plan, sample, seconds) for seconds in (2.0, 7.3)}
+    for seconds, face in alone.items():
+        pose_at(other, sample, seconds)
+        assert morphs_at(plan, sample, seconds) == face
+        pose = pose_at(plan, sample, seconds)
+        assert morphs_at(plan, sample, seconds) == face
+        assert np.array_equal(pose_at(plan, sample, seconds).rotations, pose.rotations)
