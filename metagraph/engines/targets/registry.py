@@ -28,6 +28,7 @@ MODULES = (
     "statecharts",
     "agents",
     "vrm",
+    "usd",
 )
 DEFAULT = "metagraph"
 
