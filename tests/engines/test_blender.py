@@ -279,6 +279,7 @@ def test_blender_shows_clips_and_labels_as_they_are(
         key = f"{label['layer']}: {label['stance']}"
         tracks[key] = tracks.get(key, 0) + 1
     assert noted["tracks"] == tracks
+    assert noted["sets"] == 1  # all key the same bones: none stays as the action before left it
     poses, degrees, metres = np.load(folder / "poses.npz"), 0.0, 0.0
     for ident, (frame, heads) in noted["heads"].items():
         action = sample.action(ident)

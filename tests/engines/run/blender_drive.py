@@ -68,6 +68,7 @@ for action in labelled[: int(sys.argv[4])]:
     seen[key] = [middle, heads(armature, action, middle)]
 noted["heads"] = seen
 np.savez(out / "poses.npz", **poses)
+noted["sets"] = len({frozenset((c.data_path, c.array_index) for c in scene.curves(a)) for a in labelled})
 noted["nothing"] = sorted(bpy.ops.metagraph.send(directory=str(out / "nothing")))
 
 # An animator's day: words changed, an arm bent further, and a gesture of their own.

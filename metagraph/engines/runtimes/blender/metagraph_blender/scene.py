@@ -51,6 +51,7 @@ def load(context: Any, path: Path) -> Any:
     armature[SOURCE] = str(path)
     came = {action.name: action for action in bpy.data.actions if action not in known[1]}
     _clear(armature)
+    _complete(list(came.values()))
     _label(document, came)
     _tracks(document, armature)
     return armature
@@ -87,6 +88,22 @@ def meshes_of(armature: Any) -> list[Any]:
 
 def _keys_of(armature: Any) -> list[Any]:
     return [o.data.shape_keys for o in meshes_of(armature) if o.data.shape_keys is not None]
+
+
+def _complete(actions: list[Any]) -> None:
+    """Key bones at rest in actions that leave them out, where another moves them: Blender would leave them as
+    the action before had them.
+    """
+    moved = {(c.data_path, c.array_index) for a in actions for c in curves(a) if "bones" in c.data_path}
+    for action in actions:
+        bags = [bag for bag in _bags(action) if any("bones" in c.data_path for c in bag.fcurves)]
+        if not bags:
+            continue
+        start = action.frame_range[0]
+        for path, index in sorted(moved - {(c.data_path, c.array_index) for c in bags[0].fcurves}):
+            curve = bags[0].fcurves.new(path, index=index)
+            one = path.endswith("scale") or (path.endswith("rotation_quaternion") and index == 0)
+            curve.keyframe_points.insert(start, float(one))
 
 
 def _label(document: dict[str, Any], came: dict[str, Any]) -> None:
@@ -145,9 +162,8 @@ def _tracks(document: dict[str, Any], armature: Any) -> None:
     body = document["layers"].get("body", {})
     start = next((s["name"] for s in body.get("stances", ()) if s["id"] == body.get("start")), None)
     first = None
-    for action in bpy.data.actions:
-        if not action.metagraph.labelled or not action.metagraph.before:
-            continue
+    placed = [a for a in bpy.data.actions if a.metagraph.labelled and a.metagraph.before]
+    for action in sorted(placed, key=lambda a: labels.KINDS.index(a.metagraph.kind)):
         own = action.metagraph
         if own.kind == "stance" and own.layer == "body" and (first is None or own.stance == start):
             first = action
@@ -177,15 +193,20 @@ def play(armature: Any, action: Any) -> None:
                 data.action = None
 
 
-def curves(action: Any) -> Iterator[Any]:
-    """Yield an action's curves, in Blender 4 and 5."""
+def _bags(action: Any) -> Iterator[Any]:
+    """Yield what holds an action's curves, in Blender 4 and 5."""
     if hasattr(action, "layers") and action.layers:
         for layer in action.layers:
             for strip in layer.strips:
-                for bag in strip.channelbags:
-                    yield from bag.fcurves
+                yield from strip.channelbags
     elif hasattr(action, "fcurves"):
-        yield from action.fcurves
+        yield action
+
+
+def curves(action: Any) -> Iterator[Any]:
+    """Yield an action's curves."""
+    for bag in _bags(action):
+        yield from bag.fcurves
 
 
 def digest(action: Any) -> str:
