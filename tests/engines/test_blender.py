@@ -24,7 +24,8 @@ from app.cli.parser import main
 from metagraph.engines.export import export
 from metagraph.engines.runtimes.blender.metagraph_blender import glb, labels, link, space
 from metagraph.engines.targets import registry
-from metagraph.engines.targets.runtimes import ADDON, RUNTIMES
+from metagraph.engines.targets.blender import ADDON
+from metagraph.engines.targets.runtimes import RUNTIMES
 from metagraph.formats.gltf import read_gltf_clips
 from metagraph.formats.store import open_project, save_project
 from metagraph.graph.model import Project

@@ -29,6 +29,7 @@ MODULES = (
     "agents",
     "vrm",
     "usd",
+    "blender",
 )
 DEFAULT = "metagraph"
 

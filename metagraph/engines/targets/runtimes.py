@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import io
 import shutil
-import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,7 +10,6 @@ from metagraph import engines
 from metagraph.engines.export import write
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.errors import FileError
-from metagraph.formats.atomic import write_atomically
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
 REQUESTS = "../../../../docs/live.md"  # where a README finds them here; an export carries them along
@@ -77,22 +74,6 @@ def _plugin(order: ExportOrder) -> Made:
     return Made((*made.files, *files), made.notes)
 
 
-ADDON = "metagraph_blender"
-
-
-def _blender(order: ExportOrder) -> Made:
-    """Write the export and Blender's add-on, as the archive that Blender installs, each time the same."""
-    made = written(order)
-    page, archive = order.folder / "README.md", order.folder / f"{ADDON}.zip"
-    content = io.BytesIO()
-    with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as out:
-        for path in sorted((RUNTIMES / "blender" / ADDON).glob("*.*")):
-            out.writestr(zipfile.ZipInfo(f"{ADDON}/{path.name}"), path.read_bytes(), zipfile.ZIP_DEFLATED)
-    write_atomically(archive, content.getvalue())
-    write_atomically(page, (RUNTIMES / "blender" / "README.md").read_bytes())
-    return Made((archive, page, *made.files), made.notes)
-
-
 TARGETS = (
     ExportTarget(
         "metagraph",
@@ -142,12 +123,5 @@ TARGETS = (
         (BML,),
         untried="compiled and played against stand-ins for Unreal's types; not run in Unreal",
         group="Played as the preview does",
-    ),
-    ExportTarget(
-        "blender",
-        "Blender add-on",
-        "JSON and GLB, and the add-on that reads them, labels actions, sends them back and follows a session",
-        _blender,
-        (Loss("no planner: Blender shows single actions, and a whole performance only live or from a bake"),),
     ),
 )
