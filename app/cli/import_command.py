@@ -8,6 +8,7 @@ from pathlib import Path
 
 from app.cli.command_output import opened, say
 from metagraph.errors import FileError
+from metagraph.formats.action_labels import labelled, read_labels
 from metagraph.formats.clips import SUFFIXES
 from metagraph.formats.import_words import counted, remedies, said
 from metagraph.formats.imports import import_files
@@ -18,7 +19,13 @@ from metagraph.graph.model import Project
 def arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument(
-        "paths", type=Path, nargs="+", help="clip files and folders: BVH, GLB, glTF, VRM animation, FBX"
+        "paths", type=Path, nargs="*", help="clip files and folders: BVH, GLB, glTF, VRM animation, FBX"
+    )
+    parser.add_argument(
+        "--labels",
+        type=Path,
+        metavar="FILE",
+        help="place the clips, and change actions, as a file of labels says (Blender's add-on writes such)",
     )
     parser.add_argument(
         "--retarget", action="store_true", help="bring clips of other skeletons onto the project's"
@@ -32,6 +39,10 @@ def arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     path: Path = options.project
+    if not options.paths and options.labels is None:
+        print("metagraph import: which clips? metagraph import my.metagraph.yaml clips/", file=sys.stderr)
+        return 2
+    rows = read_labels(options.labels) if options.labels is not None else ()
     if path.is_file():
         project = opened(path)
     else:
@@ -54,7 +65,7 @@ def run(options: Namespace) -> int:
     )
     if show:
         print(file=sys.stderr)
-    if not result.loaded and not result.failures:
+    if options.paths and not result.loaded and not result.failures:
         place = ", ".join(str(p) for p in options.paths)
         raise FileError(
             place, "no clip was found in it", "on importing it", f"Clips are {', '.join(SUFFIXES)} files."
@@ -66,16 +77,24 @@ def run(options: Namespace) -> int:
             print(f"note: {note}", file=sys.stderr)
     if result.loaded:
         project = result.into(project)
+    at = {(entry.path, entry.take): entry.id for entry in project.clips.values()}
+    fresh = {clip.name: at[file, take] for file, take, _, clip in result.loaded}
+    project, placed, left = labelled(project, rows, fresh)
+    for why in left:
+        print(f"not labelled: {why}", file=sys.stderr)
+    if result.loaded or placed:
         save_project(project, path, path)
     data = {
         "project": str(path),
         "imported": len(result.loaded),
         "retargeted": result.retargeted,
+        **({"labelled": placed, "not_labelled": list(left)} if options.labels is not None else {}),
         "failures": list(result.failures),
         "notes": list(result.notes),
         "remedies": [remedy.command for remedy in remedies(result)],
     }
-    say(options, f"{path}: {said(result, window=False)}", data)
+    words = f"{path}: {said(result, window=False)}"
+    say(options, words if options.labels is None else f"{words}. Labelled {placed} of {len(rows)}", data)
     if not result.loaded and result.failures:
         return 1
-    return 3 if result.failures else 0
+    return 3 if result.failures or left else 0

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from metagraph.mimicry.performing import Mimicry
     from metagraph.playback.plan import Plan
 
-OUT = (".mp4", ".png", ".glb", ".bvh", ".json")
+OUT = (".mp4", ".png", ".glb", ".usda", ".bvh", ".json")
 TAKES = (".bvh", ".glb")
 
 
@@ -171,11 +171,11 @@ def _write(
 
         write_atomically(out, msgspec.json.format(msgspec.json.encode(kept), indent=1))
         return out
-    from app.cli.render_command import bake_to, draw_to, figure_of
+    from app.cli.render_command import MOTION, bake_to, draw_to, figure_of
     from app.stage.playback_source import Shown
 
     folder, shown = options.project.resolve().parent, Shown(project, made, kept.length)
-    if out.suffix in (".glb", ".bvh"):
+    if out.suffix in MOTION:
         bake_to(out, shown, kept.length, 30.0, folder)
     else:
         draw_to(out, [(figure_of(project, folder), shown)], kept.length, size, 30.0, 24, "dark")

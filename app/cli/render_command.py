@@ -17,13 +17,16 @@ from metagraph.motion.clip import Clip
 from metagraph.playback.bake import bake
 
 Seen = tuple[Any, Shown]  # a figure, and what it plays
+MOTION = (".glb", ".usda", ".bvh")  # what `bake_to` writes
 TOGETHER = 32  # poses of a video made at once
 
 
 def arguments(parser: ArgumentParser) -> None:
     """Add the options."""
     performance_arguments(parser, 10.0)
-    parser.add_argument("-o", "--out", type=Path, required=True, help="a .png, .mp4, .glb or .bvh file")
+    parser.add_argument(
+        "-o", "--out", type=Path, required=True, help="a .png, .mp4, .glb, .usda or .bvh file"
+    )
     parser.add_argument(
         "--progress", action="store_true", help="tell after each picture of a video how many there are"
     )
@@ -135,10 +138,10 @@ def run(options: Namespace) -> int:
         raise ValueError("a video has 1 to 240 pictures a second")
     if not 2 <= options.frames <= 1000:
         raise ValueError("a contact sheet has 2 to 1000 pictures")
-    if options.out.suffix not in (".png", ".mp4", ".glb", ".bvh"):
+    if options.out.suffix not in (".png", ".mp4", *MOTION):
         name = options.out.suffix or options.out.name
         raise ValueError(
-            f"pictures are written as .png, videos as .mp4, motion as .glb or .bvh, not as '{name}'"
+            f"pictures are written as .png, videos as .mp4, motion as .glb, .usda or .bvh, not as '{name}'"
         )
     size, folder = size_of(options.size), options.project.resolve().parent
     clip = None
@@ -155,7 +158,7 @@ def run(options: Namespace) -> int:
             if clip is not None
             else Shown(project, staged(project, options), options.seconds)
         )
-    if options.out.suffix in (".glb", ".bvh"):
+    if options.out.suffix in MOTION:
         for one, out in zip(shown.everyone, _outs(options.out, shown), strict=True):
             bake_to(out, one, options.seconds, options.fps, one.folder or folder)
     else:
@@ -266,10 +269,11 @@ def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path) -
     """Write a performance, or a clip, as plain motion: what an engine or an animation program plays without a
     planner.
 
-    A GLB has the character in it, where the project has one.
+    A GLB and a USD stage have the character in them, where the project has one.
     """
     from metagraph.formats.bvh import write_bvh
     from metagraph.formats.gltf_writer import write_glb
+    from metagraph.formats.usd_writer import write_usd
 
     project = shown.project
     whole = shown.clip or shown.motion
@@ -289,7 +293,10 @@ def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path) -
             body = read_character(folder / project.character).without(project.hidden)
             if body.skeleton != project.skeleton or not len(body.triangles):
                 body = None  # it would not move with this motion
-        write_glb(out, [motion], body)
+        if out.suffix == ".usda":
+            write_usd(out, motion.skeleton, [motion], body)
+        else:
+            write_glb(out, [motion], body)
 
 
 def _doing(shown: Shown, seconds: float) -> str:

@@ -141,8 +141,7 @@ def write(
     glb, json = target / f"{stem}.glb", target / f"{stem}.json"
     names = unique_names([entry.name for entry in used])
     tell(0, 3, "clips")
-    motions = [worn(project, e.motion) for e in used if e.motion is not None]
-    clips = [motion.renamed(name) for motion, name in zip(motions, names, strict=True)]
+    clips = exported_clips(project)
     notes = _write_glb(glb, clips, project, character)
     tell(1, 3, "graph")
     document = to_document(project, glb.name, names, expanded)
@@ -225,7 +224,7 @@ def _write_glb(
         ) from None
     shown, notes = mesh_on(skeleton, character, project.hidden)
     presets = presets_of(shown.morphs, project.face.channels) if shown is not None else {}
-    write_glb(path, [replace(clip, skeleton=skeleton) for clip in clips], shown, expressions=presets)
+    write_glb(path, clips, shown, expressions=presets)
     return notes
 
 
@@ -257,6 +256,20 @@ def mesh_on(
         body = bound(body, skeleton)
     shown = body.without(hidden)
     return shown if len(shown.triangles) else None, notes
+
+
+def exported_clips(project: Project) -> list[Clip]:
+    """Return the motion of the clips that are written, by the names they are written with, with the curves
+    that the face wears.
+    """
+    used = [e for e in _used(project) if e.motion is not None]
+    names = unique_names([entry.name for entry in _used(project)])
+    assert project.skeleton is not None
+    return [
+        replace(worn(project, e.motion).renamed(name), skeleton=project.skeleton)
+        for e, name in zip(used, names, strict=True)
+        if e.motion is not None
+    ]
 
 
 def _used(project: Project) -> list[ClipEntry]:

@@ -28,6 +28,8 @@ MODULES = (
     "statecharts",
     "agents",
     "vrm",
+    "usd",
+    "blender",
 )
 DEFAULT = "metagraph"
 

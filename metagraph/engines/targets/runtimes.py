@@ -29,7 +29,7 @@ def copied(source: Path, target: Path, leave: tuple[str, ...] = ()) -> list[Path
     out = []
     for path in sorted(source.rglob("*")):
         inside = path.relative_to(source)
-        if path.is_dir() or any(part in leave or part.startswith((".", "__")) for part in inside.parts):
+        if path.is_dir() or any(p in leave or p == "__pycache__" or p.startswith(".") for p in inside.parts):
             continue
         place = target / inside
         try:

@@ -133,7 +133,7 @@ def test_a_contact_sheet_is_drawn(project: Path, tmp_path: Path, capsys: pytest.
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["-o", "show.gif"], "it is written as .mp4, .png, .glb, .bvh, .json, not as '.gif'"),
+        (["-o", "show.gif"], "it is written as .mp4, .png, .glb, .usda, .bvh, .json, not as '.gif'"),
         (["--fps", "0"], "frames a second"),
         (["--picture", "wide"], "a size is given as 960x540"),
     ],

@@ -1,0 +1,36 @@
+"""Blender: the export, and the add-on that reads it, as the archive that Blender installs."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+
+from metagraph.engines.targets.runtimes import RUNTIMES, written
+from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
+from metagraph.formats.atomic import write_atomically
+
+ADDON = "metagraph_blender"
+
+
+def write(order: ExportOrder) -> Made:
+    """Write the export and the archive, each time the same."""
+    made = written(order)
+    page, archive = order.folder / "README.md", order.folder / f"{ADDON}.zip"
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as out:
+        for path in sorted((RUNTIMES / "blender" / ADDON).glob("*.*")):
+            out.writestr(zipfile.ZipInfo(f"{ADDON}/{path.name}"), path.read_bytes(), zipfile.ZIP_DEFLATED)
+    write_atomically(archive, content.getvalue())
+    write_atomically(page, (RUNTIMES / "blender" / "README.md").read_bytes())
+    return Made((archive, page, *made.files), made.notes)
+
+
+TARGETS = (
+    ExportTarget(
+        "blender",
+        "Blender add-on",
+        "JSON and GLB, and the add-on that reads them, labels actions, sends them back and follows a session",
+        write,
+        (Loss("no planner: Blender shows single actions, and a whole performance only live or from a bake"),),
+    ),
+)

@@ -1,0 +1,156 @@
+"""Universal Scene Description: the character with an animation for each clip, and the graph as properties.
+
+Below `/Character/Graph` stands a prim for each layer, with its stances, actions and transitions; what the
+JSON says of each is a property `metagraph:<field>` under the JSON's own name, and relationships lead from
+actions to their clips and stances. The JSON itself lies beside, with the GLB, and the character names it.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import Any
+
+import msgspec
+
+from metagraph.engines.export import exported_clips
+from metagraph.engines.targets.meshes import mesh_of
+from metagraph.engines.targets.runtimes import written
+from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
+from metagraph.formats.usd_writer import CHARACTER, clip_paths, named, write_usd
+from metagraph.formats.usda import Names, Prim, number, text, texts
+
+GRAPH = f"{CHARACTER}/Graph"
+
+
+def graph_prims(document: dict[str, Any]) -> Prim:
+    """Return the graph of an export's JSON as prims."""
+    places = clip_paths([clip["name"] for clip in document["clips"]])
+    clips = {clip["id"]: places[clip["name"]] for clip in document["clips"]}
+    out = Prim("Scope", "Graph")
+    for layer in document["order"]:
+        out.children.append(_layer(layer, document["layers"][layer], clips))
+    return out
+
+
+def _layer(layer: str, said: dict[str, Any], clips: dict[str, str]) -> Prim:
+    where = f"{GRAPH}/{layer}"
+    stances = _named("Stances", said["stances"])
+    actions = _named("Actions", said["actions"])
+    stance_at = _places(f"{where}/Stances", said["stances"], stances)
+    action_at = _places(f"{where}/Actions", said["actions"], actions)
+    for action, prim in zip(said["actions"], actions.children, strict=True):
+        prim.properties += [
+            *_relationship("clip", [clips.get(action["clip"])]),
+            *_relationship("stance", [stance_at.get(action["stance"])]),
+            *_relationship("end_stance", [stance_at.get(action["end_stance"])]),
+        ]
+    names, ways = Names(), Prim("Scope", "Transitions")
+    called = {s["id"]: s["name"] for s in said["stances"]}
+    for way in said["transitions"]:
+        own = names.of(f"{called[way['from']]}_to_{called[way['to']]}")
+        ends = _relationship("from", [stance_at[way["from"]]]) + _relationship("to", [stance_at[way["to"]]])
+        taken = _relationship("actions", [action_at[ident] for ident in way["actions"]])
+        ways.children.append(Prim("", own, [], ends + taken))
+    rest = {k: v for k, v in said.items() if k not in ("stances", "actions", "transitions", "start")}
+    own_properties = [*_relationship("start", [stance_at.get(said["start"])]), *_properties(rest)]
+    return Prim("Scope", layer, [], own_properties, [stances, actions, ways])
+
+
+def _named(scope: str, rows: list[dict[str, Any]]) -> Prim:
+    """Return a prim for each row, called as it is."""
+    names, out = Names(), Prim("Scope", scope)
+    for row in rows:
+        own = names.of(row["name"])
+        shown = {k: v for k, v in row.items() if k not in ("clip", "stance", "end_stance")}
+        out.children.append(Prim("", own, named(row["name"], own), _properties(shown)))
+    return out
+
+
+def _places(where: str, rows: list[dict[str, Any]], scope: Prim) -> dict[str, str]:
+    """Return where the prim of each row is, by the row's id."""
+    return {row["id"]: f"{where}/{p.name}" for row, p in zip(rows, scope.children, strict=True)}
+
+
+def _relationship(name: str, to: list[str | None]) -> list[str]:
+    """Return a relationship to prims, nothing where one is missing."""
+    if None in to or not to:
+        return []
+    ends = ", ".join(f"<{place}>" for place in to)
+    return [f"custom rel metagraph:{name} = {ends if len(to) == 1 else f'[{ends}]'}"]
+
+
+def _properties(said: dict[str, Any]) -> list[str]:
+    """Return the fields of an object of JSON; what is nested deeper than a list is its JSON as a text."""
+    out = []
+    for key, value in said.items():
+        if value is None or value == []:
+            continue
+        kind, shown = _value(value)
+        out.append(f"custom {kind} metagraph:{key} = {shown}")
+    return out
+
+
+def _value(value: Any) -> tuple[str, str]:
+    if isinstance(value, bool):
+        return "bool", "true" if value else "false"
+    if isinstance(value, int | float):
+        return "double", number(value)
+    if isinstance(value, str):
+        return "string", text(value)
+    if isinstance(value, list) and all(isinstance(v, str) for v in value):
+        return "string[]", texts(value)
+    if isinstance(value, list) and all(isinstance(v, int | float) and not isinstance(v, bool) for v in value):
+        return "double[]", f"[{', '.join(map(number, value))}]"
+    return "string", text(json.dumps(value, ensure_ascii=False))
+
+
+def write(order: ExportOrder) -> Made:
+    """Write JSON, GLB and sounds, and the stage with its textures."""
+    made = written(replace(order, tell=lambda done, total, words: order.tell(done, total + 1, words)))
+    document = msgspec.json.decode(made.files[0].read_bytes())
+    project = order.project
+    assert project.skeleton is not None
+    body, _ = mesh_of(order)  # what there is to say of it is said already
+    resting = document["layers"]["body"]
+    first = next(
+        (a["clip"] for a in resting["actions"] if a["kind"] == "stance" and a["stance"] == resting["start"]),
+        None,
+    )
+    called = {clip["id"]: clip["name"] for clip in document["clips"]}
+    files = write_usd(
+        order.folder / f"{order.stem}.usda",
+        project.skeleton,
+        exported_clips(project),
+        body,
+        called.get(first),
+        [graph_prims(document)],
+        [
+            "customData = {",
+            "    dictionary metagraph = {",
+            f"        string name = {text(document['name'])}",
+            f"        double version = {number(document['metagraph'])}"
+            if isinstance(document["metagraph"], int | float)
+            else f"        string version = {text(str(document['metagraph']))}",
+            f"        asset export = @./{made.files[0].name}@",
+            "    }",
+            "}",
+        ],
+    )
+    order.tell(4, 4, "done")
+    return Made((*files, *made.files), made.notes)
+
+
+TARGETS = (
+    ExportTarget(
+        "usd",
+        "USD (UsdSkel)",
+        "a stage: skeleton, skinned mesh with blend shapes, an animation for each clip, the graph; JSON and "
+        "GLB beside it",
+        write,
+        (
+            Loss("no planner: the stage holds clips and graph for programs that ask; one clip plays"),
+            Loss("no life layers: breathing, gaze, blinks and lips are not in the clips; a bake has them"),
+        ),
+    ),
+)
