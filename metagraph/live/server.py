@@ -10,15 +10,17 @@ import contextlib
 import ipaddress
 import secrets
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from msgspec import Struct
 
-from metagraph.graph.model import Project
 from metagraph.live import OSC_PORT, PORT
 from metagraph.live.hub import Hub
 from metagraph.live.stdio import StdioLine
 from metagraph.live.wire import Batch, Ready, Result
+
+if TYPE_CHECKING:
+    from metagraph.graph.model import Project
 
 TICK = 1 / 60  # seconds
 LAST = 2.0  # seconds at most for answering what was asked before the end

@@ -32,7 +32,9 @@ def pick(drive, dialog, name: str) -> None:
 
     items = [item for group in top_items(dialog.targets) for item in items_below(group)]
     item = next(i for i in items if i.data(0, NAME) == name)
+    dialog.targets.scrollToItem(item)  # as one would by the wheel: the list is longer than its view
     spot = dialog.targets.visualItemRect(item).center()
+    assert dialog.targets.viewport().rect().contains(spot)
     QTest.mouseClick(dialog.targets.viewport(), Qt.MouseButton.LeftButton, pos=QPoint(spot.x(), spot.y()))
     drive.pause(30)
 
