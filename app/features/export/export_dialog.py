@@ -92,7 +92,7 @@ class ExportDialog(QDialog):
             Qt.WidgetAttribute.WA_DeleteOnClose
         )  # a running export goes on; the status bar shows it
         self.setWindowTitle("Export for engines")
-        self.resize(860, 560)
+        self.resize(860, 620)
         self.results: dict[str, Result] = {}  # of what was written, by target
         chosen = self.chosen = self._remembered()
         self.targets = self._list()
