@@ -155,6 +155,8 @@ MUTATIONS = {
 # A case that notices each, tried first.
 HINTS = {
     "the curve of blends": "stick: layers body",
+    "what synthesisers count seconds in": "stick: words and shapes with their times",
+    "what has been said of a line stands": "stick: a line that is added to",
     "uses are counted": "stick: cut again and again",
     "ties go by id": "stick: ties of start and priority",
     "layers multiply on the right": "stick: no time at all",
