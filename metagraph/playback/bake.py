@@ -12,8 +12,9 @@ from metagraph.graph.model import Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
+from metagraph.playback.faces import faces_at
 from metagraph.playback.plan import Plan
-from metagraph.playback.player import morphs_at, pose_at
+from metagraph.playback.player import pose_at
 
 Array = NDArray[Any]
 
@@ -55,7 +56,7 @@ def _morphs(plan: Plan, project: Project, times: Array) -> tuple[tuple[str, ...]
     face = bool(project.face.morphs) or any(
         e.motion is not None and e.motion.morphs for e in project.clips.values()
     )
-    rows = [morphs_at(plan, project, float(t)) for t in times] if face else [{} for _ in times]
+    rows = faces_at(plan, project, times) if face else [{} for _ in times]
     names = tuple(sorted({name for row in rows for name, value in row.items() if value > 0}))
     return names, np.array([[row.get(name, 0.0) for name in names] for row in rows], np.float32).reshape(
         len(times), len(names)

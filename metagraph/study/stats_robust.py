@@ -6,6 +6,7 @@ Tobin (1958), its interval by the profile, as wide as Student's where nothing is
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from math import erfc, exp, floor, inf, log, log1p, pi, sqrt
@@ -87,12 +88,17 @@ def censored_mean(
     if len(x) < 2 or float(np.ptp(x)) < 1e-12:
         return None
 
+    middle, known = float(x.mean()), len(x)
+    around = float(((x - middle) ** 2).sum())
+    tails = [(v, 1.0, n) for v, n in Counter(lows.tolist()).items()]
+    tails += [(v, -1.0, n) for v, n in Counter(highs.tolist()).items()]
+
     def lost(mu: float, scale: float) -> float:
         """Return minus twice the log likelihood."""
-        z = (x - mu) / scale
-        out = float((z * z).sum()) + len(x) * (2 * log(scale) + log(2 * pi))
-        out -= 2 * sum(_log_tail((v - mu) / scale) for v in lows.tolist())
-        return out - 2 * sum(_log_tail((mu - v) / scale) for v in highs.tolist())
+        out = (around + known * (middle - mu) ** 2) / scale**2 + known * (2 * log(scale) + log(2 * pi))
+        for bound, sign, times in tails:
+            out -= 2 * times * _log_tail(sign * (bound - mu) / scale)
+        return out
 
     spread = float(x.std(ddof=1))
     reach = max(spread, float(np.ptp(np.concatenate([x, lows, highs]))))

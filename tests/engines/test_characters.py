@@ -8,6 +8,7 @@ import os
 import shutil
 import subprocess
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -103,10 +104,16 @@ HEARD: dict[int, list[tuple[str, int, int]]] = {
 }
 
 
+@cache
+def streaming() -> tuple[int, list[float]]:
+    """Return the rate and the samples that pieces are cut from."""
+    rate, pieces = streamed()[1]
+    return rate, [x / 128 for piece in pieces for x in piece]
+
+
 def sounds(frame: int) -> list[dict[str, Any]]:
     """Return what is streamed before a frame's update."""
-    rate, pieces = streamed()[1]
-    whole = [x / 128 for piece in pieces for x in piece]
+    rate, whole = streaming()
     return [
         {"id": ident, "samples": whole[start:end], "rate": rate} for ident, start, end in HEARD.get(frame, ())
     ]

@@ -1063,6 +1063,18 @@ NOTICED_BY = {
     "varied: arms: fidgets": ["how long what was asked for waits"],
     "varied: blinks and modes": ["morph targets of a look"],
     "varied: looks": ["weights of turns", "weights of translations"],
+    "quiet: moods over moods": ["modes of the models"],
+    "sparse: arms: strokes that may not be late": ["when what is judged begins"],
+    "sparse: every shape of every set": ["what synthesisers count seconds in"],
+    "sparse: modes asked for live": ["planning again where the mode changes"],
+    "stick: a line that is added to": ["what has been said of a line stands"],
+    "stick: arms: strokes that become known late": ["blending out of an exit"],
+    "stick: arms: strokes that may not be late": ["room for what follows", "leaving out a hold"],
+    "stick: arms: strokes that are planned on": ["the least late first", "what is served once"],
+    "stick: body: strokes that are planned on": ["lateness that is told anew"],
+    "stick: body: strokes that become known late": ["strokes that are shared", "leaving what runs"],
+    "stick: body: strokes that may not be late": ["what is too late"],
+    "stick: words and shapes with their times": ["how long a last shape stays"],
 }  # fmt: skip
 HINTS = {about: case for case, noticed in NOTICED_BY.items() for about in noticed}
 

@@ -1018,6 +1018,12 @@ NOTICED_BY = {
     "varied: no room": ["the arm that a gesture leaves alone"],
     "varied: no time at all": ["keys that were thinned out"],
     "varied: stressed syllables": ["a blink at the first stressed syllable", "mouths that are early"],
+    "stick: arms: strokes that may not be late": ["room for what follows", "reading how late it may be"],
+    "sparse: every shape of every set": ["what synthesisers count seconds in"],
+    "stick: a line that is added to": ["what has been said of a line stands"],
+    "sparse: arms: strokes that may not be late": ["when what is judged begins"],
+    "stick: ties of start and priority": ["ids at equal starts and priorities"],
+    "stick: body: strokes that may not be late": ["what is too late"],
 }  # fmt: skip
 HINTS = {about: case for case, noticed in NOTICED_BY.items() for about in noticed}
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from metagraph.graph.model import LAYERS, Project
@@ -66,6 +66,7 @@ def talker() -> dict[str, Traits]:
     return traits_of(named("standing talker").project)
 
 
+@settings(max_examples=25)  # what one order in eight would change is found 96 times of 100
 @given(st.randoms())
 def test_the_order_of_clips_does_not_matter(random: Any) -> None:
     for name, whole in (("opaque takes", True), ("few joints", False)):
