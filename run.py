@@ -315,8 +315,8 @@ def told(command):
 
 
 def spread(arguments):
-    """Return pytest's options to run in a process for each core, each with a screen of its own; none for
-    named files or where asked otherwise.
+    """Return pytest's options to run in a process for each core and one more, each with a screen of its own,
+    since some tests wait for a clock; none for named files or where asked otherwise.
     """
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     own = (
@@ -335,7 +335,7 @@ def spread(arguments):
         return []
     # Whole files, since many make something dear once; in the order that tests/conftest.py gives them, the
     # longest first.
-    return ["-n", str(cores), "--dist", "loadfile", "--no-loadscope-reorder"]
+    return ["-n", str(cores + 1), "--dist", "loadfile", "--no-loadscope-reorder"]
 
 
 if __name__ == "__main__":

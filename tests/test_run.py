@@ -438,7 +438,7 @@ def test_each_process_has_one_thread_for_matrices_and_drawing_unless_somebody_sa
 @pytest.mark.parametrize(
     ("arguments", "cores", "processes"),
     [
-        ([], 1, 1), ([], 2, 2), ([], 16, 16), (["tests/app"], 2, 2), (["-k", "journal", "-x"], 4, 4),
+        ([], 1, 1), ([], 2, 3), ([], 16, 17), (["tests/app"], 2, 3), (["-k", "journal", "-x"], 4, 5),
         (["tests/test_run.py"], 2, 1), (["tests/test_run.py::test_it"], 2, 1), (["-n", "4"], 8, 1),
         (["-n0"], 8, 1),
         (["tests/app", "--dist=load"], 8, 1), (["-s"], 8, 1), (["--pdb"], 8, 1), (["-p", "no:xdist"], 8, 1),
