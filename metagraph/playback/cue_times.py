@@ -1,8 +1,44 @@
-"""What of a cue shows at a time, in plain numbers: `player` and `Cue.clip_seconds` have it for arrays."""
+"""What of a cue, or of a stance's loop, shows at a time, in plain numbers: `player` and `Cue.clip_seconds`
+have it for arrays.
+"""
 
 from __future__ import annotations
 
-from metagraph.playback.plan import Cue
+from dataclasses import dataclass
+from math import floor
+
+from metagraph.graph.model import Project
+from metagraph.playback.plan import Cue, Rest
+
+
+@dataclass(frozen=True, slots=True)
+class LoopSpot:
+    """Where a loop is. seconds: of its clip. other: on the other side of its seam. over: how far it has gone
+    from there to here, 1 where no seam shows. leaves, meets: clip seconds at which the seam's two sides begin
+    and end.
+    """
+
+    seconds: float
+    other: float
+    over: float
+    leaves: float
+    meets: float
+
+
+def loop_spot(project: Project, rest: Rest, time: float) -> LoopSpot:
+    """Return where a stance's loop is at a time, as `player.loop_seconds` has it."""
+    action = rest.action
+    start, end = project.span(action)
+    seam = min(max(0.0, action.timing.blend_in), (end - start) / 2.0)
+    period = end - start - seam
+    if period <= 0.0:
+        return LoopSpot(start, start, 1.0, start, start)
+    elapsed = time - rest.start
+    phase = max(elapsed, 0.0) if seam > 0.0 else elapsed
+    phase = phase - period * floor(phase / period)
+    over = phase / seam if seam > 0.0 and elapsed >= period and phase < seam else 1.0
+    other = start + min(period + phase, end - start)
+    return LoopSpot(start + phase, other, over, start + period, start + seam)
 
 
 def cue_weight(cue: Cue, time: float) -> float:

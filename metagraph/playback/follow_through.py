@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from math import floor
 
 from metagraph.graph.model import Action, Project
-from metagraph.playback.cue_times import cue_seconds, cue_weight, ease
+from metagraph.playback.cue_times import cue_seconds, cue_weight, ease, loop_spot
 from metagraph.playback.plan import Cue, LayerPlan, Rest
 
 STEP = 0.08  # seconds between the times that are looked at; the answer comes two of them late
@@ -163,22 +163,14 @@ def _stance(
 
 def _loop(project: Project, tracks: Mapping[str, ArmTrack], rest: Rest, time: float) -> list[float]:
     """Return the row of a loop, its end faded into its beginning."""
-    action = rest.action
-    track = tracks.get(action.id)
+    track = tracks.get(rest.action.id)
     if track is None or len(track.rows) == 0:
         return [0.0 for n in range(NUMBERS)]
-    start, end = project.span(action)
-    seam = min(max(0.0, action.timing.blend_in), (end - start) / 2.0)
-    period = end - start - seam
-    if period <= 0.0:
-        return _row(track, start)
-    elapsed = time - rest.start
-    phase = max(elapsed, 0.0) if seam > 0.0 else elapsed
-    phase = phase - period * floor(phase / period)
-    row = _row(track, start + phase)
-    if seam > 0.0 and elapsed >= period:
-        old = 1.0 - ease(phase / seam)
-        before = _row(track, start + min(period + phase, end - start))
+    spot = loop_spot(project, rest, time)
+    row = _row(track, spot.seconds)
+    if spot.over < 1.0:
+        old = 1.0 - ease(spot.over)
+        before = _row(track, spot.other)
         row = [row[n] + (before[n] - row[n]) * old for n in range(NUMBERS)]
     return row
 

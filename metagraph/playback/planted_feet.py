@@ -14,7 +14,7 @@ from math import floor
 from metagraph.graph.model import Project
 from metagraph.motion.feet_solve import FootGoal, foot_way
 from metagraph.motion.plain_vectors import dot, minus, plus, scaled, unit_turn
-from metagraph.playback.cue_times import cue_seconds, ease
+from metagraph.playback.cue_times import cue_seconds, ease, loop_spot
 from metagraph.playback.plan import Cue, LayerPlan, Rest
 
 FOOT_RATE = 10.0  # rows of a track in a second of its clip
@@ -172,13 +172,7 @@ def _changes(project: Project, plan: LayerPlan, place: int, time: float) -> bool
     rest = plan.rests[place]
     if _fades(plan, place, time):
         return True
-    start, end = project.span(rest.action)
-    seam = min(max(0.0, rest.action.timing.blend_in), (end - start) / 2.0)
-    period = end - start - seam
-    elapsed = time - rest.start
-    if seam <= 0.0 or period <= 0.0 or elapsed < period:
-        return False
-    return elapsed - period * floor(elapsed / period) < seam
+    return loop_spot(project, rest, time).over < 1.0
 
 
 def _stance(
@@ -206,24 +200,15 @@ def _loop(
     project: Project, tracks: Mapping[str, FootTrack], height: float, rest: Rest, time: float
 ) -> list[FootGoal]:
     """Return where the feet of a loop are, taken from its end to its beginning in steps, too."""
-    action = rest.action
-    track = tracks.get(action.id)
+    track = tracks.get(rest.action.id)
     if track is None or len(track.rows) == 0:
         return []
-    start, end = project.span(action)
-    seam = min(max(0.0, action.timing.blend_in), (end - start) / 2.0)
-    period = end - start - seam
-    if period <= 0.0:
-        return _row(track, start)
-    elapsed = time - rest.start
-    phase = max(elapsed, 0.0) if seam > 0.0 else elapsed
-    phase = phase - period * floor(phase / period)
-    here = _row(track, start + phase)
-    if seam <= 0.0 or elapsed < period or phase >= seam:
+    spot = loop_spot(project, rest, time)
+    here = _row(track, spot.seconds)
+    if spot.over >= 1.0:
         return here
-    before = _row(track, start + min(period + phase, end - start))
     return _stepped(
-        height, before, here, _row(track, start + period), _row(track, start + seam), phase / seam
+        height, _row(track, spot.other), here, _row(track, spot.leaves), _row(track, spot.meets), spot.over
     )
 
 

@@ -1,23 +1,58 @@
-// What of a cue shows at a time, in plain numbers: `player` and `Cue.clip_seconds` have it for arrays.
+// What of a cue, or of a stance's loop, shows at a time, in plain numbers: `player` and `Cue.clip_seconds` have it for
+// arrays.
 //
 // Translated from metagraph/playback/cue_times.py; change that, and translate anew.
 #pragma once
 
+#include "model.hpp"
 #include "meta_plan.hpp"
+#include "project.hpp"
 #include "language.hpp"
 
 namespace metagraph {
 
+struct LoopSpot;
 
 namespace cue_times {
 
+inline Ref<LoopSpot> loop_spot(const Ref<Project>& project, const Ref<Rest>& rest, double time);
 inline double cue_weight(const Ref<Cue>& cue, double time);
 inline double cue_seconds(const Ref<Cue>& cue, double time);
 inline double ease(double x);
 
 }  // namespace cue_times
 
+/// Where a loop is. seconds: of its clip. other: on the other side of its seam. over: how far it has gone from there to
+/// here, 1 where no seam shows. leaves, meets: clip seconds at which the seam's two sides begin and end.
+struct LoopSpot {
+    double seconds;
+    double other;
+    double over;
+    double leaves;
+    double meets;
+
+    LoopSpot(double seconds_, double other_, double over_, double leaves_, double meets_)
+        : seconds(seconds_), other(other_), over(over_), leaves(leaves_), meets(meets_) {}
+};
+
 namespace cue_times {
+
+/// Return where a stance's loop is at a time, as `player.loop_seconds` has it.
+inline Ref<LoopSpot> loop_spot(const Ref<Project>& project, const Ref<Rest>& rest, double time) {
+    Ref<Action> action = rest->action;
+    auto [start, end] = project->span(action);
+    double seam = std::min(std::max(0.0, action->timing->blend_in), (end - start) / 2.0);
+    double period = end - start - seam;
+    if (period <= 0.0) {
+        return lang::made<LoopSpot>(start, start, 1.0, start, start);
+    }
+    double elapsed = time - rest->start;
+    double phase = seam > 0.0 ? std::max(elapsed, 0.0) : elapsed;
+    phase = phase - period * static_cast<int>(std::floor(phase / period));
+    double over = (seam > 0.0 && elapsed >= period && phase < seam) ? phase / seam : 1.0;
+    double other = start + std::min(period + phase, end - start);
+    return lang::made<LoopSpot>(start + phase, other, over, start + period, start + seam);
+}
 
 /// Return how much of a cue shows at a time, 0..1.
 inline double cue_weight(const Ref<Cue>& cue, double time) {

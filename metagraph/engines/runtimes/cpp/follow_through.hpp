@@ -258,8 +258,7 @@ inline List<double> _loop(
     const Ref<Rest>& rest,
     double time
 ) {
-    Ref<Action> action = rest->action;
-    Ref<ArmTrack> track = lang::get(tracks, action->id);
+    Ref<ArmTrack> track = lang::get(tracks, rest->action->id);
     if (track == nullptr || lang::len(track->rows) == 0) {
         List<double> found;
         for (int n = 0; n < follow_through::NUMBERS; n++) {
@@ -267,19 +266,11 @@ inline List<double> _loop(
         }
         return found;
     }
-    auto [start, end] = project->span(action);
-    double seam = std::min(std::max(0.0, action->timing->blend_in), (end - start) / 2.0);
-    double period = end - start - seam;
-    if (period <= 0.0) {
-        return follow_through::_row(track, start);
-    }
-    double elapsed = time - rest->start;
-    double phase = seam > 0.0 ? std::max(elapsed, 0.0) : elapsed;
-    phase = phase - period * static_cast<int>(std::floor(phase / period));
-    List<double> row = follow_through::_row(track, start + phase);
-    if (seam > 0.0 && elapsed >= period) {
-        double old = 1.0 - cue_times::ease(phase / seam);
-        List<double> before = follow_through::_row(track, start + std::min(period + phase, end - start));
+    Ref<LoopSpot> spot = cue_times::loop_spot(project, rest, time);
+    List<double> row = follow_through::_row(track, spot->seconds);
+    if (spot->over < 1.0) {
+        double old = 1.0 - cue_times::ease(spot->over);
+        List<double> before = follow_through::_row(track, spot->other);
         List<double> found2;
         for (int n = 0; n < follow_through::NUMBERS; n++) {
             found2.push_back(lang::at(row, n) + (lang::at(before, n) - lang::at(row, n)) * old);

@@ -7,7 +7,6 @@
 // Translated from metagraph/playback/planted_feet.py; change that, and translate anew.
 #pragma once
 
-#include "model.hpp"
 #include "feet_solve.hpp"
 #include "plain_vectors.hpp"
 #include "cue_times.hpp"
@@ -256,14 +255,7 @@ inline bool _changes(const Ref<Project>& project, const Ref<LayerPlan>& plan, in
     if (planted_feet::_fades(plan, place, time)) {
         return true;
     }
-    auto [start, end] = project->span(rest->action);
-    double seam = std::min(std::max(0.0, rest->action->timing->blend_in), (end - start) / 2.0);
-    double period = end - start - seam;
-    double elapsed = time - rest->start;
-    if (seam <= 0.0 || period <= 0.0 || elapsed < period) {
-        return false;
-    }
-    return elapsed - period * static_cast<int>(std::floor(elapsed / period)) < seam;
+    return cue_times::loop_spot(project, rest, time)->over < 1.0;
 }
 
 /// Return where the stance's feet are that lies under the cues at a time.
@@ -301,32 +293,22 @@ inline List<Ref<FootGoal>> _loop(
     const Ref<Rest>& rest,
     double time
 ) {
-    Ref<Action> action = rest->action;
-    Ref<FootTrack> track = lang::get(tracks, action->id);
+    Ref<FootTrack> track = lang::get(tracks, rest->action->id);
     if (track == nullptr || lang::len(track->rows) == 0) {
         return List<Ref<FootGoal>>{};
     }
-    auto [start, end] = project->span(action);
-    double seam = std::min(std::max(0.0, action->timing->blend_in), (end - start) / 2.0);
-    double period = end - start - seam;
-    if (period <= 0.0) {
-        return planted_feet::_row(track, start);
-    }
-    double elapsed = time - rest->start;
-    double phase = seam > 0.0 ? std::max(elapsed, 0.0) : elapsed;
-    phase = phase - period * static_cast<int>(std::floor(phase / period));
-    List<Ref<FootGoal>> here = planted_feet::_row(track, start + phase);
-    if (seam <= 0.0 || elapsed < period || phase >= seam) {
+    Ref<LoopSpot> spot = cue_times::loop_spot(project, rest, time);
+    List<Ref<FootGoal>> here = planted_feet::_row(track, spot->seconds);
+    if (spot->over >= 1.0) {
         return here;
     }
-    List<Ref<FootGoal>> before = planted_feet::_row(track, start + std::min(period + phase, end - start));
     return planted_feet::_stepped(
         height,
-        before,
+        planted_feet::_row(track, spot->other),
         here,
-        planted_feet::_row(track, start + period),
-        planted_feet::_row(track, start + seam),
-        phase / seam
+        planted_feet::_row(track, spot->leaves),
+        planted_feet::_row(track, spot->meets),
+        spot->over
     );
 }
 

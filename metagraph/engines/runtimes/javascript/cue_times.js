@@ -1,9 +1,49 @@
 /**
- * What of a cue shows at a time, in plain numbers: `player` and `Cue.clip_seconds` have it for arrays.
+ * What of a cue, or of a stance's loop, shows at a time, in plain numbers: `player` and `Cue.clip_seconds` have it for
+ * arrays.
  *
  * Translated from metagraph/playback/cue_times.py; change that, and translate anew.
  */
 
+
+/**
+ * Where a loop is. seconds: of its clip. other: on the other side of its seam. over: how far it has gone from there to here,
+ * 1 where no seam shows. leaves, meets: clip seconds at which the seam's two sides begin and end.
+ *
+ * seconds: number; other: number; over: number; leaves: number; meets: number.
+ */
+export class LoopSpot {
+  constructor(seconds, other, over, leaves, meets) {
+    this.seconds = seconds;
+    this.other = other;
+    this.over = over;
+    this.leaves = leaves;
+    this.meets = meets;
+  }
+}
+
+/**
+ * Return where a stance's loop is at a time, as `player.loop_seconds` has it.
+ * @param {Project} project
+ * @param {Rest} rest
+ * @param {number} time
+ * @returns {LoopSpot}
+ */
+export function loopSpot(project, rest, time) {
+  const action = rest.action;
+  const [start, end] = project.span(action);
+  const seam = Math.min(Math.max(0, action.timing.blendIn), (end - start) / 2);
+  const period = end - start - seam;
+  if (period <= 0) {
+    return new LoopSpot(start, start, 1, start, start);
+  }
+  const elapsed = time - rest.start;
+  let phase = seam > 0 ? Math.max(elapsed, 0) : elapsed;
+  phase = phase - period * Math.floor(phase / period);
+  const over = (seam > 0 && elapsed >= period && phase < seam) ? phase / seam : 1;
+  const other = start + Math.min(period + phase, end - start);
+  return new LoopSpot(start + phase, other, over, start + period, start + seam);
+}
 
 /**
  * Return how much of a cue shows at a time, 0..1.

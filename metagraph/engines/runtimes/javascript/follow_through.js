@@ -7,7 +7,7 @@
  * Translated from metagraph/playback/follow_through.py; change that, and translate anew.
  */
 
-import { cueSeconds, cueWeight, ease } from "./cue_times.js";
+import { cueSeconds, cueWeight, ease, loopSpot } from "./cue_times.js";
 import { range } from "./basics.js";
 
 export const STEP = 0.08; // seconds between the times that are looked at; the answer comes two of them late
@@ -217,24 +217,15 @@ function _stance(project, tracks, plan, place, time) {
  * @returns {number[]}
  */
 function _loop(project, tracks, rest, time) {
-  const action = rest.action;
-  const track = tracks.get(action.id) ?? null;
+  const track = tracks.get(rest.action.id) ?? null;
   if (track === null || track.rows.length === 0) {
     return range(NUMBERS).map((n) => 0);
   }
-  const [start, end] = project.span(action);
-  const seam = Math.min(Math.max(0, action.timing.blendIn), (end - start) / 2);
-  const period = end - start - seam;
-  if (period <= 0) {
-    return _row(track, start);
-  }
-  const elapsed = time - rest.start;
-  let phase = seam > 0 ? Math.max(elapsed, 0) : elapsed;
-  phase = phase - period * Math.floor(phase / period);
-  let row = _row(track, start + phase);
-  if (seam > 0 && elapsed >= period) {
-    const old = 1 - ease(phase / seam);
-    const before = _row(track, start + Math.min(period + phase, end - start));
+  const spot = loopSpot(project, rest, time);
+  let row = _row(track, spot.seconds);
+  if (spot.over < 1) {
+    const old = 1 - ease(spot.over);
+    const before = _row(track, spot.other);
     row = range(NUMBERS).map((n) => row[n] + (before[n] - row[n]) * old);
   }
   return row;

@@ -10,7 +10,7 @@
 
 import { FootGoal, footWay } from "./feet_solve.js";
 import { dot, minus, plus, scaled, unitTurn } from "./plain_vectors.js";
-import { cueSeconds, ease } from "./cue_times.js";
+import { cueSeconds, ease, loopSpot } from "./cue_times.js";
 import { range } from "./basics.js";
 
 export const FOOT_RATE = 10; // rows of a track in a second of its clip
@@ -239,14 +239,7 @@ function _changes(project, plan, place, time) {
   if (_fades(plan, place, time)) {
     return true;
   }
-  const [start, end] = project.span(rest.action);
-  const seam = Math.min(Math.max(0, rest.action.timing.blendIn), (end - start) / 2);
-  const period = end - start - seam;
-  const elapsed = time - rest.start;
-  if (seam <= 0 || period <= 0 || elapsed < period) {
-    return false;
-  }
-  return elapsed - period * Math.floor(elapsed / period) < seam;
+  return loopSpot(project, rest, time).over < 1;
 }
 
 /**
@@ -288,26 +281,16 @@ function _stance(project, tracks, height, plan, place, time) {
  * @returns {FootGoal[]}
  */
 function _loop(project, tracks, height, rest, time) {
-  const action = rest.action;
-  const track = tracks.get(action.id) ?? null;
+  const track = tracks.get(rest.action.id) ?? null;
   if (track === null || track.rows.length === 0) {
     return [];
   }
-  const [start, end] = project.span(action);
-  const seam = Math.min(Math.max(0, action.timing.blendIn), (end - start) / 2);
-  const period = end - start - seam;
-  if (period <= 0) {
-    return _row(track, start);
-  }
-  const elapsed = time - rest.start;
-  let phase = seam > 0 ? Math.max(elapsed, 0) : elapsed;
-  phase = phase - period * Math.floor(phase / period);
-  const here = _row(track, start + phase);
-  if (seam <= 0 || elapsed < period || phase >= seam) {
+  const spot = loopSpot(project, rest, time);
+  const here = _row(track, spot.seconds);
+  if (spot.over >= 1) {
     return here;
   }
-  const before = _row(track, start + Math.min(period + phase, end - start));
-  return _stepped(height, before, here, _row(track, start + period), _row(track, start + seam), phase / seam);
+  return _stepped(height, _row(track, spot.other), here, _row(track, spot.leaves), _row(track, spot.meets), spot.over);
 }
 
 /**

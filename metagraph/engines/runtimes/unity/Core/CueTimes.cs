@@ -6,10 +6,50 @@ using System.Linq;
 namespace Metagraph
 {
     /// <summary>
-    /// What of a cue shows at a time, in plain numbers: `player` and `Cue.clip_seconds` have it for arrays.
+    /// Where a loop is. seconds: of its clip. other: on the other side of its seam. over: how far it has gone from there to here,
+    /// 1 where no seam shows. leaves, meets: clip seconds at which the seam's two sides begin and end.
     /// </summary>
+    public sealed class LoopSpot
+    {
+        public readonly double Seconds;
+        public readonly double Other;
+        public readonly double Over;
+        public readonly double Leaves;
+        public readonly double Meets;
+
+        public LoopSpot(double seconds, double other, double over, double leaves, double meets)
+        {
+            Seconds = seconds;
+            Other = other;
+            Over = over;
+            Leaves = leaves;
+            Meets = meets;
+        }
+    }
+
     public static class CueTimesRules
     {
+        /// <summary>Return where a stance's loop is at a time, as `player.loop_seconds` has it.</summary>
+        public static LoopSpot LoopSpot(Graph project, Rest rest, double time)
+        {
+            var action = rest.Action;
+            var found = project.Span(action);
+            double start = found.Item1;
+            double end = found.Item2;
+            var seam = Math.Min(Math.Max(0.0, action.Timing.BlendIn), (end - start) / 2.0);
+            var period = end - start - seam;
+            if (period <= 0.0)
+            {
+                return new LoopSpot(start, start, 1.0, start, start);
+            }
+            var elapsed = time - rest.Start;
+            var phase = seam > 0.0 ? Math.Max(elapsed, 0.0) : elapsed;
+            phase = phase - period * (int)Math.Floor(phase / period);
+            var over = (seam > 0.0 && elapsed >= period && phase < seam) ? phase / seam : 1.0;
+            var other = start + Math.Min(period + phase, end - start);
+            return new LoopSpot(start + phase, other, over, start + period, start + seam);
+        }
+
         /// <summary>Return how much of a cue shows at a time, 0..1.</summary>
         public static double CueWeight(Cue cue, double time)
         {

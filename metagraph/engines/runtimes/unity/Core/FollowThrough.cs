@@ -213,29 +213,17 @@ namespace Metagraph
         /// <summary>Return the row of a loop, its end faded into its beginning.</summary>
         private static List<double> Loop(Graph project, Dictionary<string, ArmTrack> tracks, Rest rest, double time)
         {
-            var action = rest.Action;
-            var track = PlainMaps.Get(tracks, action.Id);
+            var track = PlainMaps.Get(tracks, rest.Action.Id);
             if (track == null || track.Rows.Count == 0)
             {
                 return PlainNumbers.Range(Numbers).Select(n => 0.0).ToList();
             }
-            var found = project.Span(action);
-            double start = found.Item1;
-            double end = found.Item2;
-            var seam = Math.Min(Math.Max(0.0, action.Timing.BlendIn), (end - start) / 2.0);
-            var period = end - start - seam;
-            if (period <= 0.0)
+            var spot = CueTimesRules.LoopSpot(project, rest, time);
+            var row = Row(track, spot.Seconds);
+            if (spot.Over < 1.0)
             {
-                return Row(track, start);
-            }
-            var elapsed = time - rest.Start;
-            var phase = seam > 0.0 ? Math.Max(elapsed, 0.0) : elapsed;
-            phase = phase - period * (int)Math.Floor(phase / period);
-            var row = Row(track, start + phase);
-            if (seam > 0.0 && elapsed >= period)
-            {
-                var old = 1.0 - CueTimesRules.Ease(phase / seam);
-                var before = Row(track, start + Math.Min(period + phase, end - start));
+                var old = 1.0 - CueTimesRules.Ease(spot.Over);
+                var before = Row(track, spot.Other);
                 row = PlainNumbers.Range(Numbers).Select(n => row[n] + (before[n] - row[n]) * old).ToList();
             }
             return row;

@@ -222,17 +222,7 @@ namespace Metagraph
             {
                 return true;
             }
-            var found = project.Span(rest.Action);
-            double start = found.Item1;
-            double end = found.Item2;
-            var seam = Math.Min(Math.Max(0.0, rest.Action.Timing.BlendIn), (end - start) / 2.0);
-            var period = end - start - seam;
-            var elapsed = time - rest.Start;
-            if (seam <= 0.0 || period <= 0.0 || elapsed < period)
-            {
-                return false;
-            }
-            return elapsed - period * (int)Math.Floor(elapsed / period) < seam;
+            return CueTimesRules.LoopSpot(project, rest, time).Over < 1.0;
         }
 
         /// <summary>Return where the stance's feet are that lies under the cues at a time.</summary>
@@ -273,31 +263,18 @@ namespace Metagraph
             double time
         )
         {
-            var action = rest.Action;
-            var track = PlainMaps.Get(tracks, action.Id);
+            var track = PlainMaps.Get(tracks, rest.Action.Id);
             if (track == null || track.Rows.Count == 0)
             {
                 return new List<FootGoal>();
             }
-            var found = project.Span(action);
-            double start = found.Item1;
-            double end = found.Item2;
-            var seam = Math.Min(Math.Max(0.0, action.Timing.BlendIn), (end - start) / 2.0);
-            var period = end - start - seam;
-            if (period <= 0.0)
-            {
-                return Row(track, start);
-            }
-            var elapsed = time - rest.Start;
-            var phase = seam > 0.0 ? Math.Max(elapsed, 0.0) : elapsed;
-            phase = phase - period * (int)Math.Floor(phase / period);
-            var here = Row(track, start + phase);
-            if (seam <= 0.0 || elapsed < period || phase >= seam)
+            var spot = CueTimesRules.LoopSpot(project, rest, time);
+            var here = Row(track, spot.Seconds);
+            if (spot.Over >= 1.0)
             {
                 return here;
             }
-            var before = Row(track, start + Math.Min(period + phase, end - start));
-            return Stepped(height, before, here, Row(track, start + period), Row(track, start + seam), phase / seam);
+            return Stepped(height, Row(track, spot.Other), here, Row(track, spot.Leaves), Row(track, spot.Meets), spot.Over);
         }
 
         /// <summary>Return where a clip's feet are at clip seconds, on the straight line between rows.</summary>

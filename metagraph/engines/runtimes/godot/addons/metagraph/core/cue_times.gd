@@ -1,8 +1,43 @@
-# What of a cue shows at a time, in plain numbers: `player` and `Cue.clip_seconds` have it for arrays.
+# What of a cue, or of a stance's loop, shows at a time, in plain numbers: `player` and `Cue.clip_seconds` have it for arrays.
 #
 # Translated from metagraph/playback/cue_times.py; change that, and translate anew.
 
 const Util = preload("util.gd")
+
+
+# Where a loop is. seconds: of its clip. other: on the other side of its seam. over: how far it has gone from there to here, 1
+# where no seam shows. leaves, meets: clip seconds at which the seam's two sides begin and end.
+class LoopSpot:
+	var seconds
+	var other
+	var over
+	var leaves
+	var meets
+
+	func _init(seconds_, other_, over_, leaves_, meets_):
+		self.seconds = seconds_
+		self.other = other_
+		self.over = over_
+		self.leaves = leaves_
+		self.meets = meets_
+
+
+# Return where a stance's loop is at a time, as `player.loop_seconds` has it.
+static func loop_spot(project, rest, time):
+	var action = rest.action
+	var both = project.span(action)
+	var start = both[0]
+	var end = both[1]
+	var seam = Util.least(Util.most(0.0, action.timing.blend_in), (end - start) / 2.0)
+	var period = end - start - seam
+	if period <= 0.0:
+		return LoopSpot.new(start, start, 1.0, start, start)
+	var elapsed = time - rest.start
+	var phase = Util.most(elapsed, 0.0) if seam > 0.0 else elapsed
+	phase = phase - period * int(floor(phase / period))
+	var over = phase / seam if (seam > 0.0 and elapsed >= period and phase < seam) else 1.0
+	var other = start + Util.least(period + phase, end - start)
+	return LoopSpot.new(start + phase, other, over, start + period, start + seam)
 
 
 # Return how much of a cue shows at a time, 0..1.

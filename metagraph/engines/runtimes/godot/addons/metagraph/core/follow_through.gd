@@ -148,27 +148,17 @@ static func _stance(project, tracks, plan, place, time):
 
 # Return the row of a loop, its end faded into its beginning.
 static func _loop(project, tracks, rest, time):
-	var action = rest.action
-	var track = tracks.get(action.id)
+	var track = tracks.get(rest.action.id)
 	if track == null or track.rows.size() == 0:
 		var found = []
 		for n in range(NUMBERS):
 			found.append(0.0)
 		return found
-	var both = project.span(action)
-	var start = both[0]
-	var end = both[1]
-	var seam = Util.least(Util.most(0.0, action.timing.blend_in), (end - start) / 2.0)
-	var period = end - start - seam
-	if period <= 0.0:
-		return _row(track, start)
-	var elapsed = time - rest.start
-	var phase = Util.most(elapsed, 0.0) if seam > 0.0 else elapsed
-	phase = phase - period * int(floor(phase / period))
-	var row = _row(track, start + phase)
-	if seam > 0.0 and elapsed >= period:
-		var old = 1.0 - CueTimes.ease_(phase / seam)
-		var before = _row(track, start + Util.least(period + phase, end - start))
+	var spot = CueTimes.loop_spot(project, rest, time)
+	var row = _row(track, spot.seconds)
+	if spot.over < 1.0:
+		var old = 1.0 - CueTimes.ease_(spot.over)
+		var before = _row(track, spot.other)
 		var found2 = []
 		for n in range(NUMBERS):
 			found2.append(row[n] + (before[n] - row[n]) * old)

@@ -161,15 +161,7 @@ static func _changes(project, plan, place, time):
 	var rest = plan.rests[place]
 	if _fades(plan, place, time):
 		return true
-	var both = project.span(rest.action)
-	var start = both[0]
-	var end = both[1]
-	var seam = Util.least(Util.most(0.0, rest.action.timing.blend_in), (end - start) / 2.0)
-	var period = end - start - seam
-	var elapsed = time - rest.start
-	if seam <= 0.0 or period <= 0.0 or elapsed < period:
-		return false
-	return elapsed - period * int(floor(elapsed / period)) < seam
+	return CueTimes.loop_spot(project, rest, time).over < 1.0
 
 
 # Return where the stance's feet are that lies under the cues at a time.
@@ -193,25 +185,14 @@ static func _stance(project, tracks, height, plan, place, time):
 
 # Return where the feet of a loop are, taken from its end to its beginning in steps, too.
 static func _loop(project, tracks, height, rest, time):
-	var action = rest.action
-	var track = tracks.get(action.id)
+	var track = tracks.get(rest.action.id)
 	if track == null or track.rows.size() == 0:
 		return []
-	var both = project.span(action)
-	var start = both[0]
-	var end = both[1]
-	var seam = Util.least(Util.most(0.0, action.timing.blend_in), (end - start) / 2.0)
-	var period = end - start - seam
-	if period <= 0.0:
-		return _row(track, start)
-	var elapsed = time - rest.start
-	var phase = Util.most(elapsed, 0.0) if seam > 0.0 else elapsed
-	phase = phase - period * int(floor(phase / period))
-	var here = _row(track, start + phase)
-	if seam <= 0.0 or elapsed < period or phase >= seam:
+	var spot = CueTimes.loop_spot(project, rest, time)
+	var here = _row(track, spot.seconds)
+	if spot.over >= 1.0:
 		return here
-	var before = _row(track, start + Util.least(period + phase, end - start))
-	return _stepped(height, before, here, _row(track, start + period), _row(track, start + seam), phase / seam)
+	return _stepped(height, _row(track, spot.other), here, _row(track, spot.leaves), _row(track, spot.meets), spot.over)
 
 
 # Return where a clip's feet are at clip seconds, on the straight line between rows.
