@@ -1,5 +1,5 @@
-"""The keyboard: commands have their keys whatever is typed in, and a dialog gives the focus back to what had
-it.
+"""The keyboard: commands have their keys whatever is typed in, those of the number pad, too, and a dialog
+gives the focus back to what had it.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ HELD = (
 
 
 class Keyboard(QObject):
-    """Watches what has the focus, and nothing else."""
+    """Watches what has the focus, and the window for keys that nothing in it wants."""
 
     def __init__(self, window: QMainWindow, actions: Actions) -> None:
         super().__init__(window)
@@ -35,6 +35,7 @@ class Keyboard(QObject):
         application = QApplication.instance()
         assert isinstance(application, QApplication)
         application.focusChanged.connect(self._moved)
+        window.installEventFilter(self)
 
     def _moved(self, old: QWidget | None, new: QWidget | None) -> None:
         if self._watched is not None and isValid(self._watched):
@@ -61,11 +62,27 @@ class Keyboard(QObject):
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if watched is self._watched and event.type() == QEvent.Type.ShortcutOverride:
             return isinstance(event, QKeyEvent) and self._ours(event)
+        if watched is self.window and isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:
+            return self._number_pad(event)
         if event.type() == QEvent.Type.Hide and isinstance(watched, QDialog):
             self._dialogs.discard(watched)
             watched.removeEventFilter(self)
             QTimer.singleShot(0, self, self._give_back)
         return False
+
+    def _number_pad(self, event: QKeyEvent) -> bool:
+        """Run the command of a number pad's key that nothing in the window wanted: on X11 Qt's shortcuts are
+        asked for the plain digit alone, and never for "Num+3".
+        """
+        if not event.modifiers() & Qt.KeyboardModifier.KeypadModifier:
+            return False
+        wanted = QKeySequence(event.keyCombination())
+        action = next(
+            (a for a in self.actions.by_id.values() if wanted in a.shortcuts() and a.isEnabled()), None
+        )
+        if action is not None:
+            action.trigger()
+        return action is not None
 
     def _ours(self, event: QKeyEvent) -> bool:
         """Keep a key from a field that would take it for itself, where it is a command's: Ctrl+E goes to the

@@ -8,8 +8,9 @@ import math
 
 import numpy as np
 import pytest
-from PySide6.QtCore import Qt
-from PySide6.QtGui import QGuiApplication
+from PySide6.QtCore import QEvent, Qt
+from PySide6.QtGui import QGuiApplication, QKeyEvent
+from PySide6.QtWidgets import QApplication
 
 from app.features.character.looking import SIDES
 from metagraph.graph import anatomy
@@ -39,6 +40,17 @@ def test_keys_of_the_number_pad_look_from_each_side_as_near_as_before(toys):
         assert math.degrees(camera.pitch) == pytest.approx(pitch), side
         assert math.cos(camera.yaw - math.radians(yaw)) == pytest.approx(1.0), side
         assert camera.distance == before.distance and camera.target == before.target
+
+
+def test_a_real_number_pad_is_heard_where_shortcuts_are_not_asked_for_it(toys):
+    """X11 asks Qt's shortcuts for the digit alone: the key comes to the window, as it is sent here."""
+    panel = toys.preview
+    toys.do("see_quarter")
+    sent = QKeyEvent(QEvent.Type.KeyPress, Qt.Key.Key_3, KEYPAD, "3")
+    QApplication.sendEvent(toys.window, sent)
+    assert math.degrees(panel.view.camera.yaw) == pytest.approx(90.0)
+    QApplication.sendEvent(toys.window, QKeyEvent(QEvent.Type.KeyPress, Qt.Key.Key_1, KEYPAD & ~KEYPAD, "1"))
+    assert math.degrees(panel.view.camera.yaw) == pytest.approx(90.0)  # a digit is none of the pad's
 
 
 def test_both_hands_fill_the_picture(toys):
