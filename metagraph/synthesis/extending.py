@@ -18,8 +18,8 @@ from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.constraints import EDGE, STRESS, HeardStates
 from metagraph.synthesis.graph import MotionGraph
 from metagraph.synthesis.ruled_search import JumpRules, ruled
-from metagraph.synthesis.search import Path
 from metagraph.synthesis.search_lookups import CHEAPEST
+from metagraph.synthesis.search_path import Path
 from metagraph.synthesis.speech_so_far import LATE, SpeechNews, SpeechSoFar
 from metagraph.synthesis.states import States, SynthesisError, terms_of
 

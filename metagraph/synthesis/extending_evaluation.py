@@ -20,8 +20,8 @@ from metagraph.synthesis.extending import DriverGraph, PathExtender, driver_grap
 from metagraph.synthesis.graph import MotionGraph, build, threshold
 from metagraph.synthesis.path_quality import PathQuality, quality
 from metagraph.synthesis.relaxing import answer
-from metagraph.synthesis.search import Path
 from metagraph.synthesis.search_evaluation import LEAST, WINDOW, cut, without
+from metagraph.synthesis.search_path import Path
 from metagraph.synthesis.speech_so_far import LATE, SpeechNews
 from metagraph.synthesis.states import KEYS, LEVEL, STEP, States, SynthesisError, key_states, states_of
 

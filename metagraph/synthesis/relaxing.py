@@ -20,7 +20,7 @@ from metagraph.synthesis.graph import MotionGraph
 from metagraph.synthesis.iconic_words import only_words
 from metagraph.synthesis.retiming import FARTHER, NEARER, Retiming, keeps_to, timing_cost
 from metagraph.synthesis.ruled_search import FREE, JUMP_RULES, JumpRules, Search, find_path
-from metagraph.synthesis.search import Path
+from metagraph.synthesis.search_path import Path
 from metagraph.synthesis.soft_constraints import NOTHING, SoftConstraints
 from metagraph.synthesis.states import SynthesisError
 

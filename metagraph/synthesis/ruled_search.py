@@ -18,9 +18,11 @@ from numpy.typing import NDArray
 
 from metagraph.suggest.tracks import RATE
 from metagraph.synthesis.constraints import HeardStates, WantedSegment
+from metagraph.synthesis.exact_search import best
 from metagraph.synthesis.frame_costs import FrameCosts
 from metagraph.synthesis.graph import MotionGraph
-from metagraph.synthesis.search import Path, best, greedy
+from metagraph.synthesis.greedy_search import greedy
+from metagraph.synthesis.search_path import Path
 from metagraph.synthesis.states import SynthesisError
 
 Array = NDArray[Any]

@@ -37,7 +37,7 @@ from metagraph.synthesis.prosody_costs import (
     prosody_match,
 )
 from metagraph.synthesis.retiming import Retiming, checked_share, retimable, retime
-from metagraph.synthesis.search import Path
+from metagraph.synthesis.search_path import Path
 from metagraph.synthesis.states import States, SynthesisError
 
 Array = NDArray[Any]

@@ -28,10 +28,12 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
+
 from metagraph.graph.conversation import SOUNDS, Segment  # noqa: E402
 from metagraph.synthesis.constraints import HeardStates, wanted  # noqa: E402
+from metagraph.synthesis.exact_search import best  # noqa: E402
 from metagraph.synthesis.graph import MotionGraph, Threshold, build, largest, threshold  # noqa: E402
-from metagraph.synthesis.search import best, greedy  # noqa: E402
+from metagraph.synthesis.greedy_search import greedy  # noqa: E402
 from metagraph.synthesis.states import States, key_states, states_of, terms_of, with_velocity  # noqa: E402
 
 Array = Any
@@ -153,11 +155,12 @@ def speech(frames: int, seed: int = 3) -> tuple[HeardStates, list[Segment]]:
     hesitations, as irregular as talk.
     """
     chance = np.random.default_rng(seed)
-    kinds, peaks, at = np.ones(frames, np.uint8), np.zeros(frames, bool), 5
+    kinds, peaks, edges, at = np.ones(frames, np.uint8), np.zeros(frames, bool), np.zeros(frames, bool), 5
     while at < frames - 120:
         kind = int(chance.choice([1, 1, 1, 2, 3]))
         length = int(chance.integers(12, 60)) // (1 if kind == 1 else 2)
         kinds[at : at + length] = 1 << kind
+        edges[[at, at + length]] = True
         if kind == 1:
             peaks[at + int(chance.integers(2, length - 2))] = True
         at += length + int(chance.integers(6, 60))
@@ -168,7 +171,7 @@ def speech(frames: int, seed: int = 3) -> tuple[HeardStates, list[Segment]]:
         peak = start + length * float(chance.uniform(0.1, 0.9)) if kind == "clause" else None
         out.append(Segment(kind, start, start + length, peak))
         start += length + float(chance.uniform(0.2, 2.0))
-    return HeardStates(kinds, peaks), out
+    return HeardStates(kinds, peaks, edges), out
 
 
 def searched(name: str, graph: MotionGraph) -> None:

@@ -26,7 +26,7 @@ from metagraph.synthesis.extending_evaluation import extended, news_of
 from metagraph.synthesis.graph import build
 from metagraph.synthesis.path_quality import quality
 from metagraph.synthesis.ruled_search import FREE, JumpRules
-from metagraph.synthesis.search import Path
+from metagraph.synthesis.search_path import Path
 from metagraph.synthesis.speech_so_far import MOST, SpeechNews
 from metagraph.synthesis.states import SynthesisError, states_of
 from tests.synthesis.talking import speech, talkers_graph

@@ -8,7 +8,7 @@ import pytest
 from metagraph.graph.conversation import Segment
 from metagraph.synthesis.constraints import HeardStates
 from metagraph.synthesis.extending_evaluation import held_out, news_of, row_of, rows_of, table_of
-from metagraph.synthesis.search import Path
+from metagraph.synthesis.search_path import Path
 from metagraph.synthesis.states import SynthesisError
 from tests.synthesis.talking import talkers
 from tests.synthesis.test_search import graph_of

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from metagraph.synthesis.path_quality import quality
-from metagraph.synthesis.search import Path
+from metagraph.synthesis.search_path import Path
 from metagraph.synthesis.states import States
 
 

@@ -10,7 +10,7 @@ from metagraph.graph.conversation import SOUNDS, Segment
 from metagraph.synthesis.constraints import heard
 from metagraph.synthesis.relaxing import Constraints, answer, given_up, misses, steps
 from metagraph.synthesis.ruled_search import FREE, JUMP_RULES
-from metagraph.synthesis.search import Path
+from metagraph.synthesis.search_path import Path
 from metagraph.synthesis.states import SynthesisError
 from tests.synthesis.test_search import graph_of
 

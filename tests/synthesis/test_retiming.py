@@ -20,7 +20,7 @@ from metagraph.synthesis.constraints import HeardStates, WantedSegment, heard, w
 from metagraph.synthesis.graph import BLEND
 from metagraph.synthesis.relaxing import Constraints, answer, misses
 from metagraph.synthesis.retiming import keeps_to, retimable, retime, timing_cost
-from metagraph.synthesis.search import Path
+from metagraph.synthesis.search_path import Path
 from metagraph.synthesis.soft_constraints import SoftConstraints, SoftWish
 from metagraph.synthesis.standing_feet import standing
 from metagraph.synthesis.states import SynthesisError, states_of

@@ -4,6 +4,7 @@ never finds a cheaper.
 
 from __future__ import annotations
 
+from contextlib import closing
 from functools import cache
 
 import numpy as np
@@ -22,9 +23,11 @@ from metagraph.synthesis.constraints import (
     heard,
     wanted,
 )
+from metagraph.synthesis.exact_search import ExactSearch, best
 from metagraph.synthesis.frame_costs import FrameCost, FrameCosts, together
 from metagraph.synthesis.graph import MotionGraph, Threshold
-from metagraph.synthesis.search import Path, best, greedy
+from metagraph.synthesis.greedy_search import greedy
+from metagraph.synthesis.search_path import Path
 from metagraph.synthesis.states import States, SynthesisError
 
 IDLE, CLAUSE, RESPONSE = (1 << SOUNDS.index(k) for k in ("idle", "clause", "response"))
@@ -227,8 +230,6 @@ def test_a_search_that_would_not_fit_in_memory_is_refused() -> None:
 
 
 def test_the_best_path_is_the_same_whatever_bound_it_is_searched_within() -> None:
-    from metagraph.synthesis.search import _best_within
-
     found = 0
     for seed in range(12):
         chance = np.random.default_rng(seed)
@@ -243,13 +244,26 @@ def test_the_best_path_is_the_same_whatever_bound_it_is_searched_within() -> Non
         except SynthesisError:
             continue
         found += 1
-        back = np.empty((len(want), 2, len(graph.states)), np.int32)
-        for bound in (float("inf"), path.cost + 1e-5, 10 * path.cost + 1.0):
-            assert _best_within(graph, sound, want, back, bound).cost == pytest.approx(path.cost, abs=1e-5)
-        assert path.cost > 0
-        with pytest.raises(SynthesisError):
-            _best_within(graph, sound, want, back, path.cost * 0.99)
+        with closing(ExactSearch(graph, sound, want)) as search:
+            for bound in (float("inf"), path.cost + 1e-5, 10 * path.cost + 1.0):
+                assert search.within(bound).cost == pytest.approx(path.cost, abs=1e-5)
+            assert path.cost > 0
+            with pytest.raises(SynthesisError):
+                search.within(path.cost * 0.99)
     assert found >= 4
+
+
+def test_two_threads_find_what_one_does(monkeypatch: pytest.MonkeyPatch) -> None:
+    chance = np.random.default_rng(5)
+    pairs = {(int(a), int(b)) for a, b in chance.integers(0, 400, (8000, 2)) if b != a + 1}
+    graph = graph_of(400, [0, 150, 400], {e: float(chance.uniform(0.1, 2)) for e in pairs})
+    sound = HeardStates(chance.choice([IDLE, CLAUSE], 400).astype(np.uint8), chance.random(400) < 0.3)
+    want = WantedSegment(chance.choice([IDLE, CLAUSE, ALL], 25).astype(np.uint8), np.full(25, -1, np.int32))
+    paths = []
+    for shared in (0, 10**9):
+        monkeypatch.setattr("metagraph.synthesis.exact_search.SHARED", shared)
+        paths.append(best(graph, sound, want, run=2))
+    assert paths[0].states.tolist() == paths[1].states.tolist() and len(paths[0].jumps) > 3
 
 
 @pytest.mark.parametrize("exact", [True, False])

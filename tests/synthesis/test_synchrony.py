@@ -9,8 +9,9 @@ from metagraph.motion.clip import Clip
 from metagraph.synthesis.assemble import assemble
 from metagraph.synthesis.constraints import changes, heard, wanted
 from metagraph.synthesis.cooccurrence import activation, speeds
+from metagraph.synthesis.exact_search import best
 from metagraph.synthesis.graph import build
-from metagraph.synthesis.search import best, greedy
+from metagraph.synthesis.greedy_search import greedy
 from metagraph.synthesis.search_evaluation import cut
 from metagraph.synthesis.states import key_states, states_of
 from tests.synthesis.talking import speech, talking

@@ -1,0 +1,47 @@
+"""A path through a motion graph, and what both searches for one say."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.suggest.tracks import RATE
+from metagraph.synthesis.states import SynthesisError
+
+Array = NDArray[Any]
+Cancelled = Callable[[], bool] | None
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """states `[T]`: one after another, a frame each. cost: of its transitions together, with what its frames
+    cost where they do. jumps `[n]`: the frames that come by a transition instead of following. price: what
+    the search made least, where jumps have prices beside what they look like.
+    """
+
+    states: Array
+    cost: float
+    jumps: Array
+    price: float = 0.0
+
+
+def go_on(cancelled: Cancelled) -> None:
+    """Raise SynthesisError when it was cancelled."""
+    if cancelled is not None and cancelled():
+        raise SynthesisError("the search was cancelled")
+
+
+def jumps_of(way: Array) -> Array:
+    return np.flatnonzero(np.diff(way) != 1) + 1
+
+
+def stuck(t: int) -> str:
+    return (
+        f"no motion goes with this speech beyond {t / RATE:.1f} s: allow more tolerance, leave a kind of "
+        "constraint out, "
+        "or add takes with such speech"
+    )
