@@ -20,10 +20,11 @@ from metagraph.budgets import TEXT_FILE
 from metagraph.errors import FileError, shown
 from metagraph.files import is_file, is_text, read_file, unforeseen
 from metagraph.formats.atomic import write_atomically
-from metagraph.formats.clips import digest, read_clips
+from metagraph.formats.clips import digest
 from metagraph.formats.data import FORMAT, from_data, to_data
 from metagraph.formats.fbx_readers import batch
 from metagraph.formats.fields import Data, DataError
+from metagraph.formats.motion_cache import read_or_kept
 from metagraph.formats.text import TextError, as_text, parse, to_text
 from metagraph.graph.clip_source import source_of, with_source
 from metagraph.graph.conversation import Conversation, Side
@@ -378,8 +379,8 @@ def _load(
             notes.append(f"'{shown(name)}' is missing")
             continue
         try:
-            read = {as_is: read_clips(place, as_is) for as_is in dict.fromkeys(e.as_is for e in entries)}
             now = digest(place)
+            read = {a: read_or_kept(place, now, a) for a in dict.fromkeys(e.as_is for e in entries)}
         except Exception as error:  # one bad file never spoils a project
             notes.append(str(unforeseen(place, error)))
             continue

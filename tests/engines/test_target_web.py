@@ -236,8 +236,10 @@ def test_what_is_not_ours_is_found_above_the_folder_else_kept_else_named_on_the_
     page = (out / "index.html").read_text()
     assert "./three/build/" in page and (out / "three" / "LICENSE").is_file() and web_tools.NET not in page
     assert not any("three.js" in words for words in again.warnings)
-    _fetches(web_tools.kept() / "node_modules", esbuild=True)
-    assert web_tools.tools(out) == web_tools.kept() / "node_modules"  # which has both
+    kept = web_tools.kept()
+    assert kept is not None
+    _fetches(kept / "node_modules", esbuild=True)
+    assert web_tools.tools(out) == kept / "node_modules"  # which has both
     registry.write(sample, "web", out)  # what is there is no program: as before
     assert "./three/build/" in (out / "index.html").read_text()
 

@@ -7,13 +7,14 @@ the net.
 
 from __future__ import annotations
 
-import os
 import shutil
 import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+
+from metagraph.cache_folder import cache_folder
 
 THREE, ESBUILD = "0.187.0", "0.25.12"  # the versions the player was tested with
 NET = f"https://cdn.jsdelivr.net/npm/three@{THREE}/"  # where a page finds three.js that has none of its own
@@ -33,11 +34,13 @@ def tools(folder: Path) -> Path | None:
     """Return a `node_modules` that has three.js, and esbuild if any has; None where there is none and npm
     does not fetch it.
     """
-    known = [place for place in (*_installed(folder), kept() / "node_modules") if has_three(place)]
+    place = kept()
+    places = [*_installed(folder), *([place / "node_modules"] if place is not None else [])]
+    known = [place for place in places if has_three(place)]
     whole = [place for place in known if esbuild(place) is not None]
     if whole:
         return whole[0]
-    return _fetched(kept()) or (known[0] if known else None)
+    return (_fetched(place) if place is not None else None) or (known[0] if known else None)
 
 
 def has_three(modules: Path) -> bool:
@@ -71,15 +74,9 @@ def bundled(modules: Path, entry: Path) -> bytes | None:
             return None
 
 
-def kept() -> Path:
-    """Return where they are kept between exports."""
-    if sys.platform == "win32":
-        home = Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local"))
-    elif sys.platform == "darwin":
-        home = Path.home() / "Library" / "Caches"
-    else:
-        home = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
-    return home / "metagraph" / f"web-{THREE}-{ESBUILD}"
+def kept() -> Path | None:
+    """Return where they are kept between exports; None where nobody's home is known."""
+    return cache_folder(f"web-{THREE}-{ESBUILD}")
 
 
 def _installed(folder: Path) -> Iterator[Path]:
