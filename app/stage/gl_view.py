@@ -37,6 +37,9 @@ GL_RENDERER = 0x1F01
 _Base: Any = QWidget if TYPE_CHECKING else object
 
 
+MOUSE = "Drag to orbit, right-drag to pan, wheel to zoom, double-click to frame"
+
+
 class CameraMouse(_Base):
     """Mouse to camera, for any widget that has `frame_wanted`."""
 
@@ -187,7 +190,10 @@ def make_view(compose: Compose, parent: QWidget | None = None) -> GLView | Image
     """
     without = {"offscreen", "minimal", "vnc", "linuxfb", "minimalegl", "eglfs"}
     image = QGuiApplication.platformName() in without or (sys.platform.startswith("linux") and _in_software())
-    return (ImageView if image else GLView)(compose, parent)
+    view = (ImageView if image else GLView)(compose, parent)
+    view.setAccessibleName("Character")
+    view.setAccessibleDescription(MOUSE)
+    return view
 
 
 def _in_software() -> bool:

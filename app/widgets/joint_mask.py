@@ -59,6 +59,7 @@ class MaskDialog(QDialog):
         )
         layout.addWidget(words)
         self.tree = QTreeWidget(self)
+        self.tree.setAccessibleName("Joints that move")
         self.tree.setHeaderHidden(True)
         layout.addWidget(self.tree, 1)
         self.items = joint_tree(self.tree, document.project)

@@ -1,4 +1,4 @@
-"""Goes through the five workspaces of a window and looks at their words."""
+"""Goes through the five workspaces of a window and looks at their words, and at controls' names."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from PySide6.QtTest import QTest
 
 from app.shell.workspaces import WORKSPACES
 from app.stage.gl_view import ImageView
+from tests.app.accessible import nameless
 from tests.app.painted_text import faults, without
 from tests.app.shared_window import settle
 
@@ -29,5 +30,5 @@ def walk(drive: Any, width: int, height: int) -> dict[str, list[str]]:
             settle(drive.window)  # sounds are read, what was read is counted
             QTest.qWait(30)  # and laid out
             settle(drive.window)
-            out[workspace.id] = faults(drive.window)
+            out[workspace.id] = faults(drive.window) + nameless(drive.window)
     return {k: v for k, v in out.items() if v}

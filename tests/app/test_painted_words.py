@@ -1,4 +1,6 @@
-"""Every word that the five workspaces show: none cut, none left out untold, none over another."""
+"""Every word that the five workspaces show: none cut, none left out untold, none over another; and every
+control has a name, for who hears it instead.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +16,7 @@ from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from app.project.files import SAMPLE
 from app.stage.gl_view import ImageView
 from metagraph.graph import edits
+from tests.app.accessible import nameless
 from tests.app.every_dialog import DIALOGS, opened
 from tests.app.painted_text import faults, without
 from tests.app.painted_walk import walk
@@ -76,7 +79,7 @@ def test_panels_that_are_opened_keep_to_it_too(drive, sample, size):
         for panel in ("machine", "models", "problems", "lines", "life"):
             drive.show(panel)
             drive.settle()
-            found[panel] = faults(drive.window)
+            found[panel] = faults(drive.window) + nameless(drive.window)
     drive.show("machine", False)
     drive.window.resize(1680, 1020)
     assert not any(found.values()), told(found)
@@ -94,7 +97,7 @@ def test_every_dialog_keeps_to_it_too(drive, tmp_path):
             open_it(drive, tmp_path)
             drive.wait(lambda: bool(opened()))
             drive.pause(30)
-            found[name] = [line for dialog in opened() for line in faults(dialog)]
+            found[name] = [line for dialog in opened() for line in faults(dialog) + nameless(dialog)]
             while opened():
                 opened()[-1].reject()
     drive.session.onstage.set_conversation(None)

@@ -15,7 +15,7 @@ from app.look import icons
 from app.look.names import plain
 from app.look.theme import theme
 from app.stage.figures import Figures
-from app.stage.gl_view import ImageView, make_view
+from app.stage.gl_view import MOUSE, ImageView, make_view
 from app.stage.performance import Performance
 from app.stage.playback_source import ASIDE
 from app.stage.playhead import Playhead
@@ -61,7 +61,7 @@ class PreviewPanel(QWidget):
         self.view = make_view(self._scene, self)
         self.view.frame_wanted.connect(self.frame_all)
         self.view.setMinimumSize(240, 200)
-        self.view.setToolTip("Drag to orbit, right-drag to pan, wheel to zoom, double-click to frame")
+        self.view.setToolTip(MOUSE)
         self.bare = False
         self._margins: list[QMargins] = []  # of what is hidden then
         self.hint = QLabel("F11 shows the rest again", self.view)

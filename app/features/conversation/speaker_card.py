@@ -95,6 +95,7 @@ class Cards(Tall):
     def __init__(self, parent: QWidget) -> None:
         inside = QWidget(parent)
         super().__init__(inside, 330, parent)  # two rows; more are scrolled
+        self.setAccessibleName("Who was read")
         self.cards: list[Card] = []
         self.grid = QGridLayout(inside)
         self.grid.setContentsMargins(0, 0, 0, 0)

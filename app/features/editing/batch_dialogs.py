@@ -78,6 +78,7 @@ class RenameDialog(BatchDialog):
         super().__init__(document, actions, f"Rename {len(actions)} actions", "Rename", parent)
         self.names: dict[str, str] = {}
         self.tabs = QTabWidget(self)
+        self.tabs.setAccessibleName("Ways to rename")
         self.pattern = QLineEdit("{stance} {name}", self)
         self.pattern.setAccessibleName("Pattern")
         words = QLabel(
@@ -95,6 +96,7 @@ class RenameDialog(BatchDialog):
         self._page("Find and replace", ("Find", self.sought), ("Replace with", self.put), ("", self.regex))
         self.preview = make_widget(QTreeWidget, self, rootIsDecorated=False)
         self.preview.setHeaderLabels(["Now", "Then"])
+        self.preview.setAccessibleName("Names now and then")
         self.preview.setColumnWidth(0, 240)
         self.body.addWidget(self.tabs)
         self.body.addWidget(self.preview, 1)

@@ -30,6 +30,7 @@ class GenerationDialog(QDialog):
         self.use = UsePage(document, session, jobs, self)
         self.learn = LearnPage(document, session, jobs, begin, self)
         self.tabs = QTabWidget(self)
+        self.tabs.setAccessibleName("Generate or learn")
         self.tabs.addTab(self.use, "Generate")
         self.tabs.addTab(self.learn, "Learn from takes")
         self.said = QLabel(self, wordWrap=True)

@@ -53,6 +53,11 @@ from app.widgets.memo import Once
 from app.widgets.mime import load_of
 from metagraph.graph.model import Kind, Project
 
+KEYS = (
+    "Actions by their nodes. Up and Down choose an action, Left and Right make it less or more likely, Enter "
+    "shows it."
+)
+
 
 class Canvas(QWidget):
     """The meta-graph of the current layer. files_dropped: (paths, drop) to import and then place. acts: what
@@ -92,6 +97,7 @@ class Canvas(QWidget):
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setMinimumSize(int(LEAST_WIDTH), int(LEAST_HEIGHT))  # its height follows its width
         self.setAccessibleName("Meta-graph")
+        self.setAccessibleDescription(KEYS)
         self._beat = Beat(self._next_beat, self)
         self._beat.run(session.transport.playing)
         session.transport.playing_changed.connect(lambda: self._beat.run(session.transport.playing))

@@ -156,6 +156,9 @@ class HeatMap(QWidget):
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName("What follows what, in percent")
+        self.setAccessibleDescription(
+            "A row what is played, a column what follows. Arrows choose, plus and minus or digits change."
+        )
         self.field = QLineEdit(self)
         self.field.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.field.setAccessibleName("Percent")

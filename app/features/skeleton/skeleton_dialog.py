@@ -42,6 +42,7 @@ class SkeletonDialog(QDialog):
         self.words = QLabel(self, wordWrap=True)
         layout.addWidget(self.words)
         self.tree = QTreeWidget(self)
+        self.tree.setAccessibleName("Joints of the skeleton")
         self.tree.setHeaderLabels(["Joint", "Role", "Body part"])
         self.tree.header().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
         self.tree.header().setStretchLastSection(False)
