@@ -16,17 +16,16 @@ from metagraph.graph.requests import Say, request_from
 from metagraph.playback.extend_performance import answers, hear
 from metagraph.playback.plan import Plan
 from metagraph.speech.text_gestures import (
-    APART,
-    GestureRule,
-    GestureWords,
-    ProposedGesture,
     TextStream,
     gesture_requests,
     gesture_words,
+    gesture_words_for,
+    known_languages,
     proposed,
     read_gesture_words,
     words_of,
 )
+from metagraph.speech.word_gestures import APART, GestureRule, GestureWords, ProposedGesture
 
 TEXTS = (
     "Hello! How are you? It is really great to see you here.",
@@ -156,7 +155,7 @@ def test_a_lexicon_of_ones_own_is_read_and_a_broken_one_is_told(tmp_path: Path) 
     own = tmp_path / "own.json"
     own.write_text(json.dumps({"rules": [{"words": ["ahoy"], "tags": ["greeting"], "strength": 2}]}))
     lexicon = read_gesture_words(own)
-    assert lexicon.rules == (GestureRule(("ahoy",), ("greeting",), None, 2.0),)
+    assert lexicon.rules == (GestureRule(("ahoy",), ("greeting",), "", 2.0),)
     assert found("Ahoy sailors", lexicon=lexicon) == [("greeting", "Ahoy")]
     for broken in ("{", "[]", '{"rules": [{"wrods": []}]}', '{"rules": [{"head": "bow"}]}'):
         own.write_text(broken)
@@ -172,3 +171,54 @@ def test_every_words_phrase_of_the_lexicon_is_as_words_are_read() -> None:
         for phrase in rule.words:
             assert [w.plain for w in words_of(phrase)] == phrase.split(), phrase
     assert isinstance(proposed(words_of("hello"), EVERY)[0], ProposedGesture)
+
+
+SPOKEN = {
+    "de": (
+        "Hallo! Das ist wirklich eine tolle Idee, aber ich weiß nicht, ob wir genug Zeit haben. Vielleicht "
+        "sollten wir zuerst mit allen reden, weil es so wichtig ist.",
+        {"greeting", "unsure"},
+    ),
+    "fr": (
+        "Bonjour! C'est une idée géniale, mais je ne sais pas si nous avons le temps. Peut-être qu'il faut "
+        "d'abord parler avec tout le monde, parce que c'est important.",
+        {"greeting", "unsure"},
+    ),
+    "es": (
+        "¡Hola! Es una idea maravillosa, pero no sé si tenemos tiempo. Quizás hay que hablar primero con "
+        "todo el mundo, porque es muy importante para nosotros.",
+        {"greeting", "unsure"},
+    ),
+}
+
+
+@pytest.mark.parametrize("language", SPOKEN)
+def test_other_languages_have_lexicons_of_their_own_found_by_the_words(language: str) -> None:
+    text, least = SPOKEN[language]
+    lexicon = gesture_words_for(text)
+    assert lexicon.language == language
+    assert least <= {what for what, _ in found(text, lexicon=lexicon)}
+
+
+def test_every_lexicon_says_the_same_things_in_its_language() -> None:
+    english = [rule.tags for rule in gesture_words("en").rules]
+    for language in known_languages():
+        lexicon = gesture_words(language)
+        assert lexicon.language == language
+        assert [rule.tags for rule in lexicon.rules] == english
+        every = [phrase for rule in lexicon.rules for phrase in rule.words]
+        assert len(every) == len(set(every)), "a phrase proposes one thing"
+        for phrase in every:  # each is found as it is written
+            assert " ".join(w.plain for w in words_of(phrase)) == phrase
+
+
+def test_a_language_without_a_lexicon_and_none_that_is_told_have_the_english_one() -> None:
+    assert gesture_words("xx") == gesture_words_for("") == gesture_words("en")
+
+
+def test_a_stream_goes_on_in_the_language_it_has_been_in() -> None:
+    stream = TextStream(EVERY, seed=3)
+    text, _ = SPOKEN["de"]
+    stream.take(text, 0.0)
+    out = stream.take("Nein, das geht so nicht.\n", 5.0)
+    assert any(request["do"] == "shake" for request in out)

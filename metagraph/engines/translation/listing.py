@@ -90,6 +90,7 @@ LISTING = (
     Translated("metagraph.playback.hearing", "hearing"),
     Translated("metagraph.playback.finding", "finding"),
     Translated("metagraph.playback.meaning", "meaning"),
+    Translated("metagraph.speech.word_gestures", "word_gestures", languages=("javascript",)),
 )
 
 # Modules that each runtime has of its own, with what translated ones take from them.

@@ -29,6 +29,7 @@ METHODS = {
     ("str", "startswith"), ("str", "rpartition"), ("str", "lower"), ("str", "isdigit"),
     ("str", "casefold"), ("set", "add"),
 }  # fmt: skip
+AT_BLANKS = ("split", "strip")  # which languages only know without what to split or strip by
 
 
 class Calls(Typed):
@@ -174,6 +175,8 @@ class Calls(Typed):
             if len(given) == 1:
                 return x.Builtin(kind, "get", (of, *given))
             return x.Builtin(kind, "get_or", (of, given[0], self.fitted(given[1], of.type.of[1])))
+        if of.type.kind == "str" and callee.name in AT_BLANKS and given:
+            raise self.refuse(node, f"'.{callee.name}()' at something else than blanks", "go by the letters")
         if (of.type.kind, callee.name) in METHODS:
             return x.Builtin(kind, f"{of.type.kind}_{callee.name}", (of, *given))
         info = self.info(callee.expr)

@@ -444,6 +444,8 @@ REFUSED = {
     "def f(x: list[int]) -> int:\n    return max(x, key=lambda n: n)": "max",
     "def f() -> int:\n    a = b = 1\n    return a + b": "two targets",
     "def f(x: str) -> str:\n    return x.upper()": "'.upper()' of a str",
+    "def f(x: str) -> list[str]:\n    return x.split(',')": "'.split()' at something else than blanks",
+    "def f(x: str) -> str:\n    return x.strip('.')": "'.strip()' at something else than blanks",
     "class A:\n    @staticmethod\n    def s() -> int:\n        return 1": "decorator",
 }
 

@@ -8,6 +8,7 @@ export interface SayOptions {
   words?: (unknown[] | object)[];
   visemes?: (unknown[] | object)[];
   set?: "oculus" | "azure" | "sapi" | "polly" | "arkit";
+  /** Whether gestures go with the text's words, true if nothing is said. */
   gestures?: boolean;
   mood?: string | [number, number];
   intensity?: number;
@@ -28,6 +29,8 @@ export class MetagraphCharacter extends HTMLElement {
   answer(id: string): Answer;
   /** Say something, with its sound where there is one; returns a promise of the request's id. */
   say(text: string, options?: SayOptions): Promise<string>;
+  /** Say what comes in piece by piece, each sentence when it is whole; returns a promise of the ids of what it says by it. */
+  sayPiece(piece: string, over?: boolean): Promise<string[]>;
   play(): void;
   pause(): void;
   /** Move on to a time, and stay there. */

@@ -11,6 +11,7 @@ import { load } from "./graph.js";
 import { Sounds } from "./sounds.js";
 import { Stage } from "./stage.js";
 import { StreamedVoice } from "./streamed_voice.js";
+import { Talk } from "./talk.js";
 import { MetagraphObject } from "./three.js";
 
 const STYLE = `:host { display: block; position: relative; min-height: 120px; max-height: 100vh; aspect-ratio: 3 / 4; }
@@ -54,6 +55,7 @@ export class MetagraphCharacter extends HTMLElement {
     this.object = null;
     this.sounds = null;
     this.waiting = []; // asked for before it was loaded
+    this.talk = null; // what it says, with gestures
     this.early = 0;
     this.said = 0;
     this.drawn = true;
@@ -101,7 +103,7 @@ export class MetagraphCharacter extends HTMLElement {
     this.opening = null;
     this.sounds?.silence();
     this.stage?.dispose();
-    this.object = this.stage = this.sounds = null;
+    this.object = this.stage = this.sounds = this.talk = null;
     this.last = null;
   }
 
@@ -127,6 +129,8 @@ export class MetagraphCharacter extends HTMLElement {
       const seed = this.hasAttribute("seed") ? Number(this.getAttribute("seed")) >>> 0 : undefined;
       this.object = new MetagraphObject(graph, scene, { seed, idle: this.getAttribute("idle") !== "off" });
       this.sounds = new Sounds(lines, url);
+      const language = this.closest("[lang]")?.lang || "en";
+      this.talk = new Talk(this.object.character, { language, seed: seed ?? 1, name: "said#" });
       if (this.hasAttribute("mood")) this.object.ask({ do: "mood", mood: this.getAttribute("mood") });
       if (!this.hasAttribute("aria-label")) this.canvas.setAttribute("aria-label", graph.name);
       for (const request of this.waiting.splice(0)) this.object.ask(request);
@@ -207,8 +211,8 @@ export class MetagraphCharacter extends HTMLElement {
 
   /**
    * Say something. `audio`, its sound: an address, a Blob, the bytes of a file, or an AudioBuffer; it is played in step with the lips,
-   * which do what `visemes` or `words` tell, else what is heard in it. Other options are those of the request `say`. Returns a promise of
-   * the request's id.
+   * which do what `visemes` or `words` tell, else what is heard in it. Gestures go with the text's words, by the lexicon of the page's
+   * `lang`, unless `gestures` is false. Other options are those of the request `say`. Returns a promise of the request's id.
    * @param {string} text @param {{words?: any[], visemes?: any[], set?: string, audio?: string | Blob | ArrayBuffer | AudioBuffer}} [options]
    */
   async say(text, { audio, ...options } = {}) {
@@ -221,7 +225,20 @@ export class MetagraphCharacter extends HTMLElement {
       await this.ready;
       this.sounds.give(request.id, url);
     }
-    return this.ask(request);
+    if (!text || request.line !== undefined || request.gestures === false) return this.ask(request);
+    await this.ready.catch(() => {}); // then it waits for the next one
+    if (!this.talk) return this.ask(request);
+    const { do: _, text: __, ...rest } = request;
+    return this.talk.say(text, rest).id;
+  }
+
+  /**
+   * Say what comes in piece by piece, as a language model writes it: each sentence when it is whole, after the one before. Returns a
+   * promise of the ids of what it says by it. @param {string} piece @param {boolean} [over] whether the text ends here
+   */
+  async sayPiece(piece, over = false) {
+    await this.ready;
+    return this.talk.take(piece, over).map(({ id }) => id);
   }
 
   play() {

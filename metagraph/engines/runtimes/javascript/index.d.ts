@@ -289,3 +289,29 @@ export class Character {
   /** Weights of `graph.morphs` at the updated time; likewise. */
   morphs(alive?: boolean): Float32Array;
 }
+
+export interface TalkOptions {
+  /** Whose lexicon is taken, "en" if nothing is said; English where there is none. */
+  language?: string;
+  /** One of your own, as the files have them. */
+  lexicon?: object;
+  seed?: number;
+  /** What ids begin with. */
+  name?: string;
+}
+
+export interface Said {
+  readonly id: string;
+  /** Ids of its gestures. */
+  readonly gestures: readonly string[];
+}
+
+/** Text, whole or piece by piece, as speech with the gestures that go with its words. */
+export class Talk {
+  constructor(character: Character, options?: TalkOptions);
+  readonly character: Character;
+  /** Say a text; options are those of the request `say`. */
+  say(text: string, options?: Partial<Ask>): Said;
+  /** Take in what comes next of a text: each sentence is said when it is whole. `over`: whether the text ends here. */
+  take(piece: string, over?: boolean): Said[];
+}

@@ -8,4 +8,5 @@ export { answers, hear, since } from "./hear.js";
 export { emptyPlan, keyOf } from "./plan.js";
 export { Player, morphsAt, poseAt } from "./pose.js";
 export { StreamedVoice } from "./streamed_voice.js";
+export { Talk } from "./talk.js";
 export { LAYERS } from "./words.js";

@@ -1,0 +1,299 @@
+"""Gestures that go with words, from the words alone: greetings, denial, doubt, contrast, lists, who and where
+is meant, emphasis, and a beat where nothing of that is said.
+
+After the idea of BEAT (Cassell, Vilhjalmsson and Bickmore, 2001): a text's words propose gestures by rules
+and a lexicon that anybody can edit, and of those that would get in each other's way the weaker are left out.
+All numbers are ours. Times are seconds from where the text begins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
+
+from metagraph.playback.choice import uniform
+from metagraph.playback.hashing import Bits
+from metagraph.playback.life.alphabet import Alphabet
+from metagraph.playback.life.graphemes import read_aloud
+
+APART: dict[str, float] = {"arms": 2.4, "head": 1.8}  # seconds between two strokes of a layer, at least
+AGAIN = 1.6  # and so many times as far where both are of the same tag
+LATE = 0.35  # seconds that a stroke may come after its word; later than that none is made
+FIRST = 1.4  # seconds into a text up to which a stroke may come late: a hand needs as long to get there
+PLAIN = 0.55  # of the clauses that propose nothing, how many get a beat
+LEAD = 0.1  # seconds that a stroke comes before the middle of its word's vowels
+NOD = 0.3  # seconds from where a nod begins to its first stroke
+CLAUSE = 3  # words of a clause that gets a beat, at least
+LONGEST = 20_000  # letters of a text
+ENDS = ".?!…。？！"
+PAUSES = ",;:–—、，"
+INSIDE = "'’-"  # what a word may have in the middle
+CLOSING = "\"')”»"  # what may stand between a word and the mark behind it
+
+
+@dataclass(frozen=True, slots=True)
+class GestureRule:
+    """What some words propose. words: small letters; several in a row for a phrase. tags: of a gesture of the
+    arms, the best first; of those a character has the first counts. head: what it does at the same time,
+    "nod", "shake" or nothing. strength: which of two wins.
+    """
+
+    words: tuple[str, ...] = ()
+    tags: tuple[str, ...] = ()
+    head: str = ""
+    strength: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class GestureWords:
+    """A lexicon. question, exclamation: what a sentence's end proposes for its last word that is not small.
+    clause: what one proposes in which no word does.
+    """
+
+    rules: tuple[GestureRule, ...]
+    language: str = "en"
+    question: GestureRule = GestureRule()
+    exclamation: GestureRule = GestureRule()
+    clause: GestureRule = GestureRule()
+
+
+@dataclass(frozen=True, slots=True)
+class TextWord:
+    """A word of a text. plain: in small letters. mark: what stands behind it."""
+
+    text: str
+    plain: str
+    start: float
+    end: float
+    mark: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ToldWord:
+    """When a synthesiser says a word."""
+
+    start: float
+    end: float
+
+
+@dataclass(frozen=True, slots=True)
+class ProposedGesture:
+    """A gesture that goes with a word. do: "gesture", "nod" or "shake". at: of its stroke. tags: none for the
+    head's.
+    """
+
+    layer: str
+    at: float
+    tags: tuple[str, ...]
+    strength: float
+    word: str
+    do: str = "gesture"
+
+
+@dataclass(frozen=True, slots=True)
+class GestureAsk:
+    """What is asked for a gesture. at: seconds of the session, from which on it may begin. stroke: when its
+    stroke is wanted, None for the head's. late: by how much it may come late.
+    """
+
+    do: str
+    layer: str
+    tags: tuple[str, ...]
+    at: float
+    stroke: float | None
+    late: float
+
+
+@dataclass(frozen=True, slots=True)
+class SplitWord:
+    """A word, how many letters of the text there are up to its end, and the mark behind it."""
+
+    text: str
+    end: int
+    mark: str
+
+
+def words_of(
+    alphabet: Alphabet, text: str, told: Sequence[ToldWord] = (), seconds: float | None = None
+) -> list[TextWord]:
+    """Return a text's words with their times: as a synthesiser told them, else as long as lips would take.
+
+    told: of the words in order; those beyond are left out. seconds: how long all of it takes, where that
+    alone is known.
+    """
+    letters = alphabet.letters(text)
+    pace = 1.0
+    if seconds is not None and len(told) == 0:
+        pace = seconds / max(1e-3, read_aloud(alphabet, text))
+    out: list[TextWord] = []
+    for split in _split(alphabet, letters[:LONGEST]):
+        small = alphabet.letters(split.text.lower())
+        plain = "".join(["'" if letter == "’" else letter for letter in small])
+        if len(told) > 0:
+            if len(out) == len(told):
+                break
+            times = told[len(out)]
+            out.append(TextWord(split.text, plain, times.start, times.end, split.mark))
+        else:
+            stop = pace * read_aloud(alphabet, "".join(letters[: split.end]))
+            before = out[len(out) - 1].end if len(out) > 0 else 0.0
+            start = max(before, stop - pace * read_aloud(alphabet, split.text))
+            out.append(TextWord(split.text, plain, start, stop, split.mark))
+    return out
+
+
+def _in_word(alphabet: Alphabet, letter: str) -> bool:
+    kind = alphabet.kind(letter)
+    return kind == "syllable" or kind == "letter"
+
+
+def _split(alphabet: Alphabet, letters: Sequence[str]) -> list[SplitWord]:
+    out: list[SplitWord] = []
+    at, count = 0, len(letters)
+    while at < count:
+        if not _in_word(alphabet, letters[at]):
+            at += 1
+            continue
+        first = at
+        while at < count:
+            goes_on = _in_word(alphabet, letters[at])
+            if not goes_on and letters[at] in INSIDE and at + 1 < count:
+                goes_on = _in_word(alphabet, letters[at + 1])
+            if not goes_on:
+                break
+            at += 1
+        behind = at
+        while behind < count and letters[behind] in CLOSING:
+            behind += 1
+        mark = ""
+        if behind < count and (letters[behind] in ENDS or letters[behind] in PAUSES):
+            mark = letters[behind]
+        out.append(SplitWord("".join(letters[first:at]), at, mark))
+    return out
+
+
+def proposed_for(
+    words: Sequence[TextWord],
+    arms: AbstractSet[str],
+    head: bool,
+    lexicon: GestureWords,
+    small: AbstractSet[str],
+    seed: Bits,
+) -> list[ProposedGesture]:
+    """Return the gestures that go with words, in order, none in another's way.
+
+    arms: tags that a character's gestures of the arms have; what it has none for is not proposed. head:
+    whether the head moves. small: words that say little by themselves.
+    """
+    every: list[ProposedGesture] = []
+    clause: list[TextWord] = []
+    proposes = False
+    for n, word in enumerate(words):
+        clause.append(word)
+        rule, length = _fitting(lexicon, words, n)
+        if length > 0:
+            every.extend(_of(rule, words[n + length - 1], arms, head))
+            proposes = True
+        if word.mark == "" and n + 1 < len(words):
+            continue
+        telling = [w for w in clause if w.plain not in small]
+        last = telling[len(telling) - 1] if len(telling) > 0 else clause[len(clause) - 1]
+        if word.mark == "?" or word.mark == "？":
+            every.extend(_of(lexicon.question, last, arms, head))
+        elif word.mark == "!" or word.mark == "！":
+            every.extend(_of(lexicon.exclamation, last, arms, head))
+        elif not proposes and len(clause) >= CLAUSE and uniform(seed, f"{n}/{last.plain}", "beat") < PLAIN:
+            every.extend(_of(lexicon.clause, last, arms, head))
+        clause = []
+        proposes = False
+    return sorted(_apart(every), key=lambda one: one.at)
+
+
+def _fitting(lexicon: GestureWords, words: Sequence[TextWord], n: int) -> tuple[GestureRule, int]:
+    """Return the rule with the longest phrase that begins at a word, and how many words that has; 0 where
+    none does.
+    """
+    best, longest = lexicon.clause, 0
+    for rule in lexicon.rules:
+        for phrase in rule.words:
+            parts = phrase.split()
+            if len(parts) > longest and _says(words, n, parts):
+                best, longest = rule, len(parts)
+    return best, longest
+
+
+def _says(words: Sequence[TextWord], n: int, parts: Sequence[str]) -> bool:
+    """Whether a phrase is said from a word on, and not over a pause."""
+    if n + len(parts) > len(words):
+        return False
+    for k, part in enumerate(parts):
+        if words[n + k].plain != part or (k + 1 < len(parts) and words[n + k].mark != ""):
+            return False
+    return True
+
+
+def _of(rule: GestureRule, word: TextWord, arms: AbstractSet[str], head: bool) -> list[ProposedGesture]:
+    at = max(0.0, (word.start + word.end) / 2 - LEAD)
+    out: list[ProposedGesture] = []
+    for tag in rule.tags:
+        if tag in arms:
+            out.append(ProposedGesture("arms", at, (tag,), rule.strength, word.text))
+            break
+    if rule.head != "" and head:
+        out.append(ProposedGesture("head", at, (), rule.strength, word.text, rule.head))
+    return out
+
+
+def _apart(every: Sequence[ProposedGesture]) -> list[ProposedGesture]:
+    """Leave out what is too near to something stronger of its layer; of equals the earlier stays. The same
+    tag twice in a row needs more room.
+    """
+    kept: list[ProposedGesture] = []
+    for one in sorted(every, key=lambda one: (-one.strength, one.at)):
+        if not any(_in_the_way(one, other) for other in kept):
+            kept.append(one)
+    return kept
+
+
+def _in_the_way(one: ProposedGesture, other: ProposedGesture) -> bool:
+    if one.layer != other.layer:
+        return False
+    room = APART[one.layer]
+    if len(one.tags) == 0 or (len(other.tags) > 0 and one.tags[0] == other.tags[0]):
+        room *= AGAIN
+    return abs(one.at - other.at) < room
+
+
+def gesture_asks(every: Sequence[ProposedGesture], at: float) -> list[GestureAsk]:
+    """Return what is asked for gestures of a text that begins at `at` seconds of the session. Those that
+    could not be in time are refused rather than made late.
+    """
+    out: list[GestureAsk] = []
+    for one in every:
+        late = max(LATE, FIRST - one.at)
+        if one.do == "gesture":
+            out.append(GestureAsk(one.do, one.layer, one.tags, at, at + one.at, late))
+        else:
+            out.append(GestureAsk(one.do, one.layer, (), at + max(0.0, one.at - NOD), None, late))
+    return out
+
+
+def sentence_end(alphabet: Alphabet, letters: Sequence[str], over: bool) -> int:
+    """Return after how many letters the first sentence of a text ends, 0 where it goes on. over: whether the
+    text does not.
+    """
+    some = False
+    for n, letter in enumerate(letters):
+        blank = alphabet.stripped(letter) == ""
+        if letter == "\n" and some:
+            return n + 1
+        # An end is one once something else follows: "3." may become "3.5".
+        if (
+            letter in ENDS
+            and n + 1 < len(letters)
+            and (letter in "。？！" or alphabet.stripped(letters[n + 1]) == "")
+        ):
+            return n + 1
+        some = some or not blank
+    return len(letters) if over and some else 0

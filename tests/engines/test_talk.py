@@ -1,0 +1,164 @@
+"""Text with gestures in JavaScript: the same gestures as in Python, asked for and performed, and in a page."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from metagraph.engines.targets import registry, web, web_tools
+from metagraph.engines.translation.gesture_word_lists import gesture_word_lists
+from metagraph.graph.model import Project
+from metagraph.speech.text_gestures import TextStream, gesture_words, proposed, words_of
+from tests.engines.test_target_web import MODULES, browse
+from tests.speech.test_text_gestures import SPOKEN, TEXTS, tags_of
+
+ROOT = Path(__file__).resolve().parents[2]
+RUNTIME = ROOT / "metagraph" / "engines" / "runtimes" / "javascript"
+ODD = (
+    "",
+    "…",
+    "3.5 times? No! “Well”, she said; 'tis 𝒷ig — and so-called ﬁne, isn’t it?",
+    "i i i i you you you. NO NO NO! hello hello hello hello",
+    "Ümläute ß ẞ İ ı 日本語 그리고 हिन्दी: yes, really, a very long clause without much in it",
+    "a\nb\n\nno\n",
+)
+SCRIPT = """
+import { readFileSync } from "node:fs";
+import { Character, Talk, load } from "%(runtime)s/index.js";
+import { ALPHABET } from "%(runtime)s/alphabet.js";
+import { ToldWord, wordsOf } from "%(runtime)s/word_gestures.js";
+const asked = JSON.parse(readFileSync(0, "utf8"));
+const json = readFileSync(asked.json), glb = readFileSync(asked.glb);
+const graph = load(json.toString(), glb.buffer.slice(glb.byteOffset, glb.byteOffset + glb.length));
+const cases = asked.cases.map(([language, text, told, seconds, seed]) => {
+  const talk = new Talk(new Character(graph, { seed: 3 }), { language, seed });
+  const times = told.map(([, start, end]) => new ToldWord(start, end));
+  const words = wordsOf(ALPHABET, text, times, seconds);
+  return [words, talk.proposed(words)];
+});
+const streams = asked.texts.map((text) => {
+  const character = new Character(graph, { seed: 3 });
+  const talk = new Talk(character, { seed: 0, name: "text" });
+  const asks = [];
+  const ask = character.ask.bind(character);
+  character.ask = (request) => (asks.push(request), ask(request));
+  const said = [];
+  for (const letter of text) said.push(...talk.take(letter));
+  said.push(...talk.take("", true));
+  const first = said.flatMap(({ id, gestures }) => [id, ...gestures]);
+  const states = {};
+  for (let t = 0; t < talk.free + 2; t += 0.1) {
+    character.update(t);
+    for (const id of first) states[id] = character.answer(id).state;
+  }
+  return { asks, states };
+});
+console.log(JSON.stringify({ cases, streams }));
+"""
+
+
+Case = tuple[str, str, list[tuple[str, float, float]], float | None, int]
+
+
+def cases() -> list[Case]:
+    """Texts, each with times that lips take, that a synthesiser told, and stretched to a length."""
+    every = [("en", text) for text in (*TEXTS, *ODD)] + [(code, text) for code, (text, _) in SPOKEN.items()]
+    out: list[Case] = []
+    for n, (language, text) in enumerate(every):
+        told = [(w.text, 0.3 * k, 0.3 * k + 0.2) for k, w in enumerate(words_of(text))][:-1]
+        out += [(language, text, [], None, n), (language, text, told, None, n), (language, text, [], 7.5, n)]
+    return out
+
+
+@pytest.fixture(scope="module")
+def told(sample_export: Path) -> Any:
+    """What Node says."""
+    node = shutil.which("node")
+    if node is None:
+        pytest.skip("needs Node")
+    files = {kind: str(sample_export / f"sample.{kind}") for kind in ("json", "glb")}
+    done = subprocess.run(
+        [node, "--input-type=module", "-e", SCRIPT % {"runtime": RUNTIME.as_uri()}],
+        input=json.dumps({**files, "cases": cases(), "texts": TEXTS}),
+        capture_output=True,
+        text=True,
+        timeout=60,
+        encoding="utf-8",
+    )
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def rounded(value: Any) -> Any:
+    return json.loads(json.dumps(value), parse_float=lambda x: round(float(x), 9), parse_int=float)
+
+
+def test_words_and_their_gestures_are_those_of_python(told: Any, sample: Project) -> None:
+    some = 0
+    for (language, text, times, seconds, seed), (words, gestures) in zip(cases(), told["cases"], strict=True):
+        mine = words_of(text, times, seconds)
+        assert rounded([asdict(w) for w in mine]) == rounded(words), text
+        made = proposed(mine, tags_of(sample), gesture_words(language), seed)
+        assert rounded([asdict(g) for g in made]) == rounded(gestures), text
+        some += len(made)
+    assert some > 60
+
+
+def test_text_that_comes_in_letter_by_letter_asks_for_what_python_asks_and_most_is_performed(
+    told: Any, sample: Project
+) -> None:
+    states: list[str] = []
+    for text, found in zip(TEXTS, told["streams"], strict=True):
+        stream = TextStream(tags_of(sample), gesture_words("en"))
+        wanted = [r for letter in text for r in stream.take(letter, 0.0)] + stream.take("", 0.0, over=True)
+        got = [{k: v for k, v in ask.items() if k in wanted[n]} for n, ask in enumerate(found["asks"])]
+        assert [r["id"] for r in wanted] == [ask["id"] for ask in found["asks"]]
+        for mine, theirs in zip(wanted, got, strict=True):
+            assert mine.keys() == theirs.keys()
+            for key, value in mine.items():
+                close = isinstance(value, float) and abs(value - theirs[key]) < 1e-3
+                assert close or value == theirs[key], (text, key)
+        states += found["states"].values()
+    assert len(states) > 20 and states.count("refused") < 0.2 * len(states), states
+
+
+def test_the_lists_of_words_are_made_of_the_files() -> None:
+    for place, text in gesture_word_lists().items():
+        assert place.read_text(encoding="utf-8") == text, "make them anew (docs/translation.md)"
+
+
+def test_an_agent_in_a_page_talks_with_gestures(sample: Project, tmp_path: Path) -> None:
+    """The page of the docs beside an export: told something, it answers sentence by sentence."""
+    if web_tools.esbuild(MODULES) is None or not web_tools.has_three(MODULES):
+        pytest.skip("needs three.js and esbuild (python3 run.py test fetches them where npm is)")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(web, "tools", lambda place: MODULES)
+        registry.write(sample, "web", tmp_path)
+    page = ROOT / "docs" / "clients" / "talking_agent.html"
+    assert len(page.read_text(encoding="utf-8").splitlines()) <= 60
+    shutil.copy(page, tmp_path / "talking_agent.html")
+    say = """(async () => { const ada = document.querySelector("#ada"); await ada.ready; ada.paused = true;
+      document.querySelector("input").value = "let us build a boat";
+      document.querySelector("form").requestSubmit();
+      await new Promise((done) => { const look = () => ada.talk.count === 3 ? done() : setTimeout(look, 20); look(); });
+      return ada.talk.free; })()"""
+    play = """(() => { const ada = document.querySelector("#ada"); const seen = [];
+      for (let t = 0; t < 12; t += 0.1) { ada.object.update(0.1); seen.push(...ada.object.events()); }
+      return seen.filter((one) => one.kind === "begin").map((one) => [one.layer, one.action, one.meta]); })()"""
+    (free, begun), errors = browse(
+        tmp_path,
+        {"url": "talking_agent.html", "until": "window.customElements.get('metagraph-character')"},
+        {"run": say},
+        {"run": play},
+    )
+    assert not errors
+    said = [action for layer, action, _ in begun if layer == "speech"]
+    assert len(said) == 3 and "let us build a boat" in said[1] and 6 < free < 12
+    gestures = [meta for layer, _, meta in begun if layer != "speech" and meta.startswith("said#")]
+    assert len(gestures) >= 3, begun
