@@ -6,7 +6,15 @@ from __future__ import annotations
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QAccessible
-from PySide6.QtWidgets import QAbstractScrollArea, QAbstractSpinBox, QComboBox, QLabel, QTabBar, QWidget
+from PySide6.QtWidgets import (
+    QAbstractScrollArea,
+    QAbstractSpinBox,
+    QComboBox,
+    QLabel,
+    QTabBar,
+    QTabWidget,
+    QWidget,
+)
 
 ROLELESS = {QAccessible.Role.NoRole, QAccessible.Role.Client, QAccessible.Role.Window}
 
@@ -24,6 +32,8 @@ def nameless(top: QWidget) -> list[str]:
             continue  # a label's words are its name, or there are none yet; each tab is told by its own
         if not told.text(QAccessible.Text.Name).strip():
             out.append(f"{_who(widget)} has no name")
+        elif isinstance(widget, (QAbstractScrollArea, QTabWidget)):
+            continue  # what they hold is told
         elif told.role() in ROLELESS and not told.text(QAccessible.Text.Description).strip():
             out.append(f"{_who(widget)} ({told.text(QAccessible.Text.Name)}) is told to be nothing")
     return out

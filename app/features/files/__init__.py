@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QMenu, QMessageBox
 from app.features.files.import_line import ImportLine
 from app.project.files import PRACTICE, SAMPLE, SEATED, Files
 from app.project.importing import Importing
+from app.project.label_files import LabelFiles
 from app.project.watching import Watcher
 from app.shell.actions import Command, Standard
 from app.shell.context import Contribution, HeaderItem, Shell
@@ -51,6 +52,7 @@ def contribute(shell: Shell) -> Contribution:
         lambda title, lines: _report(shell, title, lines),
         shell.widget,
     )
+    labels = LabelFiles(shell.document, shell.jobs, files, importing, shell.widget)
     shell.widget.addToolBar(Qt.ToolBarArea.BottomToolBarArea, line)
     line.hide()
     menu = "&File"
@@ -110,6 +112,14 @@ def contribute(shell: Shell) -> Contribution:
                 ("Ctrl+Shift+I",),
             ),
             Command(
+                "import_labels",
+                menu,
+                "import",
+                "Import &labels…",
+                labels.ask,
+                tip="A file of labels, as Blender's add-on writes it, with the clips beside it",
+            ),
+            Command(
                 "watch",
                 menu,
                 "import",
@@ -145,6 +155,7 @@ def contribute(shell: Shell) -> Contribution:
             ),
         ),
         header=(HeaderItem("left", "import"), HeaderItem("left", "undo"), HeaderItem("left", "redo")),
+        drops=(labels.drop,),
     )
 
 

@@ -1,0 +1,105 @@
+"""Files of labels from other programs, such as Blender's add-on: actions are placed and changed as they say,
+with the clips that lie beside them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from PySide6.QtWidgets import QFileDialog, QWidget
+
+from app.look.plural import many
+from app.project.document import Document
+from app.project.files import Files
+from app.project.importing import FileDrop, Importing
+from app.project.jobs import Job, Jobs
+from metagraph.formats.action_labels import LabelRow, labelled, read_labels
+from metagraph.formats.clips import SUFFIXES
+from metagraph.formats.imports import Imported, import_files
+from metagraph.graph.model import Project
+
+ENDING = ".labels.json"
+FILES = f"Labels (*{ENDING});;JSON (*.json);;All files (*)"
+
+
+@dataclass(frozen=True)
+class ReadLabels:
+    """What a file says, and the clips that came with it."""
+
+    rows: tuple[LabelRow, ...]
+    clips: Imported
+
+    def into(self, project: Project) -> tuple[Project, int, tuple[str, ...]]:
+        """Return a project with both, how many rows were met, and why others were not."""
+        project = self.clips.into(project)
+        at = {(entry.path, entry.take): entry.id for entry in project.clips.values()}
+        fresh = {clip.name: at[file, take] for file, take, _, clip in self.clips.loaded}
+        return labelled(project, self.rows, fresh)
+
+
+def clips_beside(path: Path) -> list[Path]:
+    """Return the files of clips that are called as a file of labels is: `talk.glb` for `talk.labels.json`."""
+    stem = path.name.removesuffix(ENDING)
+    return [path.with_name(stem + ending) for ending in SUFFIXES if path.with_name(stem + ending).is_file()]
+
+
+class LabelFiles:
+    """Takes files of labels into the project, each as one step that can be undone. drop: for those that are
+    dropped.
+    """
+
+    def __init__(
+        self, document: Document, jobs: Jobs, files: Files, importing: Importing, widget: QWidget
+    ) -> None:
+        self._document, self._jobs, self._files = document, jobs, files
+        self._importing, self._widget = importing, widget
+        self.drop = FileDrop((".json",), self._claimed, self.take)
+
+    def ask(self) -> None:
+        """Ask for a file of labels and take it."""
+        if self._files.refuse():
+            return
+        name, _ = QFileDialog.getOpenFileName(
+            self._widget, "Import labels", str(self._document.folder or Path.home()), FILES
+        )
+        if name:
+            self.take([Path(name)])
+
+    def take(self, paths: Sequence[Path]) -> None:
+        """Read files of labels on a thread and do what they say."""
+        for path in paths:
+            self._take(path)
+
+    @staticmethod
+    def _claimed(paths: Sequence[Path]) -> Sequence[Path]:
+        return [path for path in paths if path.name.lower().endswith(ENDING)]
+
+    def _take(self, path: Path) -> None:
+        project, folder = self._document.project, self._document.folder
+
+        def work(job: Job) -> ReadLabels:
+            tell = lambda n, total, file: job.tell(n, total, file.name)  # noqa: E731
+            rows = read_labels(path)
+            return ReadLabels(
+                rows, import_files(project, folder, clips_beside(path), tell, lambda: job.cancelled)
+            )
+
+        def done(read: ReadLabels) -> None:
+            left: tuple[str, ...] = ()
+            met = 0
+
+            def edit(project: Project) -> Project:
+                nonlocal left, met
+                project, met, left = read.into(project)
+                return project
+
+            self._document.edit(f"Import labels of {many(len(read.rows), 'action')}", edit)
+            told = f"Labelled {met} of {many(len(read.rows), 'action')}"
+            why = (*left, *read.clips.failures)
+            if why:
+                self._importing.report.emit(told, list(why))
+            self._importing.told.emit(told)
+
+        self._jobs.start("Importing labels", work, done, self._files.show_failure)
