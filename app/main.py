@@ -8,7 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QCoreApplication, Qt
+from PySide6.QtCore import QCoreApplication, QLibraryInfo, QSettings, Qt, QTranslator
 from PySide6.QtGui import QSurfaceFormat
 from PySide6.QtWidgets import QApplication
 
@@ -26,6 +26,8 @@ def prepare() -> QApplication:
     found = QApplication.instance()
     if isinstance(found, QApplication):
         return found
+    from app import translation
+
     frugal()
     # Planning and checking run on threads; the window's own must get its turn well within a frame.
     sys.setswitchinterval(0.001)
@@ -39,7 +41,14 @@ def prepare() -> QApplication:
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
     QCoreApplication.setApplicationName("Metagraph")
     QCoreApplication.setOrganizationName("Metagraph")
-    return QApplication(sys.argv[:1])
+    app = QApplication(sys.argv[:1])
+    translation.choose_as_told(QSettings())  # before anything is imported that says a word
+    if translation.language() != translation.ENGLISH:
+        translator = QTranslator(app)  # what Qt itself says
+        place = QLibraryInfo.path(QLibraryInfo.LibraryPath.TranslationsPath)
+        if translator.load(f"qtbase_{translation.language()}", place):
+            app.installTranslator(translator)
+    return app
 
 
 def make_window() -> Window:

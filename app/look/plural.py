@@ -6,13 +6,15 @@ import re
 from collections.abc import Sequence
 from functools import lru_cache
 
+from app.translation import tr
+
 FRONT = "@|:"  # what studios put between a character's name and an action's
 _RUN = re.compile(r"[^\W\d_]+|\d+")  # of letters, or of digits
 
 
 def many(count: int, noun: str) -> str:
     """Return "1 clip", "2,328 connections"."""
-    return f"{count:,} {noun}{'s' if count != 1 else ''}"
+    return tr(f"{{count:,}} {noun}{'s' if count != 1 else ''}", count=count)
 
 
 def listed(words: Sequence[str]) -> str:

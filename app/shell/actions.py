@@ -12,6 +12,7 @@ from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QMenu, QMenuBar, QWidget
 
 from app import faults
+from app.translation import tr, tr_noop
 
 Standard = QKeySequence.StandardKey
 Words = str | Callable[[], str]
@@ -19,15 +20,15 @@ Words = str | Callable[[], str]
 # The menus with their groups, in order; a line is drawn between groups. A group that is not named here comes
 # last in its menu.
 MENUS: dict[str, tuple[str, ...]] = {
-    "&File": ("project", "save", "import", "character", "write", "quit"),
-    "&Edit": ("history", "selection", "properties", "find"),
-    "&Graph": ("author", "label", "layers", "stances", "skeleton"),
-    "&Motion": ("make",),
-    "&Play": ("transport", "live", "show"),
-    "&Conversation": ("read", "settings", "stage", "write", "remove"),
-    "&View": ("workspaces", "workspace", "character", "sides", "graph", "look"),
-    "&Study": (),
-    "&Help": (),
+    tr_noop("&File"): ("project", "save", "import", "character", "write", "quit"),
+    tr_noop("&Edit"): ("history", "selection", "properties", "find"),
+    tr_noop("&Graph"): ("author", "label", "layers", "stances", "skeleton"),
+    tr_noop("&Motion"): ("make",),
+    tr_noop("&Play"): ("transport", "live", "show"),
+    tr_noop("&Conversation"): ("read", "settings", "stage", "write", "remove"),
+    tr_noop("&View"): ("workspaces", "workspace", "character", "sides", "graph", "look"),
+    tr_noop("&Study"): (),
+    tr_noop("&Help"): (),
 }
 
 
@@ -124,7 +125,7 @@ class Actions:
         group = ""
         for command in self.commands:
             if command.menu not in menus:
-                menus[command.menu] = bar.addMenu(command.menu)
+                menus[command.menu] = bar.addMenu(tr(command.menu))
             elif command.group != group:
                 menus[command.menu].addSeparator()
             group = command.group

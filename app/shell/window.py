@@ -25,6 +25,7 @@ from app.shell.fault_dialog import FaultTeller
 from app.shell.header import Header
 from app.shell.job_line import JobLine
 from app.shell.keyboard import Keyboard
+from app.shell.language_menu import language_command
 from app.shell.notice import Notice
 from app.shell.places import Places
 from app.shell.verbs import Verbs
@@ -137,6 +138,7 @@ class Window(QMainWindow):
                     icon="theme",
                     study=True,
                 ),
+                language_command(self.shell),
             ),
         )
 

@@ -1,0 +1,59 @@
+"""The window's words in another language.
+
+English stands in the code, inside `tr`; a language is a file of English texts and what stands in their place
+(`languages/de.json`), the form that translation services call flat JSON. What a language lacks is shown in
+English. It is chosen once, before the window is made; what the domain says of files and graphs is English.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+ENGLISH = "en"
+NAMES = {"en": "English", "de": "Deutsch"}  # languages by what they call themselves
+
+_words: Mapping[str, str] = {}
+_language = ENGLISH
+
+
+def tr(text: str, **values: object) -> str:
+    """Return a text in the language that was chosen. values: of what it has in braces, as `str.format` has
+    it; without any, braces are braces.
+    """
+    found = _words.get(text, text)
+    return found.format(**values) if values else found
+
+
+def tr_noop(text: str) -> str:
+    """Return a text as it is: one that is looked up later, by `tr` of what holds it."""
+    return text
+
+
+def language() -> str:
+    """Return the code of the language that was chosen."""
+    return _language
+
+
+def choose(code: str) -> None:
+    """Choose a language for all that is asked from now on; English where there is none of that code."""
+    global _words, _language
+    found = code if code in NAMES else ENGLISH
+    _words, _language = words_of(found), found
+
+
+def words_of(code: str) -> dict[str, str]:
+    """Return English texts and what stands in their place."""
+    if code == ENGLISH:
+        return {}
+    import msgspec
+
+    file = Path(__file__).parent / "languages" / f"{code}.json"
+    return msgspec.json.decode(file.read_bytes(), type=dict[str, str])
+
+
+def choose_as_told(settings: Any) -> None:
+    """Choose what METAGRAPH_LANGUAGE says, else the settings."""
+    choose(os.environ.get("METAGRAPH_LANGUAGE") or str(settings.value("language", ENGLISH)))

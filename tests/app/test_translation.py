@@ -1,0 +1,103 @@
+"""Every text that is marked has its German, with the same places for values, and the window shows it."""
+
+from __future__ import annotations
+
+import ast
+import string
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from app import translation
+from app.translation import tr
+
+APP = Path(translation.__file__).parent
+OTHERS = sorted(set(translation.NAMES) - {translation.ENGLISH})
+
+
+def marked() -> Iterator[tuple[str, str, set[str]]]:
+    """Yield where, what, and the names of values, for each text in `tr`, `tr_noop` and `many`."""
+    for path in sorted(APP.rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if (
+                not isinstance(node, ast.Call)
+                or not isinstance(node.func, ast.Name)
+                or path.name == "translation.py"
+            ):
+                continue
+            where = f"{path.relative_to(APP)}:{node.lineno}"
+            if node.func.id in ("tr", "tr_noop"):
+                text = node.args[0]
+                if isinstance(text, ast.Constant):
+                    yield where, str(text.value), {str(k.arg) for k in node.keywords}
+            elif node.func.id == "many" and isinstance(noun := node.args[1], ast.Constant):
+                yield where, f"{{count:,}} {noun.value}", {"count"}
+                yield where, f"{{count:,}} {noun.value}s", {"count"}
+
+
+@cache
+def texts() -> frozenset[str]:
+    return frozenset(text for _, text, _ in marked())
+
+
+def places(text: str) -> set[str]:
+    return {name for _, name, _, _ in string.Formatter().parse(text) if name is not None}
+
+
+@pytest.fixture
+def english() -> Iterator[None]:
+    yield
+    translation.choose("en")
+
+
+def test_values_are_those_of_the_text() -> None:
+    for where, text, values in marked():
+        if values:
+            assert places(text) == values, where
+
+
+@pytest.mark.parametrize("code", OTHERS)
+def test_a_language_has_every_text_and_none_that_is_gone(code: str) -> None:
+    words = translation.words_of(code)
+    missing = sorted(texts() - words.keys())
+    assert not missing, f"{len(missing)} texts without {code}: {missing[:5]}"
+    assert not sorted(words.keys() - texts())
+
+
+@pytest.mark.parametrize("code", OTHERS)
+def test_a_translation_has_the_same_values_marks_and_keys(code: str) -> None:
+    valued = {text for _, text, values in marked() if values}
+    for text, other in translation.words_of(code).items():
+        if text in valued:
+            assert places(other) == places(text), text
+        assert text.count("…") == other.count("…"), text
+        assert (
+            other.strip()
+            and (text[:1] == " ") == (other[:1] == " ")
+            and (text[-1:] == " ") == (other[-1:] == " ")
+        ), text
+        assert text.replace("&&", "").count("&") >= other.replace("&&", "").count("&"), text
+
+
+def test_what_a_language_lacks_is_english(english: None) -> None:
+    translation.choose("de")
+    assert translation.language() == "de"
+    assert tr("no such text {n}", n=3) == "no such text 3"
+    assert tr("braces {stay} as they are") == "braces {stay} as they are"
+    translation.choose("xx")
+    assert translation.language() == "en"
+
+
+def test_the_environment_wins_over_the_settings(english: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Settings:
+        def value(self, name: str, usual: str) -> str:
+            assert name == "language"
+            return "de"
+
+    translation.choose_as_told(Settings())
+    assert translation.language() == "de"
+    monkeypatch.setenv("METAGRAPH_LANGUAGE", "en")
+    translation.choose_as_told(Settings())
+    assert translation.language() == "en"
