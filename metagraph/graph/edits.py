@@ -103,7 +103,9 @@ def remove_clips(project: Project, clips: Collection[str]) -> Project:
     left = {i: e for i, e in project.clips.items() if i not in clips}
     base = BasePose() if project.base.clip in clips else project.base
     manual = without_clips(project.manual, clips)
-    return replace(project, clips=left, base=base, skeleton=project.skeleton if left else None, manual=manual)
+    marks = {i: m for i, m in project.marks.items() if i in left} if project.marks else project.marks
+    skeleton = project.skeleton if left else None
+    return replace(project, clips=left, base=base, skeleton=skeleton, manual=manual, marks=marks)
 
 
 # --- stances
