@@ -22,6 +22,7 @@ MENUS: dict[str, tuple[str, ...]] = {
     "&File": ("project", "save", "import", "character", "write", "quit"),
     "&Edit": ("history", "selection", "properties", "find"),
     "&Graph": ("author", "label", "layers", "stances", "skeleton"),
+    "C&lips": ("rating", "labels", "favourites", "files", "view", "groups"),
     "&Motion": ("make",),
     "&Play": ("transport", "live", "show"),
     "&Conversation": ("read", "settings", "stage", "write", "remove"),

@@ -20,6 +20,7 @@ LOOK_AT = 48  # frames of a clip that are compared
 # of the character's height. The numbers are ours: above what breathing and swaying in an idle loop come to.
 TURNS: dict[Moved, float] = {"legs": 10.0, "spine": 4.0, "arms": 10.0, "head": 3.5, "face": 3.0}
 TRAVELS = 0.12
+PARTS: tuple[Moved, ...] = ("place", *TURNS)
 
 
 def moved(clip: Clip) -> tuple[Moved, ...]:

@@ -143,9 +143,9 @@ class Driver(Handles):
 
     def card(self, clip: str) -> tuple[QWidget, QPoint]:
         """The library card of a clip, by name; scrolled into sight."""
-        from app.features.library.clip_model import ENTRY
+        from app.features.library.clip_rows import ENTRY
 
-        view, proxy = self.library.list, self.library.proxy  # type: ignore[attr-defined]
+        view, proxy = self.library.list, self.library.rows  # type: ignore[attr-defined]
         for row in range(proxy.rowCount()):
             index = proxy.index(row, 0)
             if index.data(ENTRY).name == clip:

@@ -102,6 +102,7 @@ def contribute(shell: Shell) -> Contribution:
             enabled=some,
             when="meta",
             study=True,
+            menus=("clip label",),
         )
         for number, kind in enumerate(KINDS, 1)
     )
