@@ -9,8 +9,8 @@ import hashlib
 import os
 from pathlib import Path
 
-from PySide6.QtCore import QStandardPaths, Qt
-from PySide6.QtGui import QImage, QPainter
+from PySide6.QtCore import QByteArray, QStandardPaths, Qt
+from PySide6.QtGui import QImage, QImageWriter, QPainter
 
 from app.stage.picture_process import LARGE, SCALE, SCRUB, SIZE, PictureOrder
 
@@ -92,7 +92,9 @@ class PictureStore:
         beside = path.with_suffix(f".{os.getpid()}")
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            if not sheet.save(str(beside), b"PNG", 80):
+            writer = QImageWriter(str(beside), QByteArray(b"png"))
+            writer.setQuality(80)  # packed lightly: it is read often, and soon written
+            if not writer.write(sheet):
                 raise OSError
             size = beside.stat().st_size
             beside.replace(path)

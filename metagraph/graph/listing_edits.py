@@ -54,23 +54,22 @@ def reordered(project: Project, actions: Collection[str], before: str | None) ->
 
 
 def shifted(project: Project, actions: Collection[str], steps: int) -> Project:
-    """List actions of one node a place earlier (-1) or later (1), as far as there is one; those that stand
+    """List actions a place earlier in their nodes (-1) or later (1), as far as there is one; those that stand
     beside each other stay so.
     """
-    moving = [a for a in project.actions() if a.id in actions]
-    if not moving:
-        return project
-    graph = project.graphs[moving[0].layer]
-    node = graph.of(moving[0].stance, moving[0].kind)
-    order = list(node)
-    places = [n for n, a in enumerate(order) if a.id in actions]
-    edge = 0 if steps < 0 else len(order) - 1
-    for n in places if steps < 0 else reversed(places):
-        if n == edge:  # it is at the end, or beside one that is
-            edge += 1 if steps < 0 else -1
-            continue
-        order[n], order[n + steps] = order[n + steps], order[n]
-    return _listed(project, node, order)
+    nodes = dict.fromkeys((a.layer, a.stance, a.kind) for a in project.actions() if a.id in actions)
+    for layer, stance, kind in nodes:
+        node = project.graphs[layer].of(stance, kind)
+        order = list(node)
+        places = [n for n, a in enumerate(order) if a.id in actions]
+        edge = 0 if steps < 0 else len(order) - 1
+        for n in places if steps < 0 else reversed(places):
+            if n == edge:  # it is at the end, or beside one that is
+                edge -= steps
+            else:
+                order[n], order[n + steps] = order[n + steps], order[n]
+        project = _listed(project, node, order)
+    return project
 
 
 def _listed(project: Project, before: tuple[Action, ...], after: list[Action]) -> Project:

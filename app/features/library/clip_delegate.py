@@ -57,7 +57,7 @@ class ClipDelegate(QStyledItemDelegate):
         else:
             draw_back(painter, option.rect, look, lit, chosen)
             if self.style_of == "columns" and self._header is not None:
-                draw_columns(painter, option.rect, entry, *more, self._header, self.side, look)
+                draw_columns(painter, option.rect, entry, *more, self.names, self._header, self.side, look)
             else:
                 draw_line(painter, option.rect, entry, index.row(), *more, self.names, self.side, look)
         if state & QStyle.StateFlag.State_HasFocus:

@@ -18,6 +18,7 @@ from app.look.theme import KIND_MARKS, Theme
 from metagraph.graph.model import ClipEntry
 
 MIDDLE = Qt.AlignmentFlag.AlignVCenter
+NAME = 84  # pixels that a name has at least in a line
 
 
 def draw_back(painter: QPainter, rect: QRect, look: Theme, lit: bool, chosen: bool) -> None:
@@ -45,24 +46,24 @@ def draw_line(
     draw_picture(painter, box, pictures, entry, look, small=True)
     mark = facts.mark(entry)
     line = QRect(box.right() + 8, rect.top(), rect.right() - box.right() - 16, rect.height())
-    right = draw_kinds(painter, line, kinds_of(facts, entry), look)
-    painter.setPen(QColor(look.dim))
-    length = f"{entry.duration:.1f} s"
     wide = painter.fontMetrics().horizontalAdvance
-    right -= wide(length) + 6
-    painter.drawText(QRect(right, line.top(), wide(length) + 2, line.height()), MIDDLE, length)
+    front, rest = names.of(entry)
+    right = draw_kinds(painter, line, kinds_of(facts, entry), look)
     words = HEART * mark.favourite + PENCIL * bool(mark.note) + (f"★{mark.rating}" if mark.rating else "")
-    if words:
-        right -= wide(words) + 6
-        painter.setPen(QColor(look.text))
-        painter.drawText(QRect(right, line.top(), wide(words) + 2, line.height()), MIDDLE, words)
+    for text, color in ((f"{entry.duration:.1f} s", look.dim), (words, look.text)):
+        if text and right - wide(text) - 6 - line.left() > NAME:  # the name goes before them
+            right -= wide(text) + 6
+            painter.setPen(QColor(color))
+            painter.drawText(QRect(right, line.top(), wide(text) + 2, line.height()), MIDDLE, text)
     if mark.color:
         right -= TAG + 5
         draw_label(painter, QRect(right, line.center().y() - TAG // 2, TAG, TAG), mark.color)
     room = right - line.left() - 4
     if room > 12:
+        shown = f"{front} {rest}".strip()
+        if wide(shown) > room:
+            shown = fitted(rest, room, painter.font().toString(), names.beside(row))
         painter.setPen(QColor(look.text))
-        shown = fitted(" ".join(filter(None, names.of(entry))), room, painter.font().toString(), ())
         painter.drawText(QRect(line.left(), line.top(), room, line.height()), MIDDLE, shown)
 
 
@@ -72,11 +73,14 @@ def draw_columns(
     entry: ClipEntry,
     facts: ClipFacts,
     pictures: ClipPictures,
+    names: ClipNames,
     header: ClipHeader,
     side: int,
     look: Theme,
 ) -> None:
-    """Draw what stands in the columns of a clip, each cut at its end where it has no room."""
+    """Draw what stands in the columns of a clip, each cut where it has no room: at its end, names in their
+    middle.
+    """
     metrics = painter.fontMetrics()
     name = PLACES["name"]
     for n, column in enumerate(COLUMNS):
@@ -101,11 +105,12 @@ def draw_columns(
                 painter.setPen(look.kind(kind))
                 painter.drawText(cell, MIDDLE, KIND_MARKS[kind])
                 cell.setLeft(cell.left() + 16)
-        words = column.words(facts, entry)
+        words = " ".join(names.of(entry)).strip() if n == name else column.words(facts, entry)
         if not words or cell.width() < 8:
             continue
         painter.setPen(QColor(look.text if column.id in ("name", "rating", "favourite") else look.dim))
-        shown = metrics.elidedText(words, Qt.TextElideMode.ElideRight, cell.width())
+        cut = Qt.TextElideMode.ElideMiddle if n == name else Qt.TextElideMode.ElideRight
+        shown = metrics.elidedText(words, cut, cell.width())
         painter.drawText(
             cell,
             MIDDLE | (Qt.AlignmentFlag.AlignRight if column.right else Qt.AlignmentFlag.AlignLeft),

@@ -115,6 +115,9 @@ class ClipList(QListView):
     def verticalOffset(self) -> int:
         return self.verticalScrollBar().value()
 
+    def scrollContentsBy(self, dx: int, dy: int) -> None:
+        self.viewport().scroll(dx, dy)
+
     def _shift(self) -> QPoint:
         return QPoint(self.horizontalOffset(), self.verticalOffset())
 
