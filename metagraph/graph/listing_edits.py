@@ -53,6 +53,12 @@ def reordered(project: Project, actions: Collection[str], before: str | None) ->
     return _listed(project, node, [*rest[:at], *moving, *rest[at:]])
 
 
+def listed_otherwise(before: Project, after: Project) -> bool:
+    """Return whether two projects that are equal list their actions in another order."""
+    graphs = ((before.graphs[layer].actions, after.graphs[layer].actions) for layer in before.graphs)
+    return any(one is not other and list(one) != list(other) for one, other in graphs)
+
+
 def shifted(project: Project, actions: Collection[str], steps: int) -> Project:
     """List actions a place earlier in their nodes (-1) or later (1), as far as there is one; those that stand
     beside each other stay so.
