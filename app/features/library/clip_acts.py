@@ -55,7 +55,7 @@ class ClipActs:
         )
         out.addSeparator()
         out.addAction("Rename…\tF2", lambda: self.rename(entry.id))
-        out.addAction("Duplicate\tCtrl+D", lambda: self.duplicate(chosen))
+        out.addAction("Duplicate\tCtrl+Shift+D", lambda: self.duplicate(chosen))
         out.addAction("Reveal in folder", lambda: self.reveal(entry.id))
         out.addActions(self.row_actions)
         out.addSeparator()

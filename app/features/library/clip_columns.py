@@ -51,7 +51,7 @@ def _note(facts: ClipFacts, entry: ClipEntry) -> str:
 
 
 COLUMNS: tuple[Column, ...] = (
-    Column("name", "Name", lambda f, e: e.name, "name", 220, "What the clip is called"),
+    Column("name", "Name", lambda f, e: e.name, "name", 250, "What the clip is called"),
     Column("length", "Length", lambda f, e: f"{e.duration:.2f} s", "length", 70, "Its length", right=True),
     Column(
         "moves",

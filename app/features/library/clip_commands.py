@@ -104,7 +104,7 @@ def commands(shell: Shell, library: Callable[[], LibraryPanel]) -> tuple[Command
             "files",
             "&Duplicate",
             partial(act, "duplicate"),
-            ("Ctrl+D",),
+            ("Ctrl+Shift+D",),
             tip="List the selected clips once more, each to be timed for itself",
             enabled=some,
         ),
