@@ -44,7 +44,8 @@ def clips_of(count: int) -> Any:
         rolled = replace(motion, rotations=np.roll(motion.rotations, shift, 0))
         assert isinstance(rolled, Clip)
         clips[f"x{n}"] = replace(entry, id=f"x{n}", name=f"{entry.name} {shift}", motion=rolled)
-    return replace(project, clips=dict(list(clips.items())[:count]))
+    character = str(ROOT / "sample_clips" / str(project.character))
+    return replace(project, clips=dict(list(clips.items())[:count]), character=character)
 
 
 def timed(work: Callable[[], object], rounds: int = 1) -> list[float]:
@@ -86,7 +87,6 @@ def main(count: int = 1000, pictures: int = 500) -> None:
     print(f"{count} clips, panel of {SIZE[0]} x {SIZE[1]}; ms: median, worst")
     for opening in ("first", "second"):
         document, jobs = Document(), Jobs()
-        document.path = ROOT / "sample_clips" / "sample.metagraph.yaml"
         session = Session(document)
         drawn = Thumbnails(document, session, Figures(document, jobs))
         came: list[str] = []

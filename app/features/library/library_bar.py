@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSize, Qt, Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QToolButton, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QWidget
 
 from app.features.library.clip_sizes import Style, steps
 from app.look import icons
@@ -11,6 +11,7 @@ from app.look.theme import theme
 from app.look.theme_choice import ThemeChoice
 from app.widgets.making import make_widget
 from app.widgets.one_stop import OneStop
+from app.widgets.quiet_fields import Scrub
 
 BUTTONS: dict[Style, tuple[str, str, str]] = {
     "cards": ("grid", "Cards", "Pictures, as large as the slider says; small ones are lines"),
@@ -43,7 +44,7 @@ class LibraryBar(QWidget):
         self.told = QLabel(self)
         self.told.setProperty("dim", True)
         row.addWidget(self.told, 1)
-        self.slider = QSlider(Qt.Orientation.Horizontal, self)
+        self.slider = Scrub(Qt.Orientation.Horizontal, self)
         self.slider.setAccessibleName("Size of the clips")
         self.slider.setToolTip("How large clips are shown (Ctrl and the wheel; Ctrl+ and Ctrl- in the list)")
         self.slider.setMinimumWidth(60)
