@@ -167,12 +167,14 @@ class ClipList(QListView):
         return self.rows.index(found, 0)
 
     def setSelection(self, rect: QRect, command: QItemSelectionModel.SelectionFlag) -> None:
-        rect = rect.normalized()
-        if self._pressed is None and not command & QItemSelectionModel.SelectionFlag.Current:
-            row = self.layout_of.at(rect.topLeft() + self._shift())
-            rows = [row] if row is not None else []
-        else:
-            rows = list(self.layout_of.rows_in(rect.translated(self._shift())))
+        shift, layout = self._shift(), self.layout_of
+        if self._pressed is not None:
+            rows = list(layout.rows_in(rect.normalized().translated(shift)))
+        else:  # from one clip to another, all between, as they are read
+            ends = [layout.at(point + shift) for point in (rect.topLeft(), rect.bottomRight())]
+            known = sorted(row for row in ends if row is not None)
+            seen = layout.open_rows() if len(known) == 2 and known[0] != known[1] else known[:1]
+            rows = [row for row in seen if known[0] <= row <= known[-1]]
         self.selectionModel().select(self._ranges(rows), command)
 
     def _ranges(self, rows: list[int]) -> QItemSelection:

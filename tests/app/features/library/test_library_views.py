@@ -80,6 +80,56 @@ def test_scrolling_shows_what_comes(toys, panel):
     assert view.indexAt(QPoint(20, 20)).row() > 0
 
 
+# --- selecting
+
+
+def chosen(panel):
+    return sorted(i.row() for i in panel.list.selectedIndexes())
+
+
+def at(panel, row):
+    return panel.list.viewport(), panel.list.visualRect(panel.rows.index(row, 0)).center()
+
+
+@pytest.mark.parametrize(("style", "side"), [("cards", 84), ("cards", 28), ("columns", 28)])
+def test_shift_takes_all_between_as_they_are_read(toys, panel, style, side):
+    panel.show_as(style, side)
+    last = panel.list.layout_of.columns + 1
+    toys.click(at(panel, 1))
+    toys.click(at(panel, last), SHIFT)
+    assert (
+        chosen(panel)
+        == list(range(1, last + 1))
+        == sorted(panel.rows.row_of(c) for c in toys.session.selection.clips)
+    )
+    toys.click(at(panel, 0), SHIFT)
+    assert chosen(panel) == [0, 1], "backwards, too"
+    toys.click(at(panel, last), CTRL)
+    assert chosen(panel) == [0, 1, last]
+    panel.list.setFocus()
+    toys.click(at(panel, 2))
+    toys.key(KEY.Key_Down, SHIFT, panel.list)
+    assert chosen(panel) == list(range(2, 3 + panel.list.layout_of.columns))
+    toys.key(KEY.Key_A, CTRL, panel.list)
+    assert len(chosen(panel)) == len(panel.rows.entries)
+
+
+def test_a_rectangle_drawn_beside_the_clips_takes_those_it_touches(toys, panel):
+    panel.search.setText("rest")
+    view, count = panel.list, panel.list.layout_of.columns
+    assert 1 < len(panel.rows.entries) < 2 * count or count > 1
+    end = QPoint(view.viewport().width() - 3, view.viewport().height() - 3)
+    QTest.mousePress(view.viewport(), Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, end)
+    first = view.visualRect(panel.rows.index(0, 0))
+    for part in (0.9, 0.5, 0.1, 0.0):
+        step = QPoint(first.left() + 10, first.top() + 10)
+        QTest.mouseMove(view.viewport(), step + (end - step) * part)
+        toys.pause(20)
+    QTest.mouseRelease(view.viewport(), Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, step)
+    assert chosen(panel) == list(range(len(panel.rows.entries)))
+    assert len(toys.session.selection.clips) == len(panel.rows.entries)
+
+
 # --- columns
 
 
