@@ -103,6 +103,13 @@ def main(count: int = 1000, pictures: int = 500) -> None:
         while len(set(came)) < shown and time.perf_counter() - began < 60:
             QTest.qWait(10)
         say(f"{opening} opening: the {shown} pictures in sight", [since(began)])
+        strips = []
+        for entry in list(project.clips.values())[:8]:
+            began = time.perf_counter()
+            while not drawn.scrub(entry.id) and time.perf_counter() - began < 20:
+                QTest.qWait(2)
+            strips.append(since(began))
+        say(f"{opening} opening: a strip to go through", strips)
         if pictures:
             began, bar = time.perf_counter(), panel.list.verticalScrollBar()
             while len(set(came)) < pictures and time.perf_counter() - began < 240:

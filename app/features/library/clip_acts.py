@@ -90,7 +90,7 @@ class ClipActs:
     def mark(self, clips: Iterable[str], field: str, value: object) -> None:
         """Put something on clips: one field of a `ClipMark`."""
         some = tuple(clips)
-        words = {"color": "Label", "rating": "Rate", "favourite": "Favour"}[field]
+        words = {"color": "Colour", "rating": "Rate", "favourite": "Favourite"}[field]
         self.document.edit(f"{words} {many(len(some), 'clip')}", lambda p: mark(p, some, **{field: value}))
 
     def favour(self, clips: Iterable[str]) -> None:

@@ -10,7 +10,7 @@ from PySide6.QtGui import QColor, QImage, QPainter, QPixmap
 from app.stage.picture_process import SCALE, SIZE
 from app.stage.thumbnails import Thumbnails
 
-MOST = 600  # pictures that are kept as large as they are drawn
+MOST = 40 * 1024 * 1024  # bytes of pictures that are kept as large as they are drawn
 
 
 class ClipPictures:
@@ -44,7 +44,7 @@ class ClipPictures:
             scaled = image.scaled(pixels, pixels, Qt.AspectRatioMode.KeepAspectRatio, mode)
             found = image, QPixmap.fromImage(scaled)
             self._scaled[key] = found
-            while len(self._scaled) > MOST:
+            while len(self._scaled) > max(40, MOST // (4 * pixels * pixels)):
                 self._scaled.popitem(last=False)
         self._scaled.move_to_end(key)
         painter.drawPixmap(box, found[1])
