@@ -151,7 +151,8 @@ class Driver(Handles):
             if index.data(ENTRY).name == clip:
                 view.scrollTo(index)
                 self.pause(30)
-                return view.viewport(), view.visualRect(index).center()
+                seen = view.visualRect(index).intersected(view.viewport().rect())
+                return view.viewport(), seen.center()
         raise AssertionError(f"no card of clip {clip!r} is in sight")
 
     def node(self, kind: str) -> tuple[QWidget, QPoint]:

@@ -386,3 +386,32 @@ def test_reveal_opens_the_folder_of_a_file_or_the_nearest_there_is(monkeypatch, 
     monkeypatch.setattr(module.QDesktopServices, "openUrl", lambda url: opened.append(url.toLocalFile()))
     module.reveal(tmp_path / "gone" / "x.bvh")
     assert opened == [str(tmp_path)]
+
+
+# --- drags and menus are those of the cards, however clips are shown
+
+
+@pytest.mark.gl
+@pytest.mark.parametrize(("style", "side"), [("columns", 28), ("cards", 28)])
+def test_a_clip_is_dragged_from_a_line_of_a_group_onto_a_node(toys, toy, style, side):
+    from metagraph.graph import edits
+
+    toys.document.edit("Add", lambda p: edits.add_clips(p, [("n/x.bvh", 0, "", toy.clip("x"))]))
+    toys.session.place.set_stance(toys.action("rest beat lf").stance)
+    toys.library.group_by("folder")
+    toys.library.show_as(style, side)
+    toys.drag(toys.card("x"), toys.node("fidget"), lambda: "x" in toys.names("fidget"))
+
+
+def test_the_menu_key_opens_the_menu_of_the_current_clip(toys, panel):
+    from PySide6.QtGui import QContextMenuEvent
+
+    asked = []
+    panel.list.menu_wanted.disconnect()
+    panel.list.menu_wanted.connect(lambda entry, at: asked.append(entry.id))
+    panel.list.setCurrentIndex(panel.rows.index(2, 0))
+    event = QContextMenuEvent(QContextMenuEvent.Reason.Keyboard, QPoint(5, 5), QPoint(5, 5))
+    QApplication.sendEvent(panel.list.viewport(), event)
+    panel.list.menu_wanted.disconnect()
+    panel.list.menu_wanted.connect(lambda entry, at: panel.acts.menu(entry).exec(at))
+    assert asked == [panel.rows.entries[2].id]
