@@ -7,6 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.features.graph.graph_layout import GraphHit
+from app.look.names import node_names
 from app.project.load import ANNOTATIONS, Load
 from metagraph.graph.edits import EditError, move_actions, place, refusal, to_stance
 from metagraph.graph.listing_edits import reordered
@@ -95,7 +96,8 @@ def _reorder(project: Project, hit: GraphHit, load: Load) -> Drop:
     before = next((a for a in node[place:] if a.id not in load.actions), None)
     if reordered(project, load.actions, before.id if before else None) is project:
         return Drop(False, "already here", first.kind, first.stance, None, True)
-    words = f"list {_count(load)} before *{before.name}*" if before else f"list {_count(load)} last"
+    called = node_names(project, first.layer, first.stance, first.kind)
+    words = f"list {_count(load)} before *{called[before.id]}*" if before else f"list {_count(load)} last"
     if before is not None and before is rest[0]:
         words = f"list {_count(load)} first"
     return Drop(True, words, first.kind, first.stance, None, True, before.id if before else None)
