@@ -1,4 +1,4 @@
-"""Thumbnails: one telling pose of a clip, small."""
+"""Thumbnails: poses of a clip, small; one of them tells most."""
 
 from __future__ import annotations
 
@@ -13,12 +13,14 @@ from metagraph.motion.skeleton import Pose
 from preview import joints as rules
 from preview.camera import Camera
 from preview.figure import Figure
+from preview.framing import Box, near_box, nearness
 from preview.offscreen import Offscreen
 from preview.scene import DARK, Actor, Scene, Theme
 
 Array = NDArray[Any]
 
 LOOK_AT = 120  # frames of a clip that are compared
+FRAMED = 16  # frames of a clip that are within the frame for certain
 
 
 def telling_frame(clip: Clip) -> int:
@@ -64,15 +66,60 @@ def thumbnail(
     turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(-_heading(figure, positions)))
     centred = rotation.rotate(turn, positions - positions[0] * [1, 0, 1])
     actor = Actor(figure, rotation.multiply(turn, rotations), centred)
-    low, high = figure.bounds(actor.positions)
-    # The box of a person with half-raised arms, turned as the character is.
+    camera = _camera(_person(figure, figure.bounds(actor.positions)))
+    return offscreen.render(Scene((actor,), background=background), camera, theme, (pixels, pixels))
+
+
+def thumbnails(
+    offscreen: Offscreen,
+    figure: Figure,
+    clip: Clip,
+    frames: Array,
+    pixels: int = 320,
+    theme: Theme = DARK,
+    paper: tuple[float, float, float] | None = None,
+) -> list[Array]:
+    """Return square pictures `[pixels, pixels, 4]` uint8 of a clip's frames `[N]`, as near as what the clip
+    moves asks for, all framed alike and turned as its first frame faces; the character stays in the middle.
+    """
+    background = (*paper, 1.0) if paper is not None else (0.0, 0.0, 0.0, 0.0)
+    looked = np.unique(np.linspace(0, clip.frames - 1, min(clip.frames, FRAMED)).round().astype(int))
+    every = np.concatenate((looked[:1], np.unique(np.concatenate((looked, frames)))))
+    rotations, positions = clip.skeleton.globals(clip.poses()[every])
+    turn = rotation.from_axis_angle(np.array([0.0, 1, 0]), np.array(-_heading(figure, positions[0])))
+    centred = rotation.rotate(turn, positions - positions[:, :1] * [1, 0, 1])
+    near = nearness(clip)
+    box = whole = figure.bounds(centred)
+    if near == "whole":
+        box = _person(figure, whole)
+    else:
+        box = near_box(clip.skeleton, near, centred, whole, figure.height)
+    camera = _camera(box)
+    at = 1 + np.searchsorted(every[1:], frames)
+    return [
+        offscreen.render(
+            Scene((Actor(figure, rotation.multiply(turn, rotations[n]), centred[n]),), background=background),
+            camera, theme, (pixels, pixels),
+        )
+        for n in at
+    ]  # fmt: skip
+
+
+def _person(figure: Figure, whole: Box) -> Box:
+    """Return a box that is no smaller than that of a person with half-raised arms, turned as the character
+    is.
+    """
+    low, high = whole
     reach, top = 0.42 * figure.height, 1.1 * figure.height
     centre = (low + high) / 2
     half = np.array([reach, 0, reach * 0.4])
     low = np.minimum(low, [centre[0] - half[0], 0, centre[2] - half[2]])
     high = np.maximum(high, [centre[0] + half[0], min(top, max(high[1], top * 0.9)), centre[2] + half[2]])
-    camera = Camera().facing(np.radians(22), np.radians(6)).frame((low, high), 1.0, margin=1.02)
-    return offscreen.render(Scene((actor,), background=background), camera, theme, (pixels, pixels))
+    return low, high
+
+
+def _camera(box: Box) -> Camera:
+    return Camera().facing(np.radians(22), np.radians(6)).frame(box, 1.0, margin=1.02)
 
 
 def clip_thumbnail(offscreen: Offscreen, figure: Figure, clip: Clip, **options: Any) -> Array:

@@ -35,6 +35,8 @@ PATHS = {
     "14.5l3 6",
     "pin": "M12 13v7.5M8 4h8l-1 5 2.5 4h-11L9 9z",
     "more": "!M5 10.5h3v3H5zM10.5 10.5h3v3h-3zM16 10.5h3v3h-3z",
+    "grid": "M4.5 4.5h6v6h-6zM13.5 4.5h6v6h-6zM4.5 13.5h6v6h-6zM13.5 13.5h6v6h-6z",
+    "list": "M4 6h2M9 6h11M4 12h2M9 12h11M4 18h2M9 18h11",
     "left": "M14.5 6l-6 6 6 6",
     "right": "M9.5 6l6 6-6 6",
 }

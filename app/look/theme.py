@@ -180,6 +180,7 @@ def style_sheet(look: Theme) -> str:
     QCheckBox::indicator:disabled, QAbstractItemView::indicator:disabled {{ border-color: {t.line}; }}
     QCheckBox::indicator:focus {{ border-color: {t.text}; }}
     QComboBox QAbstractItemView {{ background: {t.card}; border: 1px solid {t.line}; outline: none; }}
+    QAbstractScrollArea::corner {{ background: {t.panel}; border: none; }}
     QListView, QTreeView, QTableView, QScrollArea, QGraphicsView {{ background: {t.panel}; border: none; outline: none; }}
     QHeaderView::section {{ background: {t.panel}; color: {t.dim}; border: none; padding: 5px 8px; }}
     QTreeView::item, QTableView::item {{ padding: 4px; }}

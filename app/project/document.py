@@ -23,6 +23,7 @@ from metagraph.formats.limits import refusal
 from metagraph.formats.locking import Lock, new_owner
 from metagraph.formats.store import file_digest, moved
 from metagraph.graph.edits import EditError
+from metagraph.graph.listing_edits import listed_otherwise
 from metagraph.graph.model import Project
 
 Edit = Callable[[Project], Project]
@@ -114,7 +115,7 @@ class Document(QObject):
         is then as it was.
         """
         after = function(self.project)
-        if after is not self.project and after != self.project:
+        if after is not self.project and (after != self.project or listed_otherwise(self.project, after)):
             why = refusal(self.project, after)
             if why is not None:
                 raise EditError(why)

@@ -23,6 +23,7 @@ MENUS: dict[str, tuple[str, ...]] = {
     tr_noop("&File"): ("project", "save", "import", "character", "write", "quit"),
     tr_noop("&Edit"): ("history", "selection", "properties", "find"),
     tr_noop("&Graph"): ("author", "label", "layers", "stances", "skeleton"),
+    tr_noop("C&lips"): ("rating", "labels", "favourites", "files", "view", "groups"),
     tr_noop("&Motion"): ("make",),
     tr_noop("&Play"): ("transport", "live", "show"),
     tr_noop("&Conversation"): ("read", "settings", "stage", "write", "remove"),

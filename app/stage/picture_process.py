@@ -26,12 +26,16 @@ MOVING_SIZE, MOVING_RATE, MOVING_MOST = (
     72,
 )  # the loop in the stance card: pixels, pictures a second, at most
 STRIP_RATE, STRIP_MOST = 6, 36  # a filmstrip's pictures a second, at most
+SCRUB = 12  # pictures through which the pointer goes over a card
+LARGE = 448  # pixels of a picture on a large card
+LONG = ("moving", "strip", "scrub")  # of many pictures
+FRAMED = ("card", "bare", "large", "scrub")  # as near as what the clip moves asks for
 
 
 @dataclass(frozen=True)
 class PictureOrder:
-    """what: "card", "bare", "moving" or "strip". paper: sRGB 0..1 behind the figure, None for transparent.
-    character: its file. hidden: its meshes that are not drawn.
+    """what: "card", "bare", "large", "scrub", "moving" or "strip". paper: sRGB 0..1 behind the figure, None
+    for transparent. character: its file. hidden: its meshes that are not drawn.
     """
 
     number: int
@@ -49,17 +53,22 @@ _Waiting = queue.PriorityQueue[tuple[bool, float, PictureOrder | None]]
 def draw(offscreen: Any, figure: Any, order: PictureOrder) -> list[np.ndarray]:
     """Return a clip's pictures `[H, W, 4]`: one telling pose, or its whole loop."""
     from preview.scene import THEMES
-    from preview.thumbnail import telling_frame, thumbnail
+    from preview.thumbnail import telling_frame, thumbnail, thumbnails
 
     motion = order.clip
+    if order.what in FRAMED:
+        frames = np.array([telling_frame(motion)])
+        if order.what == "scrub":
+            count = max(2, min(SCRUB, motion.frames))
+            frames = np.linspace(0, motion.frames - 1, count).round().astype(int)
+        pixels = LARGE if order.what == "large" else SIZE * SCALE
+        return thumbnails(offscreen, figure, motion, frames, pixels, THEMES[order.theme], order.paper)
     if order.what == "moving":
         count = max(1, min(MOVING_MOST, round(motion.duration * MOVING_RATE)))
         frames = np.linspace(0, motion.frames - 1, count, endpoint=False).round().astype(int)
-    elif order.what == "strip":
+    else:
         count = max(2, min(STRIP_MOST, round(motion.duration * STRIP_RATE) + 1))
         frames = np.linspace(0, motion.frames - 1, count).round().astype(int)
-    else:
-        frames = np.array([telling_frame(motion)])
     size = MOVING_SIZE if order.what == "moving" else SIZE
     rotations, positions = motion.skeleton.globals(motion.poses()[frames])
     return [
@@ -100,7 +109,7 @@ def _read(orders: BinaryIO, waiting: _Waiting) -> None:
     try:
         while True:
             order = pickle.load(orders)
-            waiting.put((order.what in ("moving", "strip"), -order.number, order))
+            waiting.put((order.what in LONG, -order.number, order))
     except (EOFError, OSError, pickle.UnpicklingError):
         waiting.put((False, -math.inf, None))
 

@@ -18,7 +18,9 @@ from app.look.theme import theme
 from app.project.document import Document
 from app.stage.figures import Figures
 from app.stage.gl_view import to_image
-from app.stage.picture_process import PictureOrder
+from app.stage.kept_pictures import KeptPictures
+from app.stage.picture_process import LONG, PictureOrder
+from app.stage.picture_store import KEPT
 from app.stage.session import Session
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
@@ -28,6 +30,8 @@ MOST = (
     128 * 1024 * 1024
 )  # bytes of pictures that are kept; those not seen for longest go, and are drawn again when they are
 REST = 20_000  # milliseconds without an order after which the process, and its memory, is let go
+WAITING = 120  # stills that wait, at most: those asked for first are asked for again when they are seen
+AHEAD = 4  # orders that the process has at a time
 TRIES = 3  # times the process is started without drawing anything before it is given up
 
 
@@ -49,7 +53,10 @@ class Thumbnails(QObject):
         self.bytes = 0  # of all pictures
         self._asked: dict[Key, Clip] = {}
         self._orders: dict[int, tuple[Key, Clip]] = {}
+        self._line: dict[int, PictureOrder] = {}  # of them, those that the process was not given yet
+        self._given: set[int] = set()  # and those it has
         self._number = 0
+        self.kept = KeptPictures(self)
         self._process: subprocess.Popen[bytes] | None = None
         self._queue: queue.SimpleQueue[PictureOrder | None] = queue.SimpleQueue()
         self._threads: list[threading.Thread] = []
@@ -60,6 +67,8 @@ class Thumbnails(QObject):
         self._rest.timeout.connect(self._send_home)
         self._ended.connect(self._restart, Qt.ConnectionType.QueuedConnection)
         self._drawn.connect(self._keep, Qt.ConnectionType.QueuedConnection)
+        self.kept.found.connect(self._keep, Qt.ConnectionType.QueuedConnection)
+        self.kept.missing.connect(self._wait_in_line, Qt.ConnectionType.QueuedConnection)
         document.changed.connect(self._follow)
         figures.changed.connect(self.forget)
 
@@ -68,10 +77,20 @@ class Thumbnails(QObject):
         """Whether pictures that were asked for are not there yet."""
         return bool(self._orders)
 
-    def picture(self, clip: str, bare: bool = False) -> QImage | None:
-        """Return a clip's picture; None until it is drawn. bare: transparent behind the figure."""
-        found = self._get(clip, "bare" if bare else "card")
+    def picture(self, clip: str, bare: bool = False, large: bool = False) -> QImage | None:
+        """Return a clip's picture; None until it is drawn. bare: transparent behind the figure. large: twice
+        as large, and bare; a small one until it is drawn.
+        """
+        found = self._get(clip, "large" if large else "bare" if bare else "card")
+        if large and not found:
+            return self.picture(clip, bare=True)
         return found[0] if found else None
+
+    def scrub(self, clip: str) -> list[QImage]:
+        """Return a few pictures from a clip's first frame to its last, framed as its still is; none until
+        they are drawn.
+        """
+        return self._get(clip, "scrub") or []
 
     def moving(self, clip: str, beat: int) -> QImage | None:
         """Return one picture of a clip's loop, the `beat`-th of 12 a second; a still until the loop is
@@ -107,6 +126,7 @@ class Thumbnails(QObject):
         self.bytes = 0
         self._asked.clear()
         self._orders.clear()
+        self._line.clear()
         self.ready.emit("")
 
     def _follow(self, before: Project, after: Project) -> None:
@@ -120,7 +140,11 @@ class Thumbnails(QObject):
         if pictures is None:
             self._begun = number
             return
-        self._begun, self._fruitless = None, 0
+        if number in self._given:
+            self._begun, self._fruitless = None, 0
+            self._given.discard(number)
+            self.kept.keep(number, pictures)
+            self._feed()
         key, motion = self._orders.pop(number, (None, None))
         if key is None or motion is None:  # it was forgotten meanwhile
             return
@@ -144,28 +168,44 @@ class Thumbnails(QObject):
     def _order(self, key: Key, motion: Clip) -> None:
         if self._stopped or self._fruitless >= TRIES:
             return
-        if self._process is None:
-            self._start()
         project = self.document.project
         character = None
         if project.character is not None and motion.skeleton == project.skeleton:
             character = (self.document.folder or Path()) / project.character
         card = theme(self.session.look.name).field
         r, g, b = (int(card[i : i + 2], 16) / 255 for i in (1, 3, 5))
-        self._rest.start()
         self._number += 1
         self._orders[self._number] = (key, motion)
-        self._queue.put(
-            PictureOrder(
-                self._number,
-                motion,
-                key[1],
-                key[2],
-                (r, g, b) if key[1] == "card" else None,
-                character,
-                project.hidden,
-            )
-        )
+        paper = (r, g, b) if key[1] == "card" else None
+        order = PictureOrder(self._number, motion, key[1], key[2], paper, character, project.hidden)
+        if key[1] in KEPT:
+            self.kept.ask(order)
+        else:
+            self._wait_in_line(order)
+
+    def _wait_in_line(self, order: PictureOrder) -> None:
+        """Let an order wait until the process has time for it; of too many stills the first are forgotten."""
+        if order.number not in self._orders:  # it was forgotten meanwhile
+            return
+        self._line[order.number] = order
+        self._feed()
+        for number in list(self._line)[: max(0, len(self._line) - WAITING)]:
+            del self._line[number]
+            self.kept.forget(number)
+            key, motion = self._orders.pop(number, (None, None))
+            if key is not None and self._asked.get(key) is motion:
+                del self._asked[key]
+
+    def _feed(self) -> None:
+        """Give the process what was asked for last, stills before what has many pictures."""
+        while self._line and len(self._given) < AHEAD and not self._stopped:
+            stills = (n for n in self._line if self._line[n].what not in LONG)
+            number = max(stills, default=max(self._line))
+            if self._process is None:
+                self._start()
+            self._rest.start()
+            self._given.add(number)
+            self._queue.put(self._line.pop(number))
 
     def _start(self) -> None:
         """Start the process; what goes out and what comes in have a thread each, since a full pipe blocks."""
@@ -223,6 +263,8 @@ class Thumbnails(QObject):
         else:
             self._fruitless += 1
         again, self._orders = self._orders, {}
+        self._line.clear()
+        self._given.clear()
         if self._fruitless < TRIES:
             for key, motion in again.values():
                 self._order(key, motion)
@@ -239,6 +281,7 @@ class Thumbnails(QObject):
         """End the process; at closing."""
         self._stopped = True
         self._rest.stop()
+        self.kept.stop()
         if self._process is not None:
             self._queue.put(None)
             self._process.kill()

@@ -33,6 +33,7 @@ from metagraph.formats.fields import (
 from metagraph.formats.manual_data import manual_data, manual_from
 from metagraph.formats.takes import REPAIRS
 from metagraph.formats.text import as_text
+from metagraph.graph.clip_mark import ClipMark
 from metagraph.graph.conversation import AUTO, Conversation, Segment, Side, Word
 from metagraph.graph.model import (
     KINDS,
@@ -180,6 +181,7 @@ STRUCTS: dict[str, Any] = {
     "tiers": dict[str, str],
     "labels": dict[str, str],
     "notes": dict[str, str],
+    "marks": dict[str, ClipMark],
     "joint_maps": dict[str, JointMap],
     "touch": Touch,
 }

@@ -25,13 +25,14 @@ _THINGS = (
     "conversations",
     "points",
     "notes",
+    "marks",
     "tiers",
     "labels",
     "joint_maps",
     "manual",
 )
 _TIMES = frozenset(f.name for f in fields(Timing))
-_TEXTS = ("name", "text", "path", "sha256", "notes", "made_by")  # what may look like an id and is none
+_TEXTS = ("name", "text", "path", "sha256", "notes", "note", "made_by")  # texts that may look like ids
 
 
 class MergeError(ValueError):

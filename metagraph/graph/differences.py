@@ -34,6 +34,7 @@ _REST = (
     "tiers",
     "labels",
     "notes",
+    "marks",
     "joint_maps",
     "skeleton",
 )

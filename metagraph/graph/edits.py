@@ -66,16 +66,18 @@ def add_clips(project: Project, loaded: Iterable[tuple[str, int, str, Clip]]) ->
     The first clip's skeleton becomes the project's.
     """
     clips = dict(project.clips)
-    known = {(entry.path, entry.take): entry for entry in clips.values()}
+    known: dict[tuple[str, int], list[str]] = {}
+    for entry in clips.values():
+        known.setdefault((entry.path, entry.take), []).append(entry.id)
     skeleton, next_id = project.skeleton, project.next_id
     for path, take, digest, clip in loaded:
         if skeleton is None:
             skeleton = clip.skeleton
-        before = known.get((path, take))
-        entry = before or ClipEntry(f"c{next_id}", clip.name, path, take)
-        next_id += 0 if before else 1
-        entry = replace(entry, digest=digest, brought_from=clip.brought_from)
-        clips[entry.id] = with_source(entry, clip)
+        there = [clips[i] for i in known.get((path, take), ())]
+        for entry in there or [ClipEntry(f"c{next_id}", clip.name, path, take)]:
+            entry = replace(entry, digest=digest, brought_from=clip.brought_from)
+            clips[entry.id] = with_source(entry, clip)
+        next_id += 0 if there else 1
     return replace(project, clips=clips, skeleton=skeleton, next_id=next_id)
 
 
@@ -103,7 +105,9 @@ def remove_clips(project: Project, clips: Collection[str]) -> Project:
     left = {i: e for i, e in project.clips.items() if i not in clips}
     base = BasePose() if project.base.clip in clips else project.base
     manual = without_clips(project.manual, clips)
-    return replace(project, clips=left, base=base, skeleton=project.skeleton if left else None, manual=manual)
+    marks = {i: m for i, m in project.marks.items() if i in left} if project.marks else project.marks
+    skeleton = project.skeleton if left else None
+    return replace(project, clips=left, base=base, skeleton=skeleton, manual=manual, marks=marks)
 
 
 # --- stances

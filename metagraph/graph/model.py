@@ -11,6 +11,7 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
+from metagraph.graph.clip_mark import ClipMark
 from metagraph.graph.conversation import AUTO, Conversation
 from metagraph.graph.life import Face, Life
 from metagraph.graph.manual import Alias, Link, Manual, State
@@ -363,7 +364,8 @@ class Project:
     names of its meshes that are not drawn. points:
     named places to look at, metres. lines: the dialogue an agent calls by id. performances, conversations:
     those kept, by id. tiers: annotation tier -> what it was last read as. notes: to read, by the id of the
-    action they are on, "" for the project's own. joint_maps: how clips of other
+    action they are on, "" for the project's own. marks: what clips are found again by, by their ids.
+    joint_maps: how clips of other
     skeletons are retargeted, by `joint_map.fingerprint` of theirs. language: what conversations are read in,
     a code ("de"), or "auto" for what their words tell. manual: state machines drawn by hand, of
     the layers that have one. voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as
@@ -395,6 +397,7 @@ class Project:
     tiers: Mapping[str, str] = field(default_factory=dict)
     labels: Mapping[str, str] = field(default_factory=dict)
     notes: Mapping[str, str] = field(default_factory=dict)
+    marks: Mapping[str, ClipMark] = field(default_factory=dict)
     joint_maps: Mapping[str, JointMap] = field(default_factory=dict)
     manual: Mapping[Layer, Manual] = field(default_factory=dict)
     voices: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)

@@ -104,6 +104,8 @@ def own_settings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing of the user's settings is read or written, and nothing of another test's."""
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
+    # Not XDG_CACHE_HOME: there Mesa keeps its shaders.
+    monkeypatch.setattr("app.stage.kept_pictures.cache_folder", lambda: tmp_path / "cache")
     QSettings().clear()
 
 
@@ -141,15 +143,16 @@ class Driver(Handles):
 
     def card(self, clip: str) -> tuple[QWidget, QPoint]:
         """The library card of a clip, by name; scrolled into sight."""
-        from app.features.library.clip_model import ENTRY
+        from app.features.library.clip_rows import ENTRY
 
-        view, proxy = self.library.list, self.library.proxy  # type: ignore[attr-defined]
+        view, proxy = self.library.list, self.library.rows  # type: ignore[attr-defined]
         for row in range(proxy.rowCount()):
             index = proxy.index(row, 0)
             if index.data(ENTRY).name == clip:
                 view.scrollTo(index)
                 self.pause(30)
-                return view.viewport(), view.visualRect(index).center()
+                seen = view.visualRect(index).intersected(view.viewport().rect())
+                return view.viewport(), seen.center()
         raise AssertionError(f"no card of clip {clip!r} is in sight")
 
     def node(self, kind: str) -> tuple[QWidget, QPoint]:

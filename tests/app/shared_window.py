@@ -204,9 +204,11 @@ def reset_panels(window: Any) -> None:
         panel("character"),
         panel("timeline").lanes,
     )
+    QSettings().remove("library")
+    library.restore()
     library.search.clear()
     library.chips["all"].click()
-    library._narrow(None, None)
+    library.narrow()
     canvas.focus = None
     preview._set_loop(True)
     preview._set_bones(False)

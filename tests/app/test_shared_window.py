@@ -31,7 +31,7 @@ def arranged(drive):
 def narrowed(drive):
     drive.library.search.setText("beat")
     drive.library.chips["labelled"].click()
-    drive.library._narrow("arms", "gesture")
+    drive.library.narrow("arms", "gesture")
     drive.lines.search.setText("hello")
 
 

@@ -33,7 +33,8 @@ PLAIN = (bool, int, float, str, bytes, Path, Enum, type(None))
 PASSING = frozenset(
     """common frames owner painted pictures seconds sounds _beat _bodies _by_keys _came _clips _counted _curves
     _dialogs _era _guests _journal _known _last _layout _marks _matrices _missing _named _paths _places
-    _plan_seconds _played _read _rest _rows _skinned _sticks _still _voices _watched""".split()  # noqa: SIM905 - thirty quotes more to read
+    _held _listed _moved
+    _plan_seconds _played _read _rest _rows _skinned _sticks _still _voices _watched layout_of""".split()  # noqa: SIM905 - thirty quotes more to read
 )
 
 

@@ -8,7 +8,7 @@ import pytest
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from preview.figure import StickFigure
-from preview.thumbnail import clip_thumbnail, telling_frame, thumbnail
+from preview.thumbnail import clip_thumbnail, telling_frame, thumbnail, thumbnails
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 
 SKELETON = mannequin_skeleton()
@@ -61,3 +61,19 @@ def test_the_figure_is_seen_from_the_front_wherever_it_stands_and_faces(offscree
     first = thumbnail(offscreen, figure, rotations, positions, size=40).astype(int)
     second = thumbnail(offscreen, figure, rotation.multiply(turn, rotations), there, size=40)
     assert np.abs(first - second).mean() < 0.5
+
+
+@pytest.mark.gl
+def test_a_gesture_of_the_arms_is_nearer_than_a_step_and_all_its_frames_are_framed_alike(offscreen):
+    def tall(picture):
+        rows = np.flatnonzero(picture[..., 3].any(1))
+        head = np.flatnonzero(picture[rows[0] + 2, :, 3])  # how wide the head is, two pixels below its top
+        return len(head), rows[0]
+
+    figure = StickFigure(SKELETON)
+    waved, stepped = clip([0.0, 0.9, 0.0]), clip([0.0, 0.9, 0.0], "LeftUpperLeg")
+    frames = np.array([0, 1, 2])
+    near = [tall(p) for p in thumbnails(offscreen, figure, waved, frames, 96)]
+    far = [tall(p) for p in thumbnails(offscreen, figure, stepped, frames, 96)]
+    assert min(n[0] for n in near) > max(f[0] for f in far)
+    assert len(set(near)) == 1, "the head stays where it is"

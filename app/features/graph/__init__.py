@@ -76,6 +76,9 @@ def contribute(shell: Shell) -> Contribution:
     def label(kind: Kind) -> None:
         canvas().acts.place_selection(kind)
 
+    def shift(steps: int) -> None:
+        canvas().acts.shift(steps)
+
     def on_layer(layer: Layer) -> bool:
         return session.place.layer == layer
 
@@ -102,6 +105,7 @@ def contribute(shell: Shell) -> Contribution:
             enabled=some,
             when="meta",
             study=True,
+            menus=("clip label",),
         )
         for number, kind in enumerate(KINDS, 1)
     )
@@ -133,6 +137,21 @@ def contribute(shell: Shell) -> Contribution:
         )
         for n in range(9)
     )
+    order = (
+        Command(
+            f"list_{word}",
+            menu,
+            "label",
+            f"List {word} in its node",
+            partial(shift, steps),
+            (f"Alt+{key}",),
+            tip=f"Move the selected actions a place {word} in their node; what plays does not change",
+            enabled=lambda: bool(session.selection.actions),
+            when="meta",
+            menus=("action",),
+        )
+        for word, key, steps in (("earlier", "Up", -1), ("later", "Down", 1))
+    )
     new = Command(
         "new_stance",
         menu,
@@ -158,7 +177,7 @@ def contribute(shell: Shell) -> Contribution:
                 rank=0,
             ),
         ),
-        commands=(new, *labels, *layers, *places),
+        commands=(new, *labels, *order, *layers, *places),
         header=(HeaderItem("left", lambda parent: LayerTabs(shell, parent)),),
         close=lambda: canvas().stop(),
     )

@@ -15,6 +15,7 @@ from app.project.document import Document
 from app.project.load import Load
 from app.stage.session import Session
 from metagraph.graph import edits
+from metagraph.graph.listing_edits import shifted
 from metagraph.graph.model import KINDS, Action, Kind
 
 
@@ -45,7 +46,7 @@ class GraphActs(QObject):
         """Perform a drop and select what it made."""
         before = {a.id for a in self.document.project.actions()}
         layer = self.session.place.layer
-        verb = "Move" if load.actions else "Place"
+        verb = "Reorder" if drop.reorder else "Move" if load.actions else "Place"
         noun = f"{load.count} {'action' if load.actions else 'clip'}{'s' if load.count != 1 else ''}"
         try:
             self.document.edit(f"{verb} {noun}", lambda p: perform(p, layer, drop, load))
@@ -83,6 +84,12 @@ class GraphActs(QObject):
         self.do(drop, load)
         if load.clips and self.document.project is not before:
             self.labelled.emit(load.clips, self.session.selection.actions)
+
+    def shift(self, steps: int) -> None:
+        """List the selected actions a place earlier (-1) or later (1) in their nodes."""
+        chosen = self.session.selection.actions
+        words = f"Reorder {len(chosen)} action{'s' if len(chosen) != 1 else ''}"
+        self.document.edit(words, lambda p: shifted(p, chosen, steps))
 
     def move_to(self, stance: str) -> None:
         chosen = self.session.selection.actions

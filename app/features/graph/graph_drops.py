@@ -7,8 +7,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.features.graph.graph_layout import GraphHit
+from app.look.names import node_names
 from app.project.load import ANNOTATIONS, Load
 from metagraph.graph.edits import EditError, move_actions, place, refusal, to_stance
+from metagraph.graph.listing_edits import reordered
 from metagraph.graph.model import Kind, Layer, Project
 
 
@@ -16,7 +18,8 @@ from metagraph.graph.model import Kind, Layer, Project
 class Drop:
     """kind, stance, end: where things go; stance None makes a new one, kind None keeps each action's own.
 
-    words: what will happen, or why not.
+    words: what will happen, or why not. reorder: actions stay in their node and are listed in front of the
+    action `before`, None for its end.
     """
 
     possible: bool
@@ -24,6 +27,8 @@ class Drop:
     kind: Kind | None = None
     stance: str | None = None
     end: str | None = None
+    reorder: bool = False
+    before: str | None = None
 
 
 def drop_at(
@@ -36,6 +41,8 @@ def drop_at(
         return Drop(True, "drop to learn from this annotation")
     if load.actions and hit.area == "chip" and hit.ident is not None:
         return _move(project, hit.ident, load)
+    if load.actions and _in_node(project, layer, stance, hit, load):
+        return _reorder(project, hit, load)
     what = _count(load)
     if hit.area in ("card", "add"):
         kind: Kind = "stance"
@@ -72,6 +79,30 @@ def drop_at(
     return Drop(True, words, kind, target, end)
 
 
+def _in_node(project: Project, layer: Layer, stance: str | None, hit: GraphHit, load: Load) -> bool:
+    """Return whether all actions are in the node that is pointed at, already."""
+    node = layer, stance, hit.kind
+    found = (project.action(i) for i in load.actions)
+    return hit.area in ("node", "row") and all(a and (a.layer, a.stance, a.kind) == node for a in found)
+
+
+def _reorder(project: Project, hit: GraphHit, load: Load) -> Drop:
+    """Actions dropped in their own node are listed elsewhere in it."""
+    first = project.action(load.actions[0])
+    assert first is not None
+    node = project.graphs[first.layer].of(first.stance, first.kind)
+    rest = [a for a in node if a.id not in load.actions]
+    place = next((n for n, a in enumerate(node) if a.id == hit.ident), len(node)) + hit.behind
+    before = next((a for a in node[place:] if a.id not in load.actions), None)
+    if reordered(project, load.actions, before.id if before else None) is project:
+        return Drop(False, "already here", first.kind, first.stance, None, True)
+    called = node_names(project, first.layer, first.stance, first.kind)
+    words = f"list {_count(load)} before *{called[before.id]}*" if before else f"list {_count(load)} last"
+    if before is not None and before is rest[0]:
+        words = f"list {_count(load)} first"
+    return Drop(True, words, first.kind, first.stance, None, True, before.id if before else None)
+
+
 def _move(project: Project, stance: str, load: Load) -> Drop:
     """Actions dropped on a stance's chip move there and stay what they are."""
     name = _name(project, stance)
@@ -86,6 +117,8 @@ def _move(project: Project, stance: str, load: Load) -> Drop:
 
 def perform(project: Project, layer: Layer, drop: Drop, load: Load) -> Project:
     """Do what a possible drop said, for clips or actions. Raises EditError."""
+    if drop.reorder:
+        return reordered(project, load.actions, drop.before)
     if load.actions:
         assert drop.stance is not None
         if drop.kind is None:

@@ -36,11 +36,14 @@ Area = Literal["chip", "add", "card", "loop", "node", "row", "bar", "head", "oth
 
 @dataclass(frozen=True)
 class GraphHit:
-    """What lies under a point. ident: stance or action id. kind: of the node."""
+    """What lies under a point. ident: stance or action id. kind: of the node. behind: while something is
+    dragged, whether it is the second half of a row.
+    """
 
     area: Area
     ident: str | None = None
     kind: Kind | None = None
+    behind: bool = False
 
 
 @dataclass(frozen=True)
@@ -108,6 +111,10 @@ class Layout:
             if node.other.contains(at) and not dragging:
                 return GraphHit("other", None, node.kind)
             for row in node.rows:
+                if dragging and row.rect.contains(at):
+                    middle = row.rect.center()
+                    behind = at.x() > middle.x() if node.columns > 1 else at.y() > middle.y()
+                    return GraphHit("row", row.action.id, node.kind, behind)
                 if row.bar.adjusted(-4, -6, 4, 6).contains(at):
                     return GraphHit("bar", row.action.id, node.kind)
                 if row.head.contains(at) and not dragging:

@@ -62,7 +62,9 @@ def draw_node(painter: QPainter, node: Node, layout: Layout, look: GraphLook, fo
         while text and painter.boundingRect(room, flags, text).height() > room.height():
             text = text.rpartition("\n")[0].rstrip(":")
         painter.drawText(room, flags, text)
-    if target:
+    if target and look.drop is not None and look.drop.reorder:
+        _gap(painter, node, look)
+    elif target:
         free = QRectF(node.rect.left() + 3, node.rect.bottom() - 60, node.rect.width() - 6, 56)
         if node.rect.height() < 130:
             free = QRectF(
@@ -72,6 +74,23 @@ def draw_node(painter: QPainter, node: Node, layout: Layout, look: GraphLook, fo
                 node.rect.height() - node.header.height(),
             )
         draw_offer(painter, free, look, node.kind, font)
+
+
+def _gap(painter: QPainter, node: Node, look: GraphLook) -> None:
+    """A line where actions would be listed: before or behind the row pointed at, or after the last."""
+    hit, drop = look.drop_hit, look.drop
+    row = next((r for r in node.rows if r.action.id == hit.ident), node.rows[-1] if node.rows else None)
+    if row is None or drop is None or not drop.possible:
+        return
+    behind = hit.behind or hit.ident is None
+    rect = row.rect
+    painter.setPen(QPen(look.theme.kind(node.kind), 2.4))
+    if node.columns > 1:
+        x = rect.right() + 2 if behind else rect.left() - 2
+        painter.drawLine(QPointF(x, rect.top() + 2), QPointF(x, rect.bottom() - 2))
+    else:
+        y = rect.bottom() if behind else rect.top()
+        painter.drawLine(QPointF(rect.left(), y), QPointF(rect.right(), y))
 
 
 def _other(painter: QPainter, node: Node, look: GraphLook, font: QFont) -> None:

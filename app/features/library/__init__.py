@@ -4,19 +4,26 @@ from __future__ import annotations
 
 from PySide6.QtWidgets import QApplication
 
+from app.features.library.clip_commands import commands
 from app.features.library.library_panel import LibraryPanel
 from app.project.importing import Importing
 from app.shell.actions import Command, Standard
 from app.shell.context import Contribution, Panel, Shell
 from app.shell.verbs import Verbs
+from app.stage.problem_watch import ProblemWatch
 
 
 def contribute(shell: Shell) -> Contribution:
     session, importing, verbs = shell.stage.session, shell.services[Importing], shell.services[Verbs]
 
     def make() -> LibraryPanel:
-        panel = LibraryPanel(shell.document, session, shell.stage.thumbnails, shell.widget)
+        problems = shell.services[ProblemWatch]
+        panel = LibraryPanel(
+            shell.document, session, shell.stage.thumbnails, shell.widget, lambda: problems.problems
+        )
+        problems.changed.connect(panel.problems_changed)
         panel.acts.row_actions = shell.actions.of_menu("clip")
+        panel.acts.label_actions = shell.actions.of_menu("clip label")
         panel.import_wanted.connect(importing.ask_import_folder)
         panel.files_dropped.connect(lambda paths: importing.import_paths(list(paths)))
         return panel
@@ -66,5 +73,6 @@ def contribute(shell: Shell) -> Contribution:
                 (Standard.Find,),
                 study=True,
             ),
+            *commands(shell, library),
         ),
     )

@@ -3,25 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import partial
+from pathlib import Path
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QInputDialog, QMenu, QWidget
 
+from app.features.library.clip_badges import HEART, label_icon
+from app.features.library.clip_columns import stars
+from app.features.library.reveal import reveal
+from app.look.plural import many
 from app.project.document import Document
 from app.stage.session import Session
 from metagraph.graph import edits
+from metagraph.graph.clip_mark import COLORS, STARS
+from metagraph.graph.listing_edits import duplicate_clips
+from metagraph.graph.marks import mark, mark_of
 from metagraph.graph.model import ClipEntry
 
 
 class ClipActs:
     """widget: over which menus and questions appear. row_actions: the window's commands that go into a clip's
-    menu.
+    menu. label_actions: those that say what it is.
     """
 
     def __init__(self, document: Document, session: Session, widget: QWidget) -> None:
         self.document, self.session, self.widget = document, session, widget
         self.row_actions: list[QAction] = []
+        self.label_actions: list[QAction] = []
 
     def menu(self, entry: ClipEntry) -> QMenu:
         """Return what can be done with a clip, and with all selected ones."""
@@ -30,6 +40,10 @@ class ClipActs:
         chosen = self.session.selection.clips if entry.id in self.session.selection.clips else (entry.id,)
         out.addAction("Play alone", lambda: self.session.transport.show_clip(entry.id))
         out.addAction("Play in context", lambda: self.session.show_context(entry.id))
+        out.addSeparator()
+        if self.label_actions:
+            out.addMenu("&Label as").addActions(self.label_actions)
+        self._fill_marks(out.addMenu("&Mark"), chosen)
         out.addSeparator()
         out.addAction("Use its first frame as base pose", lambda: self.use_as_base(entry.id, 0))
         if self.session.transport.show == "clip" and self.session.transport.shown == entry.id:
@@ -41,11 +55,62 @@ class ClipActs:
         )
         out.addSeparator()
         out.addAction("Rename…\tF2", lambda: self.rename(entry.id))
+        out.addAction("Duplicate\tCtrl+Shift+D", lambda: self.duplicate(chosen))
+        out.addAction("Reveal in folder", lambda: self.reveal(entry.id))
         out.addActions(self.row_actions)
         out.addSeparator()
         noun = f"{len(chosen)} clips" if len(chosen) > 1 else "clip"
         out.addAction(f"Remove {noun} from the project\tDel", lambda: self.remove(chosen))
         return out
+
+    def _fill_marks(self, menu: QMenu, clips: Iterable[str]) -> None:
+        """Offer colour labels, stars and a heart; what all clips have is checked."""
+        some = tuple(clips)
+        marks = [mark_of(self.document.project, clip) for clip in some]
+
+        def entry(words: str, field: str, value: object, keys: str = "") -> QAction:
+            text = f"{words}\t{keys}" if keys else words
+            action = menu.addAction(text, partial(self.mark, some, field, value))
+            action.setCheckable(True)
+            action.setChecked(all(getattr(m, field) == value for m in marks))
+            return action
+
+        for color in COLORS:
+            entry(f"{color.capitalize()} label", "color", color).setIcon(label_icon(color))
+        entry("No label", "color", "")
+        menu.addSeparator()
+        for rating in range(STARS, -1, -1):
+            entry(stars(rating) or "No stars", "rating", rating, f"Ctrl+Shift+{rating}")
+        menu.addSeparator()
+        loved = all(m.favourite for m in marks)
+        action = menu.addAction(f"{HEART}  Favourite", lambda: self.mark(some, "favourite", not loved))
+        action.setCheckable(True)
+        action.setChecked(loved)
+
+    def mark(self, clips: Iterable[str], field: str, value: object) -> None:
+        """Put something on clips: one field of a `ClipMark`."""
+        some = tuple(clips)
+        words = {"color": "Colour", "rating": "Rate", "favourite": "Favourite"}[field]
+        self.document.edit(f"{words} {many(len(some), 'clip')}", lambda p: mark(p, some, **{field: value}))
+
+    def favour(self, clips: Iterable[str]) -> None:
+        """Put a heart on clips; where all have one, take it away."""
+        some = tuple(clips)
+        loved = all(mark_of(self.document.project, clip).favourite for clip in some)
+        self.mark(some, "favourite", not loved)
+
+    def duplicate(self, clips: Iterable[str]) -> None:
+        """List clips once more, and select what was made."""
+        some, before = tuple(clips), self.document.project.clips
+        if some:
+            self.document.edit(f"Duplicate {many(len(some), 'clip')}", lambda p: duplicate_clips(p, some))
+            made = tuple(i for i in self.document.project.clips if i not in before)
+            self.session.selection.select_clips(made)
+
+    def reveal(self, clip: str) -> None:
+        """Show a clip's file in the system's file manager."""
+        entry = self.document.project.clips[clip]
+        reveal((self.document.folder or Path()) / entry.path)
 
     def use_as_base(self, clip: str, frame: int) -> None:
         self.document.edit("Set base pose", lambda p: edits.set_base(p, clip, frame))

@@ -1,115 +1,119 @@
-"""Draws a clip as a card."""
+"""Draws a clip as a card: picture, name, length, a stripe and mark for each kind it serves as, and what was
+put on it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-from PySide6.QtCore import QRect, QSize, Qt
+from PySide6.QtCore import QRect, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPen
-from PySide6.QtWidgets import QListView, QStyle, QStyledItemDelegate, QStyleOptionViewItem
 
-from app.features.library.clip_model import ENTRY, Index
+from app.features.library.clip_badges import draw_badges
+from app.features.library.clip_facts import ClipFacts
 from app.features.library.clip_names import ClipNames
+from app.features.library.clip_pictures import ClipPictures
+from app.features.library.clip_sizes import picture_of
 from app.look.shortening import fitted, fitting
-from app.look.theme import KIND_MARKS, theme
-from app.look.theme_choice import ThemeChoice
-from app.project.document import Document
-from app.stage.thumbnails import Thumbnails
-from metagraph.graph.model import ClipEntry
-
-PICTURE = 108
+from app.look.theme import KIND_MARKS, Theme
+from metagraph.graph.model import ClipEntry, Kind
 
 
-class CardDelegate(QStyledItemDelegate):
-    """Draws a clip as a card: picture, name, length, a stripe and mark for each kind it serves as."""
+def kinds_of(facts: ClipFacts, entry: ClipEntry) -> list[Kind]:
+    """Return what a clip serves as, each once."""
+    return list(dict.fromkeys(a.kind for a in facts.uses(entry)))
 
-    def __init__(
-        self,
-        document: Document,
-        look: ThemeChoice,
-        thumbnails: Thumbnails,
-        names: ClipNames,
-        parent: QListView,
-    ) -> None:
-        super().__init__(parent)
-        self.document, self.look, self.thumbnails = document, look, thumbnails
-        self.names, self.list = names, parent
 
-    def sizeHint(self, option: QStyleOptionViewItem, index: Index) -> QSize:
-        return self.list.gridSize()
+def draw_stripe(painter: QPainter, rect: QRect, facts: ClipFacts, entry: ClipEntry, look: Theme) -> None:
+    """Draw a stripe at the left edge, a part for each kind a clip serves as."""
+    kinds = kinds_of(facts, entry)
+    drawn = entry.id in facts.project.drawn and not kinds  # a state of a machine is of no kind
+    marks = [QColor(look.dim)] if drawn else [look.fill(kind) for kind in kinds]
+    high = (rect.height() - 12) / max(1, len(marks))
+    painter.setPen(Qt.PenStyle.NoPen)
+    for place, mark in enumerate(marks):
+        painter.setBrush(mark)
+        top = round(rect.top() + 6 + place * high)
+        painter.drawRoundedRect(rect.left() + 3, top, 4, round(high - 1), 2, 2)
 
-    def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
-        entry: ClipEntry = index.data(ENTRY)
-        if entry is None:
-            return
-        t = theme(self.look.name)
-        project = self.document.project
-        rect = option.rect.adjusted(4, 4, -4, -4)
-        state = option.state
-        selected, hover = (
-            bool(state & QStyle.StateFlag.State_Selected),
-            bool(state & QStyle.StateFlag.State_MouseOver),
+
+def draw_kinds(painter: QPainter, line: QRect, kinds: list[Kind], look: Theme) -> int:
+    """Draw the marks of kinds at the right end of a line; return where they begin."""
+    right = line.right()
+    for kind in reversed(kinds):
+        painter.setPen(look.kind(kind))
+        right -= 14
+        painter.drawText(
+            QRect(right, line.top(), 14, line.height()), Qt.AlignmentFlag.AlignCenter, KIND_MARKS[kind]
         )
-        painter.save()
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
-        painter.setBrush(QColor(t.hover if hover or selected else t.field))
-        painter.setPen(QPen(QColor(t.text if selected else t.line), 1.6 if selected else 1))
-        painter.drawRoundedRect(rect, 6, 6)
-        picture = self.thumbnails.picture(entry.id, bare=True)
-        box = QRect(rect.left() + (rect.width() - PICTURE) // 2, rect.top() + 2, PICTURE, PICTURE)
-        if picture is not None:
-            painter.drawImage(box, picture)
-        elif entry.motion is None:
-            painter.setPen(QColor(t.warning))
-            painter.drawText(box, Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, "file\nmissing")
-        kinds = list(dict.fromkeys(a.kind for a in project.uses.get(entry.id, ())))
-        drawn = entry.id in project.drawn and not kinds  # a state of a machine is of no kind
-        marks = [QColor(t.dim)] if drawn else [t.fill(kind) for kind in kinds]
-        for place, mark in enumerate(marks):
-            height = (rect.height() - 12) / len(marks)
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(mark)
-            painter.drawRoundedRect(
-                rect.left() + 3, round(rect.top() + 6 + place * height), 4, round(height - 1), 2, 2
-            )
-        font = QFont(option.font)
-        font.setPixelSize(12)
-        painter.setFont(font)
-        painter.setPen(QColor(t.text))
-        line = QRect(rect.left() + 11, rect.bottom() - 53, rect.width() - 16, 16)
-        front, rest = self.names.of(entry)
-        key, beside = font.toString(), self.names.beside(index.row())
-        shown = (
-            (
-                fitted(front, line.width(), key, self.names.stances()),
-                fitted(rest, line.width(), key, beside),
-            )
-            if front
-            else two_lines(rest, painter.fontMetrics(), line.width(), beside)
+    return right
+
+
+def draw_picture(
+    painter: QPainter, box: QRect, pictures: ClipPictures, entry: ClipEntry, look: Theme, small: bool = False
+) -> None:
+    """Draw a clip's picture, or say that its file is missing."""
+    if not pictures.draw(painter, entry.id, box, QColor(look.text)) and entry.motion is None:
+        painter.setPen(QColor(look.warning))
+        words = "?" if small else "file\nmissing"
+        painter.drawText(box, Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, words)
+
+
+def draw_card(
+    painter: QPainter,
+    place: QRect,
+    entry: ClipEntry,
+    row: int,
+    facts: ClipFacts,
+    pictures: ClipPictures,
+    names: ClipNames,
+    side: int,
+    look: Theme,
+    lit: bool,
+    chosen: bool,
+) -> None:
+    """Draw a clip in its place. side: of its picture. lit: selected or pointed at. chosen: selected."""
+    rect = place.adjusted(4, 4, -4, -4)
+    painter.setBrush(QColor(look.hover if lit else look.field))
+    painter.setPen(QPen(QColor(look.text if chosen else look.line), 1.6 if chosen else 1))
+    painter.drawRoundedRect(rect, 6, 6)
+    draw_picture(painter, picture_of("cards", side, place), pictures, entry, look)
+    draw_stripe(painter, rect, facts, entry, look)
+    font = QFont(painter.font())
+    font.setPixelSize(12)
+    painter.setFont(font)
+    line = QRect(rect.left() + 11, rect.bottom() - 53, rect.width() - 16, 16)
+    front, rest = names.of(entry)
+    key, beside = font.toString(), names.beside(row)
+    shown = (
+        (
+            fitted(front, line.width(), key, names.stances()),
+            fitted(rest, line.width(), key, beside),
         )
-        for n, part in enumerate(shown):
-            painter.setPen(QColor(t.dim if front and n == 0 else t.text))
-            painter.drawText(line, Qt.AlignmentFlag.AlignVCenter, part)
-            line.translate(0, 16)
-        painter.setPen(QColor(t.dim))
-        line.moveTop(rect.bottom() - 20)
-        painter.drawText(line, Qt.AlignmentFlag.AlignVCenter, f"{entry.duration:.1f} s")
-        right = line.right()
-        for kind in reversed(kinds):
-            painter.setPen(t.kind(kind))
-            right -= 14
-            painter.drawText(
-                QRect(right, line.top(), 14, line.height()), Qt.AlignmentFlag.AlignCenter, KIND_MARKS[kind]
-            )
-        if project.base.clip == entry.id:
-            painter.setPen(QColor(t.dim))
-            painter.drawText(
-                line.adjusted(0, 0, right - line.right() - 2, 0),
-                Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter,
-                "base",
-            )
-        painter.restore()
+        if front
+        else two_lines(rest, painter.fontMetrics(), line.width(), beside)
+    )
+    for n, part in enumerate(shown):
+        painter.setPen(QColor(look.dim if front and n == 0 else look.text))
+        painter.drawText(line, Qt.AlignmentFlag.AlignVCenter, part)
+        line.translate(0, 16)
+    mark = facts.mark(entry)
+    draw_badges(painter, rect.adjusted(10, 5, -6, 0), mark, look)
+    line.moveTop(rect.bottom() - 20)
+    right = draw_kinds(painter, line, kinds_of(facts, entry), look)
+    base = "base" if facts.project.base.clip == entry.id else ""
+    length = f"{entry.duration:.1f} s"
+    stars = f"★{mark.rating}" if mark.rating else ""
+    painter.setPen(QColor(look.dim))
+    end = QRect(line.left(), line.top(), right - line.left() - 2, line.height())
+    room = painter.fontMetrics().horizontalAdvance
+    words = "  ".join(w for w in (length, stars) if w)
+    if base and room(f"{words}  {base}") > end.width():  # what is on it goes before what it serves as
+        base = "" if stars else base
+    if room(words) > end.width():
+        words = stars or length
+    painter.drawText(end, Qt.AlignmentFlag.AlignVCenter, words)
+    painter.drawText(end, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, base)
 
 
 def two_lines(name: str, metrics: QFontMetrics, width: int, beside: Iterable[str] = ()) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.features.library.clip_model import ENTRY, FilterModel
+from app.features.library.clip_rows import ClipRows
 from app.look.names import plain
 from app.look.plural import short
 from app.project.document import Document
@@ -14,7 +14,7 @@ NEAR = 48  # cards before and behind one, from which its name is told apart
 class ClipNames:
     """shown: the clips that are listed."""
 
-    def __init__(self, document: Document, shown: FilterModel) -> None:
+    def __init__(self, document: Document, shown: ClipRows) -> None:
         self.document, self.shown = document, shown
         for signal in (
             shown.dataChanged,
@@ -59,8 +59,8 @@ class ClipNames:
         if self._listed[0] is not names:
             self._listed = names, {}
         if place not in self._listed[1]:
-            near = range(max(0, place * NEAR - NEAR), min(self.shown.rowCount(), place * NEAR + 2 * NEAR))
-            entries = (self.shown.index(n, 0).data(ENTRY) for n in near)
+            near = range(max(0, place * NEAR - NEAR), min(len(self.shown.entries), place * NEAR + 2 * NEAR))
+            entries = (self.shown.entries[n] for n in near)
             found = tuple(dict.fromkeys(self.of(e)[1] for e in entries if e is not None))
             self._listed[1][place] = found
         return self._listed[1][place]

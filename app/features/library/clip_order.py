@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import lru_cache
 from pathlib import PurePosixPath
 from typing import Any
 
-from metagraph.graph.model import KINDS, LAYERS, ClipEntry, Project
+from app.features.library.clip_facts import ClipFacts
+from metagraph.graph.clip_mark import COLORS
+from metagraph.graph.model import KINDS, LAYERS, ClipEntry
+from metagraph.motion.moving import PARTS
 
-Key = Callable[[Project, ClipEntry], Any]
+Key = Callable[[ClipFacts, ClipEntry], Any]
 GIVEN = "given"  # as the project has them
 
 
+@lru_cache(maxsize=8192)
 def natural(name: str) -> tuple[tuple[int, int, str], ...]:
     """Return a name so that 'beat 2' comes before 'beat 10', in whatever capitals."""
     return tuple(
@@ -22,34 +27,56 @@ def natural(name: str) -> tuple[tuple[int, int, str], ...]:
     )
 
 
-def _use(project: Project, entry: ClipEntry) -> tuple[int, int]:
+def first_use(facts: ClipFacts, entry: ClipEntry) -> tuple[int, int]:
     """Return layer and kind of a clip's first use; what has none comes last."""
-    uses = project.uses.get(entry.id, ())
-    return min(((LAYERS.index(a.layer), KINDS.index(a.kind)) for a in uses), default=(len(LAYERS), 0))
+    return min(
+        ((LAYERS.index(a.layer), KINDS.index(a.kind)) for a in facts.uses(entry)), default=(len(LAYERS), 0)
+    )
 
 
-def _stance(project: Project, entry: ClipEntry) -> tuple[int, Any]:
-    uses = project.uses.get(entry.id, ())
-    names = [s.name for a in uses if (s := project.stance(a.stance)) is not None]
-    return (0, min(natural(name) for name in names)) if names else (1, ())
+def stances(facts: ClipFacts, entry: ClipEntry) -> list[str]:
+    """Return the names of the stances that a clip is used in, in order."""
+    found = {s.name for a in facts.uses(entry) if (s := facts.project.stance(a.stance)) is not None}
+    return sorted(found, key=natural)
 
 
-def _count(project: Project, entry: ClipEntry) -> int:
-    return len(project.uses.get(entry.id, ()))
+def _stance(facts: ClipFacts, entry: ClipEntry) -> tuple[int, Any]:
+    names = stances(facts, entry)
+    return (0, natural(names[0])) if names else (1, ())
 
 
-def _folder(project: Project, entry: ClipEntry) -> Any:
+def _moves(facts: ClipFacts, entry: ClipEntry) -> Any:
+    found = facts.moved(entry)
+    return not found, [PARTS.index(part) for part in found]
+
+
+def _folder(facts: ClipFacts, entry: ClipEntry) -> Any:
     path = PurePosixPath(entry.path)
     return natural(path.parent.as_posix()), natural(path.name), entry.take
 
 
+def _color(facts: ClipFacts, entry: ClipEntry) -> int:
+    color = facts.mark(entry).color
+    return COLORS.index(color) if color else len(COLORS)
+
+
+def _by(first: Key) -> Key:
+    """Return an order by something, and by name where that is the same."""
+    return lambda facts, entry: (first(facts, entry), natural(entry.name))
+
+
 ORDERS: dict[str, tuple[str, Key]] = {
-    GIVEN: ("As imported", lambda project, entry: ()),
-    "name": ("Name", lambda project, entry: natural(entry.name)),
-    "length": ("Length", lambda project, entry: (entry.duration, natural(entry.name))),
-    "use": ("Layer and kind", lambda project, entry: (_use(project, entry), natural(entry.name))),
-    "stance": ("Stance", lambda project, entry: (_stance(project, entry), natural(entry.name))),
-    "uses": ("Times used", lambda project, entry: (-_count(project, entry), natural(entry.name))),
+    GIVEN: ("As imported", lambda facts, entry: ()),
+    "name": ("Name", lambda facts, entry: natural(entry.name)),
+    "length": ("Length", _by(lambda facts, entry: entry.duration)),
+    "moves": ("What moves", _by(_moves)),
+    "use": ("Layer and kind", _by(first_use)),
+    "stance": ("Stance", _by(_stance)),
+    "uses": ("Times used", _by(lambda facts, entry: -len(facts.uses(entry)))),
+    "problems": ("Problems", _by(lambda facts, entry: -facts.problems(entry))),
+    "rating": ("Stars", _by(lambda facts, entry: -facts.mark(entry).rating)),
+    "color": ("Colour label", _by(_color)),
+    "favourite": ("Favourites first", _by(lambda facts, entry: not facts.mark(entry).favourite)),
     "folder": ("Folder and file", _folder),
-    "missing": ("Missing ones first", lambda project, entry: (entry.motion is not None, natural(entry.name))),
-}  # fmt: skip
+    "missing": ("Missing ones first", _by(lambda facts, entry: entry.motion is not None)),
+}

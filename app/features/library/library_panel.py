@@ -1,22 +1,16 @@
-"""The clip library: thumbnails, search, filters; clips are dragged from here, files and folders dropped onto
-it.
+"""The clip library: thumbnails, search, filters, groups; clips are dragged from here, files and folders
+dropped onto it. What is shown is one flow: filter, order, groups (`clip_rows`), places (`clip_layout`),
+drawing.
 """
 
 from __future__ import annotations
 
-from functools import partial
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from typing import Any
 
-from PySide6.QtCore import (
-    QItemSelection,
-    QItemSelectionModel,
-    Qt,
-    Signal,
-)
-from PySide6.QtGui import (
-    QActionGroup,
-    QDragEnterEvent,
-    QDropEvent,
-)
+from PySide6.QtCore import QItemSelection, QItemSelectionModel, Qt, QTimer, Signal
+from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
@@ -28,12 +22,19 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.library.clip_acts import ClipActs
-from app.features.library.clip_card import CardDelegate
-from app.features.library.clip_list import ClipList, Search
-from app.features.library.clip_model import ENTRY, ClipModel, Filter, FilterModel
+from app.features.library.clip_delegate import ClipDelegate
+from app.features.library.clip_facts import ClipFacts
+from app.features.library.clip_filter import Filter
+from app.features.library.clip_list import ClipList
 from app.features.library.clip_names import ClipNames
-from app.features.library.clip_order import GIVEN, ORDERS
-from app.look.theme import KIND_MARKS
+from app.features.library.clip_order import GIVEN
+from app.features.library.clip_pictures import ClipPictures
+from app.features.library.clip_rows import ENTRY, ClipRows
+from app.features.library.clip_sizes import Style
+from app.features.library.library_bar import LibraryBar
+from app.features.library.library_menu import LibraryMenu
+from app.features.library.library_settings import LibrarySettings
+from app.features.library.search_field import Search
 from app.project.document import Document
 from app.project.load import readable
 from app.stage.session import Session
@@ -42,37 +43,52 @@ from app.widgets.flow import Flow
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
 from app.widgets.one_stop import OneStop
-from metagraph.graph.model import KINDS, LAYERS, ClipEntry, Kind, Project
+from metagraph.graph.model import ClipEntry, Project
+from metagraph.graph.problem import Problem
 
 EMPTY = "Drop a folder of clips here\n\n{}"
+PLACED = {"all": None, "unlabelled": False, "labelled": True}  # what the chips ask for
+MENU_ASKS = ("layer", "kind", "color", "stars", "favourite", "noted", "broken")
+AHEAD = 20  # clips looked at in one go for what they move
 
 
 class LibraryPanel(QWidget):
-    """import_wanted: the user asks for a folder. files_dropped: paths to import."""
+    """import_wanted: the user asks for a folder. files_dropped: paths to import. problems: those of the
+    project as it is now.
+    """
 
     import_wanted = Signal()
     files_dropped = Signal(object)
 
     def __init__(
-        self, document: Document, session: Session, thumbnails: Thumbnails, parent: QWidget | None = None
+        self,
+        document: Document,
+        session: Session,
+        thumbnails: Thumbnails,
+        parent: QWidget | None = None,
+        problems: Callable[[], Iterable[Problem]] = tuple,
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.thumbnails = document, session, thumbnails
+        self.settings = LibrarySettings()
+        self.facts = ClipFacts(document, problems)
         self.acts = ClipActs(document, session, self)
-        self.model = ClipModel(document)
-        self.proxy = FilterModel(self.model)
-        names = ClipNames(document, self.proxy)
+        self.rows = ClipRows(self.facts)
+        self.rows.show(replace(self.rows.listing, group=self.settings.group()))
+        names = ClipNames(document, self.rows)
         self.search = Search(self)
         self.search.textChanged.connect(self._refilter)
-        self.list = ClipList(session, thumbnails, names, self)
-        self.list.setModel(self.proxy)
-        self.list.setItemDelegate(CardDelegate(document, session.look, thumbnails, names, self.list))
+        pictures = ClipPictures(thumbnails)
+        delegate = ClipDelegate(session.look, self.facts, pictures, names)
+        self.list = ClipList(session, self.rows, delegate, self)
         self.list.menu_wanted.connect(lambda entry, at: self.acts.menu(entry).exec(at))
         self.list.files_dropped.connect(self.files_dropped)
         self.search.left.connect(self._into_list)
         self._following = False
         selection = self.list.selectionModel()
         selection.selectionChanged.connect(self._selected)
+        self.rows.modelAboutToBeReset.connect(self._hold)
+        self.rows.modelReset.connect(self._show_again)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(8, 8, 4, 0)
         layout.setSpacing(6)
@@ -85,12 +101,21 @@ class LibraryPanel(QWidget):
         self.stack.addWidget(self.list)
         self.stack.addWidget(self._empty())
         layout.addLayout(self.stack, 1)
+        self.bar = LibraryBar(session.look, self)
+        self.bar.changed.connect(self.show_as)
+        self.list.zoomed.connect(self.bar.step)
+        layout.addWidget(self.bar)
+        self.list.header.sort_wanted.connect(self._sort_by_title)
+        self.list.header.arranged.connect(self._keep_columns)
         self.setAcceptDrops(True)
+        self._soon = QTimer(self, interval=0)  # looks at what clips move, while there is nothing else to do
+        self._soon.timeout.connect(self._look_ahead)
         document.changed.connect(self._follow)
         document.loaded.connect(self.forget)
         session.selection.changed.connect(self._show_selection)
-        thumbnails.ready.connect(lambda _: self.list.viewport().update())
+        thumbnails.ready.connect(self._picture_came)
         session.look.changed.connect(self.list.viewport().update)
+        self.restore()
         self._count()
 
     def _filters(self) -> Flow:
@@ -107,31 +132,84 @@ class LibraryPanel(QWidget):
         chip("all", "All", "All clips")
         chip("unlabelled", "Unlabelled", "Clips that were not placed yet")
         chip("labelled", "Placed", "Clips that are in the graph")
-        tip = "Show the clips of a layer or kind only, or sort them"
+        tip = "Show some of the clips only; sort and group them"
         self.more = MoreButton(self.session.look, "Layer or kind", tip, self)
-        menu = self.more.menu_of
-        menu.addAction("Any kind, any layer", lambda: self._narrow(None, None))
-        menu.addSeparator()
-        for kind in KINDS:
-            menu.addAction(f"{KIND_MARKS[kind]}  {kind.capitalize()}", partial(self._narrow, None, kind))
-        menu.addSeparator()
-        for layer in LAYERS:
-            menu.addAction(f"{layer.capitalize()} layer", partial(self._narrow, layer, None))
-        menu.addSeparator()
-        self.orders = menu.addMenu("&Sort by")
-        group = QActionGroup(self)
-        for order, (words, _) in ORDERS.items():
-            action = self.orders.addAction(words, partial(self.sort, order))
-            action.setCheckable(True)
-            action.setChecked(order == GIVEN)
-            action.setData(order)
-            group.addAction(action)
-        self.orders.addSeparator()
-        self.backwards = self.orders.addAction("The other way &round", lambda: self.sort(self.proxy.order))
-        self.backwards.setCheckable(True)
+        self.menu = LibraryMenu(self, self.more.menu_of)
+        self.orders, self.backwards = self.menu.orders, self.menu.backwards
         OneStop(tuple(self.chips.values()), self)
         self.chips["all"].setChecked(True)
         return row
+
+    # --- how clips are shown
+
+    def show_as(self, style: Style, side: int = -1) -> None:
+        """Show cards or columns, with pictures of so many pixels, -1 for as it was; it is kept for this
+        person.
+        """
+        side = side if side > 0 else self.settings.side(style)
+        self.settings.keep_size(style, side)
+        self._show_as(style, side)
+
+    def _show_as(self, style: Style, side: int) -> None:
+        self.list.show_as(style, side)
+        self.bar.show_choice(style, side)
+        if style == "columns":
+            self._soon.start()
+
+    def restore(self) -> None:
+        """Show clips as this person had them last."""
+        style = self.settings.style()
+        columns = self.settings.columns()
+        self._restoring = True
+        if columns is None or not self.list.header.restoreState(columns):
+            self.list.header.as_usual()
+        self._restoring = False
+        self._show_as(style, self.settings.side(style))
+        self.rows.show(replace(self.rows.listing, group=self.settings.group()))
+        self.menu.check(self.menu.groups, self.rows.listing.group)
+
+    def _keep_columns(self) -> None:
+        if not self._restoring:
+            self.settings.keep_columns(self.list.header.saveState())
+
+    _restoring = False
+
+    def group_by(self, group: str) -> None:
+        """Put clips into groups, of `clip_groups.GROUPS`; it is kept for this person."""
+        self.settings.keep_group(group)
+        self.menu.check(self.menu.groups, group)
+        self.rows.show(replace(self.rows.listing, group=group))
+
+    def close_all(self) -> None:
+        """Let every group show its title only."""
+        self.rows.close_groups(frozenset(s.title for s in self.rows.sections if s.title))
+
+    def _sort_by_title(self, order: str) -> None:
+        """Sort by what a column's title stands for; once more, the other way round."""
+        listing = self.rows.listing
+        self.backwards.setChecked(order == listing.order and not listing.backwards)
+        self.sort(order)
+
+    def _look_ahead(self) -> None:
+        unknown = self.facts.unknown()
+        if not unknown or self.list.style_of != "columns":
+            self._soon.stop()
+        self.facts.ahead(unknown[:AHEAD])
+
+    def problems_changed(self) -> None:
+        """Other problems were found."""
+        if self.rows.listing.follows_problems:
+            self.rows.arrange()
+        if self.list.style_of == "columns":
+            self.list.viewport().update()
+
+    def _picture_came(self, clip: str) -> None:
+        """Draw a clip whose picture is there, or all where they are to be drawn anew."""
+        row = self.rows.row_of(clip)
+        if row is not None:
+            self.list.viewport().update(self.list.visualRect(self.rows.index(row, 0)))
+        elif not clip:
+            self.list.viewport().update()
 
     def _empty(self) -> QWidget:
         page = QWidget(self)
@@ -161,34 +239,50 @@ class LibraryPanel(QWidget):
 
     # --- filtering
 
-    def _chip(self, key: str) -> None:
-        for name, button in self.chips.items():
-            button.setChecked(name == key)
-        self._refilter()
+    def narrow(self, layer: str | None = None, kind: str | None = None) -> None:
+        """Show the clips of a layer or kind alone; without, all that are not filtered otherwise."""
+        if layer is None and kind is None:
+            self.ask_for(**{f: getattr(Filter(), f) for f in MENU_ASKS})
+        else:
+            self.ask_for(layer=layer, kind=kind)
 
-    def _narrow(self, layer: str | None, kind: Kind | None) -> None:
-        word = layer or kind
-        self.more.show_words((word or "").capitalize())
-        self._refilter(layer=layer, kind=kind)
+    def ask_for(self, **changes: Any) -> None:
+        """Show only clips of which more is true, or less: fields of `Filter`."""
+        self._set_filter(replace(self.rows.filter, **changes))
+
+    def show_filter(self, rule: Filter) -> None:
+        """Show what a filter says, in the field and the chips, too."""
+        self._following = True
+        self.search.setText(rule.text)
+        self._following = False
+        self._press(next(k for k, v in PLACED.items() if v is rule.labelled))
+        self._set_filter(rule)
 
     def sort(self, order: str) -> None:
         """List the clips in one of `clip_order.ORDERS`."""
-        for action in self.orders.actions():
-            if action.data() is not None:
-                action.setChecked(action.data() == order)
-        self._following = True  # what is chosen stays chosen
-        self.proxy.set_order(order, self.backwards.isChecked())
-        self._following = False
-        self._show_selection()
+        self.menu.check(self.orders, order)
+        backwards = self.backwards.isChecked()
+        self.rows.show(replace(self.rows.listing, order=order, backwards=backwards))
+        self.list.header.show_order(order, backwards)
 
-    def _refilter(self, *_: object, **more: str | None) -> None:
-        checked = next((k for k, b in self.chips.items() if b.isChecked()), "all")
-        labelled = {"all": None, "unlabelled": False, "labelled": True}[checked]
-        old = self.proxy.filter
-        layer, kind = more.get("layer", old.layer), more.get("kind", old.kind)
-        if more:
-            layer, kind = more["layer"], more["kind"]
-        self.proxy.set_filter(Filter(self.search.text(), labelled, layer, kind))
+    def _press(self, key: str) -> None:
+        for name, button in self.chips.items():
+            button.setChecked(name == key)
+
+    def _chip(self, key: str) -> None:
+        self._press(key)
+        self._refilter()
+
+    def _refilter(self, *_: object) -> None:
+        if not self._following:
+            checked = next((k for k, b in self.chips.items() if b.isChecked()), "all")
+            self.ask_for(text=self.search.text(), labelled=PLACED[checked])
+
+    def _set_filter(self, rule: Filter) -> None:
+        self.more.show_words(rule.words())
+        self.rows.show(replace(self.rows.listing, filter=rule))
+        if self.session.selection.clips:  # what is not seen is not chosen
+            self._selected()
         self._count()
 
     def _count(self) -> None:
@@ -200,7 +294,9 @@ class LibraryPanel(QWidget):
             f"Search {total} clip{'s' if total != 1 else ''}" if total else "Search"
         )
         nothing = not total
-        hidden = bool(total) and self.proxy.rowCount() == 0
+        found = len(self.rows.entries)
+        hidden = bool(total) and found == 0
+        self.bar.told.setText(f"{found} of {total}" if 0 < found < total else "")
         self.empty_button.setVisible(nothing)
         if hidden:
             self.empty.setText("No clip matches.\nClear the search or the filters.")
@@ -212,8 +308,8 @@ class LibraryPanel(QWidget):
         """Return the clip that comes after one, as they are listed, and serves as nothing yet; from the first
         on where none comes after it. None where there is no other.
         """
-        project, filtered = self.document.project, self.proxy.filter
-        ids = [i for i in self.proxy.listed() if i == clip or self._open(project.clips[i], filtered)]
+        project, filtered = self.document.project, self.rows.filter
+        ids = [i for i in self.rows.listed() if i == clip or self._open(project.clips[i], filtered)]
         at = ids.index(clip) if clip in ids else -1
         return next((i for i in (*ids[at + 1 :], *ids[: max(0, at)]) if i != clip), None)
 
@@ -221,32 +317,50 @@ class LibraryPanel(QWidget):
         """Return whether a clip serves as nothing yet, and is looked for."""
         project = self.document.project
         used = entry.id in project.uses or entry.id in project.drawn
-        return not used and Filter(rule.text).takes(project, entry)
+        return not used and Filter(rule.text).takes(self.facts, entry)
 
     def forget(self) -> None:
         """Show all clips: what was searched was of another project."""
         self.search.clear()
         self.backwards.setChecked(False)
         self.sort(GIVEN)
-        self._narrow(None, None)
+        self.narrow()
         self._chip("all")
 
     # --- selection
 
     def _into_list(self) -> None:
         """Give the keyboard to the clips, the first one chosen unless one is already."""
-        if self.proxy.rowCount():
+        if self.rows.entries:
             self.list.setFocus(Qt.FocusReason.TabFocusReason)
             if not self.list.selectedIndexes():
-                self.list.setCurrentIndex(self.proxy.index(0, 0))
+                first = self.list.layout_of.beside(-1, 0)
+                self.list.setCurrentIndex(self.rows.index(first, 0))
 
     def _selected(self, *_: QItemSelection) -> None:
         if self._following:
             return
-        rows = sorted(self.list.selectedIndexes(), key=lambda i: i.row())
+        chosen = sorted(i.row() for i in self.list.selectedIndexes())
         self._following = True
-        self.session.selection.select_clips(tuple(i.data(ENTRY).id for i in rows))
+        self.session.selection.select_clips(tuple(self.rows.entries[row].id for row in chosen))
         self._following = False
+
+    def _hold(self) -> None:
+        """Other rows come: what is chosen stays so, and what is current."""
+        index = self.list.currentIndex()
+        self._held = index.data(ENTRY).id if index.isValid() else None
+        self._following = True
+
+    _held: str | None = None
+
+    def _show_again(self) -> None:
+        self.list.relayout()
+        self._following = False
+        self._show_selection()
+        row = self.rows.row_of(self._held) if self._held is not None else None
+        if row is not None and not self.list.currentIndex().isValid():
+            none = QItemSelectionModel.SelectionFlag.NoUpdate
+            self.list.selectionModel().setCurrentIndex(self.rows.index(row, 0), none)
 
     def _show_selection(self) -> None:
         """Follow the session: selected clips, or the clips of selected actions faintly by scrolling to the
@@ -255,22 +369,17 @@ class LibraryPanel(QWidget):
         if self._following:
             return
         self._following = True
-        wanted = set(self.session.selection.clips)
+        wanted = self.session.selection.clips
         if not wanted:
             self.list.clearSelection()
             self._following = False
             return
-        chosen = QItemSelection()
-        first = None
-        for row in range(self.proxy.rowCount()):
-            index = self.proxy.index(row, 0)
-            if index.data(ENTRY).id in wanted:
-                chosen.select(index, index)
-                first = first or index
-        self.list.selectionModel().select(chosen, QItemSelectionModel.SelectionFlag.ClearAndSelect)
-        if first is not None and len(wanted) == 1:
-            self.list.selectionModel().setCurrentIndex(first, QItemSelectionModel.SelectionFlag.NoUpdate)
-            self.list.scrollTo(first)
+        rows = sorted(r for r in map(self.rows.row_of, wanted) if r is not None)
+        self.list.select_rows(rows)
+        if rows and len(wanted) == 1:
+            index = self.rows.index(rows[0], 0)
+            self.list.selectionModel().setCurrentIndex(index, QItemSelectionModel.SelectionFlag.NoUpdate)
+            self.list.scrollTo(index)
         self._following = False
 
     def _follow(self, before: Project, after: Project) -> None:
@@ -278,12 +387,10 @@ class LibraryPanel(QWidget):
             before.clips is not after.clips
             or before.graphs is not after.graphs
             or before.manual is not after.manual
+            or before.marks is not after.marks
         ):
-            rule = self.proxy.filter
-            if rule.labelled is not None or rule.layer or rule.kind:
-                self._following = True  # clips leaving the view are not deselected by hand
-                self.proxy.invalidate()
-                self._following = False
             self._count()
         if before.base != after.base:
             self.list.viewport().update()
+        if before.clips is not after.clips and self.list.style_of == "columns":
+            self._soon.start()

@@ -1,4 +1,4 @@
-"""Notes on the project and its actions."""
+"""Notes on the project, its actions and its clips."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ def contribute(shell: Shell) -> Contribution:
                 "N&ote…",
                 write,
                 ("Ctrl+Shift+O",),
-                tip="A note on the selected action, or on the project",
-                menus=("action",),
+                tip="A note on the selected action or clip, or on the project",
+                menus=("action", "clip"),
             ),
         ),
     )

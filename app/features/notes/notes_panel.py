@@ -1,4 +1,4 @@
-"""A note to write: on the selected action, else on the project. It is kept in the project's file."""
+"""A note to write: on the selected action or clip, else on the project. It is kept in the project's file."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from app.look.names import plain
 from app.project.document import Document
 from app.stage.session import Session
 from app.widgets.sentence import OneLine
+from metagraph.graph.marks import mark, mark_of
 from metagraph.graph.model import Project
 from metagraph.graph.notes import PROJECT, set_note
 
@@ -29,7 +30,7 @@ class _Text(QPlainTextEdit):
 
 class NotesPanel(QWidget):
     """What is typed is one step of undo, until the keyboard or the selection goes elsewhere. about: the id of
-    the action whose note is shown, or `PROJECT`.
+    the action or the clip whose note is shown, or `PROJECT`.
     """
 
     def __init__(self, document: Document, session: Session, parent: QWidget | None = None) -> None:
@@ -51,19 +52,21 @@ class NotesPanel(QWidget):
 
     def refresh(self) -> None:
         """Show the note of what is selected now."""
-        project, chosen = self.document.project, self.session.selection.actions
-        action = project.action(chosen[0]) if len(chosen) == 1 else None
-        about = action.id if action is not None else PROJECT
+        project, selection = self.document.project, self.session.selection
+        chosen = selection.actions or selection.clips
+        ident = chosen[0] if len(chosen) == 1 else PROJECT
+        found = project.action(ident) or project.clips.get(ident)
+        about = found.id if found is not None else PROJECT
         if about != self.about:
             self.finish()
             self.about = about
-        self.title.say(f"On {plain(action.name)}" if action is not None else "On the project")
+        self.title.say(f"On {plain(found.name)}" if found is not None else "On the project")
         self.text.setPlaceholderText(
-            "What is to be done, or to be known, about this action"
-            if action is not None
+            f"What is to be done, or to be known, about this {'clip' if about in project.clips else 'action'}"
+            if found is not None
             else "What is to be done, or to be known, about this character"
         )
-        note = project.notes.get(about, "")
+        note = mark_of(project, about).note if about in project.clips else project.notes.get(about, "")
         if note != self.text.toPlainText().rstrip():
             self._filling = True
             self.text.setPlainText(note)
@@ -76,8 +79,15 @@ class NotesPanel(QWidget):
     def _typed(self) -> None:
         if not self._filling:
             words, about = self.text.toPlainText(), self.about
-            self.document.edit("Write a note", lambda p: set_note(p, about, words), merge=f"note {about}")
+
+            def write(project: Project) -> Project:
+                if about in project.clips:
+                    return mark(project, (about,), note=words.rstrip())
+                return set_note(project, about, words)
+
+            self.document.edit("Write a note", write, merge=f"note {about}")
 
     def _edited(self, before: Project, after: Project) -> None:
-        if before.notes is not after.notes or before.graphs is not after.graphs:
+        same = before.notes is after.notes and before.graphs is after.graphs
+        if not same or before.marks is not after.marks or before.clips is not after.clips:
             self.refresh()

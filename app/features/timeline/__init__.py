@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtWidgets import QWidget
 
+from app.project.importing import Importing
 from app.shell.actions import Command
 from app.shell.context import Contribution, Panel, Shell
 from app.shell.verbs import Verbs
@@ -14,9 +15,12 @@ def contribute(shell: Shell) -> Contribution:
     session, performance = stage.session, stage.performance
 
     def make() -> QWidget:
+        from app.features.timeline.lane_drops import LaneDrops
         from app.features.timeline.timeline_panel import TimelinePanel
 
-        return TimelinePanel(document, session, performance, shell.widget)
+        panel = TimelinePanel(document, session, performance, shell.widget)
+        LaneDrops(panel.lanes, shell.services[Importing])
+        return panel
 
     def toggle_live() -> None:
         (performance.live.begin if performance.live.stage is None else performance.live.end)()

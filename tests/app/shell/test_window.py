@@ -94,7 +94,7 @@ def test_the_whole_job_by_keyboard_alone(drive, folder, tmp_path, monkeypatch):
         ("cough", KEY.Key_3, "fidget"),
         ("raise", KEY.Key_4, "transition"),
     ):
-        row = next(r for r in range(5) if drive.library.proxy.index(r, 0).data() == name)
+        row = next(r for r in range(5) if drive.library.rows.index(r, 0).data() == name)
         listed.setFocus()
         while listed.currentIndex().row() != row:
             drive.key(KEY.Key_Right if listed.currentIndex().row() < row else KEY.Key_Left, widget=listed)

@@ -21,6 +21,7 @@ def pictures(qapp, toy):
     document = Document()
     jobs = Jobs()
     made = Thumbnails(document, Session(document), Figures(document, jobs))
+    made.kept.ask = made._wait_in_line  # nothing is on the disk
     document.load(toy.project(), None)
     yield made
     made.stop()

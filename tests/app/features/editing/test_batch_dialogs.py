@@ -108,4 +108,6 @@ def test_the_menu_of_an_action_offers_them(toys):
         "replace_clip",
         "twins",
         "note",
+        "list_earlier",
+        "list_later",
     ]

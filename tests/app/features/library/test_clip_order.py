@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.features.library.clip_model import ENTRY
 from app.features.library.clip_order import GIVEN, ORDERS, natural
+from app.features.library.clip_rows import ENTRY
 
 
 def shown(panel):
-    return [panel.proxy.index(row, 0).data(ENTRY) for row in range(panel.proxy.rowCount())]
+    return [panel.rows.index(row, 0).data(ENTRY) for row in range(panel.rows.rowCount())]
 
 
 def test_names_are_sorted_as_people_count():
@@ -33,17 +33,17 @@ def test_any_names_can_be_compared(names):
 
 @pytest.mark.parametrize("order", [order for order in ORDERS if order != GIVEN])
 def test_clips_are_listed_in_the_order_that_is_chosen_and_back(toys, order):
-    panel, project = toys.library, toys.document.project
+    panel = toys.library
     given_order = [e.id for e in shown(panel)]
     action = next(a for a in panel.orders.actions() if a.data() == order)
     action.trigger()
     found = shown(panel)
-    keys = [ORDERS[order][1](project, entry) for entry in found]
+    keys = [ORDERS[order][1](panel.facts, entry) for entry in found]
     assert keys == sorted(keys) and {e.id for e in found} == set(given_order) and action.isChecked()
-    assert [e.id for e in found] == panel.proxy.listed()
+    assert [e.id for e in found] == panel.rows.listed()
     panel.backwards.trigger()
-    assert [e.id for e in shown(panel)] == panel.proxy.listed()
-    assert [ORDERS[order][1](project, e) for e in shown(panel)] == sorted(keys, reverse=True)
+    assert [e.id for e in shown(panel)] == panel.rows.listed()
+    assert [ORDERS[order][1](panel.facts, e) for e in shown(panel)] == sorted(keys, reverse=True)
     panel.forget()
     assert [e.id for e in shown(panel)] == given_order
 

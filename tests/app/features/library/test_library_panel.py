@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QFont, QFontMetrics
 
 from app.features.library.clip_card import two_lines
-from app.features.library.clip_model import Filter, _changed_rows
+from app.features.library.clip_facts import ClipFacts
+from app.features.library.clip_filter import Filter
+from app.features.library.clip_rows import changed_rows as _changed_rows
 from metagraph.graph import edits
 
 
@@ -20,7 +24,8 @@ def project(toy):
 
 
 def taken(project, **rule) -> set[str]:
-    return {e.name for e in project.clips.values() if Filter(**rule).takes(project, e)}
+    facts = ClipFacts(SimpleNamespace(project=project))
+    return {e.name for e in project.clips.values() if Filter(**rule).takes(facts, e)}
 
 
 def test_no_filter_takes_everything(project):
@@ -89,7 +94,7 @@ def test_a_new_project_is_not_searched_for_what_was_wanted_of_the_last(toys, toy
     toys.library.chips["unlabelled"].click()
     toys.document.load(toy.project(), None)
     assert toys.library.search.text() == "" and toys.library.chips["all"].isChecked()
-    assert toys.library.proxy.rowCount() == len(toys.document.project.clips)
+    assert toys.library.rows.rowCount() == len(toys.document.project.clips)
 
 
 @pytest.mark.window

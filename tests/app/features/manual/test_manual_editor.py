@@ -436,10 +436,10 @@ def test_a_clip_that_was_drawn_leaves_those_that_are_to_do(hand: Hand) -> None:
     action = next(a for a in drive.document.project.actions() if a.kind == "gesture")
     drive.document.edit("Remove", lambda p: edits.remove_actions(p, [a.id for a in p.uses[action.clip]]))
     drive.library.chips["unlabelled"].click()
-    before, rows = drive.library.chips["unlabelled"].text(), drive.library.proxy.rowCount()
+    before, rows = drive.library.chips["unlabelled"].text(), drive.library.rows.rowCount()
     hand.canvas.place((action.clip,), QPointF(200, 200))
-    drive.wait(lambda: drive.library.proxy.rowCount() == rows - 1)
+    drive.wait(lambda: drive.library.rows.rowCount() == rows - 1)
     assert drive.library.chips["unlabelled"].text() == f"Unlabelled {rows - 1}" != before
     drive.actions["undo"].trigger()
-    drive.wait(lambda: drive.library.proxy.rowCount() == rows)
+    drive.wait(lambda: drive.library.rows.rowCount() == rows)
     assert drive.library.chips["unlabelled"].text() == before

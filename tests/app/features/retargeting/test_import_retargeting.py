@@ -79,7 +79,7 @@ def test_clips_of_another_skeleton_are_asked_about_once_and_retargeted_in_one_st
     new = [e for e in project.clips.values() if e.brought_from]
     assert [e.name for e in new] == ["other0", "other1"] and set(project.joint_maps) == {key}
     assert all(e.motion.skeleton == project.skeleton for e in new)
-    model = drive.library.model
+    model = drive.library.rows
     tip = model.data(model.index(2), Qt.ItemDataRole.ToolTipRole)
     assert "brought over from a skeleton of 61 joints" in tip
     drive.wait(lambda: any("2 of them retargeted" in words for words in drive.said))

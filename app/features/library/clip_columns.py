@@ -1,0 +1,81 @@
+"""The columns of the list of clips: what stands in each, and what a click on its title sorts by."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from app.features.library.clip_facts import ClipFacts
+from app.features.library.clip_order import GIVEN, stances
+from metagraph.graph.clip_mark import STARS
+from metagraph.graph.model import KINDS, LAYERS, ClipEntry
+
+
+@dataclass(frozen=True)
+class Column:
+    """id: stable. words: what stands in it. order: of `ORDERS`. width: in pixels at first. right: whether its
+    words end at the right. shown: whether it is there at first. tip: what it tells.
+    """
+
+    id: str
+    title: str
+    words: Callable[[ClipFacts, ClipEntry], str]
+    order: str
+    width: int
+    tip: str
+    right: bool = False
+    shown: bool = True
+
+
+def stars(rating: int) -> str:
+    """Return a rating as it is drawn: as many full stars, the others empty; nothing for none."""
+    return "★" * rating + "☆" * (STARS - rating) if rating else ""
+
+
+def _layers(facts: ClipFacts, entry: ClipEntry) -> str:
+    found = {a.layer for a in facts.uses(entry)}
+    return ", ".join(layer for layer in LAYERS if layer in found)
+
+
+def _kinds(facts: ClipFacts, entry: ClipEntry) -> str:
+    found = {a.kind for a in facts.uses(entry)}
+    return ", ".join(kind for kind in KINDS if kind in found)
+
+
+def _count(number: int) -> str:
+    return str(number) if number else ""
+
+
+def _note(facts: ClipFacts, entry: ClipEntry) -> str:
+    return facts.mark(entry).note.replace("\n", " ")
+
+
+COLUMNS: tuple[Column, ...] = (
+    Column("name", "Name", lambda f, e: e.name, "name", 250, "What the clip is called"),
+    Column("length", "Length", lambda f, e: f"{e.duration:.2f} s", "length", 70, "Its length", right=True),
+    Column(
+        "moves",
+        "Moves",
+        lambda f, e: ", ".join(f.moved(e)),
+        "moves",
+        130,
+        "Whose joints turn; place: it travels",
+    ),
+    Column("kind", "Kind", _kinds, "use", 90, "What it serves as"),
+    Column("layer", "Layer", _layers, "use", 80, "The layers it is placed in"),
+    Column(
+        "stance", "Stance", lambda f, e: ", ".join(stances(f, e)), "stance", 130, "The stances it is used in"
+    ),
+    Column("uses", "Uses", lambda f, e: _count(len(f.uses(e))), "uses", 55, "How many actions use it", True),
+    Column(
+        "problems", "Problems", lambda f, e: _count(f.problems(e)), "problems", 80, "In how many it is", True
+    ),
+    Column("rating", "Stars", lambda f, e: stars(f.mark(e).rating), "rating", 85, "How many stars it has"),
+    Column("color", "Label", lambda f, e: f.mark(e).color.capitalize(), "color", 80, "Its colour label"),
+    Column("favourite", "♥", lambda f, e: "♥" if f.mark(e).favourite else "", "favourite", 34, "Favourites"),
+    Column("note", "Note", _note, "name", 160, "What was written about it", shown=False),
+    Column(
+        "added", "Added", lambda f, e: str(f.place(e)), GIVEN, 65, "In which order clips came", True, False
+    ),
+    Column("file", "File", lambda f, e: e.path, "folder", 220, "The file it comes from"),
+)

@@ -1,0 +1,52 @@
+"""Groups in which the library lists clips. A clip is in one of them: where several would do, in the first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import PurePosixPath
+from typing import Any
+
+from app.features.library.clip_facts import ClipFacts
+from app.features.library.clip_order import first_use, natural, stances
+from metagraph.graph.model import KINDS, LAYERS, ClipEntry
+
+NONE = "none"
+Group = tuple[Any, str]  # what it is sorted by, and its title
+UNUSED: Group = ((1,), "Not placed yet")
+
+
+def _folder(facts: ClipFacts, entry: ClipEntry) -> Group:
+    path = PurePosixPath(entry.path).parent.as_posix()
+    return natural(path), "Beside the project" if path == "." else path
+
+
+def _stance(facts: ClipFacts, entry: ClipEntry) -> Group:
+    names = stances(facts, entry)
+    return ((0, natural(names[0])), names[0]) if names else UNUSED
+
+
+def _tag(facts: ClipFacts, entry: ClipEntry) -> Group:
+    tags = sorted({tag for a in facts.uses(entry) for tag in a.tags}, key=natural)
+    if tags:
+        return (0, natural(tags[0])), tags[0]
+    return ((1,), "No tag") if facts.uses(entry) else ((2,), UNUSED[1])
+
+
+def _layer(facts: ClipFacts, entry: ClipEntry) -> Group:
+    layer, _ = first_use(facts, entry)
+    return ((0, layer), f"{LAYERS[layer].capitalize()} layer") if layer < len(LAYERS) else UNUSED
+
+
+def _kind(facts: ClipFacts, entry: ClipEntry) -> Group:
+    kinds = [KINDS.index(a.kind) for a in facts.uses(entry)]
+    return ((0, min(kinds)), f"{KINDS[min(kinds)].capitalize()}s") if kinds else UNUSED
+
+
+GROUPS: dict[str, tuple[str, Callable[[ClipFacts, ClipEntry], Group] | None]] = {
+    NONE: ("No groups", None),
+    "folder": ("Folder", _folder),
+    "stance": ("Stance", _stance),
+    "tag": ("Tag", _tag),
+    "layer": ("Layer", _layer),
+    "kind": ("Kind", _kind),
+}

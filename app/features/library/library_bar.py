@@ -1,0 +1,78 @@
+"""The strip below the clips: cards or columns, and how large."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QWidget
+
+from app.features.library.clip_sizes import Style, steps
+from app.look import icons
+from app.look.theme import theme
+from app.look.theme_choice import ThemeChoice
+from app.widgets.making import make_widget
+from app.widgets.one_stop import OneStop
+from app.widgets.quiet_fields import Scrub
+
+BUTTONS: dict[Style, tuple[str, str, str]] = {
+    "cards": ("grid", "Cards", "Pictures, as large as the slider says; small ones are lines"),
+    "columns": ("list", "Columns", "A list with columns; a click on a title sorts, its menu shows and hides"),
+}
+
+
+class LibraryBar(QWidget):
+    """changed: a style and a size were chosen."""
+
+    changed = Signal(str, int)
+
+    def __init__(self, look: ThemeChoice, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.look = look
+        self.style_of: Style = "cards"
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 2, 4, 4)
+        row.setSpacing(2)
+        self.buttons: dict[Style, QToolButton] = {}
+        for style, (_, words, tip) in BUTTONS.items():
+            button = make_widget(QToolButton, self, toolTip=tip, checkable=True)
+            button.setAccessibleName(words)
+            button.setIconSize(QSize(16, 16))
+            button.setProperty("tight", True)
+            button.clicked.connect(lambda _=False, style=style: self.changed.emit(style, -1))
+            self.buttons[style] = button
+            row.addWidget(button)
+        OneStop(tuple(self.buttons.values()), self)
+        self.told = QLabel(self)
+        self.told.setProperty("dim", True)
+        row.addWidget(self.told, 1)
+        self.slider = Scrub(Qt.Orientation.Horizontal, self)
+        self.slider.setAccessibleName("Size of the clips")
+        self.slider.setToolTip("How large clips are shown (Ctrl and the wheel; Ctrl+ and Ctrl- in the list)")
+        self.slider.setMinimumWidth(60)
+        self.slider.setMaximumWidth(130)
+        self.slider.setPageStep(1)
+        self.slider.valueChanged.connect(self._slid)
+        row.addWidget(self.slider, 1)
+        look.changed.connect(self._restyle)
+        self._restyle()
+
+    def show_choice(self, style: Style, side: int) -> None:
+        """Tell what is chosen."""
+        self.style_of = style
+        for each, button in self.buttons.items():
+            button.setChecked(each == style)
+        sizes = steps(style)
+        self.slider.blockSignals(True)
+        self.slider.setRange(0, len(sizes) - 1)
+        self.slider.setValue(sizes.index(side))
+        self.slider.blockSignals(False)
+
+    def step(self, by: int) -> None:
+        """Go to the next size."""
+        self.slider.setValue(self.slider.value() + by)
+
+    def _slid(self, place: int) -> None:
+        self.changed.emit(self.style_of, steps(self.style_of)[place])
+
+    def _restyle(self) -> None:
+        for style, (name, _, _) in BUTTONS.items():
+            self.buttons[style].setIcon(icons.icon(name, theme(self.look.name).text, 16))

@@ -1,0 +1,92 @@
+"""Edits of what is listed: clips once more, actions in another order within their node."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+
+from metagraph.graph.model import Action, ClipEntry, Project
+
+
+def duplicate_clips(project: Project, clips: Collection[str]) -> Project:
+    """Add clips once more, each behind the first of it, under a name of its own and with what is on it; both
+    play the same file, and can be played faster, slower or held each for itself.
+    """
+    taken = {e.name for e in project.clips.values()}
+    out: dict[str, ClipEntry] = {}
+    marks, next_id = dict(project.marks), project.next_id
+    for ident, entry in project.clips.items():
+        out[ident] = entry
+        if ident in clips:
+            name = _copy_name(entry.name, taken)
+            taken.add(name)
+            twin = replace(entry, id=f"c{next_id}", name=name)
+            next_id += 1
+            out[twin.id] = twin
+            if ident in marks:
+                marks[twin.id] = marks[ident]
+    if next_id == project.next_id:
+        return project
+    return replace(project, clips=out, next_id=next_id, marks=marks)
+
+
+def _copy_name(name: str, taken: Collection[str]) -> str:
+    n, out = 2, f"{name} copy"
+    while out in taken:
+        out, n = f"{name} copy {n}", n + 1
+    return out
+
+
+def reordered(project: Project, actions: Collection[str], before: str | None) -> Project:
+    """List actions of one node in front of another of it, or at its end for None, in the order they have.
+    Which of them plays does not change: that is drawn by their ids.
+    """
+    moving = [a for a in project.actions() if a.id in actions]
+    if not moving or (before is not None and before in actions):
+        return project
+    first = moving[0]
+    graph = project.graphs[first.layer]
+    node = graph.of(first.stance, first.kind)
+    moving = [a for a in node if a.id in actions]
+    rest = [a for a in node if a.id not in actions]
+    at = next((n for n, a in enumerate(rest) if a.id == before), len(rest))
+    return _listed(project, node, [*rest[:at], *moving, *rest[at:]])
+
+
+def listed_otherwise(before: Project, after: Project) -> bool:
+    """Return whether two projects that are equal list their actions in another order."""
+    graphs = ((before.graphs[layer].actions, after.graphs[layer].actions) for layer in before.graphs)
+    return any(one is not other and list(one) != list(other) for one, other in graphs)
+
+
+def shifted(project: Project, actions: Collection[str], steps: int) -> Project:
+    """List actions a place earlier in their nodes (-1) or later (1), as far as there is one; those that stand
+    beside each other stay so.
+    """
+    nodes = dict.fromkeys((a.layer, a.stance, a.kind) for a in project.actions() if a.id in actions)
+    for layer, stance, kind in nodes:
+        node = project.graphs[layer].of(stance, kind)
+        order = list(node)
+        places = [n for n, a in enumerate(order) if a.id in actions]
+        edge = 0 if steps < 0 else len(order) - 1
+        for n in places if steps < 0 else reversed(places):
+            if n == edge:  # it is at the end, or beside one that is
+                edge -= steps
+            else:
+                order[n], order[n + steps] = order[n + steps], order[n]
+        project = _listed(project, node, order)
+    return project
+
+
+def _listed(project: Project, before: tuple[Action, ...], after: list[Action]) -> Project:
+    """Put a node's actions into the places that they have among all of their layer, in another order."""
+    if list(before) == after:
+        return project
+    graph = project.graphs[before[0].layer]
+    ids = {a.id for a in before}
+    queue = iter(after)
+    actions: dict[str, Action] = {}
+    for ident, action in graph.actions.items():
+        each = next(queue) if ident in ids else action
+        actions[each.id] = each
+    return project.with_graph(replace(graph, actions=actions))

@@ -1,0 +1,53 @@
+"""How near a clip is looked at: the whole body where it walks or stands, down to the hips where the arms
+gesture, down to the chest where the head alone moves.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from numpy.typing import NDArray
+
+from metagraph.motion.clip import Clip
+from metagraph.motion.moving import moved
+from metagraph.motion.roles import find_roles, is_humanoid
+from metagraph.motion.skeleton import Skeleton
+
+Array = NDArray[Any]
+Near = Literal["whole", "upper", "head"]
+Box = tuple[Array, Array]  # its lowest and its highest corner, metres
+
+# Parts of the character's height: how far beside its middle a picture reaches at least, and how far below the
+# joint at its lower edge. Ours, by eye.
+ASIDE: dict[Near, float] = {"upper": 0.3, "head": 0.15}
+BELOW: dict[Near, float] = {"upper": 0.03, "head": 0.02}
+HAND = 0.07  # beyond a wrist
+
+
+def nearness(clip: Clip) -> Near:
+    """Return how near a clip is to be looked at, by what it moves; from afar what is no humanoid."""
+    parts = set(moved(clip))
+    if not parts or parts & {"place", "legs"} or not is_humanoid(find_roles(clip.skeleton)):
+        return "whole"
+    return "upper" if parts & {"arms", "spine"} else "head"
+
+
+def near_box(skeleton: Skeleton, near: Near, positions: Array, whole: Box, height: float) -> Box:
+    """Return the box that is looked at of a character in poses `positions [F, J, 3]`, which faces +Z above
+    the origin. whole: the box round all of it. height: of the character at rest, metres.
+    """
+    roles = find_roles(skeleton)
+    edge = "hips" if near == "upper" else next(r for r in ("upper_chest", "chest", "spine") if r in roles)
+    low, high = whole[0].copy(), whole[1].copy()
+    low[1] = positions[:, roles[edge], 1].min() - BELOW[near] * height
+    middle = positions[:, roles["head"], 0].mean()
+    joints = [roles["head"]]
+    if near == "upper":
+        joints += [i for role, i in roles.items() if role.endswith(("arm", "hand"))]
+    shown = positions[:, joints]
+    beside = HAND * height
+    low[0] = min(shown[..., 0].min() - beside, middle - ASIDE[near] * height)
+    high[0] = max(shown[..., 0].max() + beside, middle + ASIDE[near] * height)
+    low[2], high[2] = shown[..., 2].min() - beside, shown[..., 2].max() + beside
+    low[1] = min(low[1], shown[..., 1].min() - beside)
+    return low, high
