@@ -24,6 +24,7 @@ Array = NDArray[Any]
 TO_LIGHT = np.array([-0.42, 0.80, 0.62]) / np.linalg.norm([-0.42, 0.80, 0.62])
 SHADOW_SIZE = 512
 SHADOW_LIMIT = 8  # instances; a crowd has only the soft spots under it
+GHOST_BACK = (2.0, 1500.0)  # by slope, and in steps of the depth; about a centimetre where a figure stands
 SHADE = 0.8  # how dark the figure's shadow on itself is
 COARSE_BELOW, COARSE_CROWD_BELOW = (
     90,
@@ -235,6 +236,8 @@ class Renderer:
         which = frame.which(solid=False)
         if not which:
             return
+        # What lies in one place with the figure is the figure's: a ghost is reckoned a little farther away.
+        self.ctx.polygon_offset = GHOST_BACK
         self._main.color_mask = (False, False, False, False)
         self._main.use()  # a mask counts from the next use
         self._depths(frame, which, frame.matrix, coarse=False)
@@ -242,6 +245,7 @@ class Renderer:
         self._main.use()
         self.ctx.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
         self._bodies(frame, which)
+        self.ctx.polygon_offset = 0.0, 0.0
 
     def _backdrop(self, frame: _Frame, target: Any, casters: Sequence[Actor]) -> None:
         """Ground with its shadows up to its far edge, sky above. While the camera stands they are kept: from

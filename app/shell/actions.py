@@ -25,7 +25,7 @@ MENUS: dict[str, tuple[str, ...]] = {
     "&Motion": ("make",),
     "&Play": ("transport", "live", "show"),
     "&Conversation": ("read", "settings", "stage", "write", "remove"),
-    "&View": ("workspaces", "workspace", "character", "sides", "graph", "look"),
+    "&View": ("workspaces", "workspace", "character", "sides", "watch", "graph", "look"),
     "&Study": (),
     "&Help": (),
 }

@@ -9,6 +9,8 @@ from PySide6.QtCore import QElapsedTimer, QMargins, Qt, QTimer
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
+from app.features.character.foot_marks import FootMarks
+from app.features.character.ghosts import Ghosts
 from app.features.character.looking import Looking
 from app.features.character.no_mesh import NoMesh
 from app.look import icons
@@ -22,6 +24,7 @@ from app.stage.playhead import Playhead
 from app.stage.session import Session
 from app.stage.stools import stools
 from app.widgets.making import make_widget
+from app.widgets.more_button import MoreButton
 from app.widgets.one_stop import OneStop
 from app.widgets.quiet_fields import ComboBox, Scrub
 from app.widgets.sentence import OneLine
@@ -33,7 +36,6 @@ from preview.scene import THEMES, Actor, Scene
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
 BASE_TIP = "The pose all layers are added to. Right-click a clip in the library to take it from there."
-NOW = 0.03  # seconds from the present moment within which a ghost would only blur the figure
 FRAME = 16  # milliseconds between frames
 SOFT_FRAME = 33  # where the processor draws them, which has other things to do as well
 HINT = 4000  # milliseconds for which it is told how to come back
@@ -71,6 +73,10 @@ class PreviewPanel(QWidget):
         self._hint_goes = QTimer(self, singleShot=True, interval=HINT)
         self._hint_goes.timeout.connect(self.hint.hide)
         self.no_mesh = NoMesh(self.view, choose, may_choose)
+        self.watch_button = MoreButton(
+            session.look, "What is shown", "What is shown, and how", self.view, "eye"
+        )
+        self.ghosts, self.feet = Ghosts(self), FootMarks(self)
         self.looking = Looking(self)
         self.frames = 0
         self.view.painted.connect(self._painted)
@@ -78,6 +84,7 @@ class PreviewPanel(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
         layout.addWidget(self.view, 1)
+        layout.addWidget(self.feet.line)
         self.scrub = Scrub(Qt.Orientation.Horizontal, self, toolTip="Scrub")
         self.scrub.setRange(0, 10000)
         self.scrub.setAccessibleName("Playhead")
@@ -211,7 +218,7 @@ class PreviewPanel(QWidget):
             marks = self._marks() if one is shown else {}
             actors.append(Actor(figure, rotations, positions, morphs, marks, self.bones))
             if one is shown:
-                actors += self._ghosts(figure, seconds)
+                actors += self.ghosts.made(figure, seconds)
         scene = Scene((*actors, *(seat for one in shown.everyone for seat in stools(one))))
         shape = round(self.view.width() / max(1, self.view.height()), 1)  # it is framed anew for another room
         solid = Scene(tuple(actor for actor in actors if actor.opacity >= 1))  # ghosts do not move the camera
@@ -223,22 +230,6 @@ class PreviewPanel(QWidget):
                 solid.bounds(), self.view.width() / max(1, self.view.height()), aside
             )
         return scene
-
-    def _ghosts(self, figure: Figure, seconds: float) -> list[Actor]:
-        """Return the moments of an action that are to be seen through, but for those that are now."""
-        skin, shown = self.session.onion.skin, self.performance.shown
-        if skin is None or shown.skeleton is None or shown.others:
-            return []
-        out = []
-        for moment, opacity in skin.moments:
-            at = shown.seconds_of(skin.action, moment)
-            if at is None or abs(at - seconds) < NOW:
-                continue
-            pose = shown.pose(at)
-            if pose is not None:
-                rotations, positions = shown.skeleton.globals(pose)
-                out.append(Actor(figure, rotations, positions, opacity=opacity))
-        return out
 
     def _marks(self) -> dict[int, tuple[float, float, float]]:
         """Point out the joints of the selected action's mask."""
@@ -275,6 +266,7 @@ class PreviewPanel(QWidget):
         if not self.scrub.isSliderDown():
             self.scrub.setValue(round(10000 * min(1.0, seconds / length)))
         self.caption.say(self._words())
+        self.watch_button.move(self.view.width() - self.watch_button.width() - 8, 8)
         self._tell_mesh()
 
     def _tell_mesh(self) -> None:
@@ -321,6 +313,8 @@ class PreviewPanel(QWidget):
                 part = item.widget() if item is not None else None
                 if part is not None:
                     part.setVisible(not on)
+        self.feet.show_or_hide()
+        self.watch_button.setVisible(not on)
         self.hint.setVisible(on)
         if on:
             self.hint.adjustSize()

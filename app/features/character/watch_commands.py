@@ -1,0 +1,146 @@
+"""What helps to watch the character, as commands; and the same behind one button of the panel."""
+
+from __future__ import annotations
+
+import numpy as np
+from PySide6.QtGui import QAction, QActionGroup
+from PySide6.QtWidgets import QMenu
+
+from app.features.character.foot_marks import watch_of
+from app.project.jobs import Job
+from app.shell.actions import Command
+from app.shell.context import Shell
+from app.stage.watch import MOST_GHOSTS, SPACINGS
+from metagraph.playback.foot_slides import RATE
+
+SHOWN = (("feet", "next_slide", "trails", "bones"), ("stance_ghost", "onion", "onion_skin"), ("meshes",))
+GHOSTS = 2  # before and after, where onion skin is turned on by its key
+AHEAD = 120.0  # seconds that are searched for a slide
+PART = 240  # samples between two looks at whether to stop
+
+
+def watch_commands(shell: Shell) -> tuple[Command, ...]:
+    """Return the commands of the menu View."""
+    watch, view = shell.stage.session.watch, "&View"
+
+    def onion() -> None:
+        on = watch.now.before or watch.now.after
+        watch.set(before=0 if on else GHOSTS, after=0 if on else GHOSTS)
+
+    return (
+        Command(
+            "feet",
+            view,
+            "watch",
+            "Marks of the fee&t",
+            lambda: watch.set(feet=not watch.now.feet),
+            ("Shift+G",),
+            checked=lambda: watch.now.feet,
+            tip="Which foot is held (square), steps (diamond), is lifted (circle), and slides (triangle)",
+            study=True,
+        ),
+        Command(
+            "next_slide",
+            view,
+            "watch",
+            "Next foot that sl&ides",
+            lambda: next_slide(shell),
+            ("Ctrl+Shift+G",),
+            tip="Go to where a foot that stands slides next",
+            study=True,
+        ),
+        Command(
+            "stance_ghost",
+            view,
+            "watch",
+            "Ghost of the &stance",
+            lambda: watch.set(stance=not watch.now.stance),
+            ("Shift+B",),
+            checked=lambda: watch.now.stance,
+            tip="How the character would stand without what it plays",
+            study=True,
+        ),
+        Command(
+            "onion",
+            view,
+            "watch",
+            "&Onion skin",
+            onion,
+            ("Shift+O",),
+            checked=lambda: bool(watch.now.before or watch.now.after),
+            tip="Ghosts of moments before now, dark, and after it, light",
+            study=True,
+        ),
+        Command(
+            "onion_skin",
+            view,
+            "watch",
+            "Onion skin: ghosts and spac&ing",
+            fill=lambda m: fill_onion(shell, m),
+        ),
+    )
+
+
+def fill_watch(shell: Shell, menu: QMenu) -> None:
+    """Fill the menu of the panel's button: what is shown, and what of the character."""
+    shell.actions.refresh()
+    menu.clear()
+    for group in SHOWN:
+        for ident in group:
+            menu.addAction(shell.actions[ident])
+        menu.addSeparator()
+
+
+def fill_onion(shell: Shell, menu: QMenu) -> None:
+    """Fill the menu of how many ghosts there are on each side and how far apart."""
+    watch = shell.stage.session.watch
+    for title, name, values, words in (
+        ("Before now", "before", range(MOST_GHOSTS + 1), "{:d}"),
+        ("After now", "after", range(MOST_GHOSTS + 1), "{:d}"),
+        ("Apart", "spacing", SPACINGS, "{:g} s"),
+    ):
+        part = menu.addMenu(title)
+        group = QActionGroup(part)
+        for value in values:
+            action = QAction(words.format(value), part, checkable=True)
+            action.setChecked(abs(getattr(watch.now, name) - value) < 1e-6)
+            action.triggered.connect(lambda _=False, n=name, v=value: watch.set(**{n: v}))
+            group.addAction(action)
+            part.addAction(action)
+
+
+def next_slide(shell: Shell) -> None:
+    """Go to where a foot that stands slides next, after now; searched beside the window."""
+    session, shown = shell.stage.session, shell.stage.performance.shown
+    watch, now = watch_of(shown), session.transport.seconds
+    if watch is None:
+        shell.tell("Nobody with two feet is shown.")
+        return
+    session.transport.set_playing(False)
+    end = min(shown.length, now + AHEAD)
+
+    def search(job: Job) -> float | None:
+        first, last = int(now * RATE) + 1, int(end * RATE) + 1
+        for part in range(first, last, PART):
+            if job.cancelled:
+                return None
+            seen = watch.at(range(part, min(part + PART, last)))
+            # What slides now is left behind first: from its end on the next begins.
+            slides = np.asarray(seen.sliding().any(1))
+            if part == first and len(slides) and slides[0]:
+                quiet = np.flatnonzero(~slides)
+                slides[: quiet[0] if len(quiet) else len(slides)] = False
+            if slides.any():
+                return float(seen.times[int(np.argmax(slides))])
+        return None
+
+    def done(found: float | None) -> None:
+        if shell.stage.performance.shown is not shown:
+            return
+        if found is None:
+            shell.tell(f"No foot that stands slides until {int(end // 60)}:{end % 60:04.1f}.")
+            return
+        session.watch.set(feet=True)
+        session.transport.seek(found)
+
+    shell.jobs.start("Searching feet that slide", search, done, lambda error: shell.tell(str(error)))

@@ -1,0 +1,143 @@
+"""What helps to watch the character: marks of feet with what slides, ghosts of the stance and of other moments."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+
+from app.features.character.foot_marks import FootState, runs, slide_words
+from app.stage.watch import Watch
+from metagraph.playback.foot_slides import RATE
+
+pytestmark = [pytest.mark.window, pytest.mark.gl]
+
+
+def drifting(drive, speed: float = 0.03):
+    """Show a clip of the sample alone whose root drifts from its second second on."""
+    project = drive.document.project
+    loop = next(a for a in project.graphs["body"].actions.values() if a.kind == "stance")
+    entry = project.clips[loop.clip]
+    moved = np.array(entry.motion.translations)
+    moved[:, 0, 0] += speed * np.maximum(0.0, np.arange(len(moved)) / entry.motion.fps - 1.0)
+    changed = replace(entry, motion=replace(entry.motion, translations=moved))
+    drive.document.load(replace(project, clips={**project.clips, loop.clip: changed}), None)
+    drive.files.opened.emit()
+    drive.session.transport.show_clip(loop.clip)
+    drive.session.transport.set_playing(False)
+    drive.wait(lambda: drive.performance.shown.clip == loop.clip)
+    return loop
+
+
+@pytest.fixture
+def shown(drive, sample):
+    drive.document.load(sample, None)
+    drive.files.opened.emit()
+    plays = drive.performance
+    drive.wait(lambda: plays.shown.project is drive.document.project and plays.shown.plan.layers["arms"].cues)
+    drive.wait(lambda: drive.preview.drawn is not None)
+    return drive
+
+
+def test_feet_are_marked_by_a_key_and_one_that_slides_says_how_fast_and_when(shown):
+    drive, feet = shown, shown.preview.feet
+    drifting(drive)
+    drive.session.transport.seek(2.0)
+    assert feet.isHidden() and feet.line.isHidden()
+    drive.key(Qt.Key.Key_G, Qt.KeyboardModifier.ShiftModifier)
+    assert drive.shell.actions["feet"].isChecked() and feet.line.isVisible()
+    drive.wait(lambda: "mm/s" in feet.line.accessibleDescription())
+    seen = feet.seen(None)
+    words = slide_words(seen)
+    assert words.startswith("⚠") and any(f" {n} mm/s at 0:0" in words for n in (30, 31, 32))
+    n = int(np.abs(seen.times - 2.0).argmin())
+    assert seen.sliding()[n].any() and seen.states[n, 0] == FootState.HELD
+    first, *_ = [run for run in runs(seen, 0) if run[3]]
+    assert 0.7 < first[0] < 1.3, "it says from when on"
+    plain = drive.preview.view.grab().toImage()
+    drive.key(Qt.Key.Key_G, Qt.KeyboardModifier.ShiftModifier)
+    assert feet.isHidden() and feet.line.isHidden() and drive.preview.view.grab().toImage() != plain
+
+
+def test_no_event_composes_more_than_a_few_poses(shown):
+    feet = shown.preview.feet
+    shown.session.transport.set_playing(False)
+    shown.session.transport.seek(7.0)
+    asked = []
+    watch = feet.watching()
+    inner = watch._places_at
+    watch._places_at = lambda times: (asked.append(len(times)), inner(times))[1]
+    shown.do("feet")
+    shown.wait(lambda: len(feet.seen(0).times) > 60 if feet.seen(0) is not None else False)
+    assert max(asked) <= 12 and sum(asked) < 2 * 3 * RATE
+
+
+def test_the_next_slide_is_found_and_none_is_said(shown):
+    drifting(shown)
+    shown.session.transport.seek(0.0)
+    shown.do("next_slide")
+    shown.wait(lambda: 0.7 < shown.session.transport.seconds < 1.3)
+    assert shown.session.watch.now.feet, "it is marked there"
+    other = next(a.clip for a in shown.document.project.graphs["arms"].actions.values())
+    shown.session.transport.show_clip(other)
+    shown.wait(lambda: shown.performance.shown.clip == other)
+    shown.do("next_slide")
+    shown.wait(lambda: "No foot" in shown.window.statusBar().currentMessage())
+
+
+def test_the_stance_stands_as_a_ghost_where_the_character_has_left_it(shown):
+    panel, session = shown.preview, shown.session
+    session.transport.set_playing(False)
+    gesture = next(c for c in shown.performance.shown.plan.layers["arms"].cues if c.action.kind == "gesture")
+    session.transport.seek((gesture.start + gesture.end) / 2)
+    assert len(panel._scene().actors) == 1
+    shown.do("stance_ghost")
+    solid, ghost = panel._scene().actors
+    assert ghost.opacity < 1 and not np.allclose(solid.positions, ghost.positions, atol=0.02)
+    clip = shown.document.project.clips[gesture.action.clip]
+    session.transport.show_clip(gesture.action.clip)
+    session.transport.set_playing(False)
+    session.transport.seek(clip.duration / 2)
+    assert len(panel._scene().actors) == 2, "of a clip alone, too"
+
+
+def test_onion_skin_shows_moments_before_and_after_as_many_and_as_far_as_asked(shown):
+    panel, session = shown.preview, shown.session
+    session.transport.set_playing(False)
+    session.transport.seek(6.0)
+    shown.key(Qt.Key.Key_O, Qt.KeyboardModifier.ShiftModifier)
+    assert len(panel._scene().actors) == 5
+    session.watch.set(before=3, after=1, spacing=0.2)
+    _, *ghosts = panel._scene().actors
+    assert [a.opacity < 1 for a in ghosts] == [True] * 4
+    assert ghosts[0].opacity < ghosts[2].opacity, "the farther the fainter"
+    at = shown.performance.shown.skeleton.globals(shown.performance.shown.pose(6.0 - 0.6))[1]
+    assert ghosts[0].positions == pytest.approx(at, abs=1e-5)
+    session.transport.seek(0.0)
+    assert len(panel._scene().actors) == 2, "nothing is before the beginning"
+    shown.do("onion")
+    assert len(panel._scene().actors) == 1
+
+
+def test_the_button_in_the_view_has_it_all_and_what_was_chosen_is_kept(shown):
+    panel = shown.preview
+    menu = panel.watch_button.menu_of
+    menu.aboutToShow.emit()
+    actions = {a.text().replace("&", ""): a for a in menu.actions() if not a.isSeparator()}
+    assert {"Marks of the feet", "Ghost of the stance", "Onion skin", "Show the skeleton"} <= set(actions)
+    assert panel.view.rect().contains(panel.watch_button.geometry())
+    actions["Ghost of the stance"].trigger()
+    shown.session.watch.set(spacing=0.5)
+    kept = Watch().now
+    assert kept.stance and kept.spacing == 0.5
+
+
+def test_settings_that_cannot_be_read_are_as_at_first(qapp):
+    from PySide6.QtCore import QSettings
+
+    for broken in ("[]", "{", '{"feet": 3, "before": 99, "spacing": -1.0}'):
+        QSettings().setValue("watch", broken)
+        now = Watch().now
+        assert not now.feet and now.before in (0, 5) and now.spacing > 0
