@@ -36,7 +36,8 @@ def shown(drive, sample):
     drive.document.load(sample, None)
     drive.files.opened.emit()
     plays = drive.performance
-    drive.wait(lambda: plays.shown.project is drive.document.project and plays.shown.plan.layers["arms"].cues)
+    drive.wait(lambda: plays.shown.project is drive.document.project)
+    drive.wait(lambda: len(plays.shown.plan.layers["arms"].cues) > 3)
     drive.wait(lambda: drive.preview.drawn is not None)
     return drive
 
