@@ -22,9 +22,11 @@ from preview.scene import DARK, Actor, Scene, Theme
 Array = NDArray[Any]
 
 TO_LIGHT = np.array([-0.42, 0.80, 0.62]) / np.linalg.norm([-0.42, 0.80, 0.62])
-SHADOW_SIZE = 512
+SHADOW_SIZE = 1024, 384  # texels, on a graphics card and in software
+SOFT_SIZE = 144, 64  # texels of the ground's shadow, along the light and across
 SHADOW_LIMIT = 8  # instances; a crowd has only the soft spots under it
 GHOST_BACK = (2.0, 1500.0)  # by slope, and in steps of the depth; about a centimetre where a figure stands
+CONTACT, CONTACT_HIGH = 0.75, 0.16  # how much darker a sole is, and of the height, up to where
 SHADE = 0.8  # how dark the figure's shadow on itself is
 COARSE_BELOW, COARSE_CROWD_BELOW = (
     90,
@@ -86,10 +88,14 @@ class Renderer:
         )
         self._kept, self._sky_from = False, 0  # whether they are kept, and the row the sky begins at
         self._resize(1, 1)
-        self._shadow_map = ctx.depth_texture((SHADOW_SIZE, SHADOW_SIZE))
+        self._shadow_size = SHADOW_SIZE[self.software]
+        self._shadow_map = ctx.depth_texture((self._shadow_size, self._shadow_size))
         self._shadow_map.compare_func = "<="
         self._shadow_map.repeat_x = self._shadow_map.repeat_y = False
         self._shadow_fbo = ctx.framebuffer(depth_attachment=self._shadow_map)
+        self._soft = ctx.texture(SOFT_SIZE, 1)
+        self._soft.repeat_x = self._soft.repeat_y = False
+        self._soft_fbo = ctx.framebuffer([self._soft])
 
     def release(self) -> None:
         """Give everything on the graphics card back; the context must be current."""
@@ -101,8 +107,8 @@ class Renderer:
             *reversed(self._targets),
         ):
             held.release()
-        self._shadow_fbo.release()
-        self._shadow_map.release()
+        for held in (self._shadow_fbo, self._shadow_map, self._soft_fbo, self._soft):
+            held.release()
         for gone in (self._plain, self._programs, self._buffers):
             gone.clear()
         self._targets.clear()
@@ -166,7 +172,7 @@ class Renderer:
         matrix = np.eye(4)
         matrix[:3, :3] = axes / radius
         matrix[:3, 3] = -axes @ centre / radius
-        self._state(self._shadow_fbo, (0, 0, SHADOW_SIZE, SHADOW_SIZE), moderngl.DEPTH_TEST)
+        self._state(self._shadow_fbo, (0, 0, self._shadow_size, self._shadow_size), moderngl.DEPTH_TEST)
         self._shadow_fbo.clear(depth=1.0)
         self._depths(frame, frame.which(solid=True), matrix, coarse=True)
         half = np.eye(4) * 0.5
@@ -229,6 +235,8 @@ class Renderer:
                 )
                 if frame.light is not None:
                     _set(program, u_light=frame.light)
+                contact = CONTACT if frame.floor and cast else 0.0
+                _set(program, u_near_ground=(contact, 1 / (CONTACT_HIGH * actor.figure.height)))
                 self._triangles(frame.meshes[i], actor, program, kind)
 
     def _ghosts(self, frame: _Frame) -> None:
@@ -265,8 +273,7 @@ class Renderer:
             self.ctx.copy_framebuffer(target, self._stage)
             target.use()
         if sky_from > 0 and casters:
-            target.scissor = (0, 0, frame.size[0], sky_from)
-            self._shadows(frame, casters)
+            self._shadows(frame, target, sky_from, casters)
             target.scissor = None
 
     def _empty_stage(self, frame: _Frame, target: Any) -> int:
@@ -301,32 +308,49 @@ class Renderer:
         _set(program, u_floor=theme.floor, u_line=theme.line, u_spacing=(spacing, theme.line_strength))
         self._sky("ground", program, frame, moderngl.TRIANGLE_STRIP, 4)
 
-    def _shadows(self, frame: _Frame, solid: Sequence[Actor]) -> None:
+    def _shadows(self, frame: _Frame, target: Any, sky_from: int, solid: Sequence[Actor]) -> None:
         """What darkens the ground multiplies what is there."""
-        self.ctx.enable_only(moderngl.BLEND)
+        strip = self._softened(frame) if frame.light is not None else None
+        self._state(target, (0, 0, *frame.size), moderngl.BLEND)
+        target.scissor = (0, 0, frame.size[0], sky_from)
         self.ctx.blend_func = moderngl.ZERO, moderngl.SRC_COLOR
-        if frame.light is not None:
-            low, high = frame.bounds
-            thrown = -TO_LIGHT / TO_LIGHT[1] * max(0.0, float(high[1]))
-            fade_low, fade_high = np.minimum(low, low + thrown), np.maximum(high, high + thrown)
-            middle, half = (fade_low + fade_high) / 2, (fade_high - fade_low) / 2 * 1.05
-            # Only a strip along the light can be dark.
-            along = TO_LIGHT[[0, 2]] / np.linalg.norm(TO_LIGHT[[0, 2]])
-            turn = np.stack([along, [-along[1], along[0]]])
-            feet = np.array([(x, z) for x in (low[0], high[0]) for z in (low[2], high[2])])
-            strip = np.concatenate([feet, feet + thrown[[0, 2]]]) @ turn.T
-            least, most = strip.min(0) - 0.05 * half.max(), strip.max(0) + 0.05 * half.max()
-            centre = (least + most) / 2 @ turn
-            patch = (*centre, *((most - least) / 2))
+        if strip is not None:
+            patch, turn = strip
             program = self._program("cast", shaders.GROUND_VERTEX, shaders.CAST)
-            self._shadow_map.use(1)
-            _set(program, u_matrix=frame.matrix, u_patch=patch, u_turn=tuple(along))
-            _set(program, u_fade=(middle[0], middle[2], max(half[0], half[2])))
-            _set(program, u_dark=frame.theme.shadow, u_shadow=1, u_light=frame.light)
+            self._soft.use(4)
+            _set(program, u_matrix=frame.matrix, u_patch=patch, u_turn=turn)
+            _set(program, u_dark=frame.theme.shadow, u_soft=4)
             self._bare("cast", program).render(moderngl.TRIANGLE_STRIP, 4)
         program = self._program("spots", shaders.SPOT_VERTEX, shaders.SPOT)
         _set(program, u_matrix=frame.matrix, u_dark=frame.theme.shadow)
         self._squares("spots", program, np.concatenate([_spots(a) for a in solid]), "4f/i", "in_spot")
+
+    def _softened(self, frame: _Frame) -> tuple[tuple[float, ...], tuple[float, float]]:
+        """Draw the shadow on the ground as seen from above; return where on it that lies: a patch, its turn.
+        Only a strip along the light can be dark.
+        """
+        assert frame.light is not None
+        low, high = frame.bounds
+        thrown = -TO_LIGHT / TO_LIGHT[1] * max(0.0, float(high[1]))
+        fade_low, fade_high = np.minimum(low, low + thrown), np.maximum(high, high + thrown)
+        middle, half = (fade_low + fade_high) / 2, (fade_high - fade_low) / 2 * 1.05
+        along = TO_LIGHT[[0, 2]] / np.linalg.norm(TO_LIGHT[[0, 2]])
+        axes = np.stack([along, [-along[1], along[0]]])
+        feet = np.array([(x, z) for x in (low[0], high[0]) for z in (low[2], high[2])])
+        strip = np.concatenate([feet, feet + thrown[[0, 2]]]) @ axes.T
+        least, most = strip.min(0) - 0.05 * half.max(), strip.max(0) + 0.05 * half.max()
+        x, z = (least + most) / 2 @ axes
+        patch, turn = (x, z, *((most - least) / 2)), (float(along[0]), float(along[1]))
+        self._state(self._soft_fbo, (0, 0, *SOFT_SIZE), moderngl.NOTHING)
+        program = self._program("soft", shaders.COVER, shaders.SOFT)
+        self._shadow_map.compare_func = ""
+        self._shadow_map.use(1)
+        _set(program, u_depth=1, u_light=frame.light, u_patch=patch, u_turn=turn)
+        _set(program, u_fade=(middle[0], middle[2], max(half[0], half[2])))
+        _set(program, u_scale=float(np.linalg.norm(frame.light[0, :3])))
+        self._bare("soft", program).render(moderngl.TRIANGLES, 3)
+        self._shadow_map.compare_func = "<="
+        return patch, turn
 
     def _sky(self, key: str, program: moderngl.Program, frame: _Frame, mode: int, count: int) -> None:
         """Draw with a program that ends in the sky's colours."""
