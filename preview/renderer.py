@@ -21,7 +21,6 @@ from preview.scene import DARK, Actor, Scene, Theme
 
 Array = NDArray[Any]
 
-TO_LIGHT = np.array([-0.42, 0.80, 0.62]) / np.linalg.norm([-0.42, 0.80, 0.62])
 SHADOW_SIZE = 1024, 384  # texels, on a graphics card and in software
 SOFT_SIZE = 144, 64  # texels of the ground's shadow, along the light and across
 SHADOW_LIMIT = 8  # instances; a crowd has only the soft spots under it
@@ -166,9 +165,10 @@ class Renderer:
         """Draw depth as the lamp sees it; return the matrix from the world to the shadow map, 0..1."""
         low, high = frame.bounds
         centre, radius = (low + high) / 2, max(0.05, float(np.linalg.norm(high - low)) / 2)
-        side = np.cross([0.0, 1, 0], TO_LIGHT)
+        to_light = frame.theme.to_light
+        side = np.cross([0.0, 1, 0], to_light)
         side /= np.linalg.norm(side)
-        axes = np.stack([side, np.cross(TO_LIGHT, side), -TO_LIGHT])
+        axes = np.stack([side, np.cross(to_light, side), -to_light])
         matrix = np.eye(4)
         matrix[:3, :3] = axes / radius
         matrix[:3, 3] = -axes @ centre / radius
@@ -219,7 +219,7 @@ class Renderer:
                     program,
                     u_matrix=frame.matrix,
                     u_eye=frame.camera.eye,
-                    u_to_light=TO_LIGHT,
+                    u_to_light=theme.to_light,
                     u_opacity=actor.opacity,
                 )
                 _set(
@@ -331,10 +331,11 @@ class Renderer:
         """
         assert frame.light is not None
         low, high = frame.bounds
-        thrown = -TO_LIGHT / TO_LIGHT[1] * max(0.0, float(high[1]))
+        to_light = frame.theme.to_light
+        thrown = -to_light / to_light[1] * max(0.0, float(high[1]))
         fade_low, fade_high = np.minimum(low, low + thrown), np.maximum(high, high + thrown)
         middle, half = (fade_low + fade_high) / 2, (fade_high - fade_low) / 2 * 1.05
-        along = TO_LIGHT[[0, 2]] / np.linalg.norm(TO_LIGHT[[0, 2]])
+        along = to_light[[0, 2]] / np.linalg.norm(to_light[[0, 2]])
         axes = np.stack([along, [-along[1], along[0]]])
         feet = np.array([(x, z) for x in (low[0], high[0]) for z in (low[2], high[2])])
         strip = np.concatenate([feet, feet + thrown[[0, 2]]]) @ axes.T

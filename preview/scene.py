@@ -95,6 +95,12 @@ class Theme:
     below: Color
     rim: Color
     ink: Color  # the skeleton drawn over a mesh
+    toward: Color = (-0.42, 0.80, 0.62)  # where the lamp is, of any length; above the ground
+
+    @property
+    def to_light(self) -> Array:
+        """The direction of the lamp, a unit vector `[3]`."""
+        return np.asarray(np.array(self.toward) / np.linalg.norm(self.toward))
 
 
 DARK = Theme(

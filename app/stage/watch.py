@@ -10,6 +10,9 @@ from typing import Any
 
 from PySide6.QtCore import QObject, QSettings, Signal
 
+from preview.looks import BACKDROPS, LIGHTS, STAGE, STUDIO, look_of
+from preview.scene import Theme
+
 KEY = "watch"
 MOST_GHOSTS = 5  # before now, and as many after it: each is drawn in every picture
 SPACINGS = (0.05, 0.1, 0.2, 0.5)  # seconds
@@ -18,7 +21,8 @@ SPACINGS = (0.05, 0.1, 0.2, 0.5)  # seconds
 @dataclass(frozen=True)
 class Watched:
     """feet: which foot is held, steps or is lifted, and slides. stance: a ghost in the stance underneath.
-    before, after: how many ghosts there are of other moments, spacing seconds apart.
+    before, after: how many ghosts there are of other moments, spacing seconds apart. light, background: by
+    the names of `preview.looks`.
     """
 
     feet: bool = False
@@ -26,6 +30,12 @@ class Watched:
     before: int = 0
     after: int = 0
     spacing: float = 0.1
+    light: str = STUDIO
+    background: str = STAGE
+
+    def look(self, theme: str) -> Theme:
+        """Return a theme as it is looked at."""
+        return look_of(theme, self.light, self.background)
 
 
 class Watch(QObject):
@@ -61,4 +71,6 @@ def _kept() -> Watched:
     except (ValueError, TypeError, AttributeError):
         return Watched()
     ghosts = {k: min(max(getattr(kept, k), 0), MOST_GHOSTS) for k in ("before", "after")}
+    if kept.light not in LIGHTS or kept.background not in BACKDROPS:
+        kept = replace(kept, light=STUDIO, background=STAGE)
     return replace(kept, **ghosts, spacing=min(max(kept.spacing, 0.02), 2.0))

@@ -32,7 +32,7 @@ from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
 from preview.camera import close_up, whole_figure
 from preview.figure import Figure, SkinnedFigure
-from preview.scene import THEMES, Actor, Scene
+from preview.scene import Actor, Scene
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
 BASE_TIP = "The pose all layers are added to. Right-click a clip in the library to take it from there."
@@ -110,7 +110,8 @@ class PreviewPanel(QWidget):
         session.transport.playing_changed.connect(self._run_or_rest)
         session.transport.show_changed.connect(self._show_state)
         session.selection.changed.connect(self.view.update)
-        session.look.changed.connect(self._restyle)
+        for looks in (session.look.changed, session.watch.changed):
+            looks.connect(self._restyle)
         session.onion.changed.connect(self.view.update)
         performance.changed.connect(self._changed)
         performance.document.changed.connect(self._edited)
@@ -190,7 +191,7 @@ class PreviewPanel(QWidget):
 
     def _restyle(self) -> None:
         look = theme(self.session.look.name)
-        self.view.theme = THEMES[look.name]
+        self.view.theme = self.session.watch.now.look(look.name)
         for button, name in (
             (self.start_button, "start"), (self.loop_button, "loop"), (self.frame_button, "frame"),
             (self.face_button, "face"), (self.bones_button, "bones"),

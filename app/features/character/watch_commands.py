@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from PySide6.QtGui import QAction, QActionGroup
 from PySide6.QtWidgets import QMenu
@@ -12,8 +14,14 @@ from app.shell.actions import Command
 from app.shell.context import Shell
 from app.stage.watch import MOST_GHOSTS, SPACINGS
 from metagraph.playback.foot_slides import RATE
+from preview.looks import BACKDROPS, LIGHTS, words_of
 
-SHOWN = (("feet", "next_slide", "trails", "bones"), ("stance_ghost", "onion", "onion_skin"), ("meshes",))
+SHOWN = (
+    ("feet", "next_slide", "trails", "bones"),
+    ("stance_ghost", "onion", "onion_skin"),
+    ("light", "background"),
+    ("meshes",),
+)
 GHOSTS = 2  # before and after, where onion skin is turned on by its key
 AHEAD = 120.0  # seconds that are searched for a slide
 PART = 240  # samples between two looks at whether to stop
@@ -71,6 +79,24 @@ def watch_commands(shell: Shell) -> tuple[Command, ...]:
             tip="Ghosts of moments before now, dark, and after it, light",
             study=True,
         ),
+        Command("light", view, "watch", "Li&ght", fill=lambda m: fill_choice(shell, m, "light", LIGHTS)),
+        Command(
+            "background",
+            view,
+            "watch",
+            "Back&ground",
+            fill=lambda m: fill_choice(shell, m, "background", BACKDROPS),
+        ),
+        Command(
+            "next_light",
+            view,
+            "watch",
+            "Ne&xt light",
+            lambda: watch.set(light=after(watch.now.light, LIGHTS)),
+            ("Shift+L",),
+            tip="Studio, day, evening, rim, flat",
+            study=True,
+        ),
         Command(
             "onion_skin",
             view,
@@ -89,6 +115,23 @@ def fill_watch(shell: Shell, menu: QMenu) -> None:
         for ident in group:
             menu.addAction(shell.actions[ident])
         menu.addSeparator()
+
+
+def after(name: str, choices: Iterable[str]) -> str:
+    """Return the choice that comes after one, the first after the last."""
+    names = list(choices)
+    return names[(names.index(name) + 1) % len(names)]
+
+
+def fill_choice(shell: Shell, menu: QMenu, name: str, choices: Iterable[str]) -> None:
+    """Fill a menu of lights or backgrounds."""
+    watch, group = shell.stage.session.watch, QActionGroup(menu)
+    for choice in choices:
+        action = QAction(words_of(choice), menu, checkable=True)
+        action.setChecked(getattr(watch.now, name) == choice)
+        action.triggered.connect(lambda _=False, c=choice: watch.set(**{name: c}))
+        group.addAction(action)
+        menu.addAction(action)
 
 
 def fill_onion(shell: Shell, menu: QMenu) -> None:

@@ -135,6 +135,21 @@ def test_the_button_in_the_view_has_it_all_and_what_was_chosen_is_kept(shown):
     assert kept.stance and kept.spacing == 0.5
 
 
+def test_light_and_background_are_chosen_for_the_view_and_offered_for_rendering(shown):
+    from app.features.render.render_dialog import RenderDialog
+
+    shown.key(Qt.Key.Key_L, Qt.KeyboardModifier.ShiftModifier)
+    assert shown.session.watch.now.light == "day"
+    menu = shown.shell.actions["background"].menu()
+    menu.aboutToShow.emit()
+    next(a for a in menu.actions() if "Neutral" in a.text()).trigger()
+    theme = shown.preview.view.theme
+    assert theme.top == theme.bottom and theme.line_strength == 0 and theme.toward != (-0.42, 0.80, 0.62)
+    dialog = RenderDialog(shown.performance, shown.session, shown.jobs)
+    assert (dialog.light.currentData(), dialog.background.currentData()) == ("day", "neutral")
+    dialog.close()
+
+
 def test_settings_that_cannot_be_read_are_as_at_first(qapp):
     from PySide6.QtCore import QSettings
 
