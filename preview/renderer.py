@@ -31,6 +31,8 @@ COARSE_BELOW, COARSE_CROWD_BELOW = (
     90,
     240,
 )  # pixels of height under which figures are drawn with their coarse mesh
+BESIDE_BELOW = 640  # likewise, of one of several views in software
+Strip = tuple[tuple[float, ...], tuple[float, float]]  # a patch of the ground and its turn
 _SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "software", "basic render")
 
 
@@ -67,19 +69,54 @@ class _Frame:
         return [i for i, actor in enumerate(self.actors) if (actor.opacity >= 1) == solid]
 
 
+class _Kept:
+    """What lies on the graphics card for all renderers of one context, and whom the lamp saw last."""
+
+    def __init__(self, ctx: moderngl.Context, software: bool) -> None:
+        self.store = Store(ctx)
+        self.programs: dict[str, moderngl.Program] = {}
+        self.plain: dict[str, moderngl.VertexArray] = {}
+        self.buffers: dict[str, moderngl.Buffer] = {}
+        self.shadow_size = SHADOW_SIZE[software]
+        self.shadow_map = ctx.depth_texture((self.shadow_size, self.shadow_size))
+        self.shadow_map.compare_func = "<="
+        self.shadow_fbo = ctx.framebuffer(depth_attachment=self.shadow_map)
+        self.soft = ctx.texture(SOFT_SIZE, 1)
+        self.soft_fbo = ctx.framebuffer([self.soft])
+        for texture in (self.shadow_map, self.soft):
+            texture.repeat_x = texture.repeat_y = False
+        self.lit: tuple[list[Actor], tuple[float, ...], Array] | None = None  # actors, lamp, matrix
+        self.strip: Strip | None = None  # where their shadow lies on the ground, once it is drawn
+
+    def release(self) -> None:
+        self.store.release()
+        held: Any
+        for held in (
+            *self.plain.values(),
+            *self.programs.values(),
+            *self.buffers.values(),
+            *(self.shadow_fbo, self.shadow_map, self.soft_fbo, self.soft),
+        ):
+            held.release()
+        for gone in (self.plain, self.programs, self.buffers):
+            gone.clear()
+
+
 class Renderer:
     """Belongs to one context. `samples` None chooses: 4 on a graphics card, 0 in software (edges are smoothed
-    instead).
+    instead). beside: another of the same context, which draws the same scenes from elsewhere: what both need
+    is made once. It has to live longer.
     """
 
-    def __init__(self, ctx: moderngl.Context, samples: int | None = None) -> None:
+    def __init__(
+        self, ctx: moderngl.Context, samples: int | None = None, beside: Renderer | None = None
+    ) -> None:
         self.ctx = ctx
         self.software = is_software(ctx)
         self.samples = min((0 if self.software else 4) if samples is None else samples, int(ctx.max_samples))
-        self.store = Store(ctx)
-        self._programs: dict[str, moderngl.Program] = {}
-        self._plain: dict[str, moderngl.VertexArray] = {}
-        self._buffers: dict[str, moderngl.Buffer] = {}
+        self._beside = beside
+        self._common: _Kept = _Kept(ctx, self.software) if beside is None else beside._common
+        self.store = self._common.store
         self._size = (0, 0)
         self._targets: list[Any] = []
         self._seen: tuple[Camera, tuple[int, int], Theme, bool] | None = (
@@ -87,30 +124,14 @@ class Renderer:
         )
         self._kept, self._sky_from = False, 0  # whether they are kept, and the row the sky begins at
         self._resize(1, 1)
-        self._shadow_size = SHADOW_SIZE[self.software]
-        self._shadow_map = ctx.depth_texture((self._shadow_size, self._shadow_size))
-        self._shadow_map.compare_func = "<="
-        self._shadow_map.repeat_x = self._shadow_map.repeat_y = False
-        self._shadow_fbo = ctx.framebuffer(depth_attachment=self._shadow_map)
-        self._soft = ctx.texture(SOFT_SIZE, 1)
-        self._soft.repeat_x = self._soft.repeat_y = False
-        self._soft_fbo = ctx.framebuffer([self._soft])
 
     def release(self) -> None:
         """Give everything on the graphics card back; the context must be current."""
-        self.store.release()
-        for held in (
-            *self._plain.values(),
-            *self._programs.values(),
-            *self._buffers.values(),
-            *reversed(self._targets),
-        ):
+        for held in reversed(self._targets):
             held.release()
-        for held in (self._shadow_fbo, self._shadow_map, self._soft_fbo, self._soft):
-            held.release()
-        for gone in (self._plain, self._programs, self._buffers):
-            gone.clear()
         self._targets.clear()
+        if self._beside is None:
+            self._common.release()
 
     def draw(
         self,
@@ -131,6 +152,8 @@ class Renderer:
         solid = [a for a in actors if a.opacity >= 1]
         cast = scene.shadow and 0 < sum(a.count for a in solid) <= SHADOW_LIMIT
         small = COARSE_BELOW if sum(a.count for a in actors) <= SHADOW_LIMIT else COARSE_CROWD_BELOW
+        if self._beside is not None and self.software:
+            small = max(small, BESIDE_BELOW)
         meshes = [
             a.figure.coarse if a.morphs is None and _tall(a, camera, height) < small else a.figure.mesh
             for a in actors
@@ -162,7 +185,12 @@ class Renderer:
     # --- passes
 
     def _cast(self, frame: _Frame) -> Array:
-        """Draw depth as the lamp sees it; return the matrix from the world to the shadow map, 0..1."""
+        """Draw depth as the lamp sees it, if it sees another; return the matrix from the world to the shadow
+        map, 0..1.
+        """
+        before = self._common.lit
+        if before is not None and before[1] == frame.theme.toward and _alike(before[0], frame.actors):
+            return before[2]
         low, high = frame.bounds
         centre, radius = (low + high) / 2, max(0.05, float(np.linalg.norm(high - low)) / 2)
         to_light = frame.theme.to_light
@@ -172,12 +200,18 @@ class Renderer:
         matrix = np.eye(4)
         matrix[:3, :3] = axes / radius
         matrix[:3, 3] = -axes @ centre / radius
-        self._state(self._shadow_fbo, (0, 0, self._shadow_size, self._shadow_size), moderngl.DEPTH_TEST)
-        self._shadow_fbo.clear(depth=1.0)
+        self._state(
+            self._common.shadow_fbo,
+            (0, 0, self._common.shadow_size, self._common.shadow_size),
+            moderngl.DEPTH_TEST,
+        )
+        self._common.shadow_fbo.clear(depth=1.0)
         self._depths(frame, frame.which(solid=True), matrix, coarse=True)
         half = np.eye(4) * 0.5
         half[:3, 3], half[3, 3] = 0.5, 1
-        return np.asarray(half @ matrix)
+        self._common.strip = None
+        self._common.lit = frame.actors, frame.theme.toward, np.asarray(half @ matrix)
+        return self._common.lit[2]
 
     def _depths(self, frame: _Frame, which: Sequence[int], matrix: Array, coarse: bool) -> None:
         program = self._program("depth", shaders.DEPTH_VERTEX, shaders.DEPTH)
@@ -195,7 +229,7 @@ class Renderer:
     def _bodies(self, frame: _Frame, which: Sequence[int]) -> None:
         theme = frame.theme
         self.store.palette.use(0)
-        self._shadow_map.use(1)
+        self._common.shadow_map.use(1)
         self.store.marks.use(3)
         for i in which:
             actor = frame.actors[i]
@@ -317,7 +351,7 @@ class Renderer:
         if strip is not None:
             patch, turn = strip
             program = self._program("cast", shaders.GROUND_VERTEX, shaders.CAST)
-            self._soft.use(4)
+            self._common.soft.use(4)
             _set(program, u_matrix=frame.matrix, u_patch=patch, u_turn=turn)
             _set(program, u_dark=frame.theme.shadow, u_soft=4)
             self._bare("cast", program).render(moderngl.TRIANGLE_STRIP, 4)
@@ -325,11 +359,13 @@ class Renderer:
         _set(program, u_matrix=frame.matrix, u_dark=frame.theme.shadow)
         self._squares("spots", program, np.concatenate([_spots(a) for a in solid]), "4f/i", "in_spot")
 
-    def _softened(self, frame: _Frame) -> tuple[tuple[float, ...], tuple[float, float]]:
+    def _softened(self, frame: _Frame) -> Strip:
         """Draw the shadow on the ground as seen from above; return where on it that lies: a patch, its turn.
         Only a strip along the light can be dark.
         """
         assert frame.light is not None
+        if self._common.strip is not None:
+            return self._common.strip
         low, high = frame.bounds
         to_light = frame.theme.to_light
         thrown = -to_light / to_light[1] * max(0.0, float(high[1]))
@@ -342,15 +378,16 @@ class Renderer:
         least, most = strip.min(0) - 0.05 * half.max(), strip.max(0) + 0.05 * half.max()
         x, z = (least + most) / 2 @ axes
         patch, turn = (x, z, *((most - least) / 2)), (float(along[0]), float(along[1]))
-        self._state(self._soft_fbo, (0, 0, *SOFT_SIZE), moderngl.NOTHING)
+        self._state(self._common.soft_fbo, (0, 0, *SOFT_SIZE), moderngl.NOTHING)
         program = self._program("soft", shaders.COVER, shaders.SOFT)
-        self._shadow_map.compare_func = ""
-        self._shadow_map.use(1)
+        self._common.shadow_map.compare_func = ""
+        self._common.shadow_map.use(1)
         _set(program, u_depth=1, u_light=frame.light, u_patch=patch, u_turn=turn)
         _set(program, u_fade=(middle[0], middle[2], max(half[0], half[2])))
         _set(program, u_scale=float(np.linalg.norm(frame.light[0, :3])))
         self._bare("soft", program).render(moderngl.TRIANGLES, 3)
-        self._shadow_map.compare_func = "<="
+        self._common.shadow_map.compare_func = "<="
+        self._common.strip = patch, turn
         return patch, turn
 
     def _sky(self, key: str, program: moderngl.Program, frame: _Frame, mode: int, count: int) -> None:
@@ -408,7 +445,7 @@ class Renderer:
         target.viewport = viewport
         target.scissor = None
         target.depth_mask = True
-        if target is not self._shadow_fbo:
+        if target is not self._common.shadow_fbo:
             target.color_mask = (True, True, True, True)
         target.use()
         ctx.enable_only(flags)
@@ -466,23 +503,30 @@ class Renderer:
         if not len(data):
             return
         content = np.ascontiguousarray(data, "<f4").tobytes()
-        if key not in self._buffers:
-            self._buffers[key] = self.ctx.buffer(reserve=len(content))
-            self._plain[key] = self.ctx.vertex_array(program, [(self._buffers[key], layout, *names)])
-        self._buffers[key].orphan(max(len(content), self._buffers[key].size))
-        self._buffers[key].write(content)
-        self._plain[key].render(moderngl.TRIANGLE_STRIP, 4, instances=len(data))
+        if key not in self._common.buffers:
+            self._common.buffers[key] = self.ctx.buffer(reserve=len(content))
+            self._common.plain[key] = self.ctx.vertex_array(
+                program, [(self._common.buffers[key], layout, *names)]
+            )
+        self._common.buffers[key].orphan(max(len(content), self._common.buffers[key].size))
+        self._common.buffers[key].write(content)
+        self._common.plain[key].render(moderngl.TRIANGLE_STRIP, 4, instances=len(data))
 
     def _bare(self, key: str, program: moderngl.Program) -> moderngl.VertexArray:
         """A vertex array without vertices, for shaders that make their own."""
-        if key not in self._plain:
-            self._plain[key] = self.ctx.vertex_array(program, [])
-        return self._plain[key]
+        if key not in self._common.plain:
+            self._common.plain[key] = self.ctx.vertex_array(program, [])
+        return self._common.plain[key]
 
     def _program(self, key: str, vertex: str, fragment: str) -> moderngl.Program:
-        if key not in self._programs:
-            self._programs[key] = self.ctx.program(vertex_shader=vertex, fragment_shader=fragment)
-        return self._programs[key]
+        if key not in self._common.programs:
+            self._common.programs[key] = self.ctx.program(vertex_shader=vertex, fragment_shader=fragment)
+        return self._common.programs[key]
+
+
+def _alike(before: Sequence[Actor], now: Sequence[Actor]) -> bool:
+    """Whether they are the very same actors."""
+    return len(before) == len(now) and all(a is b for a, b in zip(before, now, strict=True))
 
 
 def _drawable(actor: Actor) -> bool:

@@ -14,6 +14,17 @@ from preview.looks import BACKDROPS, LIGHTS, STAGE, STUDIO, look_of
 from preview.scene import Theme
 
 KEY = "watch"
+PANES = (1, 2, 4)
+SIDES = {  # of a view beside the first: what it is called
+    "front": "Front",
+    "left": "Left side",
+    "right": "Right side",
+    "back": "Behind",
+    "above": "Above",
+    "quarter": "Three quarters",
+    "face": "Face",
+    "hands": "Hands",
+}
 MOST_GHOSTS = 5  # before now, and as many after it: each is drawn in every picture
 SPACINGS = (0.05, 0.1, 0.2, 0.5)  # seconds
 
@@ -32,6 +43,8 @@ class Watched:
     spacing: float = 0.1
     light: str = STUDIO
     background: str = STAGE
+    panes: int = 1
+    sides: str = "front left face"
 
     def look(self, theme: str) -> Theme:
         """Return a theme as it is looked at."""
@@ -70,6 +83,9 @@ def _kept() -> Watched:
         kept = replace(first, **good)
     except (ValueError, TypeError, AttributeError):
         return Watched()
+    sides = kept.sides.split()
+    if kept.panes not in PANES or len(sides) != 3 or not set(sides) <= set(SIDES):
+        kept = replace(kept, panes=first.panes, sides=first.sides)
     ghosts = {k: min(max(getattr(kept, k), 0), MOST_GHOSTS) for k in ("before", "after")}
     if kept.light not in LIGHTS or kept.background not in BACKDROPS:
         kept = replace(kept, light=STUDIO, background=STAGE)

@@ -11,8 +11,9 @@ from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QToolButton, QVBo
 
 from app.features.character.foot_marks import FootMarks
 from app.features.character.ghosts import Ghosts
-from app.features.character.looking import Looking
+from app.features.character.looking import Looking, mask_marks
 from app.features.character.no_mesh import NoMesh
+from app.features.character.panes import Panes
 from app.look import icons
 from app.look.names import plain
 from app.look.theme import theme
@@ -28,9 +29,8 @@ from app.widgets.more_button import MoreButton
 from app.widgets.one_stop import OneStop
 from app.widgets.quiet_fields import ComboBox, Scrub
 from app.widgets.sentence import OneLine
-from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
-from preview.camera import close_up, whole_figure
+from preview.camera import Camera, close_up, whole_figure
 from preview.figure import Figure, SkinnedFigure
 from preview.scene import Actor, Scene
 
@@ -59,10 +59,10 @@ class PreviewPanel(QWidget):
         self.session, self.performance, self.playhead, self.figures = session, performance, playhead, figures
         self.bones = False
         self._framed: tuple[object, ...] = ()  # whom the camera was last framed on
+        self.composed = Scene()  # what was drawn last
         self._last: tuple[Figure, np.ndarray, np.ndarray] | None = None
         self.view = make_view(self._scene, self)
         self.view.frame_wanted.connect(self.frame_all)
-        self.view.setMinimumSize(240, 200)
         self.view.setToolTip("Drag to orbit, right-drag to pan, wheel to zoom, double-click to frame")
         self.bare = False
         self._margins: list[QMargins] = []  # of what is hidden then
@@ -83,7 +83,8 @@ class PreviewPanel(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
-        layout.addWidget(self.view, 1)
+        self.panes = Panes(self)
+        layout.addWidget(self.panes, 1)
         layout.addWidget(self.feet.line)
         self.scrub = Scrub(Qt.Orientation.Horizontal, self, toolTip="Scrub")
         self.scrub.setRange(0, 10000)
@@ -101,8 +102,7 @@ class PreviewPanel(QWidget):
         layout.addLayout(self._lines)
         self._clock = QElapsedTimer()
         self._clock.start()
-        soft = isinstance(self.view, ImageView)
-        self._timer = QTimer(self, interval=max(FRAME, SOFT_FRAME if soft else 0))
+        self._timer = QTimer(self)
         self._timer.setTimerType(Qt.TimerType.PreciseTimer)
         self._timer.timeout.connect(self._tick)
         session.transport.moved.connect(lambda _: self.view.update())
@@ -112,6 +112,7 @@ class PreviewPanel(QWidget):
         session.selection.changed.connect(self.view.update)
         for looks in (session.look.changed, session.watch.changed):
             looks.connect(self._restyle)
+        session.watch.changed.connect(self._run_or_rest)
         session.onion.changed.connect(self.view.update)
         performance.changed.connect(self._changed)
         performance.document.changed.connect(self._edited)
@@ -216,7 +217,7 @@ class PreviewPanel(QWidget):
             if one is shown:
                 self._last = (figure, rotations, positions)
             morphs = figure.morph_weights(one.morphs(seconds)) if figure.morphs else None
-            marks = self._marks() if one is shown else {}
+            marks = mask_marks(self.performance, self.session) if one is shown else {}
             actors.append(Actor(figure, rotations, positions, morphs, marks, self.bones))
             if one is shown:
                 actors += self.ghosts.made(figure, seconds)
@@ -224,6 +225,7 @@ class PreviewPanel(QWidget):
         shape = round(self.view.width() / max(1, self.view.height()), 1)  # it is framed anew for another room
         solid = Scene(tuple(actor for actor in actors if actor.opacity >= 1))  # ghosts do not move the camera
         framed = (*(actor.figure for actor in solid.actors), *(one.stand for one in shown.everyone), shape)
+        self.composed = scene
         if actors and self._framed != framed and not self.view.moved_by_hand:
             self._framed = framed
             aside = ASIDE if shown.others else 0.0
@@ -232,22 +234,10 @@ class PreviewPanel(QWidget):
             )
         return scene
 
-    def _marks(self) -> dict[int, tuple[float, float, float]]:
-        """Point out the joints of the selected action's mask."""
-        project = self.performance.document.project
-        actions = self.session.selection.selected_actions()
-        if len(actions) != 1 or not actions[0].joints or project.skeleton is None:
-            return {}
-        moved = anatomy.mask(project, actions[0])
-        color = theme(self.session.look.name).fill(actions[0].kind)
-        return (
-            {}
-            if moved is None
-            else {int(j): (color.redF(), color.greenF(), color.blueF()) for j in np.flatnonzero(moved)}
-        )
-
     def _run_or_rest(self) -> None:
         """Count the time while it plays; what is paused costs nothing."""
+        frame = SOFT_FRAME if isinstance(self.view, ImageView) else FRAME
+        self._timer.setInterval(round(frame * self.panes.slower))
         if not self.session.transport.playing:
             self._timer.stop()
         elif not self._timer.isActive():
@@ -330,22 +320,25 @@ class PreviewPanel(QWidget):
         return self._last
 
     def frame_all(self) -> None:
+        self.panes.frame()
         self.view.moved_by_hand = False
         self.view.camera = self.view.camera.deepened()
         self._framed = ()
         self.view.update()
 
     def frame_face(self) -> None:
+        view = self.panes.active
+        camera = self.face_camera(view.width() / max(1, view.height()))
+        if camera is not None:
+            view.camera, view.moved_by_hand = camera, True
+            view.update()
+
+    def face_camera(self, aspect: float) -> Camera | None:
+        """Return what looks at the face, None while nobody is drawn."""
         if self._last is None:
-            return
+            return None
         figure, rotations, positions = self._last
-        stand = self.performance.shown.stand
-        head, heading = figure.head(rotations, positions), stand.turn if stand is not None else 0.0
-        self.view.camera = close_up(
-            head, figure.height, self.view.width() / max(1, self.view.height()), heading
-        )
-        self.view.moved_by_hand = True
-        self.view.update()
+        return close_up(figure.head(rotations, positions), figure.height, aspect, self.looking.heading)
 
     def _scrubbed(self, value: int) -> None:
         self.session.transport.set_playing(False)

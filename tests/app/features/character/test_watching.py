@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
 
 from app.features.character.foot_marks import FootState, runs, slide_words
 from app.stage.watch import Watch
@@ -148,6 +149,46 @@ def test_light_and_background_are_chosen_for_the_view_and_offered_for_rendering(
     dialog = RenderDialog(shown.performance, shown.session, shown.jobs)
     assert (dialog.light.currentData(), dialog.background.currentData()) == ("day", "neutral")
     dialog.close()
+
+
+def test_four_views_show_one_moment_from_four_sides_and_the_pose_is_made_once(shown):
+    panel, session = shown.preview, shown.session
+    session.transport.set_playing(False)
+    session.transport.seek(5.0)
+    shown.key(Qt.Key.Key_Q, Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier)
+    front, side, face = panel.panes.others
+    shown.wait(lambda: all(p.view.isVisible() and p._framed for p in panel.panes.others))
+    yaws = [round(np.degrees(p.view.camera.yaw)) for p in (front, side)]
+    assert yaws == [0, 90] and front.view.camera.flat and not face.view.camera.flat
+    assert face.view.camera.distance < panel.view.camera.distance / 2
+    composed, pose_of = [], type(panel.performance.shown).pose
+    type(panel.performance.shown).pose = lambda self, at: (composed.append(at), pose_of(self, at))[1]
+    try:
+        drawn = [p.view.grab().toImage() for p in panel.panes.others]
+        session.transport.seek(6.5)
+        panel.view.grab()
+        after = [p.view.grab().toImage() for p in panel.panes.others]
+    finally:
+        type(panel.performance.shown).pose = pose_of
+    assert all(a != b for a, b in zip(drawn, after, strict=True))
+    assert [at for at in composed if at == 6.5] == [6.5], "once for all of them"
+
+
+def test_each_view_has_its_own_camera_side_and_commands(shown):
+    panel = shown.preview
+    shown.do("two_views")
+    (pane,) = panel.panes.others
+    shown.wait(lambda: pane.view.isVisible() and bool(pane._framed))
+    first = panel.view.camera
+    QTest.mouseClick(pane.view, Qt.MouseButton.LeftButton)
+    shown.do("see_back")
+    assert panel.view.camera == first and abs(np.degrees(pane.view.camera.yaw)) == pytest.approx(180)
+    pane.button.menu().aboutToShow.emit()
+    next(a for a in pane.button.menu().actions() if a.text() == "Hands").trigger()
+    assert pane.button.text().startswith("Hands") and shown.session.watch.now.sides.startswith("hands")
+    shown.wait(lambda: abs(pane.view.camera.yaw) < 0.01 and bool(pane._framed))
+    shown.do("two_views")
+    assert not panel.panes.others and panel.panes.active is panel.view
 
 
 def test_settings_that_cannot_be_read_are_as_at_first(qapp):
