@@ -73,6 +73,7 @@ class PreviewPanel(QWidget):
         self._hint_goes = QTimer(self, singleShot=True, interval=HINT)
         self._hint_goes.timeout.connect(self.hint.hide)
         self.no_mesh = NoMesh(self.view, choose, may_choose)
+        self.mesh_button: QToolButton | None = None  # who makes the panel gives it
         self.watch_button = MoreButton(
             session.look, "What is shown", "What is shown, and how", self.view, "eye"
         )
