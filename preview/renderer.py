@@ -63,7 +63,9 @@ class _Frame:
     @property
     def floor(self) -> bool:
         """Whether the ground is seen, from above."""
-        return self.scene.ground and self.scene.background is None and float(self.camera.eye[1]) > 0
+        scene = self.scene
+        plain = scene.background is None and scene.picture is None
+        return scene.ground and plain and float(self.camera.eye[1]) > 0
 
     def which(self, solid: bool) -> list[int]:
         return [i for i, actor in enumerate(self.actors) if (actor.opacity >= 1) == solid]
@@ -86,6 +88,8 @@ class _Kept:
         for texture in (self.shadow_map, self.soft):
             texture.repeat_x = texture.repeat_y = False
         self.lit: tuple[list[Actor], tuple[float, ...], Array] | None = None  # actors, lamp, matrix
+        self.picture: moderngl.Texture | None = None  # behind, and what it shows
+        self.pictured: Array | None = None
         self.strip: Strip | None = None  # where their shadow lies on the ground, once it is drawn
 
     def release(self) -> None:
@@ -98,6 +102,8 @@ class _Kept:
             *(self.shadow_fbo, self.shadow_map, self.soft_fbo, self.soft),
         ):
             held.release()
+        if self.picture is not None:
+            self.picture.release()
         for gone in (self.plain, self.programs, self.buffers):
             gone.clear()
 
@@ -170,7 +176,10 @@ class Renderer:
         # them.
         covered = _covered(frame)
         self._state(target, (0, 0, width, height), moderngl.NOTHING)
-        if scene.background is not None:
+        if scene.picture is not None:
+            target.clear(*(scene.background or (*theme.top, 1.0)), viewport=(0, 0, width, height))
+            self._behind(scene.picture, (width, height))
+        elif scene.background is not None:
             target.clear(*scene.background, viewport=(0, 0, width, height))
         else:
             self._backdrop(frame, target, [a for a in solid if scene.shadow])
@@ -309,6 +318,24 @@ class Renderer:
         if sky_from > 0 and casters:
             self._shadows(frame, target, sky_from, casters)
             target.scissor = None
+
+    def _behind(self, picture: Array, size: tuple[int, int]) -> None:
+        """Draw a picture as large as it fits."""
+        common, (high, wide) = self._common, picture.shape[:2]
+        if common.picture is None or common.picture.size != (wide, high):
+            if common.picture is not None:
+                common.picture.release()
+            common.picture, common.pictured = self.ctx.texture((wide, high), 3, alignment=1), None
+            common.picture.repeat_x = common.picture.repeat_y = False
+        if common.pictured is not picture:
+            common.picture.write(np.ascontiguousarray(picture, np.uint8), alignment=1)
+            common.pictured = picture
+        scale = min(size[0] / wide, size[1] / high)
+        part = (wide * scale / size[0], high * scale / size[1])
+        common.picture.use(5)
+        program = self._program("behind", shaders.COVER, shaders.BEHIND)
+        _set(program, u_picture=5, u_part=part)
+        self._bare("behind", program).render(moderngl.TRIANGLES, 3)
 
     def _empty_stage(self, frame: _Frame, target: Any) -> int:
         """Draw ground and sky: no point is painted twice. Return the row at which the sky begins."""

@@ -331,6 +331,19 @@ out vec4 o_color;
 void main() { o_color = texelFetch(u_picture, ivec2(gl_FragCoord.xy), 0); }
 """
 
+# A picture in the middle; part: of the width and the height that it covers.
+BEHIND = """#version 330 core
+uniform sampler2D u_picture;
+uniform vec2 u_part;
+in vec2 v_at;
+out vec4 o_color;
+void main() {
+    vec2 at = (v_at - 0.5) / u_part + 0.5;
+    if (any(lessThan(at, vec2(0.0))) || any(greaterThan(at, vec2(1.0)))) discard;
+    o_color = vec4(textureLod(u_picture, vec2(at.x, 1.0 - at.y), 0.0).rgb, 1.0);
+}
+"""
+
 # Smooths edges found by contrast: looks along an edge's direction and takes the mean, unless that leaves the
 # local range.
 SMOOTH = """#version 330 core

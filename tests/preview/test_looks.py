@@ -44,3 +44,32 @@ def test_lights_fall_from_other_sides_and_a_plain_background_is_one_colour_up_to
         green = offscreen.render(scene, camera, look_of("dark", STUDIO, "green"))
         assert np.abs(green[-1, :, :3].astype(int) - (0, 176, 64)).max() <= 2, "no shadow on it"
     assert STAGE in BACKDROPS
+
+
+@pytest.mark.gl
+def test_a_picture_behind_is_seen_whole_and_upright():
+    picture = np.zeros((10, 20, 3), np.uint8)
+    picture[:5], picture[5:] = (255, 0, 0), (0, 0, 255)
+    with Offscreen(100, 100) as offscreen:
+        drawn = offscreen.render(Scene(picture=picture), Camera())
+        other = offscreen.render(Scene(picture=picture[::-1].copy()), Camera())
+    assert drawn[30, 50, 0] > 250 and drawn[70, 50, 2] > 250 and other[30, 50, 2] > 250
+    assert max(drawn[10, 50, :3]) < 80, "what it does not cover is the theme's"
+
+
+@pytest.mark.gl
+def test_two_pictures_side_by_side_share_what_they_draw_and_are_what_each_is_alone(toy):
+    figure = StickFigure(toy.skeleton)
+    scene = Scene((Actor(figure, *toy.skeleton.globals(toy.skeleton.rest)),))
+    camera = Camera().frame(scene.bounds(), 1.0)
+    with Offscreen(200, 200) as first:
+        beside = Offscreen(120, 120, beside=first)
+        a = first.render(scene, camera)
+        b = beside.render(scene, camera.orbit(0.3, 0.0))
+        moved = Scene((Actor(figure, *toy.skeleton.globals(toy.skeleton.rest)),))
+        assert (first.render(moved, camera) == a).all()
+        assert (beside.render(moved, camera.orbit(0.3, 0.0)) == b).all()
+        assert beside.renderer.store is first.renderer.store
+    beside.release()  # after the first: nothing happens
+    with Offscreen(200, 200) as alone:
+        assert (alone.render(scene, camera) == a).all()

@@ -271,7 +271,7 @@ def contribute(shell: Shell) -> Contribution:
                 tip="Where they were and will be; a dot for each frame",
                 study=True,
             ),
-            *watch_commands(shell),
+            *watch_commands(shell, preview),
             Command(
                 "copy_picture",
                 view,

@@ -14,6 +14,7 @@ from app.features.character.ghosts import Ghosts
 from app.features.character.looking import Looking, mask_marks
 from app.features.character.no_mesh import NoMesh
 from app.features.character.panes import Panes
+from app.features.character.reference import Reference, ReferenceBar, ReferencePicture
 from app.look import icons
 from app.look.names import plain
 from app.look.theme import theme
@@ -87,6 +88,11 @@ class PreviewPanel(QWidget):
         self.panes = Panes(self)
         layout.addWidget(self.panes, 1)
         layout.addWidget(self.feet.line)
+        self.reference = Reference(self)
+        self.reference.changed.connect(self.view.update)
+        self.panes.put_beside(ReferencePicture(self.reference, self.panes))
+        self.reference_bar = ReferenceBar(self.reference, self)
+        layout.addWidget(self.reference_bar)
         self.scrub = Scrub(Qt.Orientation.Horizontal, self, toolTip="Scrub")
         self.scrub.setRange(0, 10000)
         self.scrub.setAccessibleName("Playhead")
@@ -222,7 +228,9 @@ class PreviewPanel(QWidget):
             actors.append(Actor(figure, rotations, positions, morphs, marks, self.bones))
             if one is shown:
                 actors += self.ghosts.made(figure, seconds)
-        scene = Scene((*actors, *(seat for one in shown.everyone for seat in stools(one))))
+        seats = (seat for one in shown.everyone for seat in stools(one))
+        behind = self.reference.picture if self.reference.behind else None
+        scene = Scene((*actors, *seats), picture=behind)
         shape = round(self.view.width() / max(1, self.view.height()), 1)  # it is framed anew for another room
         solid = Scene(tuple(actor for actor in actors if actor.opacity >= 1))  # ghosts do not move the camera
         framed = (*(actor.figure for actor in solid.actors), *(one.stand for one in shown.everyone), shape)
@@ -286,6 +294,7 @@ class PreviewPanel(QWidget):
         """Draw no more by itself; at closing."""
         self._timer.stop()
         self.looking.set_turning(False)
+        self.reference.stop()
 
     # --- commands
 
@@ -306,6 +315,7 @@ class PreviewPanel(QWidget):
                 if part is not None:
                     part.setVisible(not on)
         self.feet.show_or_hide()
+        self.reference.changed.emit()
         self.watch_button.setVisible(not on)
         self.hint.setVisible(on)
         if on:

@@ -5,6 +5,7 @@ side of its own, which is chosen in its corner. The pose is made once for all of
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QObject, Qt
@@ -90,7 +91,7 @@ class Pane:
         if solid.actors and framed != self._framed and not view.moved_by_hand:
             self._framed = framed
             view.camera = self._camera(solid, aspect)
-        return scene
+        return scene if scene.picture is None else replace(scene, picture=None)
 
     def _camera(self, solid: Scene, aspect: float) -> Camera:
         looking, side = self.panes.panel.looking, self.side
@@ -111,6 +112,7 @@ class Panes(QWidget):
         super().__init__(panel)
         self.panel = panel
         self.others: list[Pane] = []
+        self._beside: QWidget | None = None
         self.active: GLView | ImageView = panel.view  # which was touched last: commands look from there
         self._grid = QGridLayout(self)
         self._grid.setContentsMargins(0, 0, 0, 0)
@@ -151,6 +153,13 @@ class Panes(QWidget):
             self._grid.setColumnStretch(k, 1 if k == 0 or watch.panes > 1 else 0)
             self._grid.setRowStretch(k, 1 if k == 0 or watch.panes == 4 else 0)
 
+    def put_beside(self, widget: QWidget) -> None:
+        """Show a widget to the right of all views, as wide as one, while it is not hidden."""
+        self._beside = widget
+        self._grid.addWidget(widget, 0, 2, 2, 1)
+        self._grid.setColumnStretch(2, 0 if widget.isHidden() else 1)
+        widget.installEventFilter(self)
+
     def frame(self) -> None:
         """Show all of the character in each view beside the first."""
         for pane in self.others:
@@ -162,6 +171,8 @@ class Panes(QWidget):
                 pane.view.update()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        if event.type() == QEvent.Type.MouseButtonPress and isinstance(watched, (GLView, ImageView)):
+        if watched is self._beside and event.type() in (QEvent.Type.ShowToParent, QEvent.Type.HideToParent):
+            self._grid.setColumnStretch(2, int(event.type() == QEvent.Type.ShowToParent))
+        elif event.type() == QEvent.Type.MouseButtonPress and isinstance(watched, (GLView, ImageView)):
             self.active = watched
         return False

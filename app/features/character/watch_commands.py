@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from PySide6.QtGui import QAction, QActionGroup
-from PySide6.QtWidgets import QMenu
+from PySide6.QtWidgets import QFileDialog, QMenu
 
 from app.features.character.foot_marks import watch_of
+from app.features.character.reference import FILES, Reference
 from app.project.jobs import Job
 from app.shell.actions import Command
 from app.shell.context import Shell
 from app.stage.watch import MOST_GHOSTS, SPACINGS
 from metagraph.playback.foot_slides import RATE
 from preview.looks import BACKDROPS, LIGHTS, words_of
+
+if TYPE_CHECKING:
+    from app.features.character.character_panel import PreviewPanel
 
 SHOWN = (
     ("feet", "next_slide", "trails", "bones"),
@@ -27,7 +33,7 @@ AHEAD = 120.0  # seconds that are searched for a slide
 PART = 240  # samples between two looks at whether to stop
 
 
-def watch_commands(shell: Shell) -> tuple[Command, ...]:
+def watch_commands(shell: Shell, preview: Callable[[], PreviewPanel]) -> tuple[Command, ...]:
     """Return the commands of the menu View."""
     watch, view = shell.stage.session.watch, "&View"
 
@@ -101,6 +107,23 @@ def watch_commands(shell: Shell) -> tuple[Command, ...]:
             tip="As it was, and one side beside it, at one time",
             study=True,
         ),
+        Command(
+            "reference",
+            view,
+            "watch",
+            "Reference vi&deo…",
+            lambda: choose_reference(shell, preview().reference),
+            ("Ctrl+Alt+R",),
+            tip="A video or a picture to compare with, beside the character or behind it",
+        ),
+        Command(
+            "no_reference",
+            view,
+            "watch",
+            "Close the reference video",
+            lambda: preview().reference.close(),
+            enabled=lambda: preview().reference.path is not None,
+        ),
         Command("light", view, "watch", "Li&ght", fill=lambda m: fill_choice(shell, m, "light", LIGHTS)),
         Command(
             "background",
@@ -127,6 +150,14 @@ def watch_commands(shell: Shell) -> tuple[Command, ...]:
             fill=lambda m: fill_onion(shell, m),
         ),
     )
+
+
+def choose_reference(shell: Shell, reference: Reference) -> None:
+    """Ask which video the character is compared with."""
+    folder = reference.path.parent if reference.path is not None else shell.document.folder or Path.home()
+    name, _ = QFileDialog.getOpenFileName(shell.widget, "Choose a reference video", str(folder), FILES)
+    if name:
+        reference.choose(Path(name))
 
 
 def fill_watch(shell: Shell, menu: QMenu) -> None:
