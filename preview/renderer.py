@@ -31,7 +31,7 @@ COARSE_BELOW, COARSE_CROWD_BELOW = (
     90,
     240,
 )  # pixels of height under which figures are drawn with their coarse mesh
-BESIDE_BELOW = 640  # likewise, of one of several views in software
+BESIDE_BELOW = 640  # likewise in software, of a ghost, and in a view beside another
 Strip = tuple[tuple[float, ...], tuple[float, float]]  # a patch of the ground and its turn
 _SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "software", "basic render")
 
@@ -158,12 +158,14 @@ class Renderer:
         solid = [a for a in actors if a.opacity >= 1]
         cast = scene.shadow and 0 < sum(a.count for a in solid) <= SHADOW_LIMIT
         small = COARSE_BELOW if sum(a.count for a in actors) <= SHADOW_LIMIT else COARSE_CROWD_BELOW
-        if self._beside is not None and self.software:
-            small = max(small, BESIDE_BELOW)
-        meshes = [
-            a.figure.coarse if a.morphs is None and _tall(a, camera, height) < small else a.figure.mesh
-            for a in actors
-        ]
+        beside = BESIDE_BELOW if self.software else small
+
+        def mesh(a: Actor) -> Mesh:
+            second = self._beside is not None or a.opacity < 1  # looked at less closely
+            coarse = a.morphs is None and _tall(a, camera, height) < (beside if second else small)
+            return a.figure.coarse if coarse else a.figure.mesh
+
+        meshes = [mesh(a) for a in actors]
         rows = self.store.prepare(actors, meshes + ([a.figure.coarse for a in solid] if cast else []))
         matrix = camera.projection(width / height) @ camera.view()
         frame = _Frame(

@@ -11,6 +11,7 @@ from PySide6.QtCore import QPointF, QRectF, Qt, QTimer
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QWidget
 
+from app.features.character.over_view import lie_over
 from app.look.theme import Theme, theme
 from metagraph.playback.foot_slides import RATE, SLIDES, FeetSeen, FeetWatch, FootState, worst_slide
 
@@ -59,8 +60,7 @@ class FootMarks(QWidget):
 
     def _follow(self, *_: object) -> None:
         if not self.isHidden():
-            self.setGeometry(self.panel.view.rect())
-            self.update()
+            lie_over(self, self.panel.view)
 
     def watching(self) -> FeetWatch | None:
         """Return who watches the feet of what is shown; None of who has none."""

@@ -12,6 +12,7 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QWidget
 
+from app.features.character.over_view import lie_over
 from app.look.theme import theme
 from app.stage.playback_source import Shown
 from metagraph.graph.model import Project
@@ -146,8 +147,7 @@ class Ghosts(QWidget):
         if bool(self._labels) == self.isHidden():
             self.setVisible(bool(self._labels))
         if self._labels:
-            self.setGeometry(self.panel.view.rect())
-            self.update()
+            lie_over(self, self.panel.view)
 
     def paintEvent(self, event: QPaintEvent) -> None:
         view, look = self.panel.view, theme(self.panel.session.look.name)

@@ -144,6 +144,8 @@ class Panes(QWidget):
             self._grid.removeWidget(gone)
             gone.hide()
             gone.deleteLater()
+        if self._beside is not None:  # a second row would take its gap
+            self._grid.addWidget(self._beside, 0, 2, 2 if watch.panes == 4 else 1, 1)
         for pane in self.others:
             pane.view.theme = watch.look(self.panel.session.look.name)
             pane.name()
@@ -156,7 +158,7 @@ class Panes(QWidget):
     def put_beside(self, widget: QWidget) -> None:
         """Show a widget to the right of all views, as wide as one, while it is not hidden."""
         self._beside = widget
-        self._grid.addWidget(widget, 0, 2, 2, 1)
+        self._grid.addWidget(widget, 0, 2)
         self._grid.setColumnStretch(2, 0 if widget.isHidden() else 1)
         widget.installEventFilter(self)
 

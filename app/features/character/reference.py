@@ -87,11 +87,12 @@ class _Reader(QObject):
 
 
 class Reference(QObject):
-    """changed: another video, another picture of it, another place. picture: uint8 `[H, W, 3]`, None while
-    there is none. trouble: why there is none, in words.
+    """changed: another video, another place. pictured: another picture of it. picture: uint8 `[H, W, 3]`,
+    None while there is none. trouble: why there is none, in words.
     """
 
     changed = Signal()
+    pictured = Signal()
 
     def __init__(self, panel: PreviewPanel) -> None:
         super().__init__(panel)
@@ -155,7 +156,9 @@ class Reference(QObject):
     def _came(self, picture: np.ndarray) -> None:
         if self.sender() is self._reader:
             self.picture = picture
-            self.changed.emit()
+            self.pictured.emit()
+            if self.behind:
+                self.panel.view.update()
 
     def _failed(self, words: str) -> None:
         if self.sender() is self._reader:
@@ -207,6 +210,7 @@ class ReferencePicture(QWidget):
         self.setToolTip("Drag to the left or right to move the video in time against the character")
         self.setAccessibleName("Reference video")
         reference.changed.connect(self._follow)
+        reference.pictured.connect(self.update)
         self._follow()
 
     def _follow(self) -> None:

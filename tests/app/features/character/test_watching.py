@@ -76,6 +76,18 @@ def test_no_event_composes_more_than_a_few_poses(shown):
     assert max(asked) <= 12 and sum(asked) < 2 * 3 * RATE
 
 
+@pytest.mark.parametrize("command", ["feet", "stance_ghost", "onion", "trails"])
+def test_what_lies_over_the_picture_does_not_draw_it_again_and_again(shown, command):
+    shown.session.transport.set_playing(False)
+    shown.session.transport.seek(6.0)
+    shown.do(command)
+    shown.pause(600)  # until all is known of the feet
+    before = shown.preview.frames
+    shown.pause(300)
+    assert shown.preview.frames - before < 6
+    shown.do(command)
+
+
 def test_the_next_slide_is_found_and_none_is_said(shown):
     drifting(shown)
     shown.session.transport.seek(0.0)
