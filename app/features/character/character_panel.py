@@ -78,6 +78,7 @@ class PreviewPanel(QWidget):
         self.watch_button = MoreButton(
             session.look, "What is shown", "What is shown, and how", self.view, "eye"
         )
+        self.watch_button.setProperty("over", True)
         self.ghosts, self.feet = Ghosts(self), FootMarks(self)
         self.looking = Looking(self)
         self.frames = 0

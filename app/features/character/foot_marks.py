@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt, QTimer
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPolygonF
+from PySide6.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QWidget
 
 from app.features.character.over_view import lie_over
@@ -149,6 +149,10 @@ class FootLine(QWidget):
         now = self.panel.session.transport.seconds
         wide = lane.width() / (2 * SPAN)
         painter.setClipRect(room)
+        usual = painter.font()
+        small = QFont(usual)
+        small.setPixelSize(9)
+        painter.setFont(small)
         for side in range(2):
             y = lane.top() + 6 + 10 * side
             painter.setPen(QColor(look.text))
@@ -163,6 +167,7 @@ class FootLine(QWidget):
                     painter.drawLine(QPointF(a, y), QPointF(b, y))
                 elif b > a:
                     painter.fillRect(QRectF(a, y - high / 2, b - a, high), color)
+        painter.setFont(usual)
         painter.setPen(QPen(QColor(look.text), 1.0))
         painter.drawLine(QPointF(lane.center().x(), lane.top()), QPointF(lane.center().x(), lane.bottom()))
         row = QRectF(room.left(), room.bottom() - 16, room.width(), 16)

@@ -48,6 +48,7 @@ class MeshButton(MoreButton):
             panel.session.look, "Meshes", "Hide and show meshes of the character", panel.view, "mesh"
         )
         self.panel, self._dialog = panel, dialog
+        self.setProperty("over", True)
         self.menu_of = StayingMenu(self)
         self.setMenu(self.menu_of)
         self.menu_of.aboutToShow.connect(self._fill)

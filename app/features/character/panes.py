@@ -41,6 +41,7 @@ class Pane:
         self.view.frame_wanted.connect(self.frame)
         self.view.installEventFilter(panes)
         self.button = make_widget(QToolButton, self.view, toolTip="Which side this view shows")
+        self.button.setProperty("over", True)
         self.button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         menu = QMenu(self.button)

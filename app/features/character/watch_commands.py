@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 SHOWN = (
     ("feet", "next_slide", "trails", "bones"),
     ("stance_ghost", "onion", "onion_skin"),
+    ("two_views", "four_views"),
     ("light", "background"),
+    ("reference", "no_reference"),
     ("meshes",),
 )
 GHOSTS = 2  # before and after, where onion skin is turned on by its key

@@ -140,7 +140,13 @@ def test_the_button_in_the_view_has_it_all_and_what_was_chosen_is_kept(shown):
     menu = panel.watch_button.menu_of
     menu.aboutToShow.emit()
     actions = {a.text().replace("&", ""): a for a in menu.actions() if not a.isSeparator()}
-    assert {"Marks of the feet", "Ghost of the stance", "Onion skin", "Show the skeleton"} <= set(actions)
+    assert {
+        "Marks of the feet",
+        "Ghost of the stance",
+        "Onion skin",
+        "Show the skeleton",
+        "Four views",
+    } <= set(actions)
     assert panel.view.rect().contains(panel.watch_button.geometry())
     actions["Ghost of the stance"].trigger()
     shown.session.watch.set(spacing=0.5)
