@@ -10,10 +10,10 @@ from typing import Any
 
 from PySide6.QtCore import QObject, QSettings, Signal
 
-from preview.looks import BACKDROPS, LIGHTS, STAGE, STUDIO, look_of
-from preview.scene import Theme
+from preview.scene import THEMES, Theme
 
 KEY = "watch"
+STUDIO, STAGE = "studio", "stage"  # of `preview.looks`, which is read when others are chosen
 PANES = (1, 2, 4)
 SIDES = {  # of a view beside the first: what it is called
     "front": "Front",
@@ -48,6 +48,10 @@ class Watched:
 
     def look(self, theme: str) -> Theme:
         """Return a theme as it is looked at."""
+        if (self.light, self.background) == (STUDIO, STAGE):
+            return THEMES[theme]
+        from preview.looks import look_of
+
         return look_of(theme, self.light, self.background)
 
 
@@ -87,6 +91,9 @@ def _kept() -> Watched:
     if kept.panes not in PANES or len(sides) != 3 or not set(sides) <= set(SIDES):
         kept = replace(kept, panes=first.panes, sides=first.sides)
     ghosts = {k: min(max(getattr(kept, k), 0), MOST_GHOSTS) for k in ("before", "after")}
-    if kept.light not in LIGHTS or kept.background not in BACKDROPS:
-        kept = replace(kept, light=STUDIO, background=STAGE)
+    if (kept.light, kept.background) != (STUDIO, STAGE):
+        from preview.looks import BACKDROPS, LIGHTS
+
+        if kept.light not in LIGHTS or kept.background not in BACKDROPS:
+            kept = replace(kept, light=STUDIO, background=STAGE)
     return replace(kept, **ghosts, spacing=min(max(kept.spacing, 0.02), 2.0))

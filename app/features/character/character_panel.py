@@ -9,10 +9,9 @@ from PySide6.QtCore import QElapsedTimer, QMargins, Qt, QTimer
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
-from app.features.character.foot_marks import FootMarks
-from app.features.character.ghosts import Ghosts
 from app.features.character.looking import Looking, mask_marks
 from app.features.character.no_mesh import NoMesh
+from app.features.character.over_view import Overlays
 from app.features.character.panes import Panes
 from app.features.character.reference import Reference, ReferenceBar, ReferencePicture
 from app.look import icons
@@ -79,7 +78,7 @@ class PreviewPanel(QWidget):
             session.look, "What is shown", "What is shown, and how", self.view, "eye"
         )
         self.watch_button.setProperty("over", True)
-        self.ghosts, self.feet = Ghosts(self), FootMarks(self)
+        self.overlays = Overlays(self)
         self.looking = Looking(self)
         self.frames = 0
         self.view.painted.connect(self._painted)
@@ -88,7 +87,6 @@ class PreviewPanel(QWidget):
         layout.setSpacing(0)
         self.panes = Panes(self)
         layout.addWidget(self.panes, 1)
-        layout.addWidget(self.feet.line)
         self.reference = Reference(self)
         self.reference.changed.connect(self.view.update)
         self.panes.put_beside(ReferencePicture(self.reference, self.panes))
@@ -122,12 +120,13 @@ class PreviewPanel(QWidget):
             looks.connect(self._restyle)
         session.watch.changed.connect(self._run_or_rest)
         session.onion.changed.connect(self.view.update)
-        performance.changed.connect(self._changed)
+        performance.changed.connect(self.view.update)
         performance.document.changed.connect(self._edited)
         figures.changed.connect(self.view.update)
         self._restyle()
         self._show_state()
         self._run_or_rest()
+        self.overlays.begin()
 
     # --- building
 
@@ -228,7 +227,7 @@ class PreviewPanel(QWidget):
             marks = mask_marks(self.performance, self.session) if one is shown else {}
             actors.append(Actor(figure, rotations, positions, morphs, marks, self.bones))
             if one is shown:
-                actors += self.ghosts.made(figure, seconds)
+                actors += self.overlays.made(figure, seconds)
         seats = (seat for one in shown.everyone for seat in stools(one))
         behind = self.reference.picture if self.reference.behind else None
         scene = Scene((*actors, *seats), picture=behind)
@@ -315,7 +314,7 @@ class PreviewPanel(QWidget):
                 part = item.widget() if item is not None else None
                 if part is not None:
                     part.setVisible(not on)
-        self.feet.show_or_hide()
+        self.overlays.set_bare()
         self.reference.changed.emit()
         self.watch_button.setVisible(not on)
         self.hint.setVisible(on)
@@ -377,9 +376,6 @@ class PreviewPanel(QWidget):
         look = theme(self.session.look.name)
         self.play_button.setIcon(icons.icon("pause" if self.session.transport.playing else "play", look.text))
         self._clock.restart()
-
-    def _changed(self) -> None:
-        self.view.update()
 
     def _edited(self, before: Project, after: Project) -> None:
         base, entry = after.base, after.clips.get(after.base.clip or "")

@@ -10,17 +10,14 @@ import numpy as np
 from PySide6.QtGui import QAction, QActionGroup
 from PySide6.QtWidgets import QFileDialog, QMenu
 
-from app.features.character.foot_marks import watch_of
-from app.features.character.reference import FILES, Reference
 from app.project.jobs import Job
 from app.shell.actions import Command
 from app.shell.context import Shell
-from app.stage.watch import MOST_GHOSTS, SPACINGS
-from metagraph.playback.foot_slides import RATE
-from preview.looks import BACKDROPS, LIGHTS, words_of
+from app.stage.watch import MOST_GHOSTS, SPACINGS, Watch
 
 if TYPE_CHECKING:
     from app.features.character.character_panel import PreviewPanel
+    from app.features.character.reference import Reference
 
 SHOWN = (
     ("feet", "next_slide", "trails", "bones"),
@@ -126,20 +123,20 @@ def watch_commands(shell: Shell, preview: Callable[[], PreviewPanel]) -> tuple[C
             lambda: preview().reference.close(),
             enabled=lambda: preview().reference.path is not None,
         ),
-        Command("light", view, "watch", "Li&ght", fill=lambda m: fill_choice(shell, m, "light", LIGHTS)),
+        Command("light", view, "watch", "Li&ght", fill=lambda m: fill_choice(shell, m, "light")),
         Command(
             "background",
             view,
             "watch",
             "Back&ground",
-            fill=lambda m: fill_choice(shell, m, "background", BACKDROPS),
+            fill=lambda m: fill_choice(shell, m, "background"),
         ),
         Command(
             "next_light",
             view,
             "watch",
             "Ne&xt light",
-            lambda: watch.set(light=after(watch.now.light, LIGHTS)),
+            lambda: next_light(watch),
             ("Shift+L",),
             tip="Studio, day, evening, rim, flat",
             study=True,
@@ -156,6 +153,8 @@ def watch_commands(shell: Shell, preview: Callable[[], PreviewPanel]) -> tuple[C
 
 def choose_reference(shell: Shell, reference: Reference) -> None:
     """Ask which video the character is compared with."""
+    from app.features.character.reference import FILES
+
     folder = reference.path.parent if reference.path is not None else shell.document.folder or Path.home()
     name, _ = QFileDialog.getOpenFileName(shell.widget, "Choose a reference video", str(folder), FILES)
     if name:
@@ -172,14 +171,19 @@ def fill_watch(shell: Shell, menu: QMenu) -> None:
         menu.addSeparator()
 
 
-def after(name: str, choices: Iterable[str]) -> str:
-    """Return the choice that comes after one, the first after the last."""
-    names = list(choices)
-    return names[(names.index(name) + 1) % len(names)]
+def next_light(watch: Watch) -> None:
+    """Light the character by the light that comes after this one, the first after the last."""
+    from preview.looks import LIGHTS
+
+    names = list(LIGHTS)
+    watch.set(light=names[(names.index(watch.now.light) + 1) % len(names)])
 
 
-def fill_choice(shell: Shell, menu: QMenu, name: str, choices: Iterable[str]) -> None:
-    """Fill a menu of lights or backgrounds."""
+def fill_choice(shell: Shell, menu: QMenu, name: str) -> None:
+    """Fill a menu of lights or backgrounds. name: of `Watched`."""
+    from preview.looks import BACKDROPS, LIGHTS, words_of
+
+    choices: Iterable[str] = LIGHTS if name == "light" else BACKDROPS
     watch, group = shell.stage.session.watch, QActionGroup(menu)
     for choice in choices:
         action = QAction(words_of(choice), menu, checkable=True)
@@ -209,6 +213,9 @@ def fill_onion(shell: Shell, menu: QMenu) -> None:
 
 def next_slide(shell: Shell) -> None:
     """Go to where a foot that stands slides next, after now; searched beside the window."""
+    from app.features.character.foot_marks import watch_of
+    from metagraph.playback.foot_slides import RATE
+
     session, shown = shell.stage.session, shell.stage.performance.shown
     watch, now = watch_of(shown), session.transport.seconds
     if watch is None:

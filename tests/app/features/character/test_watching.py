@@ -44,7 +44,7 @@ def shown(drive, sample):
 
 
 def test_feet_are_marked_by_a_key_and_one_that_slides_says_how_fast_and_when(shown):
-    drive, feet = shown, shown.preview.feet
+    drive, feet = shown, shown.preview.overlays.feet
     drifting(drive)
     drive.session.transport.seek(2.0)
     assert feet.isHidden() and feet.line.isHidden()
@@ -64,7 +64,7 @@ def test_feet_are_marked_by_a_key_and_one_that_slides_says_how_fast_and_when(sho
 
 
 def test_no_event_composes_more_than_a_few_poses(shown):
-    feet = shown.preview.feet
+    feet = shown.preview.overlays.feet
     shown.session.transport.set_playing(False)
     shown.session.transport.seek(7.0)
     asked = []
