@@ -21,8 +21,8 @@ from preview.scene import DARK, Actor, Scene, Theme
 
 Array = NDArray[Any]
 
-SHADOW_SIZE = 1024, 384  # texels, on a graphics card and in software
-SOFT_SIZE = 144, 64  # texels of the ground's shadow, along the light and across
+SHADOW_SIZE = 1024, 320  # texels, on a graphics card and in software
+SOFT_SIZE = 128, 56  # texels of the ground's shadow, along the light and across
 SHADOW_LIMIT = 8  # instances; a crowd has only the soft spots under it
 GHOST_BACK = (2.0, 1500.0)  # by slope, and in steps of the depth; about a centimetre where a figure stands
 CONTACT, CONTACT_HIGH = 0.75, 0.16  # how much darker a sole is, and of the height, up to where
