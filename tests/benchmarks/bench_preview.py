@@ -58,9 +58,7 @@ def views(figure: SkinnedFigure, rounds: int) -> None:
                 offscreen.draw(scene, camera.orbit(0.5 * n, 0.0))
             took[k].append(time.perf_counter() - start)
     ms = [float(np.median(t[2:])) * 1e3 for t in took]
-    print(
-        f"one view of 960x540 {ms[0]:.1f} ms, four of 480x270 {ms[1]:.1f}, four that share nothing {ms[2]:.1f}"
-    )
+    print(f"one view of 960x540 {ms[0]:.1f} ms, four of 480x270 {ms[1]:.1f}, four apart {ms[2]:.1f}")
     for offscreen in (one, *reversed(together), *apart):
         offscreen.release()
 
