@@ -71,6 +71,7 @@ class Store:
         self._meshes: dict[Mesh, LoadedMesh] = {}
         self.palette = ctx.texture((3, 1), 4, dtype="f4")
         self.marks = ctx.texture((1, 1), 4)
+        self._written: list[Actor] = []  # whose palettes and marks these are
 
     def __getitem__(self, mesh: Mesh) -> LoadedMesh:
         return self._meshes[mesh]
@@ -104,6 +105,11 @@ class Store:
             m for m, loaded in self._meshes.items() if loaded.idle > (0 if crowded else IDLE_FRAMES)
         ]:
             self._meshes.pop(mesh).release()
+        if len(actors) == len(self._written) and all(
+            a is b for a, b in zip(actors, self._written, strict=True)
+        ):
+            return rows
+        self._written = list(actors)
         if actors:
             self._write_palettes(actors, rows, row)
         if any(actor.marks for actor in actors):

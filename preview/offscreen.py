@@ -40,13 +40,19 @@ class Offscreen:
     """A picture of `width` by `height` pixels to draw into, with its own context and renderer.
 
     Use it in a `with` block or call `release()`; from one thread. Any size may be asked of `render`; it
-    grows.
+    grows. beside: another picture of the same scenes, whose context and whose meshes are used; it has to be
+    released last.
     """
 
-    def __init__(self, width: int, height: int, samples: int | None = None) -> None:
-        self._ctx = standalone_context()
+    def __init__(
+        self, width: int, height: int, samples: int | None = None, beside: Offscreen | None = None
+    ) -> None:
+        self._beside = beside
+        self._ctx: moderngl.Context = standalone_context() if beside is None else beside._ctx
         with self._ctx:
-            self.renderer = Renderer(self._ctx, samples)
+            self.renderer: Renderer = Renderer(
+                self._ctx, samples, None if beside is None else beside.renderer
+            )
         self._held: list[Any] = []
         self._released = False
         self.resize(width, height)
@@ -105,10 +111,13 @@ class Offscreen:
         if self._released:
             return
         self._released = True
+        if self._beside is not None and self._beside._released:
+            return  # it took all with it
         with contextlib.suppress(Exception), self._ctx:  # a lost context has nothing left to give back
             self.renderer.release()
             self._give_back()
-        self._ctx.release()
+        if self._beside is None:
+            self._ctx.release()
 
     def __enter__(self) -> Offscreen:
         return self

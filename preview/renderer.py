@@ -21,14 +21,18 @@ from preview.scene import DARK, Actor, Scene, Theme
 
 Array = NDArray[Any]
 
-TO_LIGHT = np.array([-0.42, 0.80, 0.62]) / np.linalg.norm([-0.42, 0.80, 0.62])
-SHADOW_SIZE = 512
+SHADOW_SIZE = 1024, 320  # texels, on a graphics card and in software
+SOFT_SIZE = 128, 56  # texels of the ground's shadow, along the light and across
 SHADOW_LIMIT = 8  # instances; a crowd has only the soft spots under it
+GHOST_BACK = (2.0, 1500.0)  # by slope, and in steps of the depth; about a centimetre where a figure stands
+CONTACT, CONTACT_HIGH = 0.75, 0.16  # how much darker a sole is, and of the height, up to where
 SHADE = 0.8  # how dark the figure's shadow on itself is
 COARSE_BELOW, COARSE_CROWD_BELOW = (
     90,
     240,
 )  # pixels of height under which figures are drawn with their coarse mesh
+BESIDE_BELOW = 640  # likewise in software, of a ghost, and in a view beside another
+Strip = tuple[tuple[float, ...], tuple[float, float]]  # a patch of the ground and its turn
 _SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "software", "basic render")
 
 
@@ -59,25 +63,66 @@ class _Frame:
     @property
     def floor(self) -> bool:
         """Whether the ground is seen, from above."""
-        return self.scene.ground and self.scene.background is None and float(self.camera.eye[1]) > 0
+        scene = self.scene
+        plain = scene.background is None and scene.picture is None
+        return scene.ground and plain and float(self.camera.eye[1]) > 0
 
     def which(self, solid: bool) -> list[int]:
         return [i for i, actor in enumerate(self.actors) if (actor.opacity >= 1) == solid]
 
 
+class _Kept:
+    """What lies on the graphics card for all renderers of one context, and whom the lamp saw last."""
+
+    def __init__(self, ctx: moderngl.Context, software: bool) -> None:
+        self.store = Store(ctx)
+        self.programs: dict[str, moderngl.Program] = {}
+        self.plain: dict[str, moderngl.VertexArray] = {}
+        self.buffers: dict[str, moderngl.Buffer] = {}
+        self.shadow_size = SHADOW_SIZE[software]
+        self.shadow_map = ctx.depth_texture((self.shadow_size, self.shadow_size))
+        self.shadow_map.compare_func = "<="
+        self.shadow_fbo = ctx.framebuffer(depth_attachment=self.shadow_map)
+        self.soft = ctx.texture(SOFT_SIZE, 1)
+        self.soft_fbo = ctx.framebuffer([self.soft])
+        for texture in (self.shadow_map, self.soft):
+            texture.repeat_x = texture.repeat_y = False
+        self.lit: tuple[list[Actor], tuple[float, ...], Array] | None = None  # actors, lamp, matrix
+        self.picture: moderngl.Texture | None = None  # behind, and what it shows
+        self.pictured: Array | None = None
+        self.strip: Strip | None = None  # where their shadow lies on the ground, once it is drawn
+
+    def release(self) -> None:
+        self.store.release()
+        held: Any
+        for held in (
+            *self.plain.values(),
+            *self.programs.values(),
+            *self.buffers.values(),
+            *(self.shadow_fbo, self.shadow_map, self.soft_fbo, self.soft),
+        ):
+            held.release()
+        if self.picture is not None:
+            self.picture.release()
+        for gone in (self.plain, self.programs, self.buffers):
+            gone.clear()
+
+
 class Renderer:
     """Belongs to one context. `samples` None chooses: 4 on a graphics card, 0 in software (edges are smoothed
-    instead).
+    instead). beside: another of the same context, which draws the same scenes from elsewhere: what both need
+    is made once. It has to live longer.
     """
 
-    def __init__(self, ctx: moderngl.Context, samples: int | None = None) -> None:
+    def __init__(
+        self, ctx: moderngl.Context, samples: int | None = None, beside: Renderer | None = None
+    ) -> None:
         self.ctx = ctx
         self.software = is_software(ctx)
         self.samples = min((0 if self.software else 4) if samples is None else samples, int(ctx.max_samples))
-        self.store = Store(ctx)
-        self._programs: dict[str, moderngl.Program] = {}
-        self._plain: dict[str, moderngl.VertexArray] = {}
-        self._buffers: dict[str, moderngl.Buffer] = {}
+        self._beside = beside
+        self._common: _Kept = _Kept(ctx, self.software) if beside is None else beside._common
+        self.store = self._common.store
         self._size = (0, 0)
         self._targets: list[Any] = []
         self._seen: tuple[Camera, tuple[int, int], Theme, bool] | None = (
@@ -85,26 +130,14 @@ class Renderer:
         )
         self._kept, self._sky_from = False, 0  # whether they are kept, and the row the sky begins at
         self._resize(1, 1)
-        self._shadow_map = ctx.depth_texture((SHADOW_SIZE, SHADOW_SIZE))
-        self._shadow_map.compare_func = "<="
-        self._shadow_map.repeat_x = self._shadow_map.repeat_y = False
-        self._shadow_fbo = ctx.framebuffer(depth_attachment=self._shadow_map)
 
     def release(self) -> None:
         """Give everything on the graphics card back; the context must be current."""
-        self.store.release()
-        for held in (
-            *self._plain.values(),
-            *self._programs.values(),
-            *self._buffers.values(),
-            *reversed(self._targets),
-        ):
+        for held in reversed(self._targets):
             held.release()
-        self._shadow_fbo.release()
-        self._shadow_map.release()
-        for gone in (self._plain, self._programs, self._buffers):
-            gone.clear()
         self._targets.clear()
+        if self._beside is None:
+            self._common.release()
 
     def draw(
         self,
@@ -125,10 +158,14 @@ class Renderer:
         solid = [a for a in actors if a.opacity >= 1]
         cast = scene.shadow and 0 < sum(a.count for a in solid) <= SHADOW_LIMIT
         small = COARSE_BELOW if sum(a.count for a in actors) <= SHADOW_LIMIT else COARSE_CROWD_BELOW
-        meshes = [
-            a.figure.coarse if a.morphs is None and _tall(a, camera, height) < small else a.figure.mesh
-            for a in actors
-        ]
+        beside = BESIDE_BELOW if self.software else small
+
+        def mesh(a: Actor) -> Mesh:
+            second = self._beside is not None or a.opacity < 1  # looked at less closely
+            coarse = a.morphs is None and _tall(a, camera, height) < (beside if second else small)
+            return a.figure.coarse if coarse else a.figure.mesh
+
+        meshes = [mesh(a) for a in actors]
         rows = self.store.prepare(actors, meshes + ([a.figure.coarse for a in solid] if cast else []))
         matrix = camera.projection(width / height) @ camera.view()
         frame = _Frame(
@@ -141,7 +178,10 @@ class Renderer:
         # them.
         covered = _covered(frame)
         self._state(target, (0, 0, width, height), moderngl.NOTHING)
-        if scene.background is not None:
+        if scene.picture is not None:
+            target.clear(*(scene.background or (*theme.top, 1.0)), viewport=(0, 0, width, height))
+            self._behind(scene.picture, (width, height))
+        elif scene.background is not None:
             target.clear(*scene.background, viewport=(0, 0, width, height))
         else:
             self._backdrop(frame, target, [a for a in solid if scene.shadow])
@@ -156,21 +196,33 @@ class Renderer:
     # --- passes
 
     def _cast(self, frame: _Frame) -> Array:
-        """Draw depth as the lamp sees it; return the matrix from the world to the shadow map, 0..1."""
+        """Draw depth as the lamp sees it, if it sees another; return the matrix from the world to the shadow
+        map, 0..1.
+        """
+        before = self._common.lit
+        if before is not None and before[1] == frame.theme.toward and _alike(before[0], frame.actors):
+            return before[2]
         low, high = frame.bounds
         centre, radius = (low + high) / 2, max(0.05, float(np.linalg.norm(high - low)) / 2)
-        side = np.cross([0.0, 1, 0], TO_LIGHT)
+        to_light = frame.theme.to_light
+        side = np.cross([0.0, 1, 0], to_light)
         side /= np.linalg.norm(side)
-        axes = np.stack([side, np.cross(TO_LIGHT, side), -TO_LIGHT])
+        axes = np.stack([side, np.cross(to_light, side), -to_light])
         matrix = np.eye(4)
         matrix[:3, :3] = axes / radius
         matrix[:3, 3] = -axes @ centre / radius
-        self._state(self._shadow_fbo, (0, 0, SHADOW_SIZE, SHADOW_SIZE), moderngl.DEPTH_TEST)
-        self._shadow_fbo.clear(depth=1.0)
+        self._state(
+            self._common.shadow_fbo,
+            (0, 0, self._common.shadow_size, self._common.shadow_size),
+            moderngl.DEPTH_TEST,
+        )
+        self._common.shadow_fbo.clear(depth=1.0)
         self._depths(frame, frame.which(solid=True), matrix, coarse=True)
         half = np.eye(4) * 0.5
         half[:3, 3], half[3, 3] = 0.5, 1
-        return np.asarray(half @ matrix)
+        self._common.strip = None
+        self._common.lit = frame.actors, frame.theme.toward, np.asarray(half @ matrix)
+        return self._common.lit[2]
 
     def _depths(self, frame: _Frame, which: Sequence[int], matrix: Array, coarse: bool) -> None:
         program = self._program("depth", shaders.DEPTH_VERTEX, shaders.DEPTH)
@@ -188,7 +240,7 @@ class Renderer:
     def _bodies(self, frame: _Frame, which: Sequence[int]) -> None:
         theme = frame.theme
         self.store.palette.use(0)
-        self._shadow_map.use(1)
+        self._common.shadow_map.use(1)
         self.store.marks.use(3)
         for i in which:
             actor = frame.actors[i]
@@ -212,7 +264,7 @@ class Renderer:
                     program,
                     u_matrix=frame.matrix,
                     u_eye=frame.camera.eye,
-                    u_to_light=TO_LIGHT,
+                    u_to_light=theme.to_light,
                     u_opacity=actor.opacity,
                 )
                 _set(
@@ -228,6 +280,8 @@ class Renderer:
                 )
                 if frame.light is not None:
                     _set(program, u_light=frame.light)
+                contact = CONTACT if frame.floor and cast else 0.0
+                _set(program, u_near_ground=(contact, 1 / (CONTACT_HIGH * actor.figure.height)))
                 self._triangles(frame.meshes[i], actor, program, kind)
 
     def _ghosts(self, frame: _Frame) -> None:
@@ -235,6 +289,8 @@ class Renderer:
         which = frame.which(solid=False)
         if not which:
             return
+        # What lies in one place with the figure is the figure's: a ghost is reckoned a little farther away.
+        self.ctx.polygon_offset = GHOST_BACK
         self._main.color_mask = (False, False, False, False)
         self._main.use()  # a mask counts from the next use
         self._depths(frame, which, frame.matrix, coarse=False)
@@ -242,6 +298,7 @@ class Renderer:
         self._main.use()
         self.ctx.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
         self._bodies(frame, which)
+        self.ctx.polygon_offset = 0.0, 0.0
 
     def _backdrop(self, frame: _Frame, target: Any, casters: Sequence[Actor]) -> None:
         """Ground with its shadows up to its far edge, sky above. While the camera stands they are kept: from
@@ -261,9 +318,26 @@ class Renderer:
             self.ctx.copy_framebuffer(target, self._stage)
             target.use()
         if sky_from > 0 and casters:
-            target.scissor = (0, 0, frame.size[0], sky_from)
-            self._shadows(frame, casters)
+            self._shadows(frame, target, sky_from, casters)
             target.scissor = None
+
+    def _behind(self, picture: Array, size: tuple[int, int]) -> None:
+        """Draw a picture as large as it fits."""
+        common, (high, wide) = self._common, picture.shape[:2]
+        if common.picture is None or common.picture.size != (wide, high):
+            if common.picture is not None:
+                common.picture.release()
+            common.picture, common.pictured = self.ctx.texture((wide, high), 3, alignment=1), None
+            common.picture.repeat_x = common.picture.repeat_y = False
+        if common.pictured is not picture:
+            common.picture.write(np.ascontiguousarray(picture, np.uint8), alignment=1)
+            common.pictured = picture
+        scale = min(size[0] / wide, size[1] / high)
+        part = (wide * scale / size[0], high * scale / size[1])
+        common.picture.use(5)
+        program = self._program("behind", shaders.COVER, shaders.BEHIND)
+        _set(program, u_picture=5, u_part=part)
+        self._bare("behind", program).render(moderngl.TRIANGLES, 3)
 
     def _empty_stage(self, frame: _Frame, target: Any) -> int:
         """Draw ground and sky: no point is painted twice. Return the row at which the sky begins."""
@@ -297,32 +371,53 @@ class Renderer:
         _set(program, u_floor=theme.floor, u_line=theme.line, u_spacing=(spacing, theme.line_strength))
         self._sky("ground", program, frame, moderngl.TRIANGLE_STRIP, 4)
 
-    def _shadows(self, frame: _Frame, solid: Sequence[Actor]) -> None:
+    def _shadows(self, frame: _Frame, target: Any, sky_from: int, solid: Sequence[Actor]) -> None:
         """What darkens the ground multiplies what is there."""
-        self.ctx.enable_only(moderngl.BLEND)
+        strip = self._softened(frame) if frame.light is not None else None
+        self._state(target, (0, 0, *frame.size), moderngl.BLEND)
+        target.scissor = (0, 0, frame.size[0], sky_from)
         self.ctx.blend_func = moderngl.ZERO, moderngl.SRC_COLOR
-        if frame.light is not None:
-            low, high = frame.bounds
-            thrown = -TO_LIGHT / TO_LIGHT[1] * max(0.0, float(high[1]))
-            fade_low, fade_high = np.minimum(low, low + thrown), np.maximum(high, high + thrown)
-            middle, half = (fade_low + fade_high) / 2, (fade_high - fade_low) / 2 * 1.05
-            # Only a strip along the light can be dark.
-            along = TO_LIGHT[[0, 2]] / np.linalg.norm(TO_LIGHT[[0, 2]])
-            turn = np.stack([along, [-along[1], along[0]]])
-            feet = np.array([(x, z) for x in (low[0], high[0]) for z in (low[2], high[2])])
-            strip = np.concatenate([feet, feet + thrown[[0, 2]]]) @ turn.T
-            least, most = strip.min(0) - 0.05 * half.max(), strip.max(0) + 0.05 * half.max()
-            centre = (least + most) / 2 @ turn
-            patch = (*centre, *((most - least) / 2))
+        if strip is not None:
+            patch, turn = strip
             program = self._program("cast", shaders.GROUND_VERTEX, shaders.CAST)
-            self._shadow_map.use(1)
-            _set(program, u_matrix=frame.matrix, u_patch=patch, u_turn=tuple(along))
-            _set(program, u_fade=(middle[0], middle[2], max(half[0], half[2])))
-            _set(program, u_dark=frame.theme.shadow, u_shadow=1, u_light=frame.light)
+            self._common.soft.use(4)
+            _set(program, u_matrix=frame.matrix, u_patch=patch, u_turn=turn)
+            _set(program, u_dark=frame.theme.shadow, u_soft=4)
             self._bare("cast", program).render(moderngl.TRIANGLE_STRIP, 4)
         program = self._program("spots", shaders.SPOT_VERTEX, shaders.SPOT)
         _set(program, u_matrix=frame.matrix, u_dark=frame.theme.shadow)
         self._squares("spots", program, np.concatenate([_spots(a) for a in solid]), "4f/i", "in_spot")
+
+    def _softened(self, frame: _Frame) -> Strip:
+        """Draw the shadow on the ground as seen from above; return where on it that lies: a patch, its turn.
+        Only a strip along the light can be dark.
+        """
+        assert frame.light is not None
+        if self._common.strip is not None:
+            return self._common.strip
+        low, high = frame.bounds
+        to_light = frame.theme.to_light
+        thrown = -to_light / to_light[1] * max(0.0, float(high[1]))
+        fade_low, fade_high = np.minimum(low, low + thrown), np.maximum(high, high + thrown)
+        middle, half = (fade_low + fade_high) / 2, (fade_high - fade_low) / 2 * 1.05
+        along = to_light[[0, 2]] / np.linalg.norm(to_light[[0, 2]])
+        axes = np.stack([along, [-along[1], along[0]]])
+        feet = np.array([(x, z) for x in (low[0], high[0]) for z in (low[2], high[2])])
+        strip = np.concatenate([feet, feet + thrown[[0, 2]]]) @ axes.T
+        least, most = strip.min(0) - 0.05 * half.max(), strip.max(0) + 0.05 * half.max()
+        x, z = (least + most) / 2 @ axes
+        patch, turn = (x, z, *((most - least) / 2)), (float(along[0]), float(along[1]))
+        self._state(self._common.soft_fbo, (0, 0, *SOFT_SIZE), moderngl.NOTHING)
+        program = self._program("soft", shaders.COVER, shaders.SOFT)
+        self._common.shadow_map.compare_func = ""
+        self._common.shadow_map.use(1)
+        _set(program, u_depth=1, u_light=frame.light, u_patch=patch, u_turn=turn)
+        _set(program, u_fade=(middle[0], middle[2], max(half[0], half[2])))
+        _set(program, u_scale=float(np.linalg.norm(frame.light[0, :3])))
+        self._bare("soft", program).render(moderngl.TRIANGLES, 3)
+        self._common.shadow_map.compare_func = "<="
+        self._common.strip = patch, turn
+        return patch, turn
 
     def _sky(self, key: str, program: moderngl.Program, frame: _Frame, mode: int, count: int) -> None:
         """Draw with a program that ends in the sky's colours."""
@@ -379,7 +474,7 @@ class Renderer:
         target.viewport = viewport
         target.scissor = None
         target.depth_mask = True
-        if target is not self._shadow_fbo:
+        if target is not self._common.shadow_fbo:
             target.color_mask = (True, True, True, True)
         target.use()
         ctx.enable_only(flags)
@@ -437,23 +532,30 @@ class Renderer:
         if not len(data):
             return
         content = np.ascontiguousarray(data, "<f4").tobytes()
-        if key not in self._buffers:
-            self._buffers[key] = self.ctx.buffer(reserve=len(content))
-            self._plain[key] = self.ctx.vertex_array(program, [(self._buffers[key], layout, *names)])
-        self._buffers[key].orphan(max(len(content), self._buffers[key].size))
-        self._buffers[key].write(content)
-        self._plain[key].render(moderngl.TRIANGLE_STRIP, 4, instances=len(data))
+        if key not in self._common.buffers:
+            self._common.buffers[key] = self.ctx.buffer(reserve=len(content))
+            self._common.plain[key] = self.ctx.vertex_array(
+                program, [(self._common.buffers[key], layout, *names)]
+            )
+        self._common.buffers[key].orphan(max(len(content), self._common.buffers[key].size))
+        self._common.buffers[key].write(content)
+        self._common.plain[key].render(moderngl.TRIANGLE_STRIP, 4, instances=len(data))
 
     def _bare(self, key: str, program: moderngl.Program) -> moderngl.VertexArray:
         """A vertex array without vertices, for shaders that make their own."""
-        if key not in self._plain:
-            self._plain[key] = self.ctx.vertex_array(program, [])
-        return self._plain[key]
+        if key not in self._common.plain:
+            self._common.plain[key] = self.ctx.vertex_array(program, [])
+        return self._common.plain[key]
 
     def _program(self, key: str, vertex: str, fragment: str) -> moderngl.Program:
-        if key not in self._programs:
-            self._programs[key] = self.ctx.program(vertex_shader=vertex, fragment_shader=fragment)
-        return self._programs[key]
+        if key not in self._common.programs:
+            self._common.programs[key] = self.ctx.program(vertex_shader=vertex, fragment_shader=fragment)
+        return self._common.programs[key]
+
+
+def _alike(before: Sequence[Actor], now: Sequence[Actor]) -> bool:
+    """Whether they are the very same actors."""
+    return len(before) == len(now) and all(a is b for a, b in zip(before, now, strict=True))
 
 
 def _drawable(actor: Actor) -> bool:

@@ -41,18 +41,21 @@ class Actor:
 @dataclass(frozen=True, eq=False)
 class Scene:
     """background: one flat sRGB colour with alpha, premultiplied, instead of the theme's; there is no ground
-    then.
+    then. picture: uint8 `[H, W, 3]`, sRGB, first row at the top, that is seen behind, whole;
+    no ground, either.
     """
 
     actors: tuple[Actor, ...] = ()
     ground: bool = True
     shadow: bool = True
     background: tuple[float, float, float, float] | None = None
+    picture: Array | None = None
 
     def same(self, other: Scene) -> bool:
         """Return whether both give the same picture, to the last bit of what they are made of."""
         return (
             (self.ground, self.shadow, self.background) == (other.ground, other.shadow, other.background)
+            and self.picture is other.picture
             and len(self.actors) == len(other.actors)
             and all(_same(a, b) for a, b in zip(self.actors, other.actors, strict=True))
         )
@@ -95,6 +98,12 @@ class Theme:
     below: Color
     rim: Color
     ink: Color  # the skeleton drawn over a mesh
+    toward: Color = (-0.42, 0.80, 0.62)  # where the lamp is, of any length; above the ground
+
+    @property
+    def to_light(self) -> Array:
+        """The direction of the lamp, a unit vector `[3]`."""
+        return np.asarray(np.array(self.toward) / np.linalg.norm(self.toward))
 
 
 DARK = Theme(

@@ -78,24 +78,64 @@ float lit(vec3 world, vec2 radius, float bias) {
 }
 """
 
-# The shadow on the ground: a square under the figure that multiplies what is there.
-CAST = (
-    "#version 330 core\n"
-    + _SHADOW
-    + """
+# The shadow on the ground, seen from above: one small picture that is drawn large. The farther what throws it
+# is from the ground, the softer it is: the lamp is no point.
+SOFT = """#version 330 core
+uniform sampler2D u_depth;  // as the lamp sees it
+uniform mat4 u_light;
+uniform vec4 u_patch;   // x, z, half the width, half the depth
+uniform vec2 u_turn;
+uniform vec3 u_fade;    // x, z and radius of what the shadow fades towards
+uniform float u_scale;  // of the shadow map, by metres
+in vec2 v_at;
+out vec4 o_color;
+// Points spread evenly over a disc (Vogel's spiral), near the middle first.
+vec2 spread(int i, float count) {
+    float turn = float(i) * 2.39996323;
+    return sqrt((float(i) + 0.5) / count) * vec2(cos(turn), sin(turn));
+}
+// How far before the ground the lamp's light ends; less than 0 where it does not.
+float before(vec3 p, vec2 off) {
+    float depth = textureLod(u_depth, p.xy + off, 0.0).r;
+    return p.z - depth - 9.0 * step(1.0, depth);
+}
+void main() {
+    vec2 corner = (v_at * 2.0 - 1.0) * u_patch.zw;
+    vec2 at = u_patch.xy + corner.x * u_turn + corner.y * vec2(-u_turn.y, u_turn.x);
+    vec3 p = (u_light * vec4(at.x, 0.0, at.y, 1.0)).xyz;
+    p.z -= 0.002;
+    float found = 0.0, gap = 0.0;
+    for (int i = 0; i < 8; ++i) {
+        float d = before(p, spread(i, 8.0) * (0.045 * u_scale));
+        found += step(0.0, d);
+        gap += max(d, 0.0);
+    }
+    float dark = 0.0;
+    if (found > 0.0) {
+        float radius = clamp(0.034 * gap / (found * u_scale), 0.008, 0.055) * u_scale;
+        for (int i = 0; i < 12; ++i)
+            dark += step(0.0, before(p, spread(i, 12.0) * radius));
+    }
+    vec2 off = (at - u_fade.xy) / u_fade.z;
+    float near = clamp(1.15 - dot(off, off), 0.0, 1.0);
+    o_color = vec4(dark / 12.0 * near * 0.75);
+}
+"""
+
+# A square under the figure that multiplies what is there.
+CAST = """#version 330 core
+uniform sampler2D u_soft;
 uniform vec3 u_dark;
-uniform vec3 u_fade;  // x, z and radius of what the shadow fades towards
+uniform vec4 u_patch;
+uniform vec2 u_turn;
 in vec2 v_at;
 out vec4 o_color;
 void main() {
-    vec3 world = vec3(v_at.x, 0.0, v_at.y);
-    float light = 0.5 * (lit(world, vec2(0.0085, 0.0035), 0.002) + lit(world, vec2(-0.0035, 0.0085), 0.002));
-    vec2 off = (v_at - u_fade.xy) / u_fade.z;
-    float near = clamp(1.15 - dot(off, off), 0.0, 1.0);
-    o_color = vec4(mix(vec3(1.0), u_dark, (1.0 - light) * near * 0.7), 1.0);
+    vec2 off = v_at - u_patch.xy;
+    vec2 at = vec2(dot(off, u_turn), dot(off, vec2(-u_turn.y, u_turn.x))) / u_patch.zw * 0.5 + 0.5;
+    o_color = vec4(mix(vec3(1.0), u_dark, textureLod(u_soft, at, 0.0).r), 1.0);
 }
 """
-)
 
 # Soft spots where the body comes near the ground: one square each.
 SPOT_VERTEX = """#version 330 core
@@ -193,6 +233,7 @@ BODY = (
     + """
 uniform vec3 u_eye, u_to_light, u_key, u_above, u_below, u_rim;
 uniform float u_shade, u_opacity;  // how much of the cast shadow to use
+uniform vec2 u_near_ground;  // how much of the light round about the ground takes, and 1 by up to where
 #ifdef TEXTURED
 uniform sampler2D u_image;
 #endif
@@ -226,6 +267,8 @@ void main() {
 #endif
     float up = n.y * 0.5 + 0.5;
     vec3 fill = mix(u_below, u_above, up) * (1.0 - 0.25 * away);
+    float under = max(0.0, 1.0 - v_world.y * u_near_ground.y);  // soles and hems are darker, above all beneath
+    fill *= 1.0 - u_near_ground.x * under * under * (0.65 - 0.35 * n.y);
     fill += u_above * (0.22 * clamp(dot(n, v), 0.0, 1.0));  // a weak lamp beside the camera
     float edge = away * away;
     float rim = edge * edge * (0.35 + 0.65 * up);
@@ -286,6 +329,19 @@ COPY = """#version 330 core
 uniform sampler2D u_picture;
 out vec4 o_color;
 void main() { o_color = texelFetch(u_picture, ivec2(gl_FragCoord.xy), 0); }
+"""
+
+# A picture in the middle; part: of the width and the height that it covers.
+BEHIND = """#version 330 core
+uniform sampler2D u_picture;
+uniform vec2 u_part;
+in vec2 v_at;
+out vec4 o_color;
+void main() {
+    vec2 at = (v_at - 0.5) / u_part + 0.5;
+    if (any(lessThan(at, vec2(0.0))) || any(greaterThan(at, vec2(1.0)))) discard;
+    o_color = vec4(textureLod(u_picture, vec2(at.x, 1.0 - at.y), 0.0).rgb, 1.0);
+}
 """
 
 # Smooths edges found by contrast: looks along an edge's direction and takes the mean, unless that leaves the

@@ -6,7 +6,7 @@ import sys
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from app.stage.playback_source import ASIDE, Shown, alone
 from metagraph.graph.model import Layer, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.bake import bake
+
+if TYPE_CHECKING:
+    from preview.scene import Theme
 
 Seen = tuple[Any, Shown]  # a figure, and what it plays
 MOTION = (".glb", ".usda", ".bvh")  # what `bake_to` writes
@@ -38,6 +41,10 @@ def arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--fps", type=float, default=30.0, help="pictures a second of a video (default: 30)")
     parser.add_argument("--frames", type=int, default=24, help="pictures on a contact sheet (default: 24)")
     parser.add_argument("--theme", choices=("dark", "light"), default="dark")
+    from preview.looks import BACKDROPS, LIGHTS, STAGE, STUDIO
+
+    parser.add_argument("--light", choices=tuple(LIGHTS), default=STUDIO, help="what it is lit by")
+    parser.add_argument("--background", choices=tuple(BACKDROPS), default=STAGE, help="what is behind it")
 
 
 def figure_of(project: Project, folder: Path) -> Any:
@@ -76,7 +83,7 @@ def pictures(
     seen: Sequence[Seen],
     times: np.ndarray,
     size: tuple[int, int],
-    look: str,
+    look: Theme | str,
     camera: Any = None,
     into: np.ndarray | None = None,
 ) -> Iterator[np.ndarray]:
@@ -88,6 +95,8 @@ def pictures(
     from preview.offscreen import Offscreen
     from preview.scene import THEMES, Scene
 
+    theme = THEMES[look] if isinstance(look, str) else look
+
     seats = tuple(seat for _, shown in seen for seat in stools(shown))
     if camera is None:
         box = bounds_of(seen, times)
@@ -96,7 +105,7 @@ def pictures(
         for first in range(0, len(times), TOGETHER):
             some = times[first : first + TOGETHER]
             for actors in zip(*(_actors(figure, shown, some) for figure, shown in seen), strict=True):
-                yield offscreen.render(Scene((*actors, *seats)), camera, THEMES[look], into=into)
+                yield offscreen.render(Scene((*actors, *seats)), camera, theme, into=into)
 
 
 def _actors(figure: Any, shown: Shown, times: np.ndarray) -> list[Any]:
@@ -162,6 +171,8 @@ def run(options: Namespace) -> int:
         for one, out in zip(shown.everyone, _outs(options.out, shown), strict=True):
             bake_to(out, one, options.seconds, options.fps, one.folder or folder)
     else:
+        from preview.looks import look_of
+
         seen = [(figure_of(one.project, one.folder or folder), one) for one in shown.everyone]
         sound = sound_of(shown, folder, options.seconds) if options.out.suffix == ".mp4" else None
         draw_to(
@@ -171,7 +182,7 @@ def run(options: Namespace) -> int:
             size,
             options.fps,
             options.frames,
-            options.theme,
+            look_of(options.theme, options.light, options.background),
             sound,
             options.progress,
         )
@@ -233,7 +244,7 @@ def draw_to(
     size: tuple[int, int],
     fps: float,
     frames: int,
-    look: str,
+    look: Theme | str,
     sound: tuple[np.ndarray, int] | None = None,
     progress: bool = False,
 ) -> None:

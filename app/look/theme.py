@@ -197,6 +197,8 @@ def style_sheet(look: Theme) -> str:
     QTabWidget::pane {{ border: none; }}
     QSlider::groove:horizontal {{ height: 4px; background: {t.line}; border-radius: 2px; }}
     QSlider::handle:horizontal {{ width: 14px; margin: -5px 0; border-radius: 7px; background: {t.text}; }}
+    QToolButton[over="true"] {{ background: {t.card}; border: 1px solid {t.line}; }}
+    QToolButton[over="true"]:hover {{ background: {t.hover}; }}
     QFrame[card="true"] {{ background: {t.card}; border: 1px solid {t.line}; border-radius: 8px; }}
     QLabel[dim="true"] {{ color: {t.dim}; }}
     QLabel[heading="true"] {{ font-size: 16px; font-weight: 600; }}

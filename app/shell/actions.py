@@ -27,7 +27,7 @@ MENUS: dict[str, tuple[str, ...]] = {
     tr_noop("&Motion"): ("make",),
     tr_noop("&Play"): ("transport", "live", "show"),
     tr_noop("&Conversation"): ("read", "settings", "stage", "write", "remove"),
-    tr_noop("&View"): ("workspaces", "workspace", "character", "sides", "graph", "look"),
+    tr_noop("&View"): ("workspaces", "workspace", "character", "sides", "watch", "graph", "look"),
     tr_noop("&Study"): (),
     tr_noop("&Help"): (),
 }

@@ -127,7 +127,7 @@ class ImageView(CameraMouse, QWidget):
     """The same picture through an offscreen context, for platforms without OpenGL widgets.
 
     coarse: how many times wider and higher than the picture's pixels those of the widget are; more than 1
-    where nobody looks.
+    where nobody looks. beside: another view of the same scenes, which is painted first and lives longer.
     """
 
     coarse = 1
@@ -135,9 +135,12 @@ class ImageView(CameraMouse, QWidget):
     frame_wanted = Signal()
     failed = Signal(str)
 
-    def __init__(self, compose: Compose, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, compose: Compose, parent: QWidget | None = None, beside: ImageView | None = None
+    ) -> None:
         QWidget.__init__(self, parent)
         self._init_camera()
+        self._beside = beside
         self._compose = compose
         self._offscreen: Any = None
         self._pixels: np.ndarray | None = None
@@ -155,7 +158,8 @@ class ImageView(CameraMouse, QWidget):
             from preview.offscreen import Offscreen, OpenGLError
 
             try:
-                self._offscreen = Offscreen(*size)
+                near = self._beside._offscreen if self._beside is not None else None
+                self._offscreen = Offscreen(*size, beside=near or None)
                 self._contexts.append(self._offscreen)
             except OpenGLError as error:
                 self._offscreen = False
@@ -180,6 +184,11 @@ class ImageView(CameraMouse, QWidget):
             self._pixels = np.empty((size[1], size[0], 4), np.uint8)
         self._offscreen.render(scene, self.camera, self.theme, size, self._pixels)
         return QImage(self._pixels.data, *size, size[0] * 4, QImage.Format.Format_RGBA8888_Premultiplied)
+
+
+def make_beside(view: GLView | ImageView, compose: Compose, parent: QWidget) -> GLView | ImageView:
+    """Return one more view of what another shows, of its kind."""
+    return ImageView(compose, parent, view) if isinstance(view, ImageView) else GLView(compose, parent)
 
 
 def make_view(compose: Compose, parent: QWidget | None = None) -> GLView | ImageView:

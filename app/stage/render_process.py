@@ -27,7 +27,7 @@ SUFFIXES = {
 @dataclass(frozen=True)
 class RenderOrder:
     """What to write. performance: id of a kept one, None to improvise. conversation: id of one, then of both.
-    size: width and height in pixels.
+    size: width and height in pixels. light, background: by the names of `preview.looks`.
     """
 
     out: Path
@@ -37,6 +37,8 @@ class RenderOrder:
     fps: float = 30.0
     theme: str = "dark"
     conversation: str | None = None
+    light: str = "studio"
+    background: str = "stage"
 
 
 def write(project: Project, folder: Path, wanted: RenderOrder, job: Job) -> Path:
@@ -62,6 +64,10 @@ def write(project: Project, folder: Path, wanted: RenderOrder, job: Job) -> Path
             f"{wanted.fps:g}",
             "--theme",
             wanted.theme,
+            "--light",
+            wanted.light,
+            "--background",
+            wanted.background,
             "--progress",
         ]
         if wanted.performance is not None:

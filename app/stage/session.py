@@ -13,6 +13,7 @@ from app.stage.on_stage import Mode, OnStage
 from app.stage.onion import Onion
 from app.stage.selection import Selection
 from app.stage.transport import Transport
+from app.stage.watch import Watch
 from metagraph.graph.manual import Manual
 from metagraph.graph.model import LAYERS, Layer, Project
 
@@ -21,7 +22,8 @@ OPENED_ON: tuple[Layer, ...] = ("arms", "body", "head")
 
 class Session(QObject):
     """place: layer and stance. selection. onstage: who is on stage, and in which mode. transport: the
-    playhead. look: the theme. onion: other moments to be seen beside the present one.
+    playhead. look: the theme. onion: other moments to be seen beside the present one. watch: what helps to
+    watch the character.
     """
 
     def __init__(self, document: Document, parent: QObject | None = None) -> None:
@@ -33,6 +35,7 @@ class Session(QObject):
         self.transport = Transport(self)
         self.look = ThemeChoice(self)
         self.onion = Onion(self)
+        self.watch = Watch(self)
         document.changed.connect(self._follow)
 
     def set_mode(self, mode: Mode) -> None:

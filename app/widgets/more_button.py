@@ -11,10 +11,13 @@ from app.look.theme_choice import ThemeChoice
 
 
 class MoreButton(QToolButton):
-    """menu: opened by a click. name: told where it cannot be seen. tip: what is in the menu."""
+    """menu: opened by a click. name: told where it cannot be seen. tip: what is in the menu. mark: another
+    icon than the dots.
+    """
 
-    def __init__(self, look: ThemeChoice, name: str, tip: str, parent: QWidget) -> None:
+    def __init__(self, look: ThemeChoice, name: str, tip: str, parent: QWidget, mark: str = "more") -> None:
         super().__init__(parent)
+        self._mark = mark
         self.setText("…")
         self.setToolTip(tip)
         self.look = look
@@ -39,4 +42,4 @@ class MoreButton(QToolButton):
         self.setToolButtonStyle(beside if words else alone)
 
     def _restyle(self) -> None:
-        self.setIcon(icons.icon("more", theme(self.look.name).text))
+        self.setIcon(icons.icon(self._mark, theme(self.look.name).text))

@@ -175,6 +175,7 @@ def reset(window: Any, stood: object = None) -> None:
     session.selection.clear()
     session.selection.copied = None
     session.look.choose("dark")
+    session.watch.forget()
     shell.stage.sound.set_muted(False)
     shell.stage.sound._silent = False
     session.transport.set_playing(True)

@@ -22,11 +22,20 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from metagraph.formats.store import open_project
 from metagraph.graph.model import Project
+from metagraph.playback.foot_slides import (
+    RATE,
+    SLIDES,
+    WINDOW,
+    FeetWatch,
+    FootState,
+    clip_speeds,
+    slide_speeds,
+)
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import pose_at
 from metagraph.playback.weight import weight_of
-from tests.benchmarks.bench_weight import FPS, SAMPLE, STANDS, WINDOW, Watched, shared_project, sources
+from tests.benchmarks.bench_weight import FPS, SAMPLE, STANDS, Watched, shared_project
 
 SETS = (
     "bandai-namco-1",
@@ -47,7 +56,7 @@ def gliding(project: Project) -> Project:
 
 def slides(plan: Plan, project: Project, times: Array, off: Watched, on: Watched) -> None:
     """Print how fast feet slide that stand, by what plays, without and with, and what steps there are."""
-    kind, own = sources(plan, project, times)
+    kind, own = clip_speeds(plan, project, times)
     window = round(WINDOW * FPS)
     stands = own[:-window] < STANDS
     lifted = (on.at - off.at)[..., 1] > STEPS
@@ -64,7 +73,7 @@ def slides(plan: Plan, project: Project, times: Array, off: Watched, on: Watched
             if not ground.any():
                 parts.append(f"{name} all steps")
                 continue
-            speed = np.linalg.norm(of.at[window:] - of.at[:-window], axis=-1)[ground] / WINDOW * 1000
+            speed = slide_speeds(of.at, FPS)[ground] * 1000
             level, most, over = np.percentile(speed, 95), speed.max(), (speed > 2).mean()
             parts.append(f"{name} {level:.1f} {most:.1f} {over:.2%}")
         share = (here & steps).sum() / here.sum()
@@ -104,6 +113,25 @@ def glide(off: Watched, on: Watched, lifted: Array) -> None:
     print(f"    feet rise by {rise:.0f} mm at most, hips sink by {sink:.0f} and go {aside:.0f} aside")
 
 
+def marks(project: Project, plan: Plan, seconds: float) -> None:
+    """Print what the window marks: how much of the time feet are held, step and are in the air, and slide."""
+
+    def places(times: Array) -> Array:
+        assert project.skeleton is not None
+        parts = np.array_split(times, max(1, len(times) // 1000))
+        return np.concatenate([project.skeleton.globals(pose_at(plan, project, t))[1] for t in parts])
+
+    seen = FeetWatch(project, places, seconds, plan).at(range(int(seconds * RATE)))
+    shares = ", ".join(f"{state.name.lower()} {(seen.states == state).mean():.1%}" for state in FootState)
+    held = seen.states == FootState.HELD
+    fast = seen.slides[held] * 1000 if held.any() else np.zeros(1)
+    share = seen.sliding()[held].mean() if held.any() else 0.0
+    print(
+        f"  the window marks: {shares}; of what is held {share:.2%} "
+        f"slides faster than {SLIDES * 1000:g} mm/s, most {fast.max():.0f}"
+    )
+
+
 def costs(project: Project, plan: Plan, times: Array) -> None:
     """Print what a pose costs with and without: ratios of interleaved rounds."""
     ways = (gliding(project), project)
@@ -120,6 +148,7 @@ def costs(project: Project, plan: Plan, times: Array) -> None:
 
 
 def reported(project: Project, plan: Plan, minutes: float) -> None:
+    marks(project, plan, 60 * min(minutes, 5.0))
     costs(project, plan, np.arange(5.0, 35.0, 0.1))
     times = np.arange(0, 60 * minutes, 1 / FPS)
     slides(plan, project, times, Watched(plan, gliding(project), times), Watched(plan, project, times))

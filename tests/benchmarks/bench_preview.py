@@ -42,6 +42,27 @@ def crowd(skeleton: Skeleton, count: int, seconds: float) -> tuple[np.ndarray, n
     return skeleton.globals(Pose(rotations, translations))
 
 
+def views(figure: SkinnedFigure, rounds: int) -> None:
+    """Print what four views of one moment cost beside one as large as all of them, and four apart."""
+    skeleton, small = figure.skeleton, (480, 270)
+    one, first = Offscreen(960, 540), Offscreen(*small)
+    together = [first, *(Offscreen(*small, beside=first) for _ in range(3))]
+    apart = [Offscreen(*small) for _ in range(4)]
+    took: list[list[float]] = [[], [], []]
+    for i in range(rounds + 2):
+        scene = Scene((Actor(figure, *crowd(skeleton, 1, i / 30)),))
+        camera = Camera().frame(scene.bounds(), 16 / 9)
+        for k, some in enumerate(([one], together, apart)):
+            start = time.perf_counter()
+            for n, offscreen in enumerate(some):
+                offscreen.draw(scene, camera.orbit(0.5 * n, 0.0))
+            took[k].append(time.perf_counter() - start)
+    ms = [float(np.median(t[2:])) * 1e3 for t in took]
+    print(f"one view of 960x540 {ms[0]:.1f} ms, four of 480x270 {ms[1]:.1f}, four apart {ms[2]:.1f}")
+    for offscreen in (one, *reversed(together), *apart):
+        offscreen.release()
+
+
 def main() -> None:
     frames = int(sys.argv[1]) if len(sys.argv) > 1 else 40
     character = read_character(ROOT / "sample_clips" / "mannequin.glb")
@@ -80,6 +101,7 @@ def main() -> None:
                     f"({offscreen.description}, {len(character.triangles)} triangles, "
                     f"{len(character.positions)} vertices)"
                 )
+    views(SkinnedFigure(character), frames)
 
 
 if __name__ == "__main__":

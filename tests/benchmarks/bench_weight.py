@@ -21,11 +21,12 @@ import numpy as np
 from metagraph.formats.imports import gather, import_files
 from metagraph.formats.store import open_project
 from metagraph.graph import anatomy, edits
-from metagraph.graph.model import Action, Project
+from metagraph.graph.model import Project
 from metagraph.motion import rotation
+from metagraph.playback.foot_slides import SIDES, WINDOW, clip_speeds, feet_joints, slide_speeds
 from metagraph.playback.plan import Plan
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import cue_weight, loop_seconds, playable, pose_at
+from metagraph.playback.player import pose_at
 from metagraph.playback.weight import weight_of
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / "sample.metagraph.yaml"
@@ -40,10 +41,6 @@ SETS = (
 MOST = 40  # clips of a set
 FPS = 60.0
 STANDS = 0.01  # metres a second: a foot that its clip moves slower stands
-# Slides are told over a quarter of a second: from one frame to the next, clips that are stored in 16 bits
-# tremble by a tenth of a millimetre, which is 3 mm/s that lead nowhere and nobody sees.
-WINDOW = 0.25
-SIDES = ("left", "right")
 Array = Any
 
 
@@ -57,7 +54,7 @@ class Watched:
     def __init__(self, plan: Plan, project: Project, times: Array, alive: bool = True) -> None:
         roles, skeleton = anatomy.roles(project), project.skeleton
         assert skeleton is not None
-        self.feet = [roles[f"{s}_{p}"] for s in SIDES for p in ("foot", "toes") if f"{s}_{p}" in roles]
+        self.feet = [joint for side in feet_joints(project) for joint in side]
         legs = [[roles[f"{s}_{p}"] for p in ("upper_leg", "lower_leg", "foot")] for s in SIDES]
         parts = []
         for some in np.array_split(times, max(1, len(times) // 1000)):
@@ -100,49 +97,9 @@ def travel(plan: Plan, times: Array, on: Watched, off: Watched) -> None:
         print(f"  knees {word}: 99.9 % {level:.0f} degrees/s, most {speed.max():.0f}, {jerk:.0f} degrees/s2")
 
 
-def sources(plan: Plan, project: Project, times: Array) -> tuple[Array, Array]:
-    """Return what of the body's layer plays at each time `[N]`, and how fast its clips themselves move the
-    feet `[N, feet]` in the window that begins there, metres a second: the faster of two that blend.
-    """
-    layer, skeleton, roles = plan.layers["body"], project.skeleton, anatomy.roles(project)
-    assert skeleton is not None
-    feet = [roles[f"{s}_{p}"] for s in SIDES for p in ("foot", "toes") if f"{s}_{p}" in roles]
-    own, kind = np.zeros((len(times), len(feet))), np.full(len(times), "loops", object)
-
-    def speed(action: Action, seconds: Array) -> Array:
-        clip = playable(project, action)
-        if clip is None or not len(seconds):
-            return np.zeros((len(seconds), len(feet)))
-        ends = [
-            skeleton.globals(clip.pose_at(np.clip(s, 0, clip.duration)))[1][:, feet]
-            for s in (seconds, seconds + WINDOW / 2, seconds + WINDOW)
-        ]
-        return np.maximum(*(np.linalg.norm(end - ends[0], axis=-1) for end in ends[1:])) / WINDOW
-
-    current = np.maximum(layer.fade_starts.searchsorted(times, "right") - 1, 0)
-    for n in np.unique(current):
-        here, rest = np.flatnonzero(current == n), layer.rests[n]
-        seconds, _, old = loop_seconds(project, rest.action, times[here] - rest.start)
-        own[here] = speed(rest.action, seconds)
-        kind[here[old > 0]] = "loops' seams"
-        fading = here[times[here] < rest.fade_start + rest.fade] if n else here[:0]
-        if len(fading):
-            before = layer.rests[n - 1]
-            seconds, _, _ = loop_seconds(project, before.action, times[fading] - before.start)
-            own[fading] = np.maximum(own[fading], speed(before.action, seconds))
-            kind[fading] = "loop to loop"
-    for cue in layer.cues:
-        here = np.flatnonzero((times >= cue.start) & (times < cue.end))
-        weight = cue_weight(cue, times[here])
-        shown = speed(cue.action, np.asarray(cue.clip_seconds(times[here])))
-        own[here] = np.where((weight >= 1)[:, None], shown, np.maximum(own[here], shown))
-        kind[here] = np.where(weight >= 1, f"{cue.action.kind}s", f"{cue.action.kind}s' blends")
-    return kind, own
-
-
 def slides(plan: Plan, project: Project, times: Array, ways: dict[str, Watched]) -> None:
     """Print how fast feet slide that their clip has standing, by what plays."""
-    kind, own = sources(plan, project, times)
+    kind, own = clip_speeds(plan, project, times)
     window = round(WINDOW * FPS)
     stands = own[:-window] < STANDS
     print(
@@ -154,7 +111,7 @@ def slides(plan: Plan, project: Project, times: Array, ways: dict[str, Watched])
             continue
         line = [f"clips {np.mean(own[:-window][here]) * 1000:.1f}"]
         for name, of in ways.items():
-            speed = np.linalg.norm(of.at[window:] - of.at[:-window], axis=-1)[here] / WINDOW * 1000
+            speed = slide_speeds(of.at, FPS)[here] * 1000
             level, most, over = np.percentile(speed, 95), speed.max(), (speed > 2).mean()
             line.append(f"{name} 95 % {level:.1f}, most {most:.1f}, {over:.2%} over 2")
         print(f"    {word:22} {here.sum() / FPS / here.shape[1]:7.1f} s  " + "; ".join(line))

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from metagraph.errors import FileError
 from preview.video import write_video
-from preview.video_reading import read_pictures, read_video_sound, video_seconds
+from preview.video_reading import VideoPictures, read_pictures, read_video_sound, video_seconds
 
 
 def grey(count: int, size: tuple[int, int] = (64, 64)) -> list[np.ndarray]:
@@ -62,3 +63,29 @@ def test_what_is_no_video_is_told(tmp_path: Path) -> None:
         assert told.value.remedy
     with pytest.raises(FileError):
         video_seconds(tmp_path / "none.mp4")
+
+
+def test_a_video_is_asked_at_any_time_forwards_and_backwards(tmp_path: Path) -> None:
+    write_video(tmp_path / "long.mp4", [np.full((64, 64, 3), 5 * n, np.uint8) for n in range(50)], 10)
+    video = VideoPictures(tmp_path / "long.mp4")
+    try:
+        assert video.seconds == pytest.approx(5.0, abs=0.05) and video.size == (64, 64)
+        for at, shown in ((0.0, 0), (0.31, 3), (4.02, 40), (1.25, 12), (1.24, 12), (9.0, 49), (-3.0, 0)):
+            assert round(float(video.at(at).mean()) / 5) == shown, at
+        assert video.at(2.01) is video.at(2.05), "one picture is made once"
+    finally:
+        video.close()
+
+
+def test_a_large_video_comes_smaller_and_a_picture_is_a_video_that_stands(tmp_path: Path) -> None:
+    write_video(tmp_path / "wide.mp4", grey(3, (640, 160)), 10)
+    video = VideoPictures(tmp_path / "wide.mp4", (320, 320))
+    assert video.at(0.1).shape == (80, 320, 3)
+    video.close()
+    Image.fromarray(np.full((40, 60, 3), 200, np.uint8)).save(tmp_path / "still.png")
+    still = VideoPictures(tmp_path / "still.png")
+    assert still.at(0.0).shape == (40, 60, 3) and abs(float(still.at(100.0).mean()) - 200) < 4
+    still.close()
+    (tmp_path / "no.mp4").write_bytes(b"nothing")
+    with pytest.raises(FileError, match="no video that can be read"):
+        VideoPictures(tmp_path / "no.mp4")

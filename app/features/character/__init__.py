@@ -7,6 +7,8 @@ from pathlib import Path
 from PySide6.QtWidgets import QFileDialog
 
 from app.features.character.character_panel import PreviewPanel
+from app.features.character.mesh_menu import MeshButton
+from app.features.character.watch_commands import fill_watch, watch_commands
 from app.project.files import Files
 from app.shell.actions import Command
 from app.shell.context import Contribution, Panel, Shell
@@ -30,6 +32,8 @@ def contribute(shell: Shell) -> Contribution:
             lambda: shell.actions["character"].trigger(),
             lambda: shell.actions["character"].isEnabled(),
         )
+        panel.mesh_button = MeshButton(panel, show_meshes)
+        panel.watch_button.menu_of.aboutToShow.connect(lambda: fill_watch(shell, panel.watch_button.menu_of))
         panel.view.failed.connect(shell.tell)
         panel.view.painted.connect(lambda _: stage.painted.emit())
         shell.services[Workspaces].changed.connect(lambda: panel.set_bare(shell.services[Places].alone))
@@ -267,6 +271,7 @@ def contribute(shell: Shell) -> Contribution:
                 tip="Where they were and will be; a dot for each frame",
                 study=True,
             ),
+            *watch_commands(shell, preview),
             Command(
                 "copy_picture",
                 view,

@@ -9,8 +9,11 @@ from PySide6.QtCore import QElapsedTimer, QMargins, Qt, QTimer
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
-from app.features.character.looking import Looking
+from app.features.character.looking import Looking, mask_marks
 from app.features.character.no_mesh import NoMesh
+from app.features.character.over_view import Overlays
+from app.features.character.panes import Panes
+from app.features.character.reference import Reference, ReferenceBar, ReferencePicture
 from app.look import icons
 from app.look.names import plain
 from app.look.theme import theme
@@ -22,18 +25,17 @@ from app.stage.playhead import Playhead
 from app.stage.session import Session
 from app.stage.stools import stools
 from app.widgets.making import make_widget
+from app.widgets.more_button import MoreButton
 from app.widgets.one_stop import OneStop
 from app.widgets.quiet_fields import ComboBox, Scrub
 from app.widgets.sentence import OneLine
-from metagraph.graph import anatomy
 from metagraph.graph.model import LAYERS, Project
-from preview.camera import close_up, whole_figure
+from preview.camera import Camera, close_up, whole_figure
 from preview.figure import Figure, SkinnedFigure
-from preview.scene import THEMES, Actor, Scene
+from preview.scene import Actor, Scene
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
 BASE_TIP = "The pose all layers are added to. Right-click a clip in the library to take it from there."
-NOW = 0.03  # seconds from the present moment within which a ghost would only blur the figure
 FRAME = 16  # milliseconds between frames
 SOFT_FRAME = 33  # where the processor draws them, which has other things to do as well
 HINT = 4000  # milliseconds for which it is told how to come back
@@ -57,10 +59,10 @@ class PreviewPanel(QWidget):
         self.session, self.performance, self.playhead, self.figures = session, performance, playhead, figures
         self.bones = False
         self._framed: tuple[object, ...] = ()  # whom the camera was last framed on
+        self.composed = Scene()  # what was drawn last
         self._last: tuple[Figure, np.ndarray, np.ndarray] | None = None
         self.view = make_view(self._scene, self)
         self.view.frame_wanted.connect(self.frame_all)
-        self.view.setMinimumSize(240, 200)
         self.view.setToolTip(MOUSE)
         self.bare = False
         self._margins: list[QMargins] = []  # of what is hidden then
@@ -71,13 +73,25 @@ class PreviewPanel(QWidget):
         self._hint_goes = QTimer(self, singleShot=True, interval=HINT)
         self._hint_goes.timeout.connect(self.hint.hide)
         self.no_mesh = NoMesh(self.view, choose, may_choose)
+        self.mesh_button: QToolButton | None = None  # who makes the panel gives it
+        self.watch_button = MoreButton(
+            session.look, "What is shown", "What is shown, and how", self.view, "eye"
+        )
+        self.watch_button.setProperty("over", True)
+        self.overlays = Overlays(self)
         self.looking = Looking(self)
         self.frames = 0
         self.view.painted.connect(self._painted)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
-        layout.addWidget(self.view, 1)
+        self.panes = Panes(self)
+        layout.addWidget(self.panes, 1)
+        self.reference = Reference(self)
+        self.reference.changed.connect(self.view.update)
+        self.panes.put_beside(ReferencePicture(self.reference, self.panes))
+        self.reference_bar = ReferenceBar(self.reference, self)
+        layout.addWidget(self.reference_bar)
         self.scrub = Scrub(Qt.Orientation.Horizontal, self, toolTip="Scrub")
         self.scrub.setRange(0, 10000)
         self.scrub.setAccessibleName("Playhead")
@@ -94,8 +108,7 @@ class PreviewPanel(QWidget):
         layout.addLayout(self._lines)
         self._clock = QElapsedTimer()
         self._clock.start()
-        soft = isinstance(self.view, ImageView)
-        self._timer = QTimer(self, interval=max(FRAME, SOFT_FRAME if soft else 0))
+        self._timer = QTimer(self)
         self._timer.setTimerType(Qt.TimerType.PreciseTimer)
         self._timer.timeout.connect(self._tick)
         session.transport.moved.connect(lambda _: self.view.update())
@@ -103,14 +116,17 @@ class PreviewPanel(QWidget):
         session.transport.playing_changed.connect(self._run_or_rest)
         session.transport.show_changed.connect(self._show_state)
         session.selection.changed.connect(self.view.update)
-        session.look.changed.connect(self._restyle)
+        for looks in (session.look.changed, session.watch.changed):
+            looks.connect(self._restyle)
+        session.watch.changed.connect(self._run_or_rest)
         session.onion.changed.connect(self.view.update)
-        performance.changed.connect(self._changed)
+        performance.changed.connect(self.view.update)
         performance.document.changed.connect(self._edited)
         figures.changed.connect(self.view.update)
         self._restyle()
         self._show_state()
         self._run_or_rest()
+        self.overlays.begin()
 
     # --- building
 
@@ -183,7 +199,7 @@ class PreviewPanel(QWidget):
 
     def _restyle(self) -> None:
         look = theme(self.session.look.name)
-        self.view.theme = THEMES[look.name]
+        self.view.theme = self.session.watch.now.look(look.name)
         for button, name in (
             (self.start_button, "start"), (self.loop_button, "loop"), (self.frame_button, "frame"),
             (self.face_button, "face"), (self.bones_button, "bones"),
@@ -208,14 +224,17 @@ class PreviewPanel(QWidget):
             if one is shown:
                 self._last = (figure, rotations, positions)
             morphs = figure.morph_weights(one.morphs(seconds)) if figure.morphs else None
-            marks = self._marks() if one is shown else {}
+            marks = mask_marks(self.performance, self.session) if one is shown else {}
             actors.append(Actor(figure, rotations, positions, morphs, marks, self.bones))
             if one is shown:
-                actors += self._ghosts(figure, seconds)
-        scene = Scene((*actors, *(seat for one in shown.everyone for seat in stools(one))))
+                actors += self.overlays.made(figure, seconds)
+        seats = (seat for one in shown.everyone for seat in stools(one))
+        behind = self.reference.picture if self.reference.behind else None
+        scene = Scene((*actors, *seats), picture=behind)
         shape = round(self.view.width() / max(1, self.view.height()), 1)  # it is framed anew for another room
         solid = Scene(tuple(actor for actor in actors if actor.opacity >= 1))  # ghosts do not move the camera
         framed = (*(actor.figure for actor in solid.actors), *(one.stand for one in shown.everyone), shape)
+        self.composed = scene
         if actors and self._framed != framed and not self.view.moved_by_hand:
             self._framed = framed
             aside = ASIDE if shown.others else 0.0
@@ -224,38 +243,10 @@ class PreviewPanel(QWidget):
             )
         return scene
 
-    def _ghosts(self, figure: Figure, seconds: float) -> list[Actor]:
-        """Return the moments of an action that are to be seen through, but for those that are now."""
-        skin, shown = self.session.onion.skin, self.performance.shown
-        if skin is None or shown.skeleton is None or shown.others:
-            return []
-        out = []
-        for moment, opacity in skin.moments:
-            at = shown.seconds_of(skin.action, moment)
-            if at is None or abs(at - seconds) < NOW:
-                continue
-            pose = shown.pose(at)
-            if pose is not None:
-                rotations, positions = shown.skeleton.globals(pose)
-                out.append(Actor(figure, rotations, positions, opacity=opacity))
-        return out
-
-    def _marks(self) -> dict[int, tuple[float, float, float]]:
-        """Point out the joints of the selected action's mask."""
-        project = self.performance.document.project
-        actions = self.session.selection.selected_actions()
-        if len(actions) != 1 or not actions[0].joints or project.skeleton is None:
-            return {}
-        moved = anatomy.mask(project, actions[0])
-        color = theme(self.session.look.name).fill(actions[0].kind)
-        return (
-            {}
-            if moved is None
-            else {int(j): (color.redF(), color.greenF(), color.blueF()) for j in np.flatnonzero(moved)}
-        )
-
     def _run_or_rest(self) -> None:
         """Count the time while it plays; what is paused costs nothing."""
+        frame = SOFT_FRAME if isinstance(self.view, ImageView) else FRAME
+        self._timer.setInterval(round(frame * self.panes.slower))
         if not self.session.transport.playing:
             self._timer.stop()
         elif not self._timer.isActive():
@@ -275,6 +266,7 @@ class PreviewPanel(QWidget):
         if not self.scrub.isSliderDown():
             self.scrub.setValue(round(10000 * min(1.0, seconds / length)))
         self.caption.say(self._words())
+        self.watch_button.move(self.view.width() - self.watch_button.width() - 8, 8)
         self._tell_mesh()
 
     def _tell_mesh(self) -> None:
@@ -302,6 +294,7 @@ class PreviewPanel(QWidget):
         """Draw no more by itself; at closing."""
         self._timer.stop()
         self.looking.set_turning(False)
+        self.reference.stop()
 
     # --- commands
 
@@ -321,6 +314,9 @@ class PreviewPanel(QWidget):
                 part = item.widget() if item is not None else None
                 if part is not None:
                     part.setVisible(not on)
+        self.overlays.set_bare()
+        self.reference.changed.emit()
+        self.watch_button.setVisible(not on)
         self.hint.setVisible(on)
         if on:
             self.hint.adjustSize()
@@ -335,22 +331,25 @@ class PreviewPanel(QWidget):
         return self._last
 
     def frame_all(self) -> None:
+        self.panes.frame()
         self.view.moved_by_hand = False
         self.view.camera = self.view.camera.deepened()
         self._framed = ()
         self.view.update()
 
     def frame_face(self) -> None:
+        view = self.panes.active
+        camera = self.face_camera(view.width() / max(1, view.height()))
+        if camera is not None:
+            view.camera, view.moved_by_hand = camera, True
+            view.update()
+
+    def face_camera(self, aspect: float) -> Camera | None:
+        """Return what looks at the face, None while nobody is drawn."""
         if self._last is None:
-            return
+            return None
         figure, rotations, positions = self._last
-        stand = self.performance.shown.stand
-        head, heading = figure.head(rotations, positions), stand.turn if stand is not None else 0.0
-        self.view.camera = close_up(
-            head, figure.height, self.view.width() / max(1, self.view.height()), heading
-        )
-        self.view.moved_by_hand = True
-        self.view.update()
+        return close_up(figure.head(rotations, positions), figure.height, aspect, self.looking.heading)
 
     def _scrubbed(self, value: int) -> None:
         self.session.transport.set_playing(False)
@@ -377,9 +376,6 @@ class PreviewPanel(QWidget):
         look = theme(self.session.look.name)
         self.play_button.setIcon(icons.icon("pause" if self.session.transport.playing else "play", look.text))
         self._clock.restart()
-
-    def _changed(self) -> None:
-        self.view.update()
 
     def _edited(self, before: Project, after: Project) -> None:
         base, entry = after.base, after.clips.get(after.base.clip or "")

@@ -12,11 +12,15 @@ from PySide6.QtCore import QObject, QTimer
 from PySide6.QtGui import QGuiApplication
 
 from app.features.character.trails import Trails
+from app.look.theme import theme
+from app.stage.performance import Performance
+from app.stage.session import Session
 from metagraph.graph import anatomy
 from preview.camera import Camera
 
 if TYPE_CHECKING:
     from app.features.character.character_panel import PreviewPanel
+    from app.stage.gl_view import GLView, ImageView
 
 SIDES: dict[str, tuple[float, float]] = {  # yaw and pitch, degrees
     "front": (0.0, 5.0), "back": (180.0, 5.0), "left": (90.0, 5.0), "right": (-90.0, 5.0),
@@ -39,40 +43,49 @@ class Looking(QObject):
         self._turntable = QTimer(self, interval=TURN)
         self._turntable.timeout.connect(self._turn)
 
+    @property
+    def _view(self) -> GLView | ImageView:
+        """The view that was touched last, of several."""
+        return self.panel.panes.active
+
     def _aim(self, camera: Camera) -> None:
-        self.panel.view.camera = camera
-        self.panel.view.moved_by_hand = True
-        self.panel.view.update()
+        view = self._view
+        view.camera = camera
+        view.moved_by_hand = True
+        view.update()
 
     @property
-    def _heading(self) -> float:
+    def heading(self) -> float:
         stand = self.panel.performance.shown.stand
         return stand.turn if stand is not None else 0.0
 
     def see_from(self, side: str) -> None:
         """Look from one of SIDES, as near as before."""
         yaw, pitch = (math.radians(x) for x in SIDES[side])
-        self._aim(self.panel.view.camera.facing(yaw + self._heading, pitch))
+        self._aim(self._view.camera.facing(yaw + self.heading, pitch))
 
     def see_hands(self) -> None:
         """Go near both hands, or to the one there is; nothing happens where no hand is known."""
+        room, view = self.hands(), self._view
+        if room is not None:
+            self._aim(view.camera.frame(room, view.width() / max(1, view.height())))
+
+    def hands(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Return the lowest and highest corner of a box round the hands; None where no hand is known."""
         last, project = self.panel.drawn, self.panel.performance.shown.project
         if last is None or project.skeleton is None or len(last[2]) != len(project.skeleton):
-            return
+            return None
         roles = anatomy.roles(project)
         hands = [last[2][roles[role]] for role in ("left_hand", "right_hand") if role in roles]
-        if hands:
-            low, high = np.min(hands, axis=0) - HANDS, np.max(hands, axis=0) + HANDS
-            view = self.panel.view
-            self._aim(view.camera.frame((low, high), view.width() / max(1, view.height())))
+        return (np.min(hands, axis=0) - HANDS, np.max(hands, axis=0) + HANDS) if hands else None
 
     @property
     def flat(self) -> bool:
         """Whether things far away are as large as near ones."""
-        return self.panel.view.camera.flat
+        return self._view.camera.flat
 
     def set_flat(self, on: bool) -> None:
-        view = self.panel.view
+        view = self._view
         moved = view.moved_by_hand
         self._aim(view.camera.flattened() if on else view.camera.deepened())
         view.moved_by_hand = moved
@@ -90,7 +103,7 @@ class Looking(QObject):
 
     def _turn(self) -> None:
         if self.panel.isVisible():
-            self._aim(self.panel.view.camera.orbit(2.0 * TURN / 1000 / ROUND, 0.0))
+            self._aim(self._view.camera.orbit(2.0 * TURN / 1000 / ROUND, 0.0))
 
     @property
     def trailing(self) -> bool:
@@ -103,3 +116,15 @@ class Looking(QObject):
     def copy(self) -> None:
         """Put the picture on the clipboard."""
         QGuiApplication.clipboard().setPixmap(self.panel.view.grab())
+
+
+def mask_marks(performance: Performance, session: Session) -> dict[int, tuple[float, float, float]]:
+    """Point out the joints of the selected action's mask, each in its kind's colour."""
+    project = performance.document.project
+    actions = session.selection.selected_actions()
+    if len(actions) != 1 or not actions[0].joints or project.skeleton is None:
+        return {}
+    moved = anatomy.mask(project, actions[0])
+    color = theme(session.look.name).fill(actions[0].kind)
+    rgb = color.redF(), color.greenF(), color.blueF()
+    return {} if moved is None else {int(j): rgb for j in np.flatnonzero(moved)}

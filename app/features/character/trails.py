@@ -11,6 +11,7 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
+from app.features.character.over_view import lie_over
 from app.look.theme import theme
 from metagraph.graph import anatomy
 
@@ -51,8 +52,7 @@ class Trails(QWidget):
 
     def _follow(self, *_: object) -> None:
         if self.isVisible():
-            self.setGeometry(self.panel.view.rect())
-            self.update()
+            lie_over(self, self.panel.view)
 
     def places(self) -> tuple[np.ndarray, np.ndarray, list[str]]:
         """Return times `[N]`, places `[N, R, 3]` and the roles: of those that the character has."""

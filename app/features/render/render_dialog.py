@@ -28,6 +28,7 @@ from app.stage.session import Session
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.graph import requests
 from metagraph.graph.conversation import Conversation
+from preview.looks import BACKDROPS, LIGHTS, words_of
 
 SIZES = ((640, 360), (960, 540), (1280, 720), (1920, 1080))
 
@@ -79,6 +80,16 @@ class RenderDialog(QDialog):
             self.fps.addItem(f"{fps:g} a second", fps)
         self.fps.setCurrentIndex(2)
         form.addRow("Pictures", self.fps)
+        self.light, self.background = ComboBox(self), ComboBox(self)
+        for box, choices, now in (
+            (self.light, LIGHTS, session.watch.now.light),
+            (self.background, BACKDROPS, session.watch.now.background),
+        ):
+            for name in choices:
+                box.addItem(words_of(name), name)
+            box.setCurrentIndex(box.findData(now))
+        form.addRow("Light", self.light)
+        form.addRow("Background", self.background)
         self.form = form
         self.words = QLabel(self, wordWrap=True)
         self.words.setProperty("dim", True)
@@ -104,7 +115,8 @@ class RenderDialog(QDialog):
         suffix = self.kind.currentData()
         self.file.setText(str(Path(self.file.text()).with_suffix(suffix)))
         drawn = suffix in (".mp4", ".png")
-        self.form.setRowVisible(self.size_box, drawn)
+        for row in (self.size_box, self.light, self.background):
+            self.form.setRowVisible(row, drawn)
         self.form.setRowVisible(self.fps, suffix != ".png")
         self.words.setText({
             ".mp4": "H.264, with the sound of what is said.",
@@ -131,6 +143,8 @@ class RenderDialog(QDialog):
             self.fps.currentData(),
             self.session.look.name,
             self.performance.conversation,
+            self.light.currentData(),
+            self.background.currentData(),
         )
         QSettings().setValue("render/size", self.size_box.currentIndex())
         project, folder = document.project, document.folder or Path()

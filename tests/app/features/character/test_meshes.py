@@ -79,3 +79,26 @@ def test_a_mesh_is_hidden_by_a_click_saved_and_shown_again_by_undo(drive, scene)
     drive.actions["undo"].trigger()
     assert drive.document.project.hidden and item.checkState() == Qt.CheckState.Unchecked
     dialog.reject()
+
+
+def test_a_button_in_the_view_hides_and_shows_each_mesh_and_stays_open(drive, scene, monkeypatch):
+    drive.importing.import_paths([str(scene / "whole.glb")])
+    drive.wait(lambda: isinstance(shown(drive), SkinnedFigure))
+    panel = drive.preview
+    button = panel.mesh_button
+    drive.wait(lambda: panel.drawn is not None)
+    assert not button.isVisible(), "of one mesh there is nothing to choose"
+    monkeypatch.setattr(button, "_meshes", lambda: ("Body", "Sword"))
+    panel.view.painted.emit(0.0)
+    assert button.isVisible() and panel.view.rect().contains(button.geometry())
+    assert not button.geometry().intersects(panel.watch_button.geometry())
+    menu = button.menu_of
+    menu.popup(button.mapToGlobal(QPoint(0, button.height())))
+    sword = next(a for a in menu.actions() if a.text() == "Sword")
+    QTest.mouseClick(menu, Qt.MouseButton.LeftButton, pos=menu.actionGeometry(sword).center())
+    assert drive.document.project.hidden == ("Sword",) and menu.isVisible() and not sword.isChecked()
+    assert drive.document.undo_stack.undoText() == "Hide 'Sword'"
+    menu.setActiveAction(sword)
+    QTest.keyClick(menu, Qt.Key.Key_Space)
+    assert not drive.document.project.hidden and menu.isVisible()
+    menu.close()

@@ -1,0 +1,140 @@
+"""Lights and backgrounds to look at a character in: presets that change a theme. The light called "studio"
+and the background called "stage" leave it as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from preview.scene import THEMES, Color, Theme
+
+
+@dataclass(frozen=True)
+class Light:
+    """words: its name. toward: where the lamp is, of any length; above the ground. key, above, below, rim:
+    its colours and those of what comes from above, from below and round the edges, linear. dark: how much of
+    the theme's shadow on the ground there is, 0..1.
+    """
+
+    words: str
+    toward: Color
+    key: Color
+    above: Color
+    below: Color
+    rim: Color
+    dark: float = 1.0
+
+
+@dataclass(frozen=True)
+class Backdrop:
+    """words: its name. top, bottom: of the gradient, outside and behind the figure, sRGB. floor: the ground
+    near by. line: of its grid, None for no grid. shadow:
+    whether the ground has any.
+    """
+
+    words: str
+    top: Color
+    bottom: Color
+    floor: Color
+    line: Color | None = None
+    shadow: bool = True
+
+
+def _plain(words: str, color: Color, shadow: bool = True) -> Backdrop:
+    return Backdrop(words, color, color, color, None, shadow)
+
+
+STUDIO, STAGE = "studio", "stage"
+LIGHTS: Mapping[str, Light | None] = {
+    STUDIO: None,
+    "day": Light(
+        "Day",
+        toward=(-0.30, 0.90, 0.42),
+        key=(1.62, 1.52, 1.34),
+        above=(0.44, 0.54, 0.70),
+        below=(0.26, 0.24, 0.20),
+        rim=(0.20, 0.24, 0.30),
+        dark=1.0,
+    ),
+    "evening": Light(
+        "Evening, from the side",
+        toward=(-0.86, 0.42, 0.30),
+        key=(1.62, 1.02, 0.62),
+        above=(0.22, 0.25, 0.38),
+        below=(0.14, 0.11, 0.10),
+        rim=(0.95, 0.66, 0.46),
+        dark=0.9,
+    ),
+    "rim": Light(
+        "Rim, from behind",
+        toward=(0.55, 0.75, -0.62),
+        key=(1.20, 1.22, 1.28),
+        above=(0.42, 0.45, 0.52),
+        below=(0.22, 0.22, 0.23),
+        rim=(1.30, 1.34, 1.42),
+        dark=1.0,
+    ),
+    "flat": Light(
+        "Flat",
+        toward=(-0.10, 0.95, 0.35),
+        key=(0.30, 0.30, 0.30),
+        above=(0.92, 0.92, 0.92),
+        below=(0.80, 0.80, 0.80),
+        rim=(0.0, 0.0, 0.0),
+        dark=0.35,
+    ),
+}
+BACKDROPS: Mapping[str, Backdrop | None] = {
+    STAGE: None,
+    "sky": Backdrop(
+        "Sky", (0.48, 0.62, 0.78), (0.80, 0.87, 0.92), (0.66, 0.68, 0.68), line=(0.50, 0.52, 0.53)
+    ),
+    "dusk": Backdrop(
+        "Dusk", (0.15, 0.13, 0.22), (0.47, 0.30, 0.30), (0.20, 0.17, 0.20), line=(0.44, 0.36, 0.38)
+    ),
+    "warm": Backdrop(
+        "Warm paper", (0.80, 0.76, 0.70), (0.93, 0.90, 0.85), (0.86, 0.83, 0.78), line=(0.66, 0.62, 0.57)
+    ),
+    "neutral": _plain("Neutral grey, for recording", (0.46, 0.46, 0.46)),
+    "white": _plain("White", (1.0, 1.0, 1.0)),
+    "black": _plain("Black", (0.0, 0.0, 0.0)),
+    "green": _plain("Green, to be cut out", (0.0, 0.69, 0.25), False),
+}
+NAMES_OF_KEPT = {STUDIO: "Studio", STAGE: "Stage, as the window"}
+
+
+def words_of(name: str) -> str:
+    """Return what a light or a background is called."""
+    found = LIGHTS.get(name) or BACKDROPS.get(name)
+    return found.words if found is not None else NAMES_OF_KEPT[name]
+
+
+def look_of(theme: str, light: str = STUDIO, backdrop: str = STAGE) -> Theme:
+    """Return a theme in a light before a background; those that are not known are left out."""
+    out, lamp, back = THEMES[theme], LIGHTS.get(light), BACKDROPS.get(backdrop)
+    if lamp is not None:
+        shadow = tuple(1.0 - lamp.dark * (1.0 - x) for x in out.shadow)
+        out = replace(
+            out,
+            toward=lamp.toward,
+            key=lamp.key,
+            above=lamp.above,
+            below=lamp.below,
+            rim=lamp.rim,
+            shadow=(shadow[0], shadow[1], shadow[2]),
+        )
+    if back is not None:
+        strength = out.line_strength if back.line is not None else 0.0
+        bright = sum(back.floor) > 1.5
+        out = replace(
+            out,
+            top=back.top,
+            bottom=back.bottom,
+            floor=back.floor,
+            line=back.line or back.floor,
+            line_strength=strength,
+            shadow=out.shadow if back.shadow else (1.0, 1.0, 1.0),
+            ink=THEMES["light" if bright else "dark"].ink,
+        )
+    return out
