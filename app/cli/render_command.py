@@ -30,6 +30,9 @@ def arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--progress", action="store_true", help="tell after each picture of a video how many there are"
     )
+    parser.add_argument(
+        "--start", type=float, default=0.0, help="second of the performance to begin at (default: 0)"
+    )
     parser.add_argument("--clip", help="draw this clip of the project alone")
     parser.add_argument(
         "--conversation", metavar="NAME", help="draw all who talk in this conversation, with their sound"
@@ -138,6 +141,8 @@ def run(options: Namespace) -> int:
         raise ValueError("a video has 1 to 240 pictures a second")
     if not 2 <= options.frames <= 1000:
         raise ValueError("a contact sheet has 2 to 1000 pictures")
+    if not 0 <= options.start <= 36000:
+        raise ValueError("a performance is written from 0 to 36000 seconds on")
     if options.out.suffix not in (".png", ".mp4", *MOTION):
         name = options.out.suffix or options.out.name
         raise ValueError(
@@ -149,21 +154,22 @@ def run(options: Namespace) -> int:
         clip = next((e.id for e in project.clips.values() if options.clip in (e.name, e.id)), None)
         if clip is None or project.clips[clip].motion is None:
             raise ValueError(f"there is no clip '{options.clip}' in the project")
-        options.seconds = project.clips[clip].duration
+        options.start, options.seconds = 0.0, project.clips[clip].duration
     if options.conversation is not None:
         shown = _talking(project, options, folder)
     else:
         shown = (
             alone(project, clip)
             if clip is not None
-            else Shown(project, staged(project, options), options.seconds)
+            else Shown(project, staged(project, options), options.start + options.seconds)
         )
     if options.out.suffix in MOTION:
         for one, out in zip(shown.everyone, _outs(options.out, shown), strict=True):
-            bake_to(out, one, options.seconds, options.fps, one.folder or folder)
+            bake_to(out, one, options.seconds, options.fps, one.folder or folder, options.start)
     else:
         seen = [(figure_of(one.project, one.folder or folder), one) for one in shown.everyone]
-        sound = sound_of(shown, folder, options.seconds) if options.out.suffix == ".mp4" else None
+        heard = options.out.suffix == ".mp4"
+        sound = sound_of(shown, folder, options.seconds, options.start) if heard else None
         draw_to(
             options.out,
             seen,
@@ -174,6 +180,7 @@ def run(options: Namespace) -> int:
             options.theme,
             sound,
             options.progress,
+            options.start,
         )
     say(options, f"{options.out}", {"written": str(options.out)})
     return 0
@@ -192,7 +199,8 @@ def _talking(project: Project, options: Namespace, folder: Path) -> Shown:
     shown = ConversationPlans().show(project, found, folder)
     for note in shown.notes:
         print(f"note: {note}", file=sys.stderr)
-    options.seconds = shown.length if options.seconds is None else options.seconds
+    if options.seconds is None:
+        options.seconds = max(0.1, shown.length - options.start)
     return shown
 
 
@@ -236,13 +244,14 @@ def draw_to(
     look: str,
     sound: tuple[np.ndarray, int] | None = None,
     progress: bool = False,
+    start: float = 0.0,
 ) -> None:
-    """Write a contact sheet (.png) or a video (.mp4), with its sound."""
+    """Write a contact sheet (.png) or a video (.mp4), with its sound, from a second on."""
     out.parent.mkdir(parents=True, exist_ok=True)
     if out.suffix == ".mp4":
         from preview.video import write_video
 
-        times = np.arange(max(1, round(seconds * fps))) / fps
+        times = start + np.arange(max(1, round(seconds * fps))) / fps
 
         def told(count: int) -> None:
             if progress:
@@ -253,7 +262,7 @@ def draw_to(
     elif out.suffix == ".png":
         from preview.sheet import contact_sheet, write_png
 
-        times = np.linspace(0, seconds, max(2, frames))
+        times = start + np.linspace(0, seconds, max(2, frames))
         small = (max(16, size[0] * 2 * min(len(seen), 2) // 9), max(16, size[1] * 5 // 9))
         images = list(pictures(seen, times, small, look))
         labels = [
@@ -265,7 +274,7 @@ def draw_to(
         raise ValueError(f"pictures are written as .png, videos as .mp4, not '{out.suffix}'")
 
 
-def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path) -> None:
+def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path, start: float = 0.0) -> None:
     """Write a performance, or a clip, as plain motion: what an engine or an animation program plays without a
     planner.
 
@@ -278,7 +287,7 @@ def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path) -
     project = shown.project
     whole = shown.clip or shown.motion
     if whole is None or (shown.clip is None and project.clips[whole].made_by):
-        motion: Clip | None = bake(shown.plan, project, seconds, fps, shown.pose)
+        motion: Clip | None = bake(shown.plan, project, seconds, fps, shown.pose, start)
     else:
         motion = project.clips[whole].motion
     assert motion is not None

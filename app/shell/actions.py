@@ -23,7 +23,7 @@ MENUS: dict[str, tuple[str, ...]] = {
     "&Edit": ("history", "selection", "properties", "find"),
     "&Graph": ("author", "label", "layers", "stances", "skeleton"),
     "&Motion": ("make",),
-    "&Play": ("transport", "live", "show"),
+    "&Play": ("transport", "range", "markers", "timeline", "live", "show"),
     "&Conversation": ("read", "settings", "stage", "write", "remove"),
     "&View": ("workspaces", "workspace", "character", "sides", "graph", "look"),
     "&Study": (),

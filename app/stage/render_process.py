@@ -27,7 +27,7 @@ SUFFIXES = {
 @dataclass(frozen=True)
 class RenderOrder:
     """What to write. performance: id of a kept one, None to improvise. conversation: id of one, then of both.
-    size: width and height in pixels.
+    size: width and height in pixels. start: second it begins at.
     """
 
     out: Path
@@ -37,6 +37,7 @@ class RenderOrder:
     fps: float = 30.0
     theme: str = "dark"
     conversation: str | None = None
+    start: float = 0.0
 
 
 def write(project: Project, folder: Path, wanted: RenderOrder, job: Job) -> Path:
@@ -63,6 +64,8 @@ def write(project: Project, folder: Path, wanted: RenderOrder, job: Job) -> Path
             "--theme",
             wanted.theme,
             "--progress",
+            "--start",
+            f"{wanted.start:.6f}",
         ]
         if wanted.performance is not None:
             words += ["--performance", wanted.performance]

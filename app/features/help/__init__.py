@@ -15,6 +15,15 @@ from app.shell.context import Contribution, Shell
 from app.shell.places import Places
 from metagraph.graph.model import KINDS
 
+TIMELINE = (  # and what the timeline does
+    ("Add a marker", "M"),
+    ("Move requests", "arrows, with Shift by a second"),
+    ("Take requests back and close up", "Shift+Del"),
+    ("Copy requests a second later", "Ctrl+D"),
+    ("Ask for something", "Insert"),
+    ("Zoom in and out", "+, −"),
+    ("Drag without snapping", "Shift"),
+)
 LANES = (  # what the lanes take for themselves
     ("Label as clause, response, hesitation", "1, 2, 3"),
     ("Split a segment", "S"),
@@ -39,6 +48,7 @@ def contribute(shell: Shell) -> Contribution:
             )
         if keyed:
             yield from (Entry("In a conversation", words, keys) for words, keys in LANES)
+            yield from (Entry("On the timeline", words, keys) for words, keys in TIMELINE)
             return
         places = shell.services[Places]
         for ident, dock in places.docks.items():

@@ -68,6 +68,14 @@ class RenderDialog(QDialog):
         form.addRow("File", row)
         self.seconds = DoubleSpinBox(self, minimum=0.1, maximum=3600, decimals=1, suffix=" s")
         self.seconds.setValue(kept.length if kept is not None else min(30.0, performance.length))
+        self.part = ComboBox(self, toolTip="All of it, or what is between in and out on the timeline")
+        self.part.addItem("All, from the beginning", None)
+        self.range = performance.timeline.range
+        if self.range is not None:
+            self.part.addItem(f"The range, {self.range[0]:.2f} to {self.range[1]:.2f} s", self.range)
+            self.part.setCurrentIndex(1)
+        self.part.activated.connect(lambda _: self._suffixed())
+        form.addRow("What", self.part)
         form.addRow("Length", self.seconds)
         self.size_box = ComboBox(self)
         for width, height in SIZES:
@@ -104,6 +112,8 @@ class RenderDialog(QDialog):
         suffix = self.kind.currentData()
         self.file.setText(str(Path(self.file.text()).with_suffix(suffix)))
         drawn = suffix in (".mp4", ".png")
+        self.form.setRowVisible(self.part, self.range is not None)
+        self.form.setRowVisible(self.seconds, self.part.currentData() is None)
         self.form.setRowVisible(self.size_box, drawn)
         self.form.setRowVisible(self.fps, suffix != ".png")
         self.words.setText({
@@ -123,14 +133,16 @@ class RenderDialog(QDialog):
 
     def _write(self) -> None:
         document = self.performance.document
+        start, end = self.part.currentData() or (0.0, self.seconds.value())
         wanted = RenderOrder(
             Path(self.file.text()),
             self.session.onstage.performance,
-            self.seconds.value(),
+            end - start,
             self.size_box.currentData(),
             self.fps.currentData(),
             self.session.look.name,
             self.performance.conversation,
+            start,
         )
         QSettings().setValue("render/size", self.size_box.currentIndex())
         project, folder = document.project, document.folder or Path()

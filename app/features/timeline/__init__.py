@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtWidgets import QWidget
 
+from app.features.timeline.timeline_commands import commands
 from app.shell.actions import Command
 from app.shell.context import Contribution, Panel, Shell
 from app.shell.verbs import Verbs
@@ -28,6 +29,15 @@ def contribute(shell: Shell) -> Contribution:
         lambda: performance.requests.withdraw(*session.onstage.requests),
         rank=1,
     )
+    noted = performance.timeline
+    shell.services[Verbs].offer(
+        "remove",
+        lambda: session.onstage.mode == "meta" and noted.selected is not None,
+        lambda: noted.remove_marker(str(noted.marker)),
+        rank=1,
+    )
+    # Whether there is something to remove is asked when something else is selected.
+    noted.changed.connect(lambda: shell.actions["delete"].setEnabled(shell.services[Verbs].can("remove")))
     return Contribution(
         panels=(
             Panel(
@@ -41,6 +51,7 @@ def contribute(shell: Shell) -> Contribution:
             ),
         ),
         commands=(
+            *commands(shell),
             Command(
                 "live",
                 "&Play",

@@ -19,21 +19,37 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QApplication, QMenu, QToolTip, QWidget
 
-from app.features.timeline.lane_titles import LaneTitles
+from app.features.timeline.lane_keys import FAR, ZOOM, LaneKeys
+from app.features.timeline.lane_titles import LOCK, BorderDrag, LaneTitles, kept_heights, padlock
 from app.features.timeline.request_drag import RequestDrag
+from app.features.timeline.ruler import Ruler
+from app.features.timeline.snapping import Magnet, SnapLine, snap_lines
 from app.look.names import told_names
 from app.look.theme import theme
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.widgets.gesture import Hand
-from app.widgets.lane_geometry import LEFT, RULER, Mark, Scale, cue_at, lane_at, mark_at, marks, told
+from app.widgets.lane_geometry import (
+    LEFT,
+    NAMES,
+    NUMBERS,
+    RULER,
+    Mark,
+    Scale,
+    Sizes,
+    cue_at,
+    lane_at,
+    lanes,
+    mark_at,
+    marks,
+    told,
+)
 from app.widgets.lane_paint import LaneScene, badge, cue_words, paint, playhead
 from app.widgets.memo import Once
 from app.widgets.request_menu import request_menu
 
-NUDGE, FAR = 0.1, 1.0  # seconds an arrow key moves what is selected, and with Shift
 CATCH = 3  # pixels the mouse must move for a press to become a drag
-ZOOM = 1.2
+NEAREST, FARTHEST = 400.0, 0.25  # pixels a second
 COPIES = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier
 TEXT = (
     "Requests, and what plays. Up and Down choose a request, Left and Right move it, Enter changes it, "
@@ -55,16 +71,19 @@ class Lanes(QWidget):
         self.first = 0.0
         self.follow = True
         self.hand = Hand()
-        self.titles = LaneTitles(self, performance)
+        self.sizes = Sizes(tall=kept_heights())
+        self.titles, self.ruler = LaneTitles(self, performance), Ruler(self)
+        self.keys, self.magnet = LaneKeys(self), Magnet()
         self._marks: Once[list[Mark]] = Once()
         self._still: Once[QPixmap] = Once()  # all but what moves while it plays
         self.painted = 0  # how often that was made
-        self.setMinimumHeight(RULER + 4 * 40)
+        self.setMinimumHeight(RULER + 4 * 38)
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName("Timeline")
         self.setAccessibleDescription(TEXT)
         performance.changed.connect(self.update)
+        performance.timeline.changed.connect(self.update)
         session.transport.moved.connect(self._playhead)
         for signal in (session.look.changed, session.selection.changed, session.onstage.performance_changed):
             signal.connect(self.update)
@@ -81,14 +100,14 @@ class Lanes(QWidget):
 
         def make() -> list[Mark]:
             shift = dict.fromkeys(drag.idents, drag.by) if drag is not None else None
-            found = marks(asks, answers, project, scale, self.height(), self.font(), shift)
+            found = marks(asks, answers, project, scale, self.height(), self.font(), shift, self.sizes)
             if drag is None or not drag.copy:
                 return found
             # What is copied stays where it is, under its copies.
-            still = marks(asks, answers, project, scale, self.height(), self.font())
+            still = marks(asks, answers, project, scale, self.height(), self.font(), None, self.sizes)
             return still + [m for m in found if m.ask.id in drag.idents]
 
-        values = (scale, self.height(), self.font().toString(), drag and (drag.by, drag.copy))
+        values = (scale, self.height(), self.font().toString(), self.sizes, drag and (drag.by, drag.copy))
         return self._marks.of(values, (asks, answers, project), make)
 
     def _playhead(self, seconds: float) -> None:
@@ -114,6 +133,8 @@ class Lanes(QWidget):
     def paintEvent(self, event: QPaintEvent) -> None:
         t, painter = theme(self.session.look.name), QPainter(self)
         painter.drawPixmap(0, 0, self._picture())
+        painter.setFont(self.font())
+        self.ruler.paint(painter, t, self.width(), self.height())
         playhead(painter, t, self.scale().x(self.session.transport.seconds), self.height())
         drag = self.drag
         if drag is not None:
@@ -122,7 +143,10 @@ class Lanes(QWidget):
                 font = QFont(self.font())
                 font.setFeature(QFont.Tag("tnum"), 1)
                 painter.setFont(font)
+                line = self.magnet.line
                 words = f"{max(0.0, held.at):.2f} s  ({drag.by:+.2f}){'  copy' if drag.copy else ''}"
+                if line is not None and not line.weak:
+                    words += f"  at {line.what}"
                 badge(painter, t, QPointF(held.rect.left(), 0), words, self.width())
         if self.hasFocus() and self._by_keys:
             painter.setPen(QPen(QColor(t.dim), 1))
@@ -138,7 +162,7 @@ class Lanes(QWidget):
         """
         s, p, ratio = self.session, self.performance, self.devicePixelRatioF()
         ends = p.shown.length if p.ends else None
-        found = self.marks()
+        found, locked = self.marks(), p.timeline.now.locked
         font = self.font()
 
         def make() -> QPixmap:
@@ -156,8 +180,14 @@ class Lanes(QWidget):
                 ends,
                 set(s.selection.actions),
                 set(s.onstage.requests),
+                self.sizes,
+                locked,
             )
             paint(painter, theme(s.look.name), scene)
+            for name, lane in lanes(self.height(), self.sizes).items():
+                if name in NAMES:
+                    at = QPointF(LEFT - LOCK / 2 - 2, lane.center().y())
+                    padlock(painter, theme(s.look.name), at, name in locked)
             painter.end()
             self.painted += 1
             return picture
@@ -172,6 +202,8 @@ class Lanes(QWidget):
             s.selection.actions,
             s.onstage.requests,
             font.toString(),
+            self.sizes,
+            locked,
         )
         return self._still.of(values, (p.shown, found), make)
 
@@ -191,16 +223,19 @@ class Lanes(QWidget):
         if event.button() != Qt.MouseButton.LeftButton:
             return
         if event.position().x() < LEFT:
-            layer = self.titles.at(event.position())
-            if layer is not None:
-                self.titles.click(layer, bool(event.modifiers() & Qt.KeyboardModifier.AltModifier))
+            self.titles.press(event.position(), bool(event.modifiers() & Qt.KeyboardModifier.AltModifier))
+            return
+        self._hold_off(event.modifiers())
+        if event.position().y() >= NUMBERS and self.ruler.press(event.position()):
+            self.update()
             return
         mark = mark_at(self.marks(), event.position())
         if mark is not None:
             self._press(mark, event)
             return
         self.session.onstage.select_requests(())
-        found = cue_at(self.performance.shown, self.scale(), self.height(), event.position())
+        self.performance.timeline.select(None)
+        found = cue_at(self.performance.shown, self.scale(), self.height(), event.position(), self.sizes)
         if found is not None:
             self.session.jump(action=found[1].action.id)
         else:
@@ -212,16 +247,21 @@ class Lanes(QWidget):
         lone = more and ident in chosen
         if ident not in chosen:
             self.session.onstage.select_requests((*chosen, ident) if more else (ident,))
-        if self.performance.requests.editable:
-            self.hand.take(RequestDrag(self, self.session.onstage.requests, ident, lone), event.position())
+        requests = self.performance.requests
+        still = requests.still() if requests.editable else frozenset()
+        if requests.editable and ident not in still:
+            held = tuple(i for i in self.session.onstage.requests if i not in still)
+            moved = requests.with_following(held)
+            self.magnet.begin(self.snap_lines(moved))
+            self.hand.take(RequestDrag(self, held, ident, lone, moved), event.position())
         elif lone:
             self.session.onstage.select_requests(tuple(i for i in chosen if i != ident))
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         x = event.position().x()
+        self._hold_off(event.modifiers())
         if self.hand.move(event.position(), bool(event.modifiers() & COPIES)):
-            copying = self.drag is not None and self.drag.copy
-            self.setCursor(Qt.CursorShape.DragCopyCursor if copying else Qt.CursorShape.SizeHorCursor)
+            self.setCursor(self._held_cursor())
             self.update()
         elif event.buttons() & Qt.MouseButton.LeftButton:
             self._scrub(x)
@@ -230,8 +270,20 @@ class Lanes(QWidget):
             self.update()
         else:
             over = mark_at(self.marks(), event.position()) is not None and self.performance.requests.editable
-            self.setCursor(Qt.CursorShape.SizeHorCursor if over else Qt.CursorShape.ArrowCursor)
+            shape = self.ruler.cursor(event.position())
+            if self.titles.border_at(event.position()) is not None:
+                shape = Qt.CursorShape.SizeVerCursor
+            elif shape is None:
+                shape = Qt.CursorShape.SizeHorCursor if over else Qt.CursorShape.ArrowCursor
+            self.setCursor(shape)
         self._grip = x
+
+    def _held_cursor(self) -> Qt.CursorShape:
+        """Return the mouse's shape while something is dragged."""
+        if isinstance(self.hand.gesture, BorderDrag):
+            return Qt.CursorShape.SizeVerCursor
+        copying = self.drag is not None and self.drag.copy
+        return Qt.CursorShape.DragCopyCursor if copying else Qt.CursorShape.SizeHorCursor
 
     _grip = 0.0
 
@@ -243,6 +295,8 @@ class Lanes(QWidget):
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         self.hand.let_go(event.position())
+        self.magnet.end()
+        self.magnet.held_off = False
         self.update()
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
@@ -250,7 +304,12 @@ class Lanes(QWidget):
         if mark is not None:
             self.edit(mark.ask.id)
             return
-        found = cue_at(self.performance.shown, self.scale(), self.height(), event.position())
+        marker = self.ruler.marker_at(event.position())
+        if marker is not None:
+            self.ruler.rename(marker.id)
+        if event.position().y() < RULER:
+            return
+        found = cue_at(self.performance.shown, self.scale(), self.height(), event.position(), self.sizes)
         if found is not None:
             self.session.show_context(found[1].action.id)
         elif event.position().x() >= LEFT:
@@ -262,7 +321,7 @@ class Lanes(QWidget):
         if mark is not None and self.performance.requests.editable:
             self._mark_menu(mark).popup(on_screen.toPoint())
         else:
-            request_menu(self, self.performance, seconds, lane_at(self.height(), at)).popup(
+            request_menu(self, self.performance, seconds, lane_at(self.height(), at, self.sizes)).popup(
                 on_screen.toPoint()
             )
 
@@ -279,24 +338,30 @@ class Lanes(QWidget):
             "Take it back\tDel" if len(chosen) == 1 else "Take them back\tDel",
             lambda: self.performance.requests.withdraw(*chosen),
         )
+        menu.addAction(
+            "Take back and close up\tShift+Del",
+            lambda: self.performance.requests.close_up(chosen, self.performance.shown.plan),
+        )
         return menu
 
     def edit(self, ident: str) -> None:
         """Show the fields of a request."""
         from app.features.timeline.request_editor import RequestEditor
 
-        if self.performance.requests.editable:
+        if self.performance.requests.editable and self.performance.requests.free((ident,)):
             RequestEditor(self.performance, ident, self).open()
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         if event.reason() == QContextMenuEvent.Reason.Keyboard:
-            self._ask_here()
-        elif (layer := self.titles.at(QPointF(event.pos()))) is not None:
-            self.titles.menu(layer).popup(event.globalPos())
+            self.ask_here()
+        elif (lane := self.titles.lane_at(QPointF(event.pos()))) is not None:
+            self.titles.menu(lane).popup(event.globalPos())
+        elif event.pos().y() < RULER and event.pos().x() >= LEFT:
+            self.ruler.menu(QPointF(event.pos())).popup(event.globalPos())
         elif event.pos().x() >= LEFT:
             self._menu(QPointF(event.pos()), QPointF(event.globalPos()))
 
-    def _ask_here(self) -> None:
+    def ask_here(self) -> None:
         """Ask for something at the playhead."""
         x = min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width())
         seconds = round(self.session.transport.seconds, 2) if self.performance.live.stage is None else None
@@ -309,98 +374,108 @@ class Lanes(QWidget):
     def wheelEvent(self, event: QWheelEvent) -> None:
         delta = event.angleDelta()
         if event.modifiers() & Qt.KeyboardModifier.ShiftModifier or abs(delta.x()) > abs(delta.y()):
-            self.first = max(0.0, self.first - (delta.x() or delta.y()) / 2 / self.each)
-            self.update()
+            self.go_to(self.first - (delta.x() or delta.y()) / 2 / self.each)
         else:
-            self._zoom(ZOOM ** (delta.y() / 120), event.position().x())
+            self.zoom(ZOOM ** (delta.y() / 120), event.position().x())
         event.accept()
 
-    def _zoom(self, by: float, x: float) -> None:
+    def zoom(self, by: float, x: float) -> None:
         """Zoom about a place on the screen."""
         at = self.scale().seconds(x)
-        self.each = min(400.0, max(2.0, self.each * by))
-        self.first = max(0.0, at - (x - LEFT) / self.each)
+        self.each = min(NEAREST, max(FARTHEST, self.each * by))
+        self.go_to(at - (x - LEFT) / self.each)
+
+    def go_to(self, first: float) -> None:
+        """Let the lanes begin at a time."""
+        self.first = max(0.0, first)
         self.update()
+
+    def show_span(self, start: float, end: float) -> None:
+        """Zoom so that a stretch of time is seen whole, with a little on either side."""
+        room = max(40, self.width() - LEFT)
+        self.each = min(NEAREST, max(FARTHEST, room / max(0.1, 1.1 * (end - start))))
+        self.go_to((start + end) / 2 - room / 2 / self.each)
+
+    def zoom_all(self) -> None:
+        """Show all there is: what is kept to its end, else as far as it is planned."""
+        self.each = max(
+            FARTHEST,
+            min(NEAREST, 0.98 * max(40, self.width() - LEFT) / max(0.1, self.performance.shown.length)),
+        )
+        self.go_to(0.0)
+
+    def zoom_selection(self) -> None:
+        """Show what is selected: requests and what plays for them, or an action's cues; else the range."""
+        chosen, shown = self.session.onstage.requests, self.performance.shown
+        spans = [(m.at, m.at) for m in self.marks() if m.ask.id in chosen]
+        for of in shown.plan.layers.values():
+            for cue in of.cues:
+                if cue.meta.partition("+")[0] in chosen or (
+                    not chosen and cue.action.id in self.session.selection.actions
+                ):
+                    spans.append((cue.start, cue.end))
+        if not spans and self.performance.timeline.range is not None:
+            spans = [self.performance.timeline.range]
+        if spans:
+            self.show_span(min(s for s, _ in spans), max(e for _, e in spans))
+
+    def set_sizes(self, sizes: Sizes) -> None:
+        """Show other lanes, or lanes of other heights."""
+        if sizes != self.sizes:
+            self.sizes = sizes
+            self.update()
+
+    def snap_lines(self, but: tuple[str, ...]) -> list[SnapLine]:
+        """Return what a drag of some requests or of a marker holds to."""
+        return snap_lines(self.performance, self.marks(), self.words(), self.scale(), self.width(), but)
+
+    def words(self) -> list[tuple[float, float, str]]:
+        """Return the words that are said, by time."""
+        return []
 
     # --- keys and tips
 
-    def _nudge(self, key: Qt.Key, modifiers: Qt.KeyboardModifier) -> None:
-        by = FAR if modifiers & Qt.KeyboardModifier.ShiftModifier else NUDGE
-        self.performance.requests.move(
-            self.session.onstage.requests, by if key == Qt.Key.Key_Right else -by, merge="nudge"
-        )
-
-    def _choose(self, step: int) -> None:
-        """Select the request before or after the selected one, in time; without one, the first from the
-        playhead on.
-        """
-        order = sorted(self.marks(), key=lambda m: m.at)
-        if not order:
-            return
-        chosen = self.session.onstage.requests
-        place = next((n for n, m in enumerate(order) if chosen and m.ask.id == chosen[-1]), None)
-        if place is None:
-            place = next(
-                (n for n, m in enumerate(order) if m.at >= self.session.transport.seconds), len(order) - 1
-            )
-        else:
-            place = min(max(0, place + step), len(order) - 1)
-        self.reveal(order[place].ask.id)
-
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        chosen, key, can = self.session.onstage.requests, event.key(), self.performance.requests.editable
-        if key == Qt.Key.Key_Escape and self.hand.drop("escape"):
+        self._hold_off(event.modifiers())
+        if not self.keys.press(event):
+            super().keyPressEvent(event)
+
+    def keyReleaseEvent(self, event: QKeyEvent) -> None:
+        self._hold_off(event.modifiers())
+        super().keyReleaseEvent(event)
+
+    def _hold_off(self, held: Qt.KeyboardModifier) -> None:
+        """Nothing snaps while Shift is held."""
+        self.magnet.held_off = bool(held & Qt.KeyboardModifier.ShiftModifier)
+
+    def break_off(self) -> bool:
+        """Break a drag off; return whether there was one."""
+        dropped = self.hand.drop("escape")
+        self.magnet.end()
+        if dropped:
             self.setCursor(Qt.CursorShape.ArrowCursor)
             self.update()
-        elif key == Qt.Key.Key_Escape and chosen:
-            self.session.onstage.select_requests(())
-        elif self.hand.gesture is not None:
-            return  # what is held is not edited by keys as well
-        elif chosen and can and key in (Qt.Key.Key_Left, Qt.Key.Key_Right):
-            self._nudge(Qt.Key(key), event.modifiers())
-        elif (
-            chosen and can and key == Qt.Key.Key_D and event.modifiers() & Qt.KeyboardModifier.ControlModifier
-        ):
-            self.performance.requests.copy(chosen, FAR)
-        elif chosen and key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
-            self.edit(chosen[0])
-        elif key in (Qt.Key.Key_Up, Qt.Key.Key_Down):
-            self._choose(1 if key == Qt.Key.Key_Down else -1)
-        elif key == Qt.Key.Key_Insert:
-            self._ask_here()
-        elif key in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus):
-            self._zoom(
-                1 / ZOOM if key == Qt.Key.Key_Minus else ZOOM,
-                min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width()),
-            )
-        elif key in (Qt.Key.Key_PageUp, Qt.Key.Key_PageDown):
-            page = 0.8 * (self.width() - LEFT) / self.each
-            self.first = max(0.0, self.first + (page if key == Qt.Key.Key_PageDown else -page))
-            self.update()
-        else:
-            super().keyPressEvent(event)
+        return dropped
 
     def event(self, event: QEvent) -> bool:
         if isinstance(event, QHelpEvent):
             QToolTip.showText(event.globalPos(), self._tip(QPointF(event.pos())), self)
             return True
-        if isinstance(event, QKeyEvent) and event.type() == QKeyEvent.Type.ShortcutOverride:
-            mine = (Qt.Key.Key_Left, Qt.Key.Key_Right, Qt.Key.Key_Return, Qt.Key.Key_Escape)
-            if (self.hand.gesture is not None and event.key() == Qt.Key.Key_Escape) or (
-                self.session.onstage.requests and event.key() in mine
-            ):
-                event.accept()
-                return True
+        asked = event.type() == QKeyEvent.Type.ShortcutOverride
+        if asked and isinstance(event, QKeyEvent) and self.keys.wants(event):
+            event.accept()
+            return True
         return super().event(event)
 
     def _tip(self, at: QPointF) -> str:
-        titled = self.titles.at(at)
-        if titled is not None:
-            return self.titles.tip(titled)
+        if at.x() < LEFT:
+            return self.titles.tip(at)
+        if at.y() < RULER:
+            return self.ruler.tip(at)
         mark = mark_at(self.marks(), at)
         if mark is not None:
             return told(mark, self.performance.requests.editable)
-        found = cue_at(self.performance.shown, self.scale(), self.height(), at)
+        found = cue_at(self.performance.shown, self.scale(), self.height(), at, self.sizes)
         if found is not None:
             cue = found[1]
             name = told_names(cue_words(self.performance.shown.project, cue.action), cue.action.name)
@@ -408,7 +483,7 @@ class Lanes(QWidget):
             if cue.hold > 0:
                 words += f", held {cue.hold:.2f} s"
             return words + "\nClick selects it, double-click plays it in context"
-        lane = lane_at(self.height(), at)
+        lane = lane_at(self.height(), at, self.sizes)
         if lane is None:
             return ""
         shown, here = self.performance.shown, ""
