@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
+from typing import cast
 
 import msgspec
+from PySide6.QtGui import QGuiApplication
 
+from app.look.plural import listed
 from app.project.document import Document
 from app.stage.live_control import LiveControl
 from app.stage.session import Session
 from metagraph.graph import performance_edits
+from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
+from metagraph.graph.request_text import Pasted, holds_requests, paste_requests, request_text
 from metagraph.graph.requests import AnyRequest
 from metagraph.graph.requests import Performance as KeptPerformance
 from metagraph.graph.timeline import lane_of
@@ -142,6 +147,47 @@ class RequestEdits:
             self.document.edit(
                 "Withdraw request", lambda p: performance_edits.remove_requests(p, stage, gone)
             )
+
+    def to_clipboard(self, idents: tuple[str, ...], cut: bool = False) -> None:
+        """Put requests on the clipboard, as a text any window can paste; cut: take them back here."""
+        stage = self.session.onstage.performance
+        chosen = self.free(idents) if cut else idents
+        if stage is None or self.kept is None or not chosen:
+            return
+        QGuiApplication.clipboard().setText(request_text(self.document.project, stage, chosen))
+        if cut:
+            self.document.edit("Cut requests", lambda p: performance_edits.remove_requests(p, stage, chosen))
+
+    def paste(self) -> None:
+        """Add the requests on the clipboard, the first of them at the playhead, in the performance on stage
+        or a new one; tell what this project does not have.
+        """
+        text = QGuiApplication.clipboard().text()
+        at, done = round(self.session.transport.seconds, 3), cast("Pasted | None", None)
+        if self.live.stage is not None or not holds_requests(text):
+            self.document.failed.emit("There are no requests on the clipboard.")
+            return
+        stage = self.session.onstage.performance
+
+        def edit(project: Project) -> Project:
+            nonlocal done, stage
+            if stage is None or stage not in project.performances:
+                kept = KeptPerformance(name="Performance", length=self._length())
+                project, stage = performance_edits.add_performance(project, kept)
+            done = paste_requests(project, stage, text, at)
+            return done.project
+
+        try:
+            self.document.edit("Paste requests", edit)
+        except EditError as error:
+            self.document.failed.emit(f"{str(error)[:1].upper()}{str(error)[1:]}.")
+            return
+        self.session.onstage.set_performance(stage)
+        self.session.transport.show_plan()
+        if done is not None:
+            self.session.onstage.select_requests(done.idents)
+            if done.left_out:
+                self.document.failed.emit(f"This project does not have {listed(done.left_out)}.")
 
     def close_up(self, idents: tuple[str, ...], plan: Plan) -> None:
         """Take asks back and let all that follows move up by the time they took in a plan, in one step."""

@@ -19,6 +19,7 @@ TIMELINE = (  # and what the timeline does
     ("Add a marker", "M"),
     ("Move requests", "arrows, with Shift by a second"),
     ("Take requests back and close up", "Shift+Del"),
+    ("Cut, copy, paste requests", "Ctrl+X, Ctrl+C, Ctrl+V"),
     ("Copy requests a second later", "Ctrl+D"),
     ("Ask for something", "Insert"),
     ("Zoom in and out", "+, −"),

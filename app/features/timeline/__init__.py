@@ -17,7 +17,7 @@ def contribute(shell: Shell) -> Contribution:
     def make() -> QWidget:
         from app.features.timeline.timeline_panel import TimelinePanel
 
-        return TimelinePanel(document, session, performance, shell.widget)
+        return TimelinePanel(document, session, performance, shell.jobs, shell.widget)
 
     def toggle_live() -> None:
         (performance.live.begin if performance.live.stage is None else performance.live.end)()

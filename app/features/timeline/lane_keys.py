@@ -33,6 +33,10 @@ class LaneKeys:
             )
         if key == Key.Key_M and held == Held.NoModifier:
             return bool(view.session.transport.show == "plan")
+        if held == Held.ControlModifier and key in (Key.Key_C, Key.Key_X):
+            return bool(view.session.onstage.requests)
+        if held == Held.ControlModifier and key == Key.Key_V:
+            return bool(view.session.onstage.mode == "meta")
         if key == Key.Key_Delete and held == Held.ShiftModifier:
             return bool(view.session.onstage.requests)
         mine = (Key.Key_Left, Key.Key_Right, Key.Key_Return)
@@ -56,6 +60,10 @@ class LaneKeys:
             self._nudge(Key(key), held)
         elif chosen and can and key == Key.Key_D and held & Held.ControlModifier:
             requests.copy(chosen, FAR)
+        elif held == Held.ControlModifier and key == Key.Key_V:
+            requests.paste()
+        elif chosen and can and held == Held.ControlModifier and key in (Key.Key_C, Key.Key_X):
+            requests.to_clipboard(chosen, key == Key.Key_X)
         elif chosen and can and key == Key.Key_Delete and held == Held.ShiftModifier:
             requests.close_up(chosen, view.performance.shown.plan)
         elif chosen and key in (Key.Key_Return, Key.Key_Enter):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import (
     QColor,
@@ -24,6 +26,8 @@ from app.features.timeline.lane_titles import LOCK, BorderDrag, LaneTitles, kept
 from app.features.timeline.request_drag import RequestDrag
 from app.features.timeline.ruler import Ruler
 from app.features.timeline.snapping import Magnet, SnapLine, snap_lines
+from app.features.timeline.voice_lane import paint_voice
+from app.features.timeline.voices import Voices
 from app.look.names import told_names
 from app.look.theme import theme
 from app.stage.performance import Performance
@@ -46,7 +50,8 @@ from app.widgets.lane_geometry import (
 )
 from app.widgets.lane_paint import LaneScene, badge, cue_words, paint, playhead
 from app.widgets.memo import Once
-from app.widgets.request_menu import request_menu
+from app.widgets.request_menu import STAGE, request_menu
+from metagraph.graph.model import LAYERS
 
 CATCH = 3  # pixels the mouse must move for a press to become a drag
 NEAREST, FARTHEST = 400.0, 0.25  # pixels a second
@@ -64,9 +69,9 @@ class Lanes(QWidget):
     A press on a cue selects its action; anywhere else it moves the playhead. The wheel zooms.
     """
 
-    def __init__(self, session: Session, performance: Performance, parent: QWidget) -> None:
+    def __init__(self, session: Session, performance: Performance, voices: Voices, parent: QWidget) -> None:
         super().__init__(parent)
-        self.session, self.performance = session, performance
+        self.session, self.performance, self.voices = session, performance, voices
         self.each = 44.0
         self.first = 0.0
         self.follow = True
@@ -84,6 +89,9 @@ class Lanes(QWidget):
         self.setAccessibleDescription(TEXT)
         performance.changed.connect(self.update)
         performance.timeline.changed.connect(self.update)
+        performance.changed.connect(self.show_lanes)
+        voices.changed.connect(self.show_lanes)
+        voices.changed.connect(self.update)
         session.transport.moved.connect(self._playhead)
         for signal in (session.look.changed, session.selection.changed, session.onstage.performance_changed):
             signal.connect(self.update)
@@ -185,7 +193,11 @@ class Lanes(QWidget):
             )
             paint(painter, theme(s.look.name), scene)
             for name, lane in lanes(self.height(), self.sizes).items():
-                if name in NAMES:
+                if name == "words":
+                    paint_voice(
+                        painter, theme(s.look.name), lane, self.scale(), self.width(), self.voices, ratio
+                    )
+                elif name in NAMES:
                     at = QPointF(LEFT - LOCK / 2 - 2, lane.center().y())
                     padlock(painter, theme(s.look.name), at, name in locked)
             painter.end()
@@ -204,6 +216,7 @@ class Lanes(QWidget):
             font.toString(),
             self.sizes,
             locked,
+            self.voices.version,
         )
         return self._still.of(values, (p.shown, found), make)
 
@@ -317,11 +330,11 @@ class Lanes(QWidget):
 
     def _menu(self, at: QPointF, on_screen: QPointF) -> None:
         seconds = round(max(0.0, self.scale().seconds(at.x())), 2)
-        mark = mark_at(self.marks(), at)
+        mark, lane = mark_at(self.marks(), at), lane_at(self.height(), at, self.sizes)
         if mark is not None and self.performance.requests.editable:
             self._mark_menu(mark).popup(on_screen.toPoint())
         else:
-            request_menu(self, self.performance, seconds, lane_at(self.height(), at, self.sizes)).popup(
+            request_menu(self, self.performance, seconds, lane if lane in LAYERS else STAGE).popup(
                 on_screen.toPoint()
             )
 
@@ -333,7 +346,12 @@ class Lanes(QWidget):
         menu, chosen = QMenu(self), self.session.onstage.requests
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         menu.addAction("Change…\tReturn", lambda: self.edit(ident))
-        menu.addAction("Copy\tCtrl+D", lambda: self.performance.requests.copy(chosen, FAR))
+        requests = self.performance.requests
+        menu.addAction("Cut\tCtrl+X", lambda: requests.to_clipboard(chosen, True))
+        menu.addAction("Copy\tCtrl+C", lambda: requests.to_clipboard(chosen))
+        menu.addAction("Paste at the playhead\tCtrl+V", requests.paste)
+        menu.addAction("Copy a second later\tCtrl+D", lambda: requests.copy(chosen, FAR))
+        menu.addSeparator()
         menu.addAction(
             "Take it back\tDel" if len(chosen) == 1 else "Take them back\tDel",
             lambda: self.performance.requests.withdraw(*chosen),
@@ -425,13 +443,18 @@ class Lanes(QWidget):
             self.sizes = sizes
             self.update()
 
+    def show_lanes(self) -> None:
+        """Have a lane for everything that there is to show."""
+        extra = ("words",) if self.voices.wanted else ()
+        self.set_sizes(replace(self.sizes, extra=extra))
+
     def snap_lines(self, but: tuple[str, ...]) -> list[SnapLine]:
         """Return what a drag of some requests or of a marker holds to."""
         return snap_lines(self.performance, self.marks(), self.words(), self.scale(), self.width(), but)
 
     def words(self) -> list[tuple[float, float, str]]:
         """Return the words that are said, by time."""
-        return []
+        return self.voices.words()
 
     # --- keys and tips
 
@@ -486,6 +509,10 @@ class Lanes(QWidget):
         lane = lane_at(self.height(), at, self.sizes)
         if lane is None:
             return ""
+        if lane == "words":
+            at_time = self.scale().seconds(at.x())
+            word = next((w for w in self.words() if w[0] <= at_time < w[1]), None)
+            return f"'{word[2]}', {word[0]:.2f} to {word[1]:.2f} s" if word is not None else ""
         shown, here = self.performance.shown, ""
         plan = next((p for layer, p in shown.plan.layers.items() if layer == lane), None)
         if plan is not None:

@@ -35,7 +35,7 @@ def commands(shell: Shell) -> tuple[Command, ...]:
     def command(
         ident: str, group: str, text: str, run: Callable[[], object], keys: tuple[str, ...], **more: Any
     ) -> Command:
-        return Command(ident, "&Play", group, text, run, keys, when="meta", enabled=there, **more)
+        return Command(ident, "&Play", group, text, run, keys, when="meta", **{"enabled": there, **more})
 
     def snaps() -> bool:
         return QSettings().value("timeline/magnet", "true") != "false"
@@ -92,5 +92,22 @@ def commands(shell: Shell) -> tuple[Command, ...]:
             ("Shift+R",),
             checked=lambda: performance.requests.ripple,
             tip="What follows goes along with what is moved",
+        ),
+        command(
+            "requests_copy",
+            "timeline",
+            "Copy re&quests",
+            lambda: performance.requests.to_clipboard(session.onstage.requests),
+            (),
+            tip="As a text that another window pastes, too; Ctrl+C on the timeline",
+            enabled=lambda: performance.requests.kept is not None and bool(session.onstage.requests),
+        ),
+        command(
+            "requests_paste",
+            "timeline",
+            "Paste requests at the p&layhead",
+            performance.requests.paste,
+            (),
+            tip="Ctrl+V on the timeline",
         ),
     )

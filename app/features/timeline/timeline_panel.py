@@ -19,10 +19,12 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.timeline.lane_view import Lanes
+from app.features.timeline.voices import Voices
 from app.look import icons
 from app.look.plural import many
 from app.look.theme import theme
 from app.project.document import Document
+from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.widgets.lane_geometry import outcome, wanted
@@ -50,11 +52,17 @@ class TimelinePanel(QWidget):
     """The lanes, with what can be asked for, the seed and the zoom above them."""
 
     def __init__(
-        self, document: Document, session: Session, performance: Performance, parent: QWidget | None = None
+        self,
+        document: Document,
+        session: Session,
+        performance: Performance,
+        jobs: Jobs,
+        parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.performance = document, session, performance
-        self.lanes = Lanes(session, performance, self)
+        self.voices = Voices(document, jobs, performance, self)
+        self.lanes = Lanes(session, performance, self.voices, self)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 4, 0, 0)
         layout.setSpacing(0)
