@@ -73,7 +73,11 @@ def paint(painter: QPainter, t: Theme, scene: LaneScene) -> None:
         font = painter.font()
         font.setStrikeOut(muted)
         painter.setFont(font)
-        painter.drawText(QRectF(14, lane.top(), LEFT - 16, lane.height()), MIDDLE, TITLES.get(name, name))
+        painter.drawText(
+            QRectF(14, lane.top(), LEFT - 16, lane.height()),
+            MIDDLE,
+            TITLES.get(name, name.replace("ghost", "Seed")),
+        )
         font.setStrikeOut(False)
         painter.setFont(font)
     painter.setClipRect(QRectF(LEFT, 0, scene.width - LEFT, scene.height))

@@ -28,6 +28,7 @@ from app.features.timeline.ruler import Ruler
 from app.features.timeline.snapping import Magnet, SnapLine, snap_lines
 from app.features.timeline.voice_lane import paint_voice
 from app.features.timeline.voices import Voices
+from app.features.timeline.what_if import WhatIf, paint_ghost, seed_of
 from app.look.names import told_names
 from app.look.theme import theme
 from app.stage.performance import Performance
@@ -69,9 +70,12 @@ class Lanes(QWidget):
     A press on a cue selects its action; anywhere else it moves the playhead. The wheel zooms.
     """
 
-    def __init__(self, session: Session, performance: Performance, voices: Voices, parent: QWidget) -> None:
+    def __init__(
+        self, session: Session, performance: Performance, voices: Voices, what_if: WhatIf, parent: QWidget
+    ) -> None:
         super().__init__(parent)
         self.session, self.performance, self.voices = session, performance, voices
+        self.what_if = what_if
         self.each = 44.0
         self.first = 0.0
         self.follow = True
@@ -91,7 +95,9 @@ class Lanes(QWidget):
         performance.timeline.changed.connect(self.update)
         performance.changed.connect(self.show_lanes)
         voices.changed.connect(self.show_lanes)
-        voices.changed.connect(self.update)
+        what_if.changed.connect(self.show_lanes)
+        for signal in (voices.changed, what_if.changed):
+            signal.connect(self.update)
         session.transport.moved.connect(self._playhead)
         for signal in (session.look.changed, session.selection.changed, session.onstage.performance_changed):
             signal.connect(self.update)
@@ -197,6 +203,9 @@ class Lanes(QWidget):
                     paint_voice(
                         painter, theme(s.look.name), lane, self.scale(), self.width(), self.voices, ratio
                     )
+                elif (seed := seed_of(name)) is not None:
+                    plan = self.what_if.plans.get(seed)
+                    paint_ghost(painter, theme(s.look.name), lane, self.scale(), self.width(), plan)
                 elif name in NAMES:
                     at = QPointF(LEFT - LOCK / 2 - 2, lane.center().y())
                     padlock(painter, theme(s.look.name), at, name in locked)
@@ -218,7 +227,7 @@ class Lanes(QWidget):
             locked,
             self.voices.version,
         )
-        return self._still.of(values, (p.shown, found), make)
+        return self._still.of(values, (p.shown, found, self.what_if.plans), make)
 
     def focusInEvent(self, event: QFocusEvent) -> None:
         self._by_keys = event.reason() in (Qt.FocusReason.TabFocusReason, Qt.FocusReason.BacktabFocusReason)
@@ -245,6 +254,10 @@ class Lanes(QWidget):
         mark = mark_at(self.marks(), event.position())
         if mark is not None:
             self._press(mark, event)
+            return
+        seed = seed_of(lane_at(self.height(), event.position(), self.sizes))
+        if seed is not None:
+            self.what_if.take(seed)
             return
         self.session.onstage.select_requests(())
         self.performance.timeline.select(None)
@@ -445,8 +458,8 @@ class Lanes(QWidget):
 
     def show_lanes(self) -> None:
         """Have a lane for everything that there is to show."""
-        extra = ("words",) if self.voices.wanted else ()
-        self.set_sizes(replace(self.sizes, extra=extra))
+        words = ("words",) if self.voices.wanted else ()
+        self.set_sizes(replace(self.sizes, extra=(*words, *self.what_if.lanes)))
 
     def snap_lines(self, but: tuple[str, ...]) -> list[SnapLine]:
         """Return what a drag of some requests or of a marker holds to."""
@@ -509,6 +522,10 @@ class Lanes(QWidget):
         lane = lane_at(self.height(), at, self.sizes)
         if lane is None:
             return ""
+        seed = seed_of(lane)
+        if seed is not None:
+            row = lanes(self.height(), self.sizes)[lane]
+            return self.what_if.tip(seed, self.scale().seconds(at.x()), (at.y() - row.top()) / row.height())
         if lane == "words":
             at_time = self.scale().seconds(at.x())
             word = next((w for w in self.words() if w[0] <= at_time < w[1]), None)

@@ -94,6 +94,22 @@ def commands(shell: Shell) -> tuple[Command, ...]:
             tip="What follows goes along with what is moved",
         ),
         command(
+            "what_if",
+            "timeline",
+            "What other seeds would pla&y",
+            press("ghosts"),
+            ("Shift+W",),
+            tip="Three more rows under the lanes; a click takes one over",
+        ),
+        command(
+            "what_if_others",
+            "timeline",
+            "Three ot&her seeds",
+            lambda: shell.panel("timeline").what_if.others(),
+            (),
+            tip="The next three, where other seeds are shown",
+        ),
+        command(
             "requests_copy",
             "timeline",
             "Copy re&quests",

@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
 
 from app.features.timeline.lane_view import Lanes
 from app.features.timeline.voices import Voices
+from app.features.timeline.what_if import WhatIf
 from app.look import icons
 from app.look.plural import many
 from app.look.theme import theme
@@ -45,6 +46,7 @@ IMPROVISED = "Improvised"
 MAGNET = (
     "Snap what is dragged to markers, words, strokes, beginnings, ends and seconds (S; hold Shift for not)"
 )
+GHOSTS = "What other seeds would play, as rows under the lanes; a click takes one over (Shift+W)"
 RIPPLE = "Ripple: what follows goes along with what is moved (Shift+R)"
 
 
@@ -62,7 +64,8 @@ class TimelinePanel(QWidget):
         super().__init__(parent)
         self.document, self.session, self.performance = document, session, performance
         self.voices = Voices(document, jobs, performance, self)
-        self.lanes = Lanes(session, performance, self.voices, self)
+        self.what_if = WhatIf(document, jobs, performance, self)
+        self.lanes = Lanes(session, performance, self.voices, self.what_if, self)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 4, 0, 0)
         layout.setSpacing(0)
@@ -117,6 +120,10 @@ class TimelinePanel(QWidget):
         self.seed.setAccessibleName("Seed")
         self.seed.valueChanged.connect(self._seeded)
         row.addWidget(self.seed)
+        self.ghosts = self._switch(GHOSTS, "What if", False)
+        self.ghosts.toggled.connect(self.what_if.set_on)
+        self.what_if.changed.connect(lambda: self.ghosts.setChecked(self.what_if.on))
+        row.addWidget(self.ghosts)
         layout.addLayout(row)
         layout.addWidget(self.lanes, 1)
         self.lanes.magnet.on = self.magnet.isChecked()
@@ -151,6 +158,7 @@ class TimelinePanel(QWidget):
     def _restyle(self) -> None:
         color = theme(self.session.look.name).text
         self.magnet.setIcon(icons.icon("magnet", color))
+        self.ghosts.setIcon(icons.icon("ghosts", color))
         self.ripple.setIcon(icons.icon("ripple", color))
 
     def _switched(self) -> None:

@@ -49,8 +49,11 @@ class Voices(QObject):
         self._read: dict[Key, Voice | None] = {}  # None while it is being read
         self._words: Once[list[tuple[float, float, str]]] = Once()
         performance.changed.connect(self._follow)
-        document.loaded.connect(self._read.clear)
+        document.loaded.connect(self.forget)
         self._follow()
+
+    def forget(self) -> None:
+        self._read, self._words, self.version = {}, Once(), 0
 
     def _key(self, line: Line) -> Key:
         shown = self.performance.shown
