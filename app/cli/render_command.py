@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import sys
-from argparse import ArgumentParser, Namespace
-from collections.abc import Iterator, Sequence
+from argparse import ArgumentParser, BooleanOptionalAction, Namespace
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,10 @@ from app.stage.playback_source import ASIDE, Shown, alone
 from metagraph.graph.model import Layer, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.bake import bake
+
+if TYPE_CHECKING:
+    from metagraph.graph.timeline import Cut
+    from metagraph.speech.captions import Caption
 
 Seen = tuple[Any, Shown]  # a figure, and what it plays
 MOTION = (".glb", ".usda", ".bvh")  # what `bake_to` writes
@@ -36,6 +40,16 @@ def arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--clip", help="draw this clip of the project alone")
     parser.add_argument(
         "--conversation", metavar="NAME", help="draw all who talk in this conversation, with their sound"
+    )
+    parser.add_argument(
+        "--captions",
+        action=BooleanOptionalAction,
+        help="show the words of who speaks (default: as the timeline says)",
+    )
+    parser.add_argument(
+        "--cuts",
+        action=BooleanOptionalAction,
+        help="cut a conversation as its camera lane says, or hold still (default: where there are cuts)",
     )
     parser.add_argument("--size", default="960x540", help="width x height in pixels (default: 960x540)")
     parser.add_argument("--fps", type=float, default=30.0, help="pictures a second of a video (default: 30)")
@@ -83,8 +97,8 @@ def pictures(
     camera: Any = None,
     into: np.ndarray | None = None,
 ) -> Iterator[np.ndarray]:
-    """Yield one picture `[H, W, 4]` for each time. The camera holds still; by default it sees all. into: an
-    array that all come in, for who is done with one before asking for the next.
+    """Yield one picture `[H, W, 4]` for each time. camera: holds still, or, called with seconds, says one; by
+    default it sees all. into: an array that all come in, for who is done with one before asking for the next.
     """
     from app.stage.stools import stools
     from preview.camera import whole_figure
@@ -98,8 +112,43 @@ def pictures(
     with Offscreen(*size) as offscreen:
         for first in range(0, len(times), TOGETHER):
             some = times[first : first + TOGETHER]
-            for actors in zip(*(_actors(figure, shown, some) for figure, shown in seen), strict=True):
-                yield offscreen.render(Scene((*actors, *seats)), camera, THEMES[look], into=into)
+            acted = zip(*(_actors(figure, shown, some) for figure, shown in seen), strict=True)
+            for at, actors in zip(some, acted, strict=True):
+                seen_from = camera(float(at)) if callable(camera) else camera
+                yield offscreen.render(Scene((*actors, *seats)), seen_from, THEMES[look], into=into)
+
+
+def directed(
+    seen: Sequence[Seen],
+    times: np.ndarray,
+    size: tuple[int, int],
+    look: str,
+    direction: Direction = ((), ()),
+    into: np.ndarray | None = None,
+) -> Iterator[np.ndarray]:
+    """Yield pictures as `pictures` does, cut and with captions."""
+    cuts, captions = direction
+    camera: Callable[[float], Any] | None = None
+    if cuts:
+        from app.stage.cutting import Cutting
+        from preview.camera import whole_figure
+
+        aspect, cutting = size[0] / size[1], Cutting()
+        whole = whole_figure(bounds_of(seen, times), aspect, ASIDE)
+        camera = lambda at: cutting.camera(seen, cuts, at, aspect) or whole  # noqa: E731
+    if not captions:
+        yield from pictures(seen, times, size, look, camera, into)
+        return
+    from PySide6.QtGui import QGuiApplication
+
+    from app.stage.caption_paint import captioned
+    from metagraph.speech.captions import captions_at
+
+    # Text needs the fonts of an application, which a program without a window has not.
+    application = QGuiApplication.instance() or QGuiApplication(["metagraph", "-platform", "offscreen"])
+    for at, picture in zip(times, pictures(seen, times, size, look, camera, into), strict=True):
+        yield captioned(picture, captions_at(captions, float(at)))
+    del application
 
 
 def _actors(figure: Any, shown: Shown, times: np.ndarray) -> list[Any]:
@@ -181,9 +230,34 @@ def run(options: Namespace) -> int:
             sound,
             options.progress,
             options.start,
+            _direction(project, options, shown, folder, seen),
         )
     say(options, f"{options.out}", {"written": str(options.out)})
     return 0
+
+
+Direction = tuple["tuple[Cut, ...]", "tuple[Caption, ...]"]  # where the camera cuts to, what is to be read
+
+
+def _direction(
+    project: Project, options: Namespace, shown: Shown, folder: Path, seen: Sequence[Seen]
+) -> Direction:
+    """Return the cuts and captions of what is written, as the options or else the timeline's notes say."""
+    from app.stage.cutting import captions_shown
+    from metagraph.graph.timeline import timeline_of
+
+    some = project.performances if options.conversation is None else project.conversations
+    name = options.performance if options.conversation is None else options.conversation
+    key = next((i for i, of in some.items() if name in (i, of.name)), "")
+    noted = timeline_of(project, key)
+    captions = noted.captions if options.captions is None else options.captions
+    cuts = noted.cuts if options.cuts is not False and len(seen) > 1 else ()
+    if options.cuts and not cuts and len(seen) > 1:
+        from metagraph.speech.automatic_cuts import automatic_cuts
+
+        cuts = automatic_cuts(project.conversations[key])
+    talk = project.conversations.get(key) if options.conversation is not None else None
+    return cuts, captions_shown(shown, talk, folder) if captions else ()
 
 
 def _talking(project: Project, options: Namespace, folder: Path) -> Shown:
@@ -245,8 +319,11 @@ def draw_to(
     sound: tuple[np.ndarray, int] | None = None,
     progress: bool = False,
     start: float = 0.0,
+    direction: Direction = ((), ()),
 ) -> None:
-    """Write a contact sheet (.png) or a video (.mp4), with its sound, from a second on."""
+    """Write a contact sheet (.png) or a video (.mp4), with its sound, from a second on. direction: its cuts
+    and captions.
+    """
     out.parent.mkdir(parents=True, exist_ok=True)
     if out.suffix == ".mp4":
         from preview.video import write_video
@@ -258,13 +335,14 @@ def draw_to(
                 print(f"{count}/{len(times)}", file=sys.stderr, flush=True)
 
         into = np.empty((size[1], size[0], 4), np.uint8)
-        write_video(out, pictures(seen, times, size, look, into=into), fps, size, told, sound=sound)
+        drawn = directed(seen, times, size, look, direction, into)
+        write_video(out, drawn, fps, size, told, sound=sound)
     elif out.suffix == ".png":
         from preview.sheet import contact_sheet, write_png
 
         times = start + np.linspace(0, seconds, max(2, frames))
         small = (max(16, size[0] * 2 * min(len(seen), 2) // 9), max(16, size[1] * 5 // 9))
-        images = list(pictures(seen, times, small, look))
+        images = list(directed(seen, times, small, look, direction))
         labels = [
             f"{t:.2f} s  {', '.join(filter(None, (_doing(shown, t) for _, shown in seen)))}".rstrip()
             for t in times

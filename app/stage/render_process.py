@@ -27,7 +27,8 @@ SUFFIXES = {
 @dataclass(frozen=True)
 class RenderOrder:
     """What to write. performance: id of a kept one, None to improvise. conversation: id of one, then of both.
-    size: width and height in pixels. start: second it begins at.
+    size: width and height in pixels. start: second it begins at. captions, cuts: whether words are shown, and
+    a conversation's camera cuts as its lane says.
     """
 
     out: Path
@@ -38,6 +39,8 @@ class RenderOrder:
     theme: str = "dark"
     conversation: str | None = None
     start: float = 0.0
+    captions: bool = False
+    cuts: bool = True
 
 
 def write(project: Project, folder: Path, wanted: RenderOrder, job: Job) -> Path:
@@ -66,7 +69,10 @@ def write(project: Project, folder: Path, wanted: RenderOrder, job: Job) -> Path
             "--progress",
             "--start",
             f"{wanted.start:.6f}",
+            "--captions" if wanted.captions else "--no-captions",
         ]
+        if not wanted.cuts:
+            words.append("--no-cuts")
         if wanted.performance is not None:
             words += ["--performance", wanted.performance]
         if wanted.conversation is not None:

@@ -11,8 +11,9 @@ from PySide6.QtCore import QObject, Signal
 from app.project.document import Document
 from app.stage.session import Session
 from metagraph.graph import timeline as notes
+from metagraph.graph.conversation import Conversation
 from metagraph.graph.model import Project
-from metagraph.graph.timeline import Cut, Lane, Marker, Timeline
+from metagraph.graph.timeline import Cut, Lane, Marker, Shot, Timeline
 
 NEAR = 0.02  # seconds within which the playhead stands on a marker
 
@@ -159,6 +160,28 @@ class TimelineEdits(QObject):
             x for x in ("stage", "body", "arms", "head") if (on if x == lane else x in self.now.locked)
         )
         self.change(f"{'Lock' if on else 'Unlock'} layer", locked=locked)
+
+    def cut_to(self, shot: Shot, side: int, at: float) -> None:
+        """Cut to a picture at a time; the first cut of a conversation is made at its beginning, too."""
+        cuts = self.now.cuts
+        if not cuts and at > notes.SAME_CUT:
+            cuts = (Cut(at=0.0, shot="two"),)
+        self.set_cuts("Cut", notes.with_cut(cuts, Cut(at=round(max(0.0, at), 3), shot=shot, side=side)))
+
+    def move_cut(self, number: int, at: float) -> None:
+        cuts = list(self.now.cuts)
+        cuts[number] = Cut(at=round(at, 3), shot=cuts[number].shot, side=cuts[number].side)
+        self.set_cuts("Move cut", tuple(cuts))
+
+    def remove_cut(self, number: int) -> None:
+        """Take a cut away: the picture before it goes on."""
+        self.set_cuts("Remove cut", tuple(c for n, c in enumerate(self.now.cuts) if n != number))
+
+    def automatic(self, talk: Conversation) -> None:
+        """Cut by who speaks."""
+        from metagraph.speech.automatic_cuts import automatic_cuts
+
+        self.set_cuts("Automatic cuts", automatic_cuts(talk))
 
     def set_cuts(self, text: str, cuts: tuple[Cut, ...]) -> None:
         self.change(text, cuts=cuts)

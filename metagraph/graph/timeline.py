@@ -22,6 +22,7 @@ Lane = Literal["stage", "body", "arms", "head"]
 Shot = Literal["over", "two", "close"]
 SHOTS: tuple[Shot, ...] = get_args(Shot)
 IMPROVISED = ""  # the key of what is noted where neither a performance nor a conversation is on stage
+SAME_CUT = 0.05  # seconds: a cut so near another is the same, changed
 SHORTEST_RANGE = 0.1  # seconds; shorter, a range is a slip of the hand
 _Name = Annotated[str, Meta(max_length=200)]
 
@@ -112,6 +113,18 @@ def change_marker(project: Project, key: str, ident: str, **changes: Any) -> Pro
 def remove_markers(project: Project, key: str, idents: Collection[str]) -> Project:
     markers = tuple(m for m in timeline_of(project, key).markers if m.id not in idents)
     return change_timeline(project, key, markers=markers)
+
+
+def with_cut(cuts: tuple[Cut, ...], cut: Cut) -> tuple[Cut, ...]:
+    """Return cuts with one more, which replaces one at its time; one to the picture that is seen anyway is
+    none.
+    """
+    others = sorted((c for c in cuts if abs(c.at - cut.at) > SAME_CUT), key=lambda c: c.at)
+    out: list[Cut] = []
+    for one in sorted([*others, cut], key=lambda c: c.at):
+        if not out or (out[-1].shot, out[-1].side) != (one.shot, one.side):
+            out.append(one)
+    return tuple(out)
 
 
 def without_timeline(project: Project, key: str) -> Project:

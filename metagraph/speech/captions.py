@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 from metagraph.errors import FileError
@@ -53,10 +54,16 @@ def line_words(line: Line, folder: Path) -> tuple[Word, ...]:
     """
     if line.phones is None:
         return ()
+    path = folder / line.phones
     try:
-        return words_in(read_textgrid(folder / line.phones))
-    except FileError:  # who reads the line's voice tells that
+        return _words_of(path, path.stat().st_mtime_ns)
+    except (FileError, OSError):  # who reads the line's voice tells that
         return ()
+
+
+@lru_cache(maxsize=1024)
+def _words_of(path: Path, written: int) -> tuple[Word, ...]:
+    return words_in(read_textgrid(path))
 
 
 def told_words(speech: Speech, lines: Mapping[str, Sequence[Word]]) -> tuple[Word, ...]:
@@ -125,7 +132,7 @@ def captions_at(captions: Iterable[Caption], seconds: float) -> list[Caption]:
 
 def _standing(captions: list[Caption]) -> list[Caption]:
     """Return captions that stand long enough to be seen, as far as the next leaves the time."""
-    nexts = [c.start for c in captions[1:]] + [float("inf")]
+    nexts = [*(c.start for c in captions[1:]), float("inf")][: len(captions)]
     return [
         Caption(c.start, max(c.end, min(c.start + BRIEFEST, n)), c.text, c.side)
         for c, n in zip(captions, nexts, strict=True)

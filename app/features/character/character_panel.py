@@ -9,6 +9,7 @@ from PySide6.QtCore import QElapsedTimer, QMargins, Qt, QTimer
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
+from app.features.character.directing import Directing
 from app.features.character.looking import Looking
 from app.features.character.no_mesh import NoMesh
 from app.look import icons
@@ -72,6 +73,7 @@ class PreviewPanel(QWidget):
         self._hint_goes.timeout.connect(self.hint.hide)
         self.no_mesh = NoMesh(self.view, choose, may_choose)
         self.looking = Looking(self)
+        self.directing = Directing(self)
         self.frames = 0
         self.view.painted.connect(self._painted)
         layout = QVBoxLayout(self)
@@ -222,6 +224,7 @@ class PreviewPanel(QWidget):
             self.view.camera = whole_figure(
                 solid.bounds(), self.view.width() / max(1, self.view.height()), aside
             )
+        self.directing.follow(shown, seconds)
         return scene
 
     def _ghosts(self, figure: Figure, seconds: float) -> list[Actor]:
@@ -275,6 +278,7 @@ class PreviewPanel(QWidget):
         if not self.scrub.isSliderDown():
             self.scrub.setValue(round(10000 * min(1.0, seconds / length)))
         self.caption.say(self._words())
+        self.directing.tell(seconds)
         self._tell_mesh()
 
     def _tell_mesh(self) -> None:

@@ -22,6 +22,7 @@ TIMELINE = (  # and what the timeline does
     ("Cut, copy, paste requests", "Ctrl+X, Ctrl+C, Ctrl+V"),
     ("Copy requests a second later", "Ctrl+D"),
     ("Ask for something", "Insert"),
+    ("Cut to all, over a shoulder, close", "1 to 9"),
     ("Zoom in and out", "+, −"),
     ("Drag without snapping", "Shift"),
 )

@@ -7,6 +7,7 @@ from pathlib import Path
 from PySide6.QtCore import QSettings, Qt, QUrl, Signal
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import (
+    QCheckBox,
     QDialog,
     QDialogButtonBox,
     QFileDialog,
@@ -87,6 +88,12 @@ class RenderDialog(QDialog):
             self.fps.addItem(f"{fps:g} a second", fps)
         self.fps.setCurrentIndex(2)
         form.addRow("Pictures", self.fps)
+        self.captions = QCheckBox("Words of who speaks, at the bottom", self)
+        self.captions.setChecked(performance.timeline.now.captions)
+        form.addRow("Captions", self.captions)
+        self.cuts = QCheckBox("Cut as the camera lane says", self)
+        self.cuts.setChecked(True)
+        form.addRow("Camera", self.cuts)
         self.form = form
         self.words = QLabel(self, wordWrap=True)
         self.words.setProperty("dim", True)
@@ -116,6 +123,8 @@ class RenderDialog(QDialog):
         self.form.setRowVisible(self.seconds, self.part.currentData() is None)
         self.form.setRowVisible(self.size_box, drawn)
         self.form.setRowVisible(self.fps, suffix != ".png")
+        self.form.setRowVisible(self.captions, drawn)
+        self.form.setRowVisible(self.cuts, drawn and bool(self.performance.timeline.now.cuts))
         self.words.setText({
             ".mp4": "H.264, with the sound of what is said.",
             ".png": "24 pictures over the performance, on one sheet.",
@@ -143,6 +152,8 @@ class RenderDialog(QDialog):
             self.session.look.name,
             self.performance.conversation,
             start,
+            self.captions.isChecked(),
+            self.cuts.isChecked(),
         )
         QSettings().setValue("render/size", self.size_box.currentIndex())
         project, folder = document.project, document.folder or Path()

@@ -37,6 +37,8 @@ class LaneKeys:
             return bool(view.session.onstage.requests)
         if held == Held.ControlModifier and key == Key.Key_V:
             return bool(view.session.onstage.mode == "meta")
+        if held == Held.NoModifier and Key.Key_1 <= key <= Key.Key_9:
+            return view.cameras.talk is not None
         if key == Key.Key_Delete and held == Held.ShiftModifier:
             return bool(view.session.onstage.requests)
         mine = (Key.Key_Left, Key.Key_Right, Key.Key_Return)
@@ -72,6 +74,8 @@ class LaneKeys:
             timeline.add_marker()
         elif key in (Key.Key_Up, Key.Key_Down):
             self._choose(1 if key == Key.Key_Down else -1)
+        elif held == Held.NoModifier and Key.Key_1 <= key <= Key.Key_9 and view.cameras.talk is not None:
+            view.cameras.key(key - Key.Key_0)
         elif key == Key.Key_Insert:
             view.ask_here()
         elif key in (Key.Key_Plus, Key.Key_Equal, Key.Key_Minus):

@@ -21,6 +21,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QApplication, QMenu, QToolTip, QWidget
 
+from app.features.timeline.camera_lane import CameraLane
 from app.features.timeline.lane_keys import FAR, ZOOM, LaneKeys
 from app.features.timeline.lane_titles import LOCK, BorderDrag, LaneTitles, kept_heights, padlock
 from app.features.timeline.request_drag import RequestDrag
@@ -82,6 +83,7 @@ class Lanes(QWidget):
         self.hand = Hand()
         self.sizes = Sizes(tall=kept_heights())
         self.titles, self.ruler = LaneTitles(self, performance), Ruler(self)
+        self.cameras = CameraLane(self)
         self.keys, self.magnet = LaneKeys(self), Magnet()
         self._marks: Once[list[Mark]] = Once()
         self._still: Once[QPixmap] = Once()  # all but what moves while it plays
@@ -149,6 +151,9 @@ class Lanes(QWidget):
         painter.drawPixmap(0, 0, self._picture())
         painter.setFont(self.font())
         self.ruler.paint(painter, t, self.width(), self.height())
+        place = lanes(self.height(), self.sizes).get("cameras")
+        if place is not None:
+            self.cameras.paint(painter, t, place, self.width(), self.performance.shown.length)
         playhead(painter, t, self.scale().x(self.session.transport.seconds), self.height())
         drag = self.drag
         if drag is not None:
@@ -251,6 +256,8 @@ class Lanes(QWidget):
         if event.position().y() >= NUMBERS and self.ruler.press(event.position()):
             self.update()
             return
+        if self.cameras.press(event.position()):
+            return
         mark = mark_at(self.marks(), event.position())
         if mark is not None:
             self._press(mark, event)
@@ -297,6 +304,8 @@ class Lanes(QWidget):
         else:
             over = mark_at(self.marks(), event.position()) is not None and self.performance.requests.editable
             shape = self.ruler.cursor(event.position())
+            if self.cameras.edge_at(event.position()) is not None:
+                shape = Qt.CursorShape.SizeHorCursor
             if self.titles.border_at(event.position()) is not None:
                 shape = Qt.CursorShape.SizeVerCursor
             elif shape is None:
@@ -343,6 +352,9 @@ class Lanes(QWidget):
 
     def _menu(self, at: QPointF, on_screen: QPointF) -> None:
         seconds = round(max(0.0, self.scale().seconds(at.x())), 2)
+        if self.cameras.on(at):
+            self.cameras.menu(at).popup(on_screen.toPoint())
+            return
         mark, lane = mark_at(self.marks(), at), lane_at(self.height(), at, self.sizes)
         if mark is not None and self.performance.requests.editable:
             self._mark_menu(mark).popup(on_screen.toPoint())
@@ -458,8 +470,9 @@ class Lanes(QWidget):
 
     def show_lanes(self) -> None:
         """Have a lane for everything that there is to show."""
+        cameras = ("cameras",) if self.performance.conversation is not None else ()
         words = ("words",) if self.voices.wanted else ()
-        self.set_sizes(replace(self.sizes, extra=(*words, *self.what_if.lanes)))
+        self.set_sizes(replace(self.sizes, extra=(*cameras, *words, *self.what_if.lanes)))
 
     def snap_lines(self, but: tuple[str, ...]) -> list[SnapLine]:
         """Return what a drag of some requests or of a marker holds to."""
@@ -522,6 +535,8 @@ class Lanes(QWidget):
         lane = lane_at(self.height(), at, self.sizes)
         if lane is None:
             return ""
+        if lane == "cameras":
+            return self.cameras.tip(at)
         seed = seed_of(lane)
         if seed is not None:
             row = lanes(self.height(), self.sizes)[lane]

@@ -37,6 +37,12 @@ def commands(shell: Shell) -> tuple[Command, ...]:
     ) -> Command:
         return Command(ident, "&Play", group, text, run, keys, when="meta", **{"enabled": there, **more})
 
+    def automatic() -> None:
+        talk = shell.document.project.conversations.get(performance.conversation or "")
+        if talk is not None:
+            noted.automatic(talk)
+            shell.show("timeline")
+
     def snaps() -> bool:
         return QSettings().value("timeline/magnet", "true") != "false"
 
@@ -92,6 +98,24 @@ def commands(shell: Shell) -> tuple[Command, ...]:
             ("Shift+R",),
             checked=lambda: performance.requests.ripple,
             tip="What follows goes along with what is moved",
+        ),
+        command(
+            "automatic_cuts",
+            "timeline",
+            "A&utomatic cuts",
+            automatic,
+            ("Ctrl+Shift+U",),
+            tip="The camera of the conversation on stage follows who speaks",
+            enabled=lambda: performance.conversation is not None,
+        ),
+        command(
+            "captions",
+            "timeline",
+            "&Captions",
+            lambda: noted.show_captions(not noted.now.captions),
+            ("Shift+C",),
+            tip="The words of who speaks, at the bottom of the picture",
+            checked=lambda: noted.now.captions,
         ),
         command(
             "what_if",
