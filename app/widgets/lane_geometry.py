@@ -22,8 +22,8 @@ from metagraph.graph.timeline import lane_of
 from metagraph.playback.extend_performance import Answer
 from metagraph.playback.plan import Cue
 
-LEFT, RULER, LANE = 84, 32, 104
-NUMBERS = 19  # pixels of the ruler that are its numbers'; the strip below is the range's and the markers'
+LEFT, RULER, LANE = 84, 28, 104
+NUMBERS = 16  # pixels of the ruler that are its numbers'; the strip below is the range's and the markers'
 PLAYS = 34.0  # pixels at most for what plays in a lane; the rest is for what was asked
 ROW, TALLEST = 19.0, 22.0  # pixels of a row of requests, at least and at most
 STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0)
@@ -36,8 +36,8 @@ TITLES = {
     "arms": "Arms",
     "head": "Head",
 }
-SHARES = {"cameras": 0.6, "words": 0.9}  # of a layer's height, of lanes that have no requests
-GHOST = 0.42  # the same of another seed's
+FIXED = {"cameras": 18.0, "words": 40.0}  # pixels of lanes that have no requests
+GHOST = 15.0  # the same of another seed's
 TALLEST_SHARE, LEAST_SHARE = 4.0, 0.45  # by which a lane can be made taller or lower
 NARROWEST = 6.0  # pixels of a mark that others leave no room
 
@@ -63,7 +63,7 @@ class Scale:
 @dataclass(frozen=True)
 class Sizes:
     """Which lanes there are besides stage and layers, and how tall each is. extra: "cameras", "words", and
-    the seeds of ghosts as "ghost 7". tall: lane -> its share of the height, 1 for the usual.
+    the seeds of ghosts as "ghost 7". tall: lane -> how many times its usual height it has.
     """
 
     extra: tuple[str, ...] = ()
@@ -75,24 +75,35 @@ class Sizes:
         out = [n for n in ("cameras", STAGE, "words", *LAYERS) if n in NAMES or n in self.extra]
         return (*out, *(n for n in self.extra if n.startswith("ghost ")))
 
-    def share(self, name: str) -> float:
-        usual = GHOST if name.startswith("ghost ") else SHARES.get(name, 1.0)
-        return usual * dict(self.tall).get(name, 1.0)
+    def factor(self, name: str) -> float:
+        return dict(self.tall).get(name, 1.0)
+
+    def fixed(self, name: str) -> float | None:
+        """Return how many pixels a lane has that has no requests; None for one that has."""
+        usual = GHOST if name.startswith("ghost ") else FIXED.get(name)
+        return usual * self.factor(name) if usual is not None else None
+
+    def least(self, layer: float) -> float:
+        """Return the height in which each layer has so many pixels."""
+        return RULER + layer * len(NAMES) + sum(self.fixed(n) or 0.0 for n in self.extra)
 
     def resized(self, name: str, bottom: float, whole: float) -> Sizes:
         """Return the sizes with which a lane ends at `bottom`, in a widget `whole` pixels high."""
-        before = self.names[: self.names.index(name)]
-        above = sum(self.share(n) for n in before)
-        below = sum(self.share(n) for n in self.names if n not in before and n != name)
-        full = whole - RULER < LANE * (above + self.share(name) + below)  # then it takes from the others
-        part = min(0.98, max(0.0, (bottom - RULER) / max(1.0, whole - RULER)))
-        if not full:
-            share = (bottom - RULER) / LANE - above
-        elif below:
-            share = (part * (above + below) - above) / (1 - part)
-        else:  # the last one ends where all end: the higher the mouse, the lower it is
-            share = self.share(name) * part
-        return self.with_factor(name, share * dict(self.tall).get(name, 1.0) / self.share(name))
+        fixed = self.fixed(name)
+        if fixed is not None:
+            top = lanes(whole, self)[name].top()
+            return self.with_factor(name, (bottom - top) * self.factor(name) / fixed)
+        names = self.names
+        before, room = names[: names.index(name)], whole - RULER - sum(self.fixed(n) or 0.0 for n in names)
+        above = sum(self.factor(n) for n in before if n in NAMES)
+        below = sum(self.factor(n) for n in NAMES if n not in before and n != name)
+        down = bottom - RULER - sum(self.fixed(n) or 0.0 for n in before)
+        part = min(0.98, max(0.0, down / max(1.0, room)))
+        if room >= LANE * (above + self.factor(name) + below):
+            return self.with_factor(name, down / LANE - above)
+        if not below:  # the last one ends where all end: the higher the mouse, the lower it is
+            return self.with_factor(name, self.factor(name) * part)
+        return self.with_factor(name, (part * (above + below) - above) / (1 - part))
 
     def with_factor(self, name: str, factor: float) -> Sizes:
         """Return the sizes with which a lane is so many times its usual height."""
@@ -106,13 +117,15 @@ EVEN = Sizes()
 
 def lanes(height: float, sizes: Sizes = EVEN) -> dict[str, QRectF]:
     """Return where each lane is, from the top: the stage, then the layers, with what is shown besides."""
-    shares = {name: sizes.share(name) for name in sizes.names}
-    whole = sum(shares.values())
-    each = min(float(LANE), max(32.0 * len(NAMES) / whole, (height - RULER) / whole))
+    names, whole = sizes.names, sum(sizes.factor(n) for n in NAMES)
+    room = height - RULER - sum(sizes.fixed(n) or 0.0 for n in names)
+    each = min(float(LANE), max(32.0 * len(NAMES) / whole, room / whole))
     out, top = {}, float(RULER)
-    for name, share in shares.items():
-        out[name] = QRectF(0, top, 1e6, share * each)
-        top += share * each
+    for name in names:
+        tall = sizes.fixed(name)
+        tall = each * sizes.factor(name) if tall is None else tall
+        out[name] = QRectF(0, top, 1e6, tall)
+        top += tall
     return out
 
 

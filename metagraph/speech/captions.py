@@ -140,11 +140,14 @@ def _standing(captions: list[Caption]) -> list[Caption]:
 
 
 def _lines(words: Sequence[str]) -> str:
-    """Break words into lines."""
+    """Break words into lines, two of them where they are most alike in length."""
     out = [""]
     for word in words:
         if out[-1] and len(out[-1]) + 1 + len(word) > LINE:
             out.append(word)
         else:
             out[-1] = f"{out[-1]} {word}".strip()
+    if len(out) == 2:
+        halves = [(" ".join(words[:n]), " ".join(words[n:])) for n in range(1, len(words))]
+        out = list(min(halves, key=lambda h: max(map(len, h))))
     return "\n".join(out)

@@ -45,7 +45,7 @@ def contribute(shell: Shell) -> Contribution:
                 "Performance",
                 "bottom",
                 make,
-                least=(400, 222),
+                least=(400, 236),
                 where={"perform": "below"},
                 opens={"talk": "below"},
             ),

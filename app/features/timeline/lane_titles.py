@@ -5,6 +5,7 @@ lane's requests; the border below makes a lane taller or lower.
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from functools import partial
 from typing import Any, cast
 
@@ -109,11 +110,12 @@ class LaneTitles:
         others = set(LAYERS) - {layer}
         return set() if self.performance.muted == others else others
 
-    def size(self, lane: str | None, factor: float) -> None:
-        """Make a lane so many times its usual height; None for all."""
+    def size(self, lane: str | None, factor: float = 1.0) -> None:
+        """Make a lane so many times its usual height; None for all as usual."""
         sizes = self.view.sizes
-        for name in sizes.names if lane is None else (lane,):
-            sizes = sizes.with_factor(name, factor)
+        if lane is None:
+            sizes = replace(sizes, tall=())
+        sizes = sizes.with_factor(lane, factor) if lane is not None else sizes
         self.view.set_sizes(sizes)
         self.keep()
 
@@ -142,9 +144,7 @@ class LaneTitles:
             size = menu.addAction(words, partial(self.size, lane, factor))
             size.setCheckable(True)
             size.setChecked(now == factor)
-        menu.addAction("All lanes as usual", lambda: self.size(None, 1.0)).setEnabled(
-            bool(self.view.sizes.tall)
-        )
+        menu.addAction("All lanes as usual", lambda: self.size(None)).setEnabled(bool(self.view.sizes.tall))
         menu.addSeparator()
         menu.addAction("Let all be seen", lambda: self.performance.mute(())).setEnabled(bool(muted))
         return menu

@@ -17,6 +17,7 @@ from PySide6.QtGui import (
     QPaintEvent,
     QPen,
     QPixmap,
+    QResizeEvent,
     QWheelEvent,
 )
 from PySide6.QtWidgets import QApplication, QMenu, QToolTip, QWidget
@@ -48,6 +49,7 @@ from app.widgets.lane_geometry import (
     lanes,
     mark_at,
     marks,
+    rows,
     told,
 )
 from app.widgets.lane_paint import LaneScene, badge, cue_words, paint, playhead
@@ -57,6 +59,7 @@ from metagraph.graph.model import LAYERS
 
 CATCH = 3  # pixels the mouse must move for a press to become a drag
 NEAREST, FARTHEST = 400.0, 0.25  # pixels a second
+LEAST = 38  # pixels of a layer in which its two rows are read
 COPIES = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier
 TEXT = (
     "Requests, and what plays. Up and Down choose a request, Left and Right move it, Enter changes it, "
@@ -88,7 +91,7 @@ class Lanes(QWidget):
         self._marks: Once[list[Mark]] = Once()
         self._still: Once[QPixmap] = Once()  # all but what moves while it plays
         self.painted = 0  # how often that was made
-        self.setMinimumHeight(RULER + 4 * 38)
+        self.setMinimumHeight(RULER + 4 * LEAST)
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName("Timeline")
@@ -211,7 +214,13 @@ class Lanes(QWidget):
                 elif (seed := seed_of(name)) is not None:
                     plan = self.what_if.plans.get(seed)
                     paint_ghost(painter, theme(s.look.name), lane, self.scale(), self.width(), plan)
-                elif name in NAMES:
+                if name == STAGE and "words" not in self.sizes.extra and self.voices.words():
+                    row = rows(lane)[1]
+                    painter.fillRect(row.adjusted(LEFT, 0, 0, -3), QColor(theme(s.look.name).panel))
+                    paint_voice(
+                        painter, theme(s.look.name), row, self.scale(), self.width(), self.voices, ratio
+                    )
+                if name in NAMES:
                     at = QPointF(LEFT - LOCK / 2 - 2, lane.center().y())
                     padlock(painter, theme(s.look.name), at, name in locked)
             painter.end()
@@ -469,10 +478,17 @@ class Lanes(QWidget):
             self.update()
 
     def show_lanes(self) -> None:
-        """Have a lane for everything that there is to show."""
+        """Have a lane for everything that there is to show, of words where there is room for one."""
         cameras = ("cameras",) if self.performance.conversation is not None else ()
-        words = ("words",) if self.voices.wanted else ()
+        spoken = replace(self.sizes, extra=(*cameras, "words"))
+        words = ("words",) if self.voices.wanted and self.height() >= spoken.least(LEAST) else ()
         self.set_sizes(replace(self.sizes, extra=(*cameras, *words, *self.what_if.lanes)))
+        needed = replace(self.sizes, extra=(*cameras, *self.what_if.lanes))
+        self.setMinimumHeight(round(needed.least(LEAST)))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.show_lanes()
 
     def snap_lines(self, but: tuple[str, ...]) -> list[SnapLine]:
         """Return what a drag of some requests or of a marker holds to."""

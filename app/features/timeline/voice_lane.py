@@ -14,21 +14,30 @@ TEXT = 15.0  # pixels of the words' line
 LETTERS = 12  # pixels high
 GAP = 5.0  # pixels between words at least
 FADED = 0.62
+LOW = 30.0  # pixels below which words stand over the waveform
 
 
 def paint_voice(
     painter: QPainter, t: Theme, lane: QRectF, scale: Scale, width: float, voices: Voices, ratio: float
 ) -> None:
-    """Paint waveform and words into a lane. ratio: pixels of the screen to one of the widget."""
+    """Paint waveform and words into a lane, or, where it is low, the words over the waveform. ratio: pixels
+    of the screen to one of the widget.
+    """
+    low = lane.height() < LOW
     painter.save()
     painter.setClipRect(QRectF(LEFT, lane.top(), width - LEFT, lane.height()))
-    area = QRectF(LEFT, lane.top() + 2, width - LEFT, max(4.0, lane.height() - TEXT - 4))
+    below = 1.0 if low else TEXT + 2
+    area = QRectF(LEFT, lane.top() + 2, width - LEFT, max(4.0, lane.height() - below - 2))
+    painter.setOpacity(0.55 if low else 1.0)
     _waves(painter, t, area, scale, width, voices, ratio)
+    painter.setOpacity(1.0)
     font = QFont(painter.font())
     font.setPixelSize(LETTERS)
     painter.setFont(font)
     key, free = font.toString(), -1e9
     row = QRectF(0, lane.bottom() - TEXT - 1, 0, TEXT)
+    if low:
+        row.moveTop(lane.center().y() - TEXT / 2)
     tick = QColor(t.dim)
     for start, end, text in voices.words():
         left, right = scale.x(start), scale.x(end)
@@ -36,7 +45,7 @@ def paint_voice(
             continue
         painter.setPen(QPen(tick, 1))
         painter.drawLine(QPointF(left, row.top()), QPointF(left, row.top() + 3))
-        if right - left > 6:
+        if right - left > 6 and not low:
             painter.drawLine(QPointF(left, row.top()), QPointF(right - 1, row.top()))
         if left >= free:  # a word for which there is no room is left out, never cut
             painter.setPen(QColor(t.text))

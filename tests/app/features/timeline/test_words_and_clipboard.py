@@ -45,6 +45,9 @@ def test_words_stand_under_their_times_with_the_voice(spoken):
         (pytest.approx(2.2), pytest.approx(2.6), "so"),
         (pytest.approx(2.6), pytest.approx(3.0), "what"),
     ]
+    view.resize(view.width(), 220)
+    assert "words" not in view.sizes.names, "where there is no room they stand on the lane of speech"
+    view.resize(view.width(), 400)
     assert "words" in view.sizes.names and spoken.timeline.voices.of("1").wave is not None
     view.each, view.first = 100.0, 0.0
     lane = lanes(view.height(), view.sizes)["words"]
