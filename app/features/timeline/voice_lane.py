@@ -13,7 +13,7 @@ from app.widgets.waveforms import joined, painted
 TEXT = 15.0  # pixels of the words' line
 LETTERS = 12  # pixels high
 GAP = 5.0  # pixels between words at least
-FADED = 0.62
+FADED, BEHIND = 0.62, 0.4  # of the waveform beside words, and behind them
 LOW = 30.0  # pixels below which words stand over the waveform
 
 
@@ -28,7 +28,7 @@ def paint_voice(
     painter.setClipRect(QRectF(LEFT, lane.top(), width - LEFT, lane.height()))
     below = 1.0 if low else TEXT + 2
     area = QRectF(LEFT, lane.top() + 2, width - LEFT, max(4.0, lane.height() - below - 2))
-    painter.setOpacity(0.55 if low else 1.0)
+    painter.setOpacity(BEHIND if low else 1.0)
     _waves(painter, t, area, scale, width, voices, ratio)
     painter.setOpacity(1.0)
     font = QFont(painter.font())
@@ -43,10 +43,10 @@ def paint_voice(
         left, right = scale.x(start), scale.x(end)
         if right < LEFT or left > width:
             continue
-        painter.setPen(QPen(tick, 1))
-        painter.drawLine(QPointF(left, row.top()), QPointF(left, row.top() + 3))
-        if right - left > 6 and not low:
-            painter.drawLine(QPointF(left, row.top()), QPointF(right - 1, row.top()))
+        if not low:
+            painter.setPen(QPen(tick, 1))
+            painter.drawLine(QPointF(left, row.top()), QPointF(left, row.top() + 3))
+            painter.drawLine(QPointF(left, row.top()), QPointF(max(left, right - 1), row.top()))
         if left >= free:  # a word for which there is no room is left out, never cut
             painter.setPen(QColor(t.text))
             painter.drawText(

@@ -45,7 +45,7 @@ def test_words_stand_under_their_times_with_the_voice(spoken):
         (pytest.approx(2.2), pytest.approx(2.6), "so"),
         (pytest.approx(2.6), pytest.approx(3.0), "what"),
     ]
-    view.resize(view.width(), 220)
+    view.resize(view.width(), 200)
     assert "words" not in view.sizes.names, "where there is no room they stand on the lane of speech"
     view.resize(view.width(), 400)
     assert "words" in view.sizes.names and spoken.timeline.voices.of("1").wave is not None
