@@ -127,7 +127,9 @@ class Lanes(QWidget):
             return still + [m for m in found if m.ask.id in drag.idents]
 
         values = (scale, self.height(), self.font().toString(), self.sizes, drag and (drag.by, drag.copy))
-        return self._marks.of(values, (asks, answers, project), make)
+        # What is noted beside the requests changes none of them.
+        of = (asks, answers, project.graphs, project.lines, project.points)
+        return self._marks.of(values, of, make)
 
     def _playhead(self, seconds: float) -> None:
         width = self.width() - LEFT
@@ -480,7 +482,7 @@ class Lanes(QWidget):
     def show_lanes(self) -> None:
         """Have a lane for everything that there is to show, of words where there is room for one."""
         cameras = ("cameras",) if self.performance.conversation is not None else ()
-        spoken = replace(self.sizes, extra=(*cameras, "words"))
+        spoken = replace(self.sizes, extra=(*cameras, "words", *self.what_if.lanes))
         words = ("words",) if self.voices.wanted and self.height() >= spoken.least(LEAST) else ()
         self.set_sizes(replace(self.sizes, extra=(*cameras, *words, *self.what_if.lanes)))
         needed = replace(self.sizes, extra=(*cameras, *self.what_if.lanes))

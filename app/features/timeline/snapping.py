@@ -15,6 +15,7 @@ from app.widgets.lane_geometry import Mark, Scale
 from metagraph.playback.phases import phases
 
 REACH = 8.0  # pixels from which something is drawn to a line; ours
+WIDE = 24.0  # pixels of a gesture from which its stroke is a line of its own
 SETTING = "timeline/magnet"
 
 
@@ -59,7 +60,7 @@ def snap_lines(
                 continue
             name = plain(cue.action.name)
             out += [SnapLine(cue.start, f"start of {name}"), SnapLine(cue.end, f"end of {name}")]
-            if cue.action.kind == "gesture":
+            if cue.action.kind == "gesture" and (cue.end - cue.start) * scale.each >= WIDE:
                 stroke = phases(shown.project, cue.action).stroke
                 if cue.entry <= stroke <= cue.last:
                     out.append(SnapLine(cue.start + (stroke - cue.entry) / cue.tempo, f"stroke of {name}"))

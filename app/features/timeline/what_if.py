@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QRectF, Signal
-from PySide6.QtGui import QColor, QPainter
+from PySide6.QtCore import QObject, QRectF, Qt, Signal
+from PySide6.QtGui import QPainter
 
 from app.look.names import plain
 from app.look.theme import Theme
@@ -156,12 +157,19 @@ def paint_ghost(
     painter.save()
     painter.setClipRect(QRectF(LEFT, lane.top(), width - LEFT, lane.height()))
     painter.setOpacity(FADED)
-    each = (lane.height() - 5) / len(LAYERS)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
+    painter.setPen(Qt.PenStyle.NoPen)
+    each, bars = (lane.height() - 5) / len(LAYERS), dict[str, list[QRectF]]()
     for n, layer in enumerate(ORDER):
         cues = plan.layers[layer].cues if plan is not None else ()
-        for cue in cues:
+        begin, end = scale.seconds(LEFT), scale.seconds(width)
+        for cue in cues[bisect_left(cues, begin, key=lambda c: c.end) :]:
+            if cue.start > end:
+                break
             left, right = scale.x(cue.start), scale.x(cue.end)
-            if right > LEFT and left < width:
-                rect = QRectF(left, lane.top() + 3 + n * each, max(2.0, right - left - 1), max(2.0, each - 1))
-                painter.fillRect(rect, QColor(t.fills[cue.action.kind]))
+            rect = QRectF(left, lane.top() + 3 + n * each, max(2.0, right - left - 1), max(2.0, each - 1))
+            bars.setdefault(cue.action.kind, []).append(rect)
+    for kind, rects in bars.items():
+        painter.setBrush(t.fill(kind))
+        painter.drawRects(rects)
     painter.restore()
