@@ -76,6 +76,8 @@ def shot_camera(
     sight = heads[other] - heads[side]
     sight[1] = 0.0
     sight /= max(1e-6, float(np.linalg.norm(sight)))
+    across = np.array([-sight[2], 0.0, sight[0]])  # level, across the line of sight, on the cameras' side
+    across = -across if float(across @ beside) < 0 else across
     if shot == "close":
         angle = CLOSE_TURN if float(np.cross(sight, beside)[1]) > 0 else -CLOSE_TURN
         turned = np.array(
@@ -92,8 +94,8 @@ def shot_camera(
             target + turned * (tall / 2 / math.tan(CLOSE_FOV / 2)) + (0, 0.02 * height, 0), target, CLOSE_FOV
         )
     scale = heights[other] / USUAL
-    eye = heads[other] + scale * (BEHIND * sight + ASIDE * beside + np.array([0.0, ABOVE, 0.0]))
-    target = heads[side] + 0.10 * scale * (beside * 0.3 - np.array([0.0, 0.9, 0.0]))
+    eye = heads[other] + scale * (BEHIND * sight + ASIDE * across + np.array([0.0, ABOVE, 0.0]))
+    target = heads[side] + 0.10 * scale * (across * 0.3 - np.array([0.0, 0.9, 0.0]))
     return camera_from(eye, target, OVER_FOV * max(1.0, min(1.6, 1.5 / aspect)))
 
 

@@ -33,9 +33,9 @@ def test_who_is_meant_is_in_the_picture_and_all_cameras_stand_on_one_side(heads,
 
 
 def test_over_a_shoulder_the_other_is_nearer_and_to_the_side_of_the_face():
-    for side, other in ((0, 1), (1, 0)):
-        camera, at = seen("over", side)
-        away = np.linalg.norm(HEADS - camera.eye, axis=1)
+    for heads, side, other in ((HEADS, 0, 1), (HEADS, 1, 0), (CIRCLE, 0, 1), (CIRCLE, 1, 0), (CIRCLE, 2, 0)):
+        camera, at = seen("over", side, heads)
+        away = np.linalg.norm(heads - camera.eye, axis=1)
         assert away[other] < 1.0 < away[side]
         assert abs(at[other, 0] - at[side, 0]) > 0.2, "the one does not hide the other"
 
