@@ -131,7 +131,7 @@ def lanes(height: float, sizes: Sizes = EVEN) -> dict[str, QRectF]:
 
 def rows(lane: QRectF) -> tuple[QRectF, QRectF]:
     """Return a lane's upper row, what was asked, and its lower, what plays."""
-    lower = min(PLAYS, lane.height() * 0.55)
+    lower = min(PLAYS, lane.height() * 0.5)
     upper = lane.height() - lower
     return QRectF(lane.left(), lane.top() + 2, lane.width(), upper - 3), QRectF(
         lane.left(), lane.top() + upper, lane.width(), lower - 3

@@ -63,7 +63,7 @@ LEAST = 38  # pixels of a layer in which its two rows are read
 COPIES = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier
 TEXT = (
     "Requests, and what plays. Up and Down choose a request, Left and Right move it, Enter changes it, "
-    "Insert asks for something."
+    "Insert asks for something. M adds a marker, I and O begin and end the loop range."
 )
 
 

@@ -10,9 +10,11 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from app.stage.caption_paint import captioned
+from app.stage.cutting import Cutting
 from app.widgets.lane_geometry import lanes
 from metagraph.graph.conversation import Conversation, Segment, Side, Word
 from metagraph.graph.conversation_edits import add_conversation
+from metagraph.graph.timeline import Cut
 from metagraph.speech.captions import Caption
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -131,6 +133,31 @@ def test_captions_are_painted_inside_the_safe_area(qapp, size):
     assert rows.max() <= height * 0.95 and rows.min() > height * 0.3
     assert columns.min() >= width * 0.03 and columns.max() <= width * 0.97
     assert captioned(plain, []) is plain
+
+
+def test_what_is_written_is_cut_and_captioned_like_the_preview(talking, monkeypatch):
+    from app.cli import render_command
+
+    cuts = (Cut(at=0.0, shot="two"), Cut(at=2.0, shot="close", side=1))
+    seen = [(talking.figures.of(one), one) for one in talking.performance.shown.everyone]
+    cameras = []
+
+    def pictures(seen, times, size, look, camera, into):
+        for at in times:
+            cameras.append(camera(float(at)))
+            yield np.full((size[1], size[0], 4), 255, np.uint8)
+
+    monkeypatch.setattr(render_command, "pictures", pictures)
+    captions = (Caption(1.0, 1.5, "so it was"),)
+    times = np.array([0.5, 1.2, 2.5])
+    drawn = list(render_command.directed(seen, times, (320, 180), "dark", (cuts, captions)))
+    assert cameras[0] == cameras[1] != cameras[2] and cameras[2].distance < cameras[0].distance
+    assert [bool((p != 255).any()) for p in drawn] == [False, True, False]
+    talking.session.transport.seek(2.5)
+    talking.performance.timeline.set_cuts("Cut", cuts)
+    talking.preview.view.grab()
+    aspect = talking.preview.view.width() / talking.preview.view.height()
+    assert talking.preview.view.camera == Cutting().camera(seen, cuts, 2.5, aspect)
 
 
 def test_the_titles_leave_the_cameras_alone(talking):

@@ -98,6 +98,25 @@ def test_i_and_o_set_the_range_and_what_is_beyond_it_plays_on(stage):
     assert timeline.range is None and stage.document.project.timelines == {}
 
 
+def test_the_range_can_be_written_alone(stage, monkeypatch):
+    from app.features.render import render_dialog
+
+    stage.performance.timeline.set_range(2.0, 5.0)
+    dialog = render_dialog.RenderDialog(stage.performance, stage.session, stage.jobs, stage.window)
+    assert dialog.part.currentText() == "The range, 2.00 to 5.00 s" and dialog.seconds.isHidden()
+    orders = []
+    monkeypatch.setattr(render_dialog, "write", lambda project, folder, order, job: orders.append(order))
+    monkeypatch.setattr(dialog, "_done", lambda path: None)
+    dialog._write()
+    stage.wait(lambda: bool(orders))
+    assert (orders[0].start, orders[0].seconds) == (2.0, 3.0)
+    dialog.part.setCurrentIndex(0)
+    dialog._suffixed()
+    assert not dialog.seconds.isHidden()
+    stage.wait(lambda: not stage.jobs.running)
+    dialog.close()
+
+
 def test_markers_are_added_named_moved_gone_to_and_removed(stage, monkeypatch):
     view, timeline, transport = stage.timeline.lanes, stage.performance.timeline, stage.session.transport
     transport.seek(3.0)
