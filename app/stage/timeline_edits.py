@@ -123,10 +123,10 @@ class TimelineEdits(QObject):
         self.select(made)
         return made
 
-    def move_marker(self, ident: str, at: float) -> None:
+    def move_marker(self, ident: str, at: float, merge: str | None = None) -> None:
         key = self.key
         self.document.edit(
-            "Move marker", lambda p: notes.change_marker(p, key, ident, at=round(max(0.0, at), 3))
+            "Move marker", lambda p: notes.change_marker(p, key, ident, at=round(max(0.0, at), 3)), merge
         )
 
     def rename_marker(self, ident: str, name: str) -> None:

@@ -17,12 +17,13 @@ from metagraph.graph.model import KINDS
 
 TIMELINE = (  # and what the timeline does
     ("Add a marker", "M"),
-    ("Move requests", "arrows, with Shift by a second"),
+    ("Move requests or a marker", "arrows, with Shift by a second"),
     ("Take requests back and close up", "Shift+Del"),
     ("Cut, copy, paste requests", "Ctrl+X, Ctrl+C, Ctrl+V"),
     ("Copy requests a second later", "Ctrl+D"),
     ("Ask for something", "Insert"),
     ("Cut to all, over a shoulder, close", "1 to 9"),
+    ("Take the cut away", "0"),
     ("Zoom in and out", "+, −"),
     ("Drag without snapping", "Shift"),
 )

@@ -36,6 +36,12 @@ def contribute(shell: Shell) -> Contribution:
         lambda: noted.remove_marker(str(noted.marker)),
         rank=1,
     )
+    shell.services[Verbs].offer(
+        "rename",
+        lambda: session.onstage.mode == "meta" and noted.selected is not None,
+        lambda: shell.panel("timeline").lanes.ruler.rename(str(noted.marker)),
+        rank=1,
+    )
     # Whether there is something to remove is asked when something else is selected.
     noted.changed.connect(lambda: shell.actions["delete"].setEnabled(shell.services[Verbs].can("remove")))
     return Contribution(

@@ -117,6 +117,12 @@ class CameraLane:
         self.view.performance.timeline.cut_to(shot, side, self.view.session.transport.seconds)
         return True
 
+    def remove_seen(self) -> None:
+        """Take away the cut whose picture is seen at the playhead."""
+        here = self.cut_at(QPointF(self.view.scale().x(self.view.session.transport.seconds), 0))
+        if here is not None:
+            self.view.performance.timeline.remove_cut(here)
+
     def menu(self, at: QPointF) -> QMenu:
         menu, talk, timeline = QMenu(self.view), self.talk, self.view.performance.timeline
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
@@ -128,7 +134,7 @@ class CameraLane:
             menu.addAction(f"{words}{key}", partial(timeline.cut_to, shot, side, seconds))
         menu.addSeparator()
         here = self.cut_at(at)
-        remove = menu.addAction("Remove this cut", lambda: timeline.remove_cut(here))
+        remove = menu.addAction("Remove this cut\t0 at the playhead", lambda: timeline.remove_cut(here))
         remove.setEnabled(here is not None)
         menu.addAction("Automatic cuts", lambda: timeline.automatic(talk))
         menu.addAction("No cuts", lambda: timeline.set_cuts("Remove cuts", ())).setEnabled(bool(self.cuts))

@@ -37,10 +37,12 @@ class LaneKeys:
             return bool(view.session.onstage.requests)
         if held == Held.ControlModifier and key == Key.Key_V:
             return bool(view.session.onstage.mode == "meta")
-        if held == Held.NoModifier and Key.Key_1 <= key <= Key.Key_9:
+        if held == Held.NoModifier and Key.Key_0 <= key <= Key.Key_9:
             return view.cameras.talk is not None
         if key == Key.Key_Delete and held == Held.ShiftModifier:
             return bool(view.session.onstage.requests)
+        if key in (Key.Key_Left, Key.Key_Right) and view.performance.timeline.marker is not None:
+            return True
         mine = (Key.Key_Left, Key.Key_Right, Key.Key_Return)
         return bool(view.session.onstage.requests) and key in mine
 
@@ -74,6 +76,12 @@ class LaneKeys:
             timeline.add_marker()
         elif key in (Key.Key_Up, Key.Key_Down):
             self._choose(1 if key == Key.Key_Down else -1)
+        elif timeline.selected is not None and key in (Key.Key_Left, Key.Key_Right):
+            by = FAR if held & Held.ShiftModifier else NUDGE
+            marker = timeline.selected
+            timeline.move_marker(marker.id, marker.at + (by if key == Key.Key_Right else -by), "nudge")
+        elif held == Held.NoModifier and key == Key.Key_0 and view.cameras.talk is not None:
+            view.cameras.remove_seen()
         elif held == Held.NoModifier and Key.Key_1 <= key <= Key.Key_9 and view.cameras.talk is not None:
             view.cameras.key(key - Key.Key_0)
         elif key == Key.Key_Insert:

@@ -37,6 +37,15 @@ def commands(shell: Shell) -> tuple[Command, ...]:
     ) -> Command:
         return Command(ident, "&Play", group, text, run, keys, when="meta", **{"enabled": there, **more})
 
+    def taller(by: float) -> Callable[[], object]:
+        """Return what makes the lane of the layer that is edited taller."""
+
+        def size() -> None:
+            titles, lane = panel().lanes.titles, session.place.layer
+            titles.size(lane, titles.view.sizes.factor(lane) * by)
+
+        return size
+
     def automatic() -> None:
         talk = shell.document.project.conversations.get(performance.conversation or "")
         if talk is not None:
@@ -99,6 +108,17 @@ def commands(shell: Shell) -> tuple[Command, ...]:
             checked=lambda: performance.requests.ripple,
             tip="What follows goes along with what is moved",
         ),
+        command(
+            "lock_layer",
+            "timeline",
+            "&Lock the layer's requests",
+            lambda: noted.lock(session.place.layer, session.place.layer not in noted.now.locked),
+            ("Shift+L",),
+            tip="Requests of the layer that is edited cannot be moved or taken back",
+            checked=lambda: session.place.layer in noted.now.locked,
+        ),
+        command("lane_taller", "timeline", "Taller lane", taller(1.3), ("Alt+Shift+Up",)),
+        command("lane_lower", "timeline", "Lower lane", taller(1 / 1.3), ("Alt+Shift+Down",)),
         command(
             "automatic_cuts",
             "timeline",

@@ -139,6 +139,28 @@ def test_markers_are_added_named_moved_gone_to_and_removed(stage, monkeypatch):
     assert "double-click renames" in view._tip(QPointF(x(view, 5.5)))
 
 
+def test_markers_are_moved_and_renamed_and_layers_locked_by_keys(stage, monkeypatch):
+    view, timeline = stage.timeline.lanes, stage.performance.timeline
+    timeline.add_marker(3.0)
+    view.setFocus()
+    for key, held in ((Qt.Key.Key_Right, NONE), (Qt.Key.Key_Right, SHIFT), (Qt.Key.Key_Left, NONE)):
+        QTest.keyClick(view, key, held)
+    assert timeline.now.markers[0].at == pytest.approx(4.0)
+    monkeypatch.setattr(QInputDialog, "getText", lambda *_, **__: ("Turn", True))
+    stage.do("rename")
+    assert timeline.now.markers[0].name == "Turn"
+    stage.document.undo()
+    stage.document.undo()
+    assert timeline.now.markers[0].at == 3.0, "a run of keys is one step"
+    layer = stage.session.place.layer
+    stage.do("lock_layer")
+    assert timeline.now.locked == (layer,)
+    stage.do("lane_taller")
+    assert view.sizes.factor(layer) == pytest.approx(1.3)
+    stage.do("lane_lower")
+    assert view.sizes.factor(layer) == 1.0
+
+
 def test_a_dragged_request_holds_to_a_marker_and_shift_lets_it_go(stage):
     view, timeline = stage.timeline.lanes, stage.performance.timeline
     timeline.add_marker(6.13)
