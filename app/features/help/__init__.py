@@ -50,8 +50,8 @@ def contribute(shell: Shell) -> Contribution:
                 command.menu.replace("&", ""), command.plain, keys, tip, action.trigger, action.isEnabled()
             )
         if keyed:
-            yield from (Entry("In a conversation", words, keys) for words, keys in LANES)
             yield from (Entry("On the timeline", words, keys) for words, keys in TIMELINE)
+            yield from (Entry("In a conversation", words, keys) for words, keys in LANES)
             return
         places = shell.services[Places]
         for ident, dock in places.docks.items():
