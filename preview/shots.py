@@ -20,7 +20,8 @@ from preview.camera import Camera
 Array = NDArray[Any]
 Shot = Literal["over", "two", "close"]
 
-BEHIND, ASIDE, ABOVE = 0.78, 0.34, 0.07  # metres from the head of whose shoulder it is, for one of 1.75 m
+# Metres from the head of whose shoulder it is, for one of 1.75 m; how far beside it one looks past.
+BEHIND, BESIDE, ABOVE = 0.78, 0.21, 0.07
 USUAL = 1.75  # metres of the figure those are for
 OVER_FOV, CLOSE_FOV, TWO_FOV = math.radians(30.0), math.radians(22.0), math.radians(28.0)
 CLOSE_TURN = math.radians(24.0)  # by which a close camera stands beside the line of sight
@@ -94,7 +95,9 @@ def shot_camera(
             target + turned * (tall / 2 / math.tan(CLOSE_FOV / 2)) + (0, 0.02 * height, 0), target, CLOSE_FOV
         )
     scale = heights[other] / USUAL
-    eye = heads[other] + scale * (BEHIND * sight + ASIDE * across + np.array([0.0, ABOVE, 0.0]))
+    apart = max(0.3, float(np.linalg.norm((heads[other] - heads[side])[[0, 2]])))
+    aside = BESIDE * (apart + BEHIND * scale) / apart  # so that the line to the face passes the head
+    eye = heads[other] + scale * (BEHIND * sight + aside * across + np.array([0.0, ABOVE, 0.0]))
     target = heads[side] + 0.10 * scale * (across * 0.3 - np.array([0.0, 0.9, 0.0]))
     return camera_from(eye, target, OVER_FOV * max(1.0, min(1.6, 1.5 / aspect)))
 

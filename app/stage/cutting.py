@@ -27,6 +27,10 @@ from preview.shots import shot_camera
 
 Seen = tuple[Any, Shown]  # a figure, and what it plays
 SAMPLED = 3  # moments of a cut from which it is told where heads are
+HEAD, MOST = (
+    0.085,
+    4.0,
+)  # of the height, from a head's middle to its top, hair included; most that it is larger
 FARTHEST = 8.0  # seconds of a cut over which they are
 
 
@@ -54,21 +58,33 @@ class Cutting:
         return self._kept[key]
 
 
+def _head(figure: Any) -> tuple[float, float]:
+    """Return how far the middle of a figure's head is above where `Figure.head` says, and how tall a person
+    with such a head is, metres: a figure of a cartoon may have one three times as large.
+    """
+    rotations, positions = figure.skeleton.globals(figure.skeleton.rest)
+    above = float(figure.bounds(positions)[1][1] - figure.head(rotations, positions)[1])
+    lift = max(0.0, (above - HEAD * figure.height) / 2)
+    return lift, min(MOST, max(1.0, (above - lift) / (HEAD * figure.height))) * figure.height
+
+
 def _camera(seen: Sequence[Seen], cut: Cut, end: float, aspect: float) -> Camera:
     times = np.linspace(cut.at, max(cut.at, end), SAMPLED)
-    heads, lows, highs = [], [], []
+    heads, heights, lows, highs = [], [], [], []
     for figure, shown in seen:
         pose, skeleton = shown.pose(times), shown.skeleton
         assert pose is not None and skeleton is not None
         rotations, positions = skeleton.globals(pose)
         if shown.stand is not None:
             rotations, positions = shown.stand.placed(rotations, positions)
-        heads.append(np.mean([figure.head(r, p) for r, p in zip(rotations, positions, strict=True)], axis=0))
+        lift, height = _head(figure)
+        middle = np.mean([figure.head(r, p) for r, p in zip(rotations, positions, strict=True)], axis=0)
+        heads.append(middle + np.array([0.0, lift, 0.0]))
+        heights.append(height)
         low, high = figure.bounds(positions)
         lows.append(low)
         highs.append(high)
     bounds = (np.min(lows, axis=0), np.max(highs, axis=0))
-    heights = [figure.height for figure, _ in seen]
     return shot_camera(cut.shot, cut.side, np.array(heads), heights, bounds, aspect)
 
 
