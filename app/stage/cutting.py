@@ -26,7 +26,7 @@ from preview.camera import Camera
 from preview.shots import shot_camera
 
 Seen = tuple[Any, Shown]  # a figure, and what it plays
-SAMPLED = 3  # moments of a cut from which it is told where heads are
+SAMPLED = 2  # moments of a cut from which it is told where heads are
 HEAD, MOST = (
     0.085,
     4.0,
@@ -40,6 +40,7 @@ class Cutting:
     def __init__(self) -> None:
         self._of: tuple[object, ...] = ()
         self._kept: dict[tuple[Cut, float, float], Camera] = {}
+        self._heads: list[tuple[float, float]] = []
 
     def camera(
         self, seen: Sequence[Seen], cuts: tuple[Cut, ...], seconds: float, aspect: float
@@ -52,9 +53,12 @@ class Cutting:
         of = (*(figure for figure, _ in seen), *(shown.plan for _, shown in seen))
         if len(of) != len(self._of) or any(a is not b for a, b in zip(of, self._of, strict=True)):
             self._of, self._kept = of, {}
+            self._heads = [_head(figure) for figure, _ in seen]
         key = (cut, end, round(aspect, 2))
         if key not in self._kept:
-            self._kept[key] = _camera(seen, cut, min(end, cut.at + FARTHEST, seen[0][1].length), aspect)
+            self._kept[key] = _camera(
+                seen, self._heads, cut, min(end, cut.at + FARTHEST, seen[0][1].length), aspect
+            )
         return self._kept[key]
 
 
@@ -68,16 +72,17 @@ def _head(figure: Any) -> tuple[float, float]:
     return lift, min(MOST, max(1.0, (above - lift) / (HEAD * figure.height))) * figure.height
 
 
-def _camera(seen: Sequence[Seen], cut: Cut, end: float, aspect: float) -> Camera:
+def _camera(
+    seen: Sequence[Seen], sizes: Sequence[tuple[float, float]], cut: Cut, end: float, aspect: float
+) -> Camera:
     times = np.linspace(cut.at, max(cut.at, end), SAMPLED)
     heads, heights, lows, highs = [], [], [], []
-    for figure, shown in seen:
+    for (figure, shown), (lift, height) in zip(seen, sizes, strict=True):
         pose, skeleton = shown.pose(times), shown.skeleton
         assert pose is not None and skeleton is not None
         rotations, positions = skeleton.globals(pose)
         if shown.stand is not None:
             rotations, positions = shown.stand.placed(rotations, positions)
-        lift, height = _head(figure)
         middle = np.mean([figure.head(r, p) for r, p in zip(rotations, positions, strict=True)], axis=0)
         heads.append(middle + np.array([0.0, lift, 0.0]))
         heights.append(height)
