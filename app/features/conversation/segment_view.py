@@ -445,5 +445,6 @@ class SegmentView(QWidget):
                 if whose
                 else "Click to see this one's plan in Performance"
             )
-            return "\n".join((side_name(of, hit.side), *sound, *mover, shown))
+            other = "The arrow: another character, body or voice"
+            return "\n".join((side_name(of, hit.side), *sound, *mover, shown, other))
         return "Drag to make a segment" if hit.part == "gap" else ""
