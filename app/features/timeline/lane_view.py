@@ -18,12 +18,13 @@ from PySide6.QtGui import (
     QPen,
     QPixmap,
     QResizeEvent,
-    QWheelEvent,
 )
-from PySide6.QtWidgets import QApplication, QMenu, QToolTip, QWidget
+from PySide6.QtWidgets import QMenu, QToolTip, QWidget
 
 from app.features.timeline.camera_lane import CameraLane
-from app.features.timeline.lane_keys import FAR, ZOOM, LaneKeys
+from app.features.timeline.lane_keys import FAR, LaneKeys
+from app.features.timeline.lane_span import LaneSpan
+from app.features.timeline.lane_tips import tip_at
 from app.features.timeline.lane_titles import LOCK, BorderDrag, LaneTitles, kept_heights, padlock
 from app.features.timeline.request_drag import RequestDrag
 from app.features.timeline.ruler import Ruler
@@ -31,7 +32,6 @@ from app.features.timeline.snapping import Magnet, SnapLine, snap_lines
 from app.features.timeline.voice_lane import paint_voice
 from app.features.timeline.voices import Voices
 from app.features.timeline.what_if import WhatIf, paint_ghost, seed_of
-from app.look.names import told_names
 from app.look.theme import theme
 from app.stage.performance import Performance
 from app.stage.session import Session
@@ -42,7 +42,6 @@ from app.widgets.lane_geometry import (
     NUMBERS,
     RULER,
     Mark,
-    Scale,
     Sizes,
     cue_at,
     lane_at,
@@ -50,15 +49,13 @@ from app.widgets.lane_geometry import (
     mark_at,
     marks,
     rows,
-    told,
 )
-from app.widgets.lane_paint import LaneScene, badge, cue_words, paint, playhead
+from app.widgets.lane_paint import LaneScene, badge, paint, playhead
 from app.widgets.memo import Once
 from app.widgets.request_menu import STAGE, request_menu
 from metagraph.graph.model import LAYERS
 
 CATCH = 3  # pixels the mouse must move for a press to become a drag
-NEAREST, FARTHEST = 400.0, 0.25  # pixels a second
 LEAST = 38  # pixels of a layer in which its two rows are read
 COPIES = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier
 TEXT = (
@@ -67,7 +64,7 @@ TEXT = (
 )
 
 
-class Lanes(QWidget):
+class Lanes(LaneSpan):
     """A press on a request selects it and a drag moves it, a double click changes it or, in an empty place,
     asks for something.
 
@@ -80,8 +77,6 @@ class Lanes(QWidget):
         super().__init__(parent)
         self.session, self.performance, self.voices = session, performance, voices
         self.what_if = what_if
-        self.each = 44.0
-        self.first = 0.0
         self.follow = True
         self.hand = Hand()
         self.sizes = Sizes(tall=kept_heights())
@@ -106,9 +101,6 @@ class Lanes(QWidget):
         session.transport.moved.connect(self._playhead)
         for signal in (session.look.changed, session.selection.changed, session.onstage.performance_changed):
             signal.connect(self.update)
-
-    def scale(self) -> Scale:
-        return Scale(self.first, self.each)
 
     def marks(self) -> list[Mark]:
         """Return the requests as they are drawn now."""
@@ -425,54 +417,6 @@ class Lanes(QWidget):
         self.session.transport.set_playing(False)
         self.session.transport.seek(max(0.0, self.scale().seconds(max(x, LEFT))))
 
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        delta = event.angleDelta()
-        if event.modifiers() & Qt.KeyboardModifier.ShiftModifier or abs(delta.x()) > abs(delta.y()):
-            self.go_to(self.first - (delta.x() or delta.y()) / 2 / self.each)
-        else:
-            self.zoom(ZOOM ** (delta.y() / 120), event.position().x())
-        event.accept()
-
-    def zoom(self, by: float, x: float) -> None:
-        """Zoom about a place on the screen."""
-        at = self.scale().seconds(x)
-        self.each = min(NEAREST, max(FARTHEST, self.each * by))
-        self.go_to(at - (x - LEFT) / self.each)
-
-    def go_to(self, first: float) -> None:
-        """Let the lanes begin at a time."""
-        self.first = max(0.0, first)
-        self.update()
-
-    def show_span(self, start: float, end: float) -> None:
-        """Zoom so that a stretch of time is seen whole, with a little on either side."""
-        room = max(40, self.width() - LEFT)
-        self.each = min(NEAREST, max(FARTHEST, room / max(0.1, 1.1 * (end - start))))
-        self.go_to((start + end) / 2 - room / 2 / self.each)
-
-    def zoom_all(self) -> None:
-        """Show all there is: what is kept to its end, else as far as it is planned."""
-        self.each = max(
-            FARTHEST,
-            min(NEAREST, 0.98 * max(40, self.width() - LEFT) / max(0.1, self.performance.shown.length)),
-        )
-        self.go_to(0.0)
-
-    def zoom_selection(self) -> None:
-        """Show what is selected: requests and what plays for them, or an action's cues; else the range."""
-        chosen, shown = self.session.onstage.requests, self.performance.shown
-        spans = [(m.at, m.at) for m in self.marks() if m.ask.id in chosen]
-        for of in shown.plan.layers.values():
-            for cue in of.cues:
-                if cue.meta.partition("+")[0] in chosen or (
-                    not chosen and cue.action.id in self.session.selection.actions
-                ):
-                    spans.append((cue.start, cue.end))
-        if not spans and self.performance.timeline.range is not None:
-            spans = [self.performance.timeline.range]
-        if spans:
-            self.show_span(min(s for s, _ in spans), max(e for _, e in spans))
-
     def set_sizes(self, sizes: Sizes) -> None:
         """Show other lanes, or lanes of other heights."""
         if sizes != self.sizes:
@@ -535,38 +479,4 @@ class Lanes(QWidget):
         return super().event(event)
 
     def _tip(self, at: QPointF) -> str:
-        if at.x() < LEFT:
-            return self.titles.tip(at)
-        if at.y() < RULER:
-            return self.ruler.tip(at)
-        mark = mark_at(self.marks(), at)
-        if mark is not None:
-            return told(mark, self.performance.requests.editable)
-        found = cue_at(self.performance.shown, self.scale(), self.height(), at, self.sizes)
-        if found is not None:
-            cue = found[1]
-            name = told_names(cue_words(self.performance.shown.project, cue.action), cue.action.name)
-            words = f"{name}\n{cue.action.kind}, {cue.start:.2f} to {cue.end:.2f} s"
-            if cue.hold > 0:
-                words += f", held {cue.hold:.2f} s"
-            return words + "\nClick selects it, double-click plays it in context"
-        lane = lane_at(self.height(), at, self.sizes)
-        if lane is None:
-            return ""
-        if lane == "cameras":
-            return self.cameras.tip(at)
-        seed = seed_of(lane)
-        if seed is not None:
-            row = lanes(self.height(), self.sizes)[lane]
-            return self.what_if.tip(seed, self.scale().seconds(at.x()), (at.y() - row.top()) / row.height())
-        if lane == "words":
-            at_time = self.scale().seconds(at.x())
-            word = next((w for w in self.words() if w[0] <= at_time < w[1]), None)
-            return f"'{word[2]}', {word[0]:.2f} to {word[1]:.2f} s" if word is not None else ""
-        shown, here = self.performance.shown, ""
-        plan = next((p for layer, p in shown.plan.layers.items() if layer == lane), None)
-        if plan is not None:
-            stance = shown.project.stance(plan.stance_at(self.scale().seconds(at.x())))
-            here = stance.name if stance is not None else ""
-        more = "" if QApplication.mouseButtons() else "Double-click to ask for something here"
-        return "\n".join(x for x in (here, more) if x)
+        return tip_at(self, at)
