@@ -19,26 +19,26 @@ from PySide6.QtGui import (
     QPixmap,
     QResizeEvent,
 )
-from PySide6.QtWidgets import QMenu, QToolTip, QWidget
+from PySide6.QtWidgets import QToolTip, QWidget
 
 from app.features.timeline.camera_lane import CameraLane
-from app.features.timeline.lane_keys import FAR, LaneKeys
+from app.features.timeline.lane_keys import LaneKeys
+from app.features.timeline.lane_menu import request_marks_menu
+from app.features.timeline.lane_picture import paint_lanes
 from app.features.timeline.lane_span import LaneSpan
 from app.features.timeline.lane_tips import tip_at
-from app.features.timeline.lane_titles import LOCK, BorderDrag, LaneTitles, kept_heights, padlock
+from app.features.timeline.lane_titles import BorderDrag, LaneTitles, kept_heights
 from app.features.timeline.request_drag import RequestDrag
 from app.features.timeline.ruler import Ruler
 from app.features.timeline.snapping import Magnet, SnapLine, snap_lines
-from app.features.timeline.voice_lane import paint_voice
 from app.features.timeline.voices import Voices
-from app.features.timeline.what_if import WhatIf, paint_ghost, seed_of
+from app.features.timeline.what_if import WhatIf, seed_of
 from app.look.theme import theme
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.widgets.gesture import Hand
 from app.widgets.lane_geometry import (
     LEFT,
-    NAMES,
     NUMBERS,
     RULER,
     Mark,
@@ -48,9 +48,8 @@ from app.widgets.lane_geometry import (
     lanes,
     mark_at,
     marks,
-    rows,
 )
-from app.widgets.lane_paint import LaneScene, badge, paint, playhead
+from app.widgets.lane_paint import badge, playhead
 from app.widgets.memo import Once
 from app.widgets.request_menu import STAGE, request_menu
 from metagraph.graph.model import LAYERS
@@ -186,37 +185,7 @@ class Lanes(LaneSpan):
             picture.setDevicePixelRatio(ratio)
             painter = QPainter(picture)
             painter.setFont(font)
-            scene = LaneScene(
-                p.shown,
-                found,
-                self.scale(),
-                self.width(),
-                self.height(),
-                s.place.layer,
-                ends,
-                set(s.selection.actions),
-                set(s.onstage.requests),
-                self.sizes,
-                locked,
-            )
-            paint(painter, theme(s.look.name), scene)
-            for name, lane in lanes(self.height(), self.sizes).items():
-                if name == "words":
-                    paint_voice(
-                        painter, theme(s.look.name), lane, self.scale(), self.width(), self.voices, ratio
-                    )
-                elif (seed := seed_of(name)) is not None:
-                    plan = self.what_if.plans.get(seed)
-                    paint_ghost(painter, theme(s.look.name), lane, self.scale(), self.width(), plan)
-                if name == STAGE and "words" not in self.sizes.extra and self.voices.words():
-                    row = rows(lane)[1]
-                    painter.fillRect(row.adjusted(LEFT, 0, 0, -3), QColor(theme(s.look.name).panel))
-                    paint_voice(
-                        painter, theme(s.look.name), row, self.scale(), self.width(), self.voices, ratio
-                    )
-                if name in NAMES:
-                    at = QPointF(LEFT - LOCK / 2 - 2, lane.center().y())
-                    padlock(painter, theme(s.look.name), at, name in locked)
+            paint_lanes(self, painter, found, ends, locked)
             painter.end()
             self.painted += 1
             return picture
@@ -360,35 +329,11 @@ class Lanes(LaneSpan):
             return
         mark, lane = mark_at(self.marks(), at), lane_at(self.height(), at, self.sizes)
         if mark is not None and self.performance.requests.editable:
-            self._mark_menu(mark).popup(on_screen.toPoint())
+            request_marks_menu(self, mark).popup(on_screen.toPoint())
         else:
             request_menu(self, self.performance, seconds, lane if lane in LAYERS else STAGE).popup(
                 on_screen.toPoint()
             )
-
-    def _mark_menu(self, mark: Mark) -> QMenu:
-        """Return what can be done with a request, or with all that are selected with it."""
-        ident = mark.ask.id
-        if ident not in self.session.onstage.requests:
-            self.session.onstage.select_requests((ident,))
-        menu, chosen = QMenu(self), self.session.onstage.requests
-        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        menu.addAction("Change…\tReturn", lambda: self.edit(ident))
-        requests = self.performance.requests
-        menu.addAction("Cut\tCtrl+X", lambda: requests.to_clipboard(chosen, True))
-        menu.addAction("Copy\tCtrl+C", lambda: requests.to_clipboard(chosen))
-        menu.addAction("Paste at the playhead\tCtrl+V", requests.paste)
-        menu.addAction("Copy a second later\tCtrl+D", lambda: requests.copy(chosen, FAR))
-        menu.addSeparator()
-        menu.addAction(
-            "Take it back\tDel" if len(chosen) == 1 else "Take them back\tDel",
-            lambda: self.performance.requests.withdraw(*chosen),
-        )
-        menu.addAction(
-            "Take back and close up\tShift+Del",
-            lambda: self.performance.requests.close_up(chosen, self.performance.shown.plan),
-        )
-        return menu
 
     def edit(self, ident: str) -> None:
         """Show the fields of a request."""
