@@ -16,6 +16,18 @@ from app.shell.places import Places
 from app.translation import tr
 from metagraph.graph.model import KINDS
 
+TIMELINE = (  # and what the timeline does
+    ("Add a marker", "M"),
+    ("Move requests or a marker", "arrows, with Shift by a second"),
+    ("Take requests back and close up", "Shift+Del"),
+    ("Cut, copy, paste requests", "Ctrl+X, Ctrl+C, Ctrl+V"),
+    ("Copy requests a second later", "Ctrl+D"),
+    ("Ask for something", "Insert"),
+    ("Cut to all, over a shoulder, close", "1 to 9"),
+    ("Take the cut away", "0"),
+    ("Zoom in and out", "+, −"),
+    ("Drag without snapping", "Shift"),
+)
 LANES = (  # what the lanes take for themselves
     (tr("Label as clause, response, hesitation"), "1, 2, 3"),
     (tr("Split a segment"), "S"),
@@ -39,6 +51,7 @@ def contribute(shell: Shell) -> Contribution:
                 command.menu.replace("&", ""), command.plain, keys, tip, action.trigger, action.isEnabled()
             )
         if keyed:
+            yield from (Entry(tr("On the timeline"), words, keys) for words, keys in TIMELINE)
             yield from (Entry(tr("In a conversation"), words, keys) for words, keys in LANES)
             return
         places = shell.services[Places]
