@@ -17,16 +17,16 @@ from app.translation import tr
 from metagraph.graph.model import KINDS
 
 TIMELINE = (  # and what the timeline does
-    ("Add a marker", "M"),
-    ("Move requests or a marker", "arrows, with Shift by a second"),
-    ("Take requests back and close up", "Shift+Del"),
-    ("Cut, copy, paste requests", "Ctrl+X, Ctrl+C, Ctrl+V"),
-    ("Copy requests a second later", "Ctrl+D"),
-    ("Ask for something", "Insert"),
-    ("Cut to all, over a shoulder, close", "1 to 9"),
-    ("Take the cut away", "0"),
-    ("Zoom in and out", "+, −"),
-    ("Drag without snapping", "Shift"),
+    (tr("Add a marker"), "M"),
+    (tr("Move requests or a marker"), tr("arrows, with Shift by a second")),
+    (tr("Take requests back and close up"), "Shift+Del"),
+    (tr("Cut, copy, paste requests"), "Ctrl+X, Ctrl+C, Ctrl+V"),
+    (tr("Copy requests a second later"), "Ctrl+D"),
+    (tr("Ask for something"), "Insert"),
+    (tr("Cut to all, over a shoulder, close"), tr("1 to 9")),
+    (tr("Take the cut away"), "0"),
+    (tr("Zoom in and out"), "+, −"),
+    (tr("Drag without snapping"), "Shift"),
 )
 LANES = (  # what the lanes take for themselves
     (tr("Label as clause, response, hesitation"), "1, 2, 3"),
