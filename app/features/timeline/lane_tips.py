@@ -9,9 +9,12 @@ from PySide6.QtWidgets import QApplication
 
 from app.features.timeline.what_if import seed_of
 from app.look.names import told_names
-from app.translation import tr
+from app.translation import tr, tr_noop
 from app.widgets.lane_geometry import LEFT, RULER, cue_at, lane_at, lanes, mark_at, told
 from app.widgets.lane_paint import cue_words
+
+# of actions, within a sentence
+KINDS = (tr_noop("stance"), tr_noop("gesture"), tr_noop("fidget"), tr_noop("transition"))
 
 
 def tip_at(view: Any, at: QPointF) -> str:
