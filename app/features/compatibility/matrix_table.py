@@ -50,8 +50,8 @@ def words_of(cost: float, seconds: float, what: str) -> str:
     """Say a half: "leaves at 1.24 s: 0.6 of what shows as a jump"."""
     if not isfinite(cost):
         return tr("{what}: nothing to compare", what=what)
-    of = "of" if cost <= 1 else "times"
-    more = {0: "", 1: tr("; a usual blend hides it")}.get(grade(cost), "; a usual blend does not hide it")
+    of = tr("of") if cost <= 1 else tr("times")
+    more = {0: "", 1: tr("; a usual blend hides it")}.get(grade(cost), tr("; a usual blend does not hide it"))
     return tr(
         "{what} at {seconds:.2f} s: {cost:.1f} {of} what shows as a jump{more}",
         what=what,

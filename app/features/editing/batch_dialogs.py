@@ -86,7 +86,7 @@ class RenameDialog(BatchDialog):
         self.pattern = QLineEdit("{stance} {name}", self)
         self.pattern.setAccessibleName(tr("Pattern"))
         words = QLabel(
-            tr("In braces: {FIELDS}. {{n:02}} counts 01, 02, ...", FIELDS=", ".join(batch.FIELDS)),
+            tr("In braces: {fields}. {{n:02}} counts 01, 02, ...", fields=", ".join(batch.FIELDS)),
             self,
             wordWrap=True,
         )

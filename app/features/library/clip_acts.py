@@ -89,7 +89,7 @@ class ClipActs:
         menu.addSeparator()
         loved = all(m.favourite for m in marks)
         action = menu.addAction(
-            tr("{HEART}  Favourite", HEART=HEART), lambda: self.mark(some, "favourite", not loved)
+            tr("{heart}  Favourite", heart=HEART), lambda: self.mark(some, "favourite", not loved)
         )
         action.setCheckable(True)
         action.setChecked(loved)
@@ -111,7 +111,7 @@ class ClipActs:
         some, before = tuple(clips), self.document.project.clips
         if some:
             self.document.edit(
-                tr("Duplicate {some}", some=many(len(some), "clip")), lambda p: duplicate_clips(p, some)
+                tr("Duplicate {clips}", clips=many(len(some), "clip")), lambda p: duplicate_clips(p, some)
             )
             made = tuple(i for i in self.document.project.clips if i not in before)
             self.session.selection.select_clips(made)

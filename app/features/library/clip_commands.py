@@ -20,6 +20,17 @@ from metagraph.graph.clip_mark import COLORS, STARS
 MENU = "C&lips"
 
 
+SHOW_AS = {"cards": tr("Show as cards"), "columns": tr("Show as columns")}
+GROUP_BY = {
+    "none": tr("No groups"),
+    "folder": tr("Group by folder"),
+    "stance": tr("Group by stance"),
+    "tag": tr("Group by tag"),
+    "layer": tr("Group by layer"),
+    "kind": tr("Group by kind"),
+}
+
+
 def commands(shell: Shell, library: Callable[[], LibraryPanel]) -> tuple[Command, ...]:
     """Return them. library: the panel, made where it was not yet."""
     selection = shell.stage.session.selection
@@ -72,23 +83,23 @@ def commands(shell: Shell, library: Callable[[], LibraryPanel]) -> tuple[Command
             f"clips_as_{style}",
             MENU,
             "view",
-            tr("Show as {lower}", lower=words.lower()),
+            SHOW_AS[style],
             partial(show_as, style),
             tip=tip,
             checked=partial(shown_as, style),
         )
-        for style, (_, words, tip) in BUTTONS.items()
+        for style, (_, _, tip) in BUTTONS.items()
     )
     groups = (
         Command(
             f"group_{key}",
             MENU,
             "groups",
-            tr("No groups") if key == "none" else tr("Group by {lower}", lower=words.lower()),
+            GROUP_BY[key],
             partial(group_by, key),
             checked=partial(grouped_by, key),
         )
-        for key, (words, _) in GROUPS.items()
+        for key in GROUPS
     )
     return (
         *rating,

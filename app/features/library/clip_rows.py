@@ -162,18 +162,18 @@ class ClipRows(QAbstractListModel):
         moves = ", ".join(self.facts.moved(entry))
         mark = self.facts.mark(entry)
         return tr(
-            "{name}\n{duration:.2f} s, {frames} frames at {fps:g} fps{value}\n{path}{made}\n"
-            "{uses}{replace}{value2}{notes}",
+            "{name}\n{duration:.2f} s, {frames} frames at {fps:g} fps{moves}\n{path}{made}\n"
+            "{uses}{marks}{note}{notes}",
             name=entry.name,
             duration=entry.duration,
             frames=entry.frames,
             fps=entry.fps,
-            value=f", moves {moves}" if moves else "",
+            moves=tr(", moves {moves}", moves=moves) if moves else "",
             path=entry.path,
             made=made,
             uses=uses,
-            replace=self._marks(entry).replace(", ", chr(10), 1),
-            value2=chr(10) + mark.note if mark.note else "",
+            marks=self._marks(entry).replace(", ", chr(10), 1),
+            note=chr(10) + mark.note if mark.note else "",
             notes=notes,
         )
 

@@ -89,8 +89,8 @@ class LibraryMenu:
             action.setCheckable(True)
             action.setChecked(on)
 
-        entry(tr("{HEART}  Favourites", HEART=HEART), rule.favourite, favourite=not rule.favourite)
-        entry(tr("{PENCIL}  With a note", PENCIL=PENCIL), rule.noted, noted=not rule.noted)
+        entry(tr("{heart}  Favourites", heart=HEART), rule.favourite, favourite=not rule.favourite)
+        entry(tr("{pencil}  With a note", pencil=PENCIL), rule.noted, noted=not rule.noted)
         entry(tr("!  In problems"), rule.broken, broken=not rule.broken)
         menu.addSeparator()
         for color in COLORS:

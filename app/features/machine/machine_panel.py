@@ -180,7 +180,7 @@ class MachinePanel(QWidget):
             (13, t.dim, tr("You placed {clips} clips.", clips=clips)),
         ]
         if links > MOST:
-            lines.append((13, t.dim, tr("The first {MOST:,} are drawn.", MOST=MOST)))
+            lines.append((13, t.dim, tr("The first {most:,} are drawn.", most=MOST)))
         out: list[QRectF] = []
         left, top = 20.0, 14.0
         for size_, color, words in lines:

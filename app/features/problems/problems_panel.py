@@ -229,7 +229,7 @@ class ProblemsPanel(QWidget):
         self.stack.setCurrentIndex(1 if self.problems else 0)
         count = len(self.fixable())
         self.foot.setVisible(count > 1)
-        self.all.setText(tr("Mend {count}", count=many(count, "problem")))
+        self.all.setText(tr("Mend {problems}", problems=many(count, "problem")))
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() == QEvent.Type.Resize and watched is self.tree.viewport():

@@ -104,7 +104,7 @@ class SkeletonDialog(QDialog):
             found=len(found),
         )
         if missing:
-            words += tr(" Not found: {join}.", join=", ".join(m.replace("_", " ") for m in missing))
+            words += tr(" Not found: {roles}.", roles=", ".join(m.replace("_", " ") for m in missing))
         self.words.setText(words)
 
     def _chosen(self, joint: str) -> tuple[str, ...]:

@@ -36,8 +36,8 @@ def make_twins(shell: Shell) -> None:
     if folder is None:
         shell.tell(
             tr(
-                "Save the project first: mirrored clips are written beside it, in a folder '{FOLDER}'.",
-                FOLDER=FOLDER,
+                "Save the project first: mirrored clips are written beside it, in a folder '{folder}'.",
+                folder=FOLDER,
             )
         )
         return
