@@ -26,12 +26,27 @@ from app.project.jobs import Job, Jobs
 from app.stage.performance import Performance
 from app.stage.render_process import SUFFIXES, RenderOrder, write
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_noop
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.graph import requests
 from metagraph.graph.conversation import Conversation
 from preview.looks import BACKDROPS, LIGHTS, words_of
 
+LOOKS = (  # what the preview calls its lights and backgrounds
+    tr_noop("Studio"),
+    tr_noop("Day"),
+    tr_noop("Evening, from the side"),
+    tr_noop("Rim, from behind"),
+    tr_noop("Flat"),
+    tr_noop("Stage, as the window"),
+    tr_noop("Sky"),
+    tr_noop("Dusk"),
+    tr_noop("Warm paper"),
+    tr_noop("Neutral grey, for recording"),
+    tr_noop("White"),
+    tr_noop("Black"),
+    tr_noop("Green, to be cut out"),
+)
 SIZES = ((640, 360), (960, 540), (1280, 720), (1920, 1080))
 
 
@@ -101,7 +116,7 @@ class RenderDialog(QDialog):
             (self.background, BACKDROPS, session.watch.now.background),
         ):
             for name in choices:
-                box.addItem(words_of(name), name)
+                box.addItem(tr(words_of(name)), name)
             box.setCurrentIndex(box.findData(now))
         form.addRow(tr("Light"), self.light)
         form.addRow(tr("Background"), self.background)
