@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.stage.performance import Performance
-from app.translation import tr
+from app.translation import tr, tr_noop
 from app.widgets.lane_geometry import outcome
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from app.widgets.request_menu import MODE_WORDS, MOOD_WORDS, mood_words, request_words
@@ -30,6 +30,7 @@ from metagraph.graph.model import LAYERS, LIMBS, MODES, Project
 from metagraph.graph.timeline import lane_of
 from metagraph.graph.words import FEELINGS
 
+SIDES = (tr_noop("left"), tr_noop("right"), tr_noop("both"))  # of an arm, or of two
 UNSET = tr("as it comes")
 LABELS = {
     "at": tr("At"),
