@@ -19,7 +19,7 @@ def many(count: int, noun: str) -> str:
 
 def listed(words: Sequence[str]) -> str:
     """Return "Ann", "Ann and Ben", "Ann, Ben and Cleo"."""
-    return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
+    return tr(" and ").join(filter(None, (", ".join(words[:-1]), *words[-1:])))
 
 
 def short(name: str, stance: str) -> str:

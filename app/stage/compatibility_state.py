@@ -17,6 +17,7 @@ from app.look.plural import many
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.fixes import Fix
+from app.translation import tr
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.graph.problem import Problem
@@ -78,10 +79,27 @@ def told(project: Project, judged: Judged) -> dict[Problem, Fix | None]:
         if action is None or stance is None:
             continue  # it went meanwhile
         if jump.edge == "loops":
-            words = f"'{action.name}' jumps where it repeats, {jump.cost:.1f} times what shows as a jump"
+            words = tr(
+                "'{name}' jumps where it repeats, {cost:.1f} times what shows as a jump",
+                name=action.name,
+                cost=jump.cost,
+            )
         else:
+            name, far, of = action.name, jump.cost, stance.name
             words = (
-                f"'{action.name}' {jump.edge} {jump.cost:.1f} times what shows as a jump from '{stance.name}'"
+                tr(
+                    "'{name}' begins {far:.1f} times what shows as a jump from '{of}'",
+                    name=name,
+                    far=far,
+                    of=of,
+                )
+                if jump.edge == "begins"
+                else tr(
+                    "'{name}' ends {far:.1f} times what shows as a jump from '{of}'",
+                    name=name,
+                    far=far,
+                    of=of,
+                )
             )
         remedy, fix = _remedy(project, action, jump)
         problem = Problem(
@@ -101,13 +119,20 @@ def _few(layer: Layer, measured: Measured) -> Problem:
 
     much = many(measured.labelled, "clip")
     if measured.labelled >= FEWEST_CLIPS:
-        much += f" of together {measured.stats.count / RATE:.0f} s"
-    words = f"jumps of the {layer} layer are not looked for: {much} cannot tell what is usual motion"
+        much += tr(" of together {seconds:.0f} s", seconds=measured.stats.count / RATE)
+    words = tr(
+        "jumps of the {layer} layer are not looked for: {much} cannot tell what is usual motion",
+        layer=tr(layer),
+        much=much,
+    )
     return Problem(
         "hint",
         "few-clips",
         words,
-        f"Place at least {FEWEST_CLIPS} clips, ten seconds in all, on this layer.",
+        tr(
+            "Place at least {count} clips, ten seconds in all, on this layer.",
+            count=FEWEST_CLIPS,
+        ),
         layer,
     )
 
@@ -115,21 +140,21 @@ def _few(layer: Layer, measured: Measured) -> Problem:
 def _remedy(project: Project, action: Action, jump: Jump) -> tuple[str, Fix | None]:
     fits = project.stance(jump.fits)
     if jump.better is not None:
-        return f"At {jump.better:.2f} s it would not.", Fix(
-            f"Use {jump.better:.2f} s", action.id, {"timing": dict(jump.change)}
+        return tr("At {seconds:.2f} s it would not.", seconds=jump.better), Fix(
+            tr("Use {seconds:.2f} s", seconds=jump.better), action.id, {"timing": dict(jump.change)}
         )
     if fits is not None and action.kind == "transition" and jump.edge == "ends" and fits.id != action.stance:
-        return f"It looks like '{fits.name}' there: end it in that stance.", Fix(
-            f"End in '{fits.name}'", action.id, end=fits.id
+        return tr("It looks like '{name}' there: end it in that stance.", name=fits.name), Fix(
+            tr("End in '{name}'", name=fits.name), action.id, end=fits.id
         )
     if jump.change:
         seconds = next(iter(jump.change.values()))
-        return f"Blended over {seconds:.2f} s it would not.", Fix(
-            f"Blend {seconds:.2f} s", action.id, {"timing": dict(jump.change)}
+        return tr("Blended over {seconds:.2f} s it would not.", seconds=seconds), Fix(
+            tr("Blend {seconds:.2f} s", seconds=seconds), action.id, {"timing": dict(jump.change)}
         )
     if fits is not None:
-        return f"It looks like '{fits.name}' there: place it on that stance.", None
-    return "Trim it, blend it longer, or place it on a stance it fits.", None
+        return tr("It looks like '{name}' there: place it on that stance.", name=fits.name), None
+    return tr("Trim it, blend it longer, or place it on a stance it fits."), None
 
 
 def merged(problems: Iterable[Problem], flags: Iterable[Problem]) -> tuple[Problem, ...]:
@@ -222,7 +247,7 @@ class Compatibility(QObject):
 
     def _gave_up(self, error: Exception) -> None:
         self._over()
-        self.failed.emit(f"Jumps could not be looked for: {error}")
+        self.failed.emit(tr("Jumps could not be looked for: {error}", error=error))
 
     def _done(self, result: tuple[Judged, dict[Problem, Fix | None]]) -> None:
         self._over()
@@ -292,10 +317,10 @@ class Compatibility(QObject):
 
         def done(changes: dict[str, dict[str, Any]]) -> None:
             if changes:
-                self.document.edit("Use proposed times", lambda p: edits.update_each(p, changes))
+                self.document.edit(tr("Use proposed times"), lambda p: edits.update_each(p, changes))
 
         self.jobs.start(
-            "Proposing times", work, done, lambda e: self.failed.emit(str(e)), quick=len(chosen) < 20
+            tr("Proposing times"), work, done, lambda e: self.failed.emit(str(e)), quick=len(chosen) < 20
         )
 
     def mend(self, fixes: Iterable[Fix]) -> None:
@@ -308,7 +333,7 @@ class Compatibility(QObject):
             return project
 
         if todo:
-            text = todo[0].words if len(todo) == 1 else f"Mend {len(todo)} problems"
+            text = todo[0].words if len(todo) == 1 else tr("Mend {count} problems", count=len(todo))
             self.document.edit(text, all_of)
 
     # --- matrices
@@ -340,9 +365,9 @@ class Compatibility(QObject):
 
         def gave_up(error: Exception) -> None:
             self._comparing.discard(layer)
-            self.failed.emit(f"Clips could not be compared: {error}")
+            self.failed.emit(tr("Clips could not be compared: {error}", error=error))
 
-        job = self.jobs.start("Comparing clips with stances", work, done, gave_up)
+        job = self.jobs.start(tr("Comparing clips with stances"), work, done, gave_up)
         job.ended.connect(lambda: self._comparing.discard(layer))
 
 

@@ -12,6 +12,7 @@ import msgspec
 
 from app.project.opening import faced, open_whole
 from app.stage.playback_source import Shown
+from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.graph import performance_edits
 from metagraph.graph.conversation import Side
@@ -90,10 +91,12 @@ class ConversationPlans:
             try:
                 found = open_whole(whole)
             except (FileError, OSError) as error:
-                notes.append(f"{error} This side moves with the graph at hand.")
+                notes.append(tr("{error} This side moves with the graph at hand.", error=error))
                 return project
             if found.project.skeleton is None:
-                notes.append(f"{whole.name} has no clips: this side moves with the graph at hand.")
+                notes.append(
+                    tr("{name} has no clips: this side moves with the graph at hand.", name=whole.name)
+                )
                 return project
             self._projects[key] = found.project
         return self._projects[key]
@@ -106,7 +109,9 @@ class ConversationPlans:
             return project
         whole = folder / path
         if not whole.is_file():
-            notes.append(f"There is no character at {whole}. This side is drawn with its project's.")
+            notes.append(
+                tr("There is no character at {whole}. This side is drawn with its project's.", whole=whole)
+            )
             return project
         drawn = replace(project, character=str(whole), hidden=())
         key = (str(whole), _written(whole))
@@ -121,7 +126,12 @@ def _motion(project: Project, side: Side, notes: list[str]) -> str | None:
         return None
     entry = project.clips.get(side.motion)
     if entry is None or entry.motion is None or entry.motion.skeleton != project.skeleton:
-        notes.append(f"The new motion of {side.name or 'a side'} is missing: it moves with its graph.")
+        notes.append(
+            tr(
+                "The new motion of {name} is missing: it moves with its graph.",
+                name=side.name or tr("a side"),
+            )
+        )
         return None
     return side.motion
 

@@ -9,6 +9,7 @@ from PySide6.QtCore import QObject, Signal
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.playback_source import Shown
+from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Skeleton
@@ -60,13 +61,13 @@ class Figures(QObject):
         if result[0] == self._wanted:
             self._skinned = result
             if result[1].instead:
-                self.document.failed.emit(f"A stick figure is drawn: {result[1].instead}")
+                self.document.failed.emit(tr("A stick figure is drawn: {instead}", instead=result[1].instead))
             self.changed.emit()
 
     def _refused(self, key: Key, error: Exception) -> None:
         if key == self._wanted:
             self._unreadable = key
-            self.document.failed.emit(f"The character cannot be drawn: {error}")
+            self.document.failed.emit(tr("The character cannot be drawn: {error}", error=error))
             self.changed.emit()
 
     def figure(self, skeleton: Skeleton) -> Figure | None:

@@ -6,11 +6,12 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from app.translation import tr
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 from metagraph.graph.problem import Problem
 
-BRIDGE = "Bridge by blending"
+BRIDGE = tr("Bridge by blending")
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,7 @@ class Fix:
     changes: Mapping[str, Any] = field(default_factory=dict, hash=False)
     end: str | None = None  # the stance a transition should end in
     stance: str | None = None
-    tip: str = "One step that can be undone"
+    tip: str = tr("One step that can be undone")
 
     def __call__(self, project: Project) -> Project:
         """Return the project mended; as it is where what was to be mended went meanwhile."""
@@ -50,6 +51,6 @@ def bridges_for(project: Project, problems: Iterable[Problem]) -> dict[Problem, 
             after, made = bridges.bridged_at(project, problem.stance)
             if made:
                 tip = "; ".join(bridges.told(after, made))
-                words = f"{tip[:1].upper()}{tip[1:]}. One step that can be undone"
+                words = tr("{what}. One step that can be undone", what=tip[:1].upper() + tip[1:])
                 out[problem] = Fix(BRIDGE, stance=problem.stance, tip=words)
     return out

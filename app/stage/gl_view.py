@@ -28,6 +28,7 @@ from PySide6.QtGui import (
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QWidget
 
+from app.translation import tr
 from preview.camera import Camera
 from preview.renderer import Renderer
 from preview.scene import DARK, Scene, Theme
@@ -37,7 +38,7 @@ GL_RENDERER = 0x1F01
 _Base: Any = QWidget if TYPE_CHECKING else object
 
 
-MOUSE = "Drag to orbit, right-drag to pan, wheel to zoom, double-click to frame"
+MOUSE = tr("Drag to orbit, right-drag to pan, wheel to zoom, double-click to frame")
 
 
 class CameraMouse(_Base):
@@ -102,7 +103,7 @@ class GLView(CameraMouse, QOpenGLWidget):
             self._ctx = moderngl.create_context(require=330)
             self._renderer = Renderer(self._ctx)
         except Exception as error:
-            self.failed.emit(f"The preview needs OpenGL 3.3: {error}")
+            self.failed.emit(tr("The preview needs OpenGL 3.3: {error}", error=error))
             return
         self.context().aboutToBeDestroyed.connect(self._lost)
 
@@ -200,7 +201,7 @@ def make_view(compose: Compose, parent: QWidget | None = None) -> GLView | Image
     without = {"offscreen", "minimal", "vnc", "linuxfb", "minimalegl", "eglfs"}
     image = QGuiApplication.platformName() in without or (sys.platform.startswith("linux") and _in_software())
     view = (ImageView if image else GLView)(compose, parent)
-    view.setAccessibleName("Character")
+    view.setAccessibleName(tr("Character"))
     view.setAccessibleDescription(MOUSE)
     return view
 

@@ -18,6 +18,7 @@ from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
+from app.translation import tr
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
 
@@ -90,7 +91,7 @@ class Sound(QObject):
             return line_sounds(lines, folder)
 
         self.jobs.start(
-            "Reading sounds", work, self._read, lambda error: self.told.emit(str(error)), quick=True
+            tr("Reading sounds"), work, self._read, lambda error: self.told.emit(str(error)), quick=True
         )
 
     def _read(self, made: tuple[dict[str, np.ndarray], tuple[str, ...]]) -> None:
@@ -164,12 +165,9 @@ class Sound(QObject):
                 isinstance(error, OSError) and "PortAudio" in cause
             )  # the library itself; an own kind of error otherwise
             self.told.emit(
-                f"No sound: {cause}. "
-                + (
-                    "On Debian and Ubuntu: apt install libportaudio2"
-                    if missing
-                    else "Is a sound device there?"
-                )
+                tr("No sound: {cause}. On Debian and Ubuntu: apt install libportaudio2", cause=cause)
+                if missing
+                else tr("No sound: {cause}. Is a sound device there?", cause=cause)
             )
             return False
         return True

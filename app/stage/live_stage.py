@@ -15,6 +15,8 @@ from threading import Thread
 import msgspec
 from PySide6.QtCore import QElapsedTimer, QObject, Qt, QTimer, Signal
 
+from app.look.plural import many
+from app.translation import tr
 from metagraph.generation.offered import offered
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyRequest, Performance
@@ -219,19 +221,23 @@ class LiveStage(QObject):
     def words(self) -> str:
         """Say who can connect and how busy it is."""
         if self.error:
-            return f"Live, but nobody can connect: {self.error}"
+            return tr("Live, but nobody can connect: {error}", error=self.error)
         ready = self.relay.ready if self.relay is not None else None
         if ready is None:
-            return "Live, opening the lines…"
+            return tr("Live, opening the lines…")
         clients = len(self.session.clients) - 1
         who = (
-            "nobody is connected yet"
+            tr("nobody is connected yet")
             if clients == 0
-            else f"{clients} client{'s' if clients != 1 else ''}, {self.rate:.0f} requests/s"
+            else tr("{clients}, {rate:.0f} requests/s", clients=many(clients, "client"), rate=self.rate)
         )
-        lacks = f"; its takes make no motion graph: {self.graph_error}" if self.graph_error else ""
-        return f"Live at {ready.websocket}: {who}{lacks}"
+        lacks = (
+            tr("; its takes make no motion graph: {error}", error=self.graph_error)
+            if self.graph_error
+            else ""
+        )
+        return tr("Live at {address}: {who}{lacks}", address=ready.websocket, who=who, lacks=lacks)
 
     def performance(self) -> Performance:
         """Return what was played so far, to be kept."""
-        return self.session.performance("Live session")
+        return self.session.performance(tr("Live session"))

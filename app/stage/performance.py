@@ -20,6 +20,7 @@ from app.stage.playback_source import Shown, alone, by_hand, in_context
 from app.stage.request_edits import SOON, RequestEdits
 from app.stage.session import Session
 from app.stage.timeline_edits import TimelineEdits
+from app.translation import tr
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
 from metagraph.graph.timeline import only_noted
@@ -155,7 +156,7 @@ class Performance(QObject):
             return project
 
         if ident is not None and shown.others:
-            self.document.edit("Keep as performances", edit)
+            self.document.edit(tr("Keep as performances"), edit)
             if made:
                 self.session.onstage.set_performance(made[0])
 
@@ -246,7 +247,7 @@ class Performance(QObject):
         self._busy = False
         if self._again:
             self.replan()
-        self.document.failed.emit(f"The plan could not be made: {error}")
+        self.document.failed.emit(tr("The plan could not be made: {error}", error=error))
 
     def _ticked(self) -> None:
         live = self.live.stage

@@ -13,14 +13,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.project.jobs import Job
+from app.translation import tr
 from metagraph.formats.store import absolute, save_project
 from metagraph.graph.model import Project
 
 SUFFIXES = {
-    ".mp4": "Video with sound",
-    ".png": "Contact sheet",
-    ".glb": "Motion (GLB)",
-    ".bvh": "Motion (BVH)",
+    ".mp4": tr("Video with sound"),
+    ".png": tr("Contact sheet"),
+    ".glb": tr("Motion (GLB)"),
+    ".bvh": tr("Motion (BVH)"),
 }
 
 
@@ -108,7 +109,9 @@ def write(project: Project, folder: Path, wanted: RenderOrder, job: Job) -> Path
             process.stderr.close()
         if not job.cancelled and process.returncode != 0:
             raise RuntimeError(
-                said[-1].removeprefix("metagraph: ") if said else "the drawing process ended without a word"
+                said[-1].removeprefix("metagraph: ")
+                if said
+                else tr("the drawing process ended without a word")
             )
     return wanted.out
 
@@ -119,6 +122,6 @@ def _listen(process: subprocess.Popen[str], job: Job, said: list[str]) -> None:
     for line in process.stderr:
         done, _, total = line.strip().partition("/")
         if done.isdigit() and total.isdigit():
-            job.tell(int(done), int(total), f"picture {done} of {total}")
+            job.tell(int(done), int(total), tr("picture {done} of {total}", done=done, total=total))
         elif line.strip():
             said.append(line.strip())

@@ -12,6 +12,7 @@ from app.look.plural import listed
 from app.project.document import Document
 from app.stage.live_control import LiveControl
 from app.stage.session import Session
+from app.translation import tr
 from metagraph.graph import performance_edits
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
@@ -64,7 +65,7 @@ class RequestEdits:
         still = self.still()
         out = tuple(i for i in idents if i not in still)
         if len(out) < len(idents):
-            self.document.failed.emit("Their layer is locked: the padlock beside its name opens it.")
+            self.document.failed.emit(tr("Their layer is locked: the padlock beside its name opens it."))
         return out
 
     def with_following(self, idents: tuple[str, ...]) -> tuple[str, ...]:
@@ -73,7 +74,7 @@ class RequestEdits:
             return idents
         return performance_edits.following(self.kept, idents, self.still())
 
-    def ask(self, ask: AnyRequest, text: str = "Ask for something") -> None:
+    def ask(self, ask: AnyRequest, text: str = tr("Ask for something")) -> None:
         """Ask for one thing more, in the performance on stage or a new one; without a time it is wanted as
         soon as can be.
         """
@@ -90,7 +91,7 @@ class RequestEdits:
         def edit(project: Project) -> Project:
             nonlocal made
             if made is None or made not in project.performances:
-                kept = KeptPerformance(name="Performance", length=self._length())
+                kept = KeptPerformance(name=tr("Performance"), length=self._length())
                 project, made = performance_edits.add_performance(project, kept)
             return performance_edits.add_request(project, made, ask)
 
@@ -105,7 +106,7 @@ class RequestEdits:
         stage = self.session.onstage.performance
         if stage is not None and self.free((ident,)):
             self.document.edit(
-                "Change request",
+                tr("Change request"),
                 lambda p: performance_edits.change_request(p, stage, ident, **changes),
                 merge,
             )
@@ -115,7 +116,7 @@ class RequestEdits:
         stage, idents = self.session.onstage.performance, self.with_following(self.free(idents))
         if stage is not None and idents:
             self.document.edit(
-                "Move request", lambda p: performance_edits.move_requests(p, stage, idents, by), merge
+                tr("Move request"), lambda p: performance_edits.move_requests(p, stage, idents, by), merge
             )
 
     def copy(self, idents: tuple[str, ...], by: float) -> None:
@@ -134,7 +135,9 @@ class RequestEdits:
                 project, stage, {x.id for x in project.performances[stage].asks[number:]}, by
             )
 
-        self.document.edit("Copy request" if len(copies) == 1 else f"Copy {len(copies)} requests", edit)
+        self.document.edit(
+            tr("Copy request") if len(copies) == 1 else tr("Copy {count} requests", count=len(copies)), edit
+        )
         self.session.onstage.select_requests(tuple(x.id for x in (self.kept or kept).asks[number:]))
 
     def withdraw(self, *idents: str) -> None:
@@ -145,7 +148,7 @@ class RequestEdits:
         gone = self.free(idents or tuple(x.id for x in kept.asks))
         if gone:
             self.document.edit(
-                "Withdraw request", lambda p: performance_edits.remove_requests(p, stage, gone)
+                tr("Withdraw request"), lambda p: performance_edits.remove_requests(p, stage, gone)
             )
 
     def to_clipboard(self, idents: tuple[str, ...], cut: bool = False) -> None:
@@ -156,7 +159,9 @@ class RequestEdits:
             return
         QGuiApplication.clipboard().setText(request_text(self.document.project, stage, chosen))
         if cut:
-            self.document.edit("Cut requests", lambda p: performance_edits.remove_requests(p, stage, chosen))
+            self.document.edit(
+                tr("Cut requests"), lambda p: performance_edits.remove_requests(p, stage, chosen)
+            )
 
     def paste(self) -> None:
         """Add the requests on the clipboard, the first of them at the playhead, in the performance on stage
@@ -165,20 +170,20 @@ class RequestEdits:
         text = QGuiApplication.clipboard().text()
         at, done = round(self.session.transport.seconds, 3), cast("Pasted | None", None)
         if self.live.stage is not None or not holds_requests(text):
-            self.document.failed.emit("There are no requests on the clipboard.")
+            self.document.failed.emit(tr("There are no requests on the clipboard."))
             return
         stage = self.session.onstage.performance
 
         def edit(project: Project) -> Project:
             nonlocal done, stage
             if stage is None or stage not in project.performances:
-                kept = KeptPerformance(name="Performance", length=self._length())
+                kept = KeptPerformance(name=tr("Performance"), length=self._length())
                 project, stage = performance_edits.add_performance(project, kept)
             done = paste_requests(project, stage, text, at)
             return done.project
 
         try:
-            self.document.edit("Paste requests", edit)
+            self.document.edit(tr("Paste requests"), edit)
         except EditError as error:
             self.document.failed.emit(f"{str(error)[:1].upper()}{str(error)[1:]}.")
             return
@@ -187,7 +192,9 @@ class RequestEdits:
         if done is not None:
             self.session.onstage.select_requests(done.idents)
             if done.left_out:
-                self.document.failed.emit(f"This project does not have {listed(done.left_out)}.")
+                self.document.failed.emit(
+                    tr("This project does not have {what}.", what=listed(done.left_out))
+                )
 
     def close_up(self, idents: tuple[str, ...], plan: Plan) -> None:
         """Take asks back and let all that follows move up by the time they took in a plan, in one step."""
@@ -206,6 +213,6 @@ class RequestEdits:
         ]
         still = self.still()
         self.document.edit(
-            "Withdraw request and close up",
+            tr("Withdraw request and close up"),
             lambda p: performance_edits.close_up_after(p, stage, gone, spans, still),
         )

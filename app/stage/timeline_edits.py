@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject, Signal
 
 from app.project.document import Document
 from app.stage.session import Session
+from app.translation import tr
 from metagraph.graph import timeline as notes
 from metagraph.graph.conversation import Conversation
 from metagraph.graph.model import Project
@@ -76,7 +77,7 @@ class TimelineEdits(QObject):
         """
         start, end = sorted((round(max(0.0, start), 3), round(max(0.0, end), 3)))
         if end - start >= notes.SHORTEST_RANGE:
-            self.change("Set loop range", range=(start, end))
+            self.change(tr("Set loop range"), range=(start, end))
 
     def set_in(self, at: float | None = None) -> None:
         """Let the range begin at a time, by default the playhead."""
@@ -93,7 +94,7 @@ class TimelineEdits(QObject):
         self.set_range(start if end - start >= notes.SHORTEST_RANGE else 0.0, end)
 
     def clear_range(self) -> None:
-        self.change("Clear loop range", range=None)
+        self.change(tr("Clear loop range"), range=None)
 
     # --- markers
 
@@ -119,24 +120,24 @@ class TimelineEdits(QObject):
             project, made = notes.add_marker(project, key, seconds, name)
             return project
 
-        self.document.edit("Add marker", edit)
+        self.document.edit(tr("Add marker"), edit)
         self.select(made)
         return made
 
     def move_marker(self, ident: str, at: float, merge: str | None = None) -> None:
         key = self.key
         self.document.edit(
-            "Move marker", lambda p: notes.change_marker(p, key, ident, at=round(max(0.0, at), 3)), merge
+            tr("Move marker"), lambda p: notes.change_marker(p, key, ident, at=round(max(0.0, at), 3)), merge
         )
 
     def rename_marker(self, ident: str, name: str) -> None:
         key, words = self.key, " ".join(name.split())[:200]
-        self.document.edit("Rename marker", lambda p: notes.change_marker(p, key, ident, name=words))
+        self.document.edit(tr("Rename marker"), lambda p: notes.change_marker(p, key, ident, name=words))
 
     def remove_marker(self, *idents: str) -> None:
         """Take markers away; all where none is named."""
         key, gone = self.key, idents or tuple(m.id for m in self.now.markers)
-        text = "Remove marker" if len(gone) == 1 else f"Remove {len(gone)} markers"
+        text = tr("Remove marker") if len(gone) == 1 else tr("Remove {count} markers", count=len(gone))
         self.document.edit(text, lambda p: notes.remove_markers(p, key, gone))
 
     def jump(self, step: int) -> None:
@@ -159,32 +160,32 @@ class TimelineEdits(QObject):
         locked = tuple(
             x for x in ("stage", "body", "arms", "head") if (on if x == lane else x in self.now.locked)
         )
-        self.change(f"{'Lock' if on else 'Unlock'} layer", locked=locked)
+        self.change(tr("Lock layer") if on else tr("Unlock layer"), locked=locked)
 
     def cut_to(self, shot: Shot, side: int, at: float) -> None:
         """Cut to a picture at a time; the first cut of a conversation is made at its beginning, too."""
         cuts = self.now.cuts
         if not cuts and at > notes.SAME_CUT:
             cuts = (Cut(at=0.0, shot="two"),)
-        self.set_cuts("Cut", notes.with_cut(cuts, Cut(at=round(max(0.0, at), 3), shot=shot, side=side)))
+        self.set_cuts(tr("Cut"), notes.with_cut(cuts, Cut(at=round(max(0.0, at), 3), shot=shot, side=side)))
 
     def move_cut(self, number: int, at: float) -> None:
         cuts = list(self.now.cuts)
         cuts[number] = Cut(at=round(at, 3), shot=cuts[number].shot, side=cuts[number].side)
-        self.set_cuts("Move cut", tuple(cuts))
+        self.set_cuts(tr("Move cut"), tuple(cuts))
 
     def remove_cut(self, number: int) -> None:
         """Take a cut away: the picture before it goes on."""
-        self.set_cuts("Remove cut", tuple(c for n, c in enumerate(self.now.cuts) if n != number))
+        self.set_cuts(tr("Remove cut"), tuple(c for n, c in enumerate(self.now.cuts) if n != number))
 
     def automatic(self, talk: Conversation) -> None:
         """Cut by who speaks."""
         from metagraph.speech.automatic_cuts import automatic_cuts
 
-        self.set_cuts("Automatic cuts", automatic_cuts(talk))
+        self.set_cuts(tr("Automatic cuts"), automatic_cuts(talk))
 
     def set_cuts(self, text: str, cuts: tuple[Cut, ...]) -> None:
         self.change(text, cuts=cuts)
 
     def show_captions(self, on: bool) -> None:
-        self.change("Show captions" if on else "Hide captions", captions=on)
+        self.change(tr("Show captions") if on else tr("Hide captions"), captions=on)

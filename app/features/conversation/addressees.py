@@ -7,6 +7,7 @@ from functools import partial
 from PySide6.QtWidgets import QMenu
 
 from app.features.conversation.segment_editing import Editing
+from app.translation import tr
 from metagraph.graph.conversation import EVERYBODY, Conversation, others_of, side_name
 from metagraph.speech.addressing import turns_of
 
@@ -16,13 +17,13 @@ def offer_addressees(menu: QMenu, editing: Editing) -> None:
     of, sides = editing.conversation, {side for side, _ in editing.chosen}
     if of is None or len(of.sides) < 3:
         return
-    whom = menu.addMenu("Said to")
+    whom = menu.addMenu(tr("Said to"))
     whom.setEnabled(len(sides) == 1)
     if len(sides) != 1:
         return
     side = next(iter(sides))
     now = {of.sides[side].segments[at].to for _, at in editing.chosen}
-    choices: list[tuple[str, int | None]] = [("As it is inferred", None), ("Everybody", EVERYBODY)]
+    choices: list[tuple[str, int | None]] = [(tr("As it is inferred"), None), (tr("Everybody"), EVERYBODY)]
     choices += [(side_name(of, n), n) for n in others_of(of, side)]
     for words, to in choices:
         action = whom.addAction(words, partial(editing.address, to))
@@ -43,5 +44,7 @@ def addressee_words(conversation: Conversation, side: int, at: int) -> str:
     to = segment.to if segment.to is not None else turn.to if turn is not None else None
     if to is None:
         return ""
-    whom = "everybody" if to == EVERYBODY else side_name(conversation, to)
-    return f"\nTo {whom}{'' if segment.to is not None else ', as it seems'}"
+    whom = tr("everybody") if to == EVERYBODY else side_name(conversation, to)
+    if segment.to is None:
+        return tr("\nTo {whom}, as it seems", whom=whom)
+    return tr("\nTo {whom}", whom=whom)

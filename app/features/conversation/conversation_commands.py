@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QFileDialog, QInputDialog
 from app.project.document import Edit
 from app.project.files import Files
 from app.project.speech_files import SOUNDS, TRANSCRIPTS, beside, kinds_of
+from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import MOST_SPEAKERS, Conversation
@@ -22,11 +23,11 @@ from metagraph.graph.model import Project
 if TYPE_CHECKING:
     from app.shell.context import Shell
 
-FILTER = (
-    f"Sounds and transcripts ({' '.join(f'*{s} *{s.upper()}' for s in (*SOUNDS, *TRANSCRIPTS))} "
-    "*.TextGrid);;All files (*)"
+FILTER = tr(
+    "Sounds and transcripts ({names} *.TextGrid);;All files (*)",
+    names=" ".join(f"*{s} *{s.upper()}" for s in (*SOUNDS, *TRANSCRIPTS)),
 )
-ELAN, TEXTGRID = "ELAN annotation (*.eaf)", "Praat TextGrid (*.TextGrid)"
+ELAN, TEXTGRID = tr("ELAN annotation (*.eaf)"), tr("Praat TextGrid (*.TextGrid)")
 
 
 def on_stage(shell: Shell) -> tuple[str, Conversation] | None:
@@ -43,13 +44,15 @@ def converse(shell: Shell, paths: Sequence[Path] = ()) -> None:
     if not paths:
         start = str(shell.document.folder or Path.home())
         names, _ = QFileDialog.getOpenFileNames(
-            shell.widget, "Conversation from sound: one file, or one for each who speaks", start, FILTER
+            shell.widget, tr("Conversation from sound: one file, or one for each who speaks"), start, FILTER
         )
         paths = [Path(n) for n in names]
     sounds, transcripts = kinds_of(paths)
     if not sounds:
         if paths:
-            shell.tell(f"There is no sound among these files. Sounds are {', '.join(SOUNDS)}.")
+            shell.tell(
+                tr("There is no sound among these files. Sounds are {names}.", names=", ".join(SOUNDS))
+            )
         return
     from app.features.conversation.conversation_dialog import ImportDialog
 
@@ -68,11 +71,13 @@ def converse(shell: Shell, paths: Sequence[Path] = ()) -> None:
 def rename(shell: Shell) -> None:
     found = on_stage(shell)
     if found is not None:
-        name, ok = QInputDialog.getText(shell.widget, "Rename conversation", "Name", text=found[1].name)
+        name, ok = QInputDialog.getText(
+            shell.widget, tr("Rename conversation"), tr("Name"), text=found[1].name
+        )
         if ok and name.strip():
             _edit(
                 shell,
-                "Rename conversation",
+                tr("Rename conversation"),
                 lambda p: conversation_edits.change_conversation(p, found[0], name=name),
             )
 
@@ -80,8 +85,13 @@ def rename(shell: Shell) -> None:
 def remove(shell: Shell) -> None:
     found = on_stage(shell)
     if found is not None:
-        _edit(shell, "Remove conversation", lambda p: conversation_edits.remove_conversation(p, found[0]))
-        shell.tell(f"Removed '{found[1].name}'. Undo brings it back; its sound files stay where they are.")
+        _edit(shell, tr("Remove conversation"), lambda p: conversation_edits.remove_conversation(p, found[0]))
+        shell.tell(
+            tr(
+                "Removed '{name}'. Undo brings it back; its sound files stay where they are.",
+                name=found[1].name,
+            )
+        )
 
 
 def rates(shell: Shell) -> None:
@@ -102,7 +112,7 @@ def graph_again(shell: Shell) -> None:
                 project = conversation_edits.change_side(project, found[0], side, motion=None)
             return project
 
-        _edit(shell, "Move with the graph again", everyone)
+        _edit(shell, tr("Move with the graph again"), everyone)
 
 
 def word_lists(shell: Shell) -> None:
@@ -128,7 +138,7 @@ def write_segments(shell: Shell) -> None:
         return
     start = (shell.document.folder or Path.home()) / f"{found[1].name}.eaf"
     name, kind = QFileDialog.getSaveFileName(
-        shell.widget, "Export segments", str(start), f"{ELAN};;{TEXTGRID}"
+        shell.widget, tr("Export segments"), str(start), f"{ELAN};;{TEXTGRID}"
     )
     if not name:
         return
@@ -145,7 +155,7 @@ def write_segments(shell: Shell) -> None:
     except (FileError, OSError) as error:
         shell.tell(str(error))
         return
-    shell.tell(f"Wrote {path.name}")
+    shell.tell(tr("Wrote {name}", name=path.name))
 
 
 def _edit(shell: Shell, text: str, function: Edit) -> None:

@@ -34,6 +34,7 @@ from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.project.speech_files import TRANSCRIPTS, facts_of
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.act_strip import clock
 from app.widgets.making import make_widget
 from metagraph.graph import conversation_edits
@@ -81,7 +82,7 @@ class ImportDialog(QDialog):
         self.order = [0, 1]  # of the cards: which of those that were read each shows
         self.job: Job | None = None
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle("Conversation from sound")
+        self.setWindowTitle(tr("Conversation from sound"))
         self.resize(920, 500)  # at which both cards are as wide
         self._soon = QTimer(self, singleShot=True, interval=TYPED)
         self._soon.timeout.connect(self.start)
@@ -102,11 +103,11 @@ class ImportDialog(QDialog):
         layout.setSpacing(12)
         row = QHBoxLayout()
         row.setSpacing(12)
-        row.addWidget(caption("Name", self, True))
+        row.addWidget(caption(tr("Name"), self, True))
         self.name = QLineEdit(self.sounds[0].stem, self)
-        self.name.setAccessibleName("Name of the conversation")
+        self.name.setAccessibleName(tr("Name of the conversation"))
         row.addWidget(self.name, 1)
-        row.addWidget(caption("Language", self, True))
+        row.addWidget(caption(tr("Language"), self, True))
         self.language = LanguageBox(self)
         self.language.show_code(self.document.project.language)
         self.language.activated.connect(self.take_language)
@@ -152,25 +153,28 @@ class ImportDialog(QDialog):
         """The row of what was found, with what can be done about the words."""
         row = QHBoxLayout()
         row.setSpacing(8)
-        row.addWidget(caption("Found", self, True))
+        row.addWidget(caption(tr("Found"), self, True))
         self.files = QLabel(self, wordWrap=True)
         row.addWidget(self.files, 1)
         self.add_words = make_widget(
             QToolButton,
             self,
-            text="Add words…",
-            toolTip="A transcript: TextGrid, ELAN, WebVTT, SRT, JSON or CTM",
+            text=tr("Add words…"),
+            toolTip=tr("A transcript: TextGrid, ELAN, WebVTT, SRT, JSON or CTM"),
         )
         self.add_words.clicked.connect(self.request_words)
         self.other_words = make_widget(
             QToolButton,
             self,
-            text="Swap words",
-            toolTip="The words that were taken for the one's are the other's",
+            text=tr("Swap words"),
+            toolTip=tr("The words that were taken for the one's are the other's"),
         )
         self.other_words.clicked.connect(self.swap_words)
         self.no_words = make_widget(
-            QToolButton, self, text="Without words", toolTip="Read the sound alone: by loudness and pauses"
+            QToolButton,
+            self,
+            text=tr("Without words"),
+            toolTip=tr("Read the sound alone: by loudness and pauses"),
         )
         self.no_words.clicked.connect(lambda: self.take_words(()))
         for button in (self.add_words, self.other_words, self.no_words):
@@ -180,21 +184,25 @@ class ImportDialog(QDialog):
     def _foot(self) -> QHBoxLayout:
         row = QHBoxLayout()
         row.setSpacing(10)
-        self.told = QLabel("Reading …", self)
+        self.told = QLabel(tr("Reading …"), self)
         self.told.setProperty("dim", True)
         self.bar = QProgressBar(self, textVisible=False)
         self.bar.setRange(0, 0)
         self.bar.setFixedWidth(150)
-        self.stop = make_widget(QToolButton, self, text="Stop", toolTip="Stop reading; the dialog stays")
+        self.stop = make_widget(
+            QToolButton, self, text=tr("Stop"), toolTip=tr("Stop reading; the dialog stays")
+        )
         self.stop.clicked.connect(self.stop_reading)
-        self.again = make_widget(QToolButton, self, text="Read again", toolTip="Read the files once more")
+        self.again = make_widget(
+            QToolButton, self, text=tr("Read again"), toolTip=tr("Read the files once more")
+        )
         self.again.clicked.connect(self.start)
         for widget in (self.bar, self.told, self.stop, self.again):
             row.addWidget(widget)
         row.addStretch(1)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
         buttons.button(QDialogButtonBox.StandardButton.Cancel).setIcon(QIcon())
-        self.go = QPushButton("Add", self)
+        self.go = QPushButton(tr("Add"), self)
         strengthen(self.go)
         buttons.addButton(self.go, QDialogButtonBox.ButtonRole.AcceptRole)
         buttons.accepted.connect(self.accept)
@@ -228,8 +236,8 @@ class ImportDialog(QDialog):
                 speaking=Speaking(chosen, usual, lists=lists),
             )
 
-        self.job = self.jobs.start("Reading the conversation", work, self._came, self._failed)
-        self._show("Reading the sound and its words …", busy=True)
+        self.job = self.jobs.start(tr("Reading the conversation"), work, self._came, self._failed)
+        self._show(tr("Reading the sound and its words …"), busy=True)
 
     def _end_job(self) -> None:
         if self.job is not None:
@@ -239,7 +247,7 @@ class ImportDialog(QDialog):
     def stop_reading(self) -> None:
         self._soon.stop()
         self._end_job()
-        self._show("Stopped.")
+        self._show(tr("Stopped."))
 
     def _came(self, read: Read) -> None:
         self.job = None
@@ -253,11 +261,11 @@ class ImportDialog(QDialog):
                 card.name.setText("" if NUMBERED.fullmatch(side.name) else side.name)
         self._show_lists()
         minutes = clock(round(read.conversation.length))
-        self._show(f"Read {minutes} of conversation.")
+        self._show(tr("Read {minutes} of conversation.", minutes=minutes))
 
     def _failed(self, error: Exception) -> None:
         self.job = None
-        self._show("It could not be read.", failure=str(error))
+        self._show(tr("It could not be read."), failure=str(error))
 
     def _show(self, told: str, busy: bool = False, failure: str = "") -> None:
         """Show how things are."""
@@ -275,7 +283,7 @@ class ImportDialog(QDialog):
             card.show_side(self.sides()[n] if self.read is not None else None)
         self._show_parts()
         notes = list(self.read.notes) if self.read is not None else [failure] if failure else []
-        more = [f"… and {len(notes) - MOST} more"] if len(notes) > MOST else []
+        more = [tr("… and {count} more", count=len(notes) - MOST)] if len(notes) > MOST else []
         t = theme(self.session.look.name)
         self.notes.setStyleSheet(f"color: {t.error if failure else t.warning}")
         self.notes.setText("\n".join(f"⚠  {n}" for n in notes[:MOST]) + "".join(f"\n{m}" for m in more))
@@ -304,17 +312,19 @@ class ImportDialog(QDialog):
                 lists.show_lists(lists_of(read, side), code)
             if apart and read is not None:
                 of = read.sides[side]
-                label.setText(f"{side_name(read, side)}: {language_name(of.language) or 'no words'}")
+                label.setText(f"{side_name(read, side)}: {language_name(of.language) or tr('no words')}")
             label.setVisible(apart and not several)
             lists.set_low(apart or several)
         self.lists.setVisible(not (apart and several))
         self.others.setVisible(apart and not several)
         if apart and several and read is not None:
             each = [
-                f"{side_name(read, n)} {language_name(read.sides[n].language) or 'without words'}"
+                f"{side_name(read, n)} {language_name(read.sides[n].language) or tr('without words')}"
                 for n in self.order
             ]
-            self.whose[0].setText(f"Each has lists of its own, to be changed later: {', '.join(each)}")
+            self.whose[0].setText(
+                tr("Each has lists of its own, to be changed later: {each}", each=", ".join(each))
+            )
             self.whose[0].setWordWrap(True)
             self.whose[0].setVisible(True)
 
@@ -361,7 +371,10 @@ class ImportDialog(QDialog):
     def request_words(self) -> None:
         ends = " ".join(f"*{s}" for s in (*TRANSCRIPTS, ".TextGrid"))
         names, _ = QFileDialog.getOpenFileNames(
-            self, "Words of the conversation", str(self.sounds[0].parent), f"Transcripts ({ends})"
+            self,
+            tr("Words of the conversation"),
+            str(self.sounds[0].parent),
+            tr("Transcripts ({ends})", ends=ends),
         )
         if names:
             self.take_words(
@@ -391,7 +404,7 @@ class ImportDialog(QDialog):
             project, ident = conversation_edits.add_conversation(project, conversation)
             return conversation_edits.set_language(project, str(self.language.currentData()))
 
-        self.document.edit("Add conversation", edit)
+        self.document.edit(tr("Add conversation"), edit)
         self.session.onstage.set_conversation(ident)
         self.session.transport.show_plan()
         self.session.transport.seek(0.0)

@@ -7,7 +7,7 @@ from PySide6.QtGui import QDragMoveEvent, QDropEvent, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from app.features.conversation.segment_editing import Editing
-from app.features.conversation.segment_lanes import segment_words
+from app.features.conversation.segment_lanes import KINDS, PLURALS, segment_words
 from app.features.conversation.segment_view import SegmentView
 from app.features.conversation.sound_reading import Sounds
 from app.look.plural import listed, many
@@ -16,6 +16,7 @@ from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.mime import sounds_of
 from app.widgets.more_button import MoreButton
@@ -23,10 +24,9 @@ from app.widgets.quiet_fields import ComboBox
 from app.widgets.sentence import Sentence
 from metagraph.graph.conversation import SPOKEN, side_name
 
-NONE = "None on stage"
+NONE = tr("None on stage")
 # pixels of the panel below which the legend leaves its words out: the sentence beside needs the room
 BRIEF = 1000
-PLURALS = {"clause": "clauses", "response": "responses", "hesitation": "hesitations"}
 
 
 class ConversationPanel(QWidget):
@@ -67,28 +67,30 @@ class ConversationPanel(QWidget):
         row = QHBoxLayout()
         row.setContentsMargins(12, 0, 12, 2)
         row.setSpacing(8)
-        self.stage = ComboBox(self, toolTip="Which conversation is on stage: it moves all its characters")
-        self.stage.setAccessibleName("Conversation on stage")
+        self.stage = ComboBox(self, toolTip=tr("Which conversation is on stage: it moves all its characters"))
+        self.stage.setAccessibleName(tr("Conversation on stage"))
         self.stage.setMinimumWidth(150)
         self.stage.activated.connect(
             lambda _: self.session.onstage.set_conversation(self.stage.currentData())
         )
         row.addWidget(self.stage)
-        tip = "Rename, rates, word lists, export, remove"
-        self.more = MoreButton(self.session.look, "Conversations", tip, self)
+        tip = tr("Rename, rates, word lists, export, remove")
+        self.more = MoreButton(self.session.look, tr("Conversations"), tip, self)
         self.more_menu = self.more.menu_of
         row.addWidget(self.more)
         self.title = Sentence(self)
         self.title.setMinimumHeight(2 * self.title.fontMetrics().height())
         row.addWidget(self.title, 1)
         self.legend = QLabel(self, textFormat=Qt.TextFormat.RichText)
-        self.legend.setToolTip("Clauses, responses and hesitations. Keys 1, 2 and 3 label the selected ones.")
+        self.legend.setToolTip(
+            tr("Clauses, responses and hesitations. Keys 1, 2 and 3 label the selected ones.")
+        )
         row.addWidget(self.legend)
         self.add = make_widget(
             QToolButton,
             self,
-            text="From sound…",
-            toolTip="Read a conversation from sound files, and their words if there are any",
+            text=tr("From sound…"),
+            toolTip=tr("Read a conversation from sound files, and their words if there are any"),
         )
         row.addWidget(self.add)
         return row
@@ -118,7 +120,7 @@ class ConversationPanel(QWidget):
         brief = self.width() < BRIEF
         parts = []
         for k in SPOKEN:
-            words = "" if brief else f" {PLURALS[k] if counts[k] != 1 else k}"
+            words = "" if brief else f" {KINDS[k] if counts[k] == 1 else PLURALS[k]}"
             mark = (
                 f"<span style='background:{t.sounds[k]}; color:#17181b'>&nbsp;{SOUND_MARKS[k]}&nbsp;</span>"
             )
@@ -126,8 +128,10 @@ class ConversationPanel(QWidget):
         self.legend.setText("&nbsp;&nbsp; ".join(parts))
         if self.session.onstage.mode == "manual":
             self.title.say(
-                "Now the machine you draw moves one character. Back in the meta-graph, all who talk move "
-                "with what is said."
+                tr(
+                    "Now the machine you draw moves one character. Back in the meta-graph, all who talk move "
+                    "with what is said."
+                )
             )
             return
         chosen, found = self.editing.chosen, self.editing.segment(self.editing.last)
@@ -136,7 +140,7 @@ class ConversationPanel(QWidget):
                 f"{side_name(of, self.editing.last[0])}: {segment_words(found)}".replace("\n", ", "), True
             )
         elif chosen:
-            self.title.say(f"{many(len(chosen), 'segment')} selected", True)
+            self.title.say(tr("{segments} selected", segments=many(len(chosen), "segment")), True)
         else:
             minutes, seconds = divmod(round(of.length), 60)
             who = listed([side_name(of, side) for side in range(len(of.sides))])
@@ -154,7 +158,7 @@ class ConversationPanel(QWidget):
         done, asked = (
             listed([f"{100 * share:.0f} %" for share in some]) for some in zip(*shares, strict=True)
         )
-        return f". Gestures go with {done} of the clauses, {asked} were asked for"
+        return tr(". Gestures go with {done} of the clauses, {asked} were asked for", done=done, asked=asked)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)

@@ -24,6 +24,7 @@ from app.look.theme import strengthen
 from app.project.document import Document
 from app.stage.performance import Performance
 from app.stage.playback_source import Shown
+from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.graph import conversation_edits
@@ -33,29 +34,46 @@ from metagraph.graph.model import Project
 from metagraph.speech.gaze_shares import together
 
 RATES = {
-    "clause": ("gestures with its own clauses", "How often the hands move with a clause"),
-    "response": ("nods with its own responses", "How often the head nods with a “yeah” or “mm-hmm”"),
-    "hesitation": ("nods when the other hesitates", "How often the head nods while the partner says “er”"),
+    "clause": (tr("gestures with its own clauses"), tr("How often the hands move with a clause")),
+    "response": (tr("nods with its own responses"), tr("How often the head nods with a “yeah” or “mm-hmm”")),
+    "hesitation": (
+        tr("nods when the other hesitates"),
+        tr("How often the head nods while the partner says “er”"),
+    ),
     "mirror": (
-        "mirrors the other's stance",
-        "How often the partner's change of stance is taken up while listening",
+        tr("mirrors the other's stance"),
+        tr("How often the partner's change of stance is taken up while listening"),
     ),
     "mood": (
-        "of the other's mood",
-        "How far the partner's mood shows on this one's face and posture, a moment later",
+        tr("of the other's mood"),
+        tr("How far the partner's mood shows on this one's face and posture, a moment later"),
     ),
-    "laugh": ("laughs along", "How many of the others' laughs are answered with a laughing face"),
+    "laugh": (tr("laughs along"), tr("How many of the others' laughs are answered with a laughing face")),
 }
 BLINKS = {
-    "life": ("As in Life, and on stresses", "The life layer's blinks, and one on many of the clauses' peaks"),
+    "life": (
+        tr("As in Life, and on stresses"),
+        tr("The life layer's blinks, and one on many of the clauses' peaks"),
+    ),
     "peaks": (
-        "On stresses, and after 5 s without",
-        "On a clause's peak if the last blink is a second ago, and once in each five seconds without: what "
-        "Yang et al. keyed (section 7.3)",
+        tr("On stresses, and after 5 s without"),
+        tr(
+            "On a clause's peak if the last blink is a second ago, and once in each five seconds without: "
+            "what Yang et al. keyed (section 7.3)"
+        ),
     ),
 }
-ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
-ACTORS = {"female": "the woman", "male": "the man"}
+ORDINALS = (
+    tr("first"),
+    tr("second"),
+    tr("third"),
+    tr("fourth"),
+    tr("fifth"),
+    tr("sixth"),
+    tr("seventh"),
+    tr("eighth"),
+)
+ACTORS = {"female": tr("the woman"), "male": tr("the man")}
 
 
 def asked(words: str) -> tuple[str, ...]:
@@ -125,7 +143,7 @@ def delivered_words(shown: Shown, conversation: Conversation) -> str:
         if told.count
     ]
     looks = together([share for one in shown.everyone for share in one.looks])
-    return "\n".join((*rates, *(f"Whoever is {share.words()}" for share in looks)))
+    return "\n".join((*rates, *(tr("Whoever is {words}", words=share.words()) for share in looks)))
 
 
 class Tall(QScrollArea):
@@ -154,7 +172,7 @@ class Tall(QScrollArea):
 class RatesDialog(SettingDialog):
     """How often each who talks moves with what is said, and what becomes of it on stage."""
 
-    title, text = "Rates", "Change rates"
+    title, text = tr("Rates"), tr("Change rates")
 
     def __init__(
         self,
@@ -172,7 +190,7 @@ class RatesDialog(SettingDialog):
     def build(self, layout: QVBoxLayout) -> None:
         layout.addWidget(
             caption(
-                "How often each moves with what is said. Beside: what actors did (Yang et al. 2020).",
+                tr("How often each moves with what is said. Beside: what actors did (Yang et al. 2020)."),
                 self,
                 True,
             )
@@ -186,12 +204,12 @@ class RatesDialog(SettingDialog):
             whose.setWordWrap(True)
             grid.addWidget(whose, 0, 1 + side)
         for column, actor in enumerate(ACTORS.values()):
-            told = caption(actor.capitalize(), self, True)
+            told = caption(actor[:1].upper() + actor[1:], self, True)
             told.setWordWrap(count == 2)  # of more the fields need the room
             grid.addWidget(told, 0, 1 + count + column)
         self.fields: list[dict[str, QDoubleSpinBox]] = [{} for _ in range(count)]
         for row, (name, (words, tip)) in enumerate(RATES.items(), 1):
-            grid.addWidget(QLabel(words.capitalize(), self), row, 0)
+            grid.addWidget(QLabel(words[:1].upper() + words[1:], self), row, 0)
             for side in range(count):
                 field = DoubleSpinBox(self, toolTip=tip, suffix=" %", decimals=0)
                 field.setRange(0, 100)
@@ -211,7 +229,10 @@ class RatesDialog(SettingDialog):
             row_of.setSpacing(2)
             for actor, words in ACTORS.items():
                 button = make_widget(
-                    QToolButton, self, text=f"As {words}", toolTip=f"The rates of {words} in the paper"
+                    QToolButton,
+                    self,
+                    text=tr("As {actor}", actor=words),
+                    toolTip=tr("The rates of {actor} in the paper", actor=words),
                 )
                 button.clicked.connect(
                     lambda _=False, side=side, rates=conversation_edits.PAPER[actor]: self.take(side, rates)
@@ -220,9 +241,9 @@ class RatesDialog(SettingDialog):
             grid.addLayout(row_of, len(RATES) + 1, 1 + side)
         layout.addLayout(grid)
         row_of = QHBoxLayout()
-        row_of.addWidget(QLabel("Blinks", self))
+        row_of.addWidget(QLabel(tr("Blinks"), self))
         self.blinks = ComboBox(self)
-        self.blinks.setAccessibleName("Blinks")
+        self.blinks.setAccessibleName(tr("Blinks"))
         for value, (words, tip) in BLINKS.items():
             self.blinks.addItem(words, value)
             self.blinks.setItemData(self.blinks.count() - 1, tip, Qt.ItemDataRole.ToolTipRole)

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QMenu, QWidget
 
 from app.project.document import Document
 from app.project.speech_files import SOUNDS, channels_of
+from app.translation import tr
 from metagraph.formats.store import SUFFIX, relative
 from metagraph.graph.conversation import Conversation, side_name
 from metagraph.graph.conversation_edits import change_side
@@ -20,7 +21,7 @@ from metagraph.graph.edits import EditError
 BODIES = (".glb", ".gltf")
 MOST = 24  # files of a kind that a menu offers; all others are chosen in the dialog
 LOOKED_AT = 2000  # files of a folder
-EARS = ("left", "right")
+EARS = tr("left"), tr("right")
 
 
 def partner_menu(parent: QWidget, document: Document, ident: str, side: int, more: object = None) -> QMenu:
@@ -38,37 +39,41 @@ def fill_partner(menu: QMenu, document: Document, ident: str, side: int, more: o
         action.setChecked(chosen)
 
     menu.setToolTipsVisible(True)
-    body = menu.addMenu("Character")
-    offer(body, "Of the project that moves it", of.character is None, character=None)
+    body = menu.addMenu(tr("Character"))
+    offer(body, tr("Of the project that moves it"), of.character is None, character=None)
     used = (s.character for c in document.project.conversations.values() for s in c.sides)
     for path in _beside(document, BODIES, (*used, document.project.character)):
         offer(body, Path(path).stem, path == of.character, character=path)
-    mover = menu.addMenu("Body language, moved by")
-    offer(mover, "This project", of.project is None, project=None)
+    mover = menu.addMenu(tr("Body language, moved by"))
+    offer(mover, tr("This project"), of.project is None, project=None)
     used = (s.project for c in document.project.conversations.values() for s in c.sides)
     own = document.path.resolve() if document.path is not None else None
     for path in _beside(document, (SUFFIX,), used):
         if own is None or ((document.folder or Path()) / path).resolve() != own:
             offer(mover, Path(path).name.removesuffix(SUFFIX), path == of.project, project=path)
-    voice = menu.addMenu("Voice")
-    offer(voice, "No sound", of.audio is None, audio=None, channel=None)
+    voice = menu.addMenu(tr("Voice"))
+    offer(voice, tr("No sound"), of.audio is None, audio=None, channel=None)
     for path in _beside(document, SOUNDS, (s.audio for s in conversation.sides)):
         count = channels_of((document.folder or Path()) / path)
         name = Path(path).name
         for channel in (None,) if count < 2 else range(count):
-            ear = "" if channel is None else f", {EARS[channel] if count == 2 else f'channel {channel + 1}'}"
+            ear = (
+                ""
+                if channel is None
+                else f", {EARS[channel] if count == 2 else tr('channel {number}', number=channel + 1)}"
+            )
             here = path == of.audio and of.channel == channel
             offer(voice, f"{name}{ear}", here, audio=path, channel=channel)
     for inner, tip in (
-        (body, "The mesh it is drawn with"),
-        (mover, "The project whose graph moves it"),
-        (voice, "The sound it speaks with; its words and segments stay"),
+        (body, tr("The mesh it is drawn with")),
+        (mover, tr("The project whose graph moves it")),
+        (voice, tr("The sound it speaks with; its words and segments stay")),
     ):
         inner.setToolTipsVisible(True)
         inner.menuAction().setToolTip(tip)
     if callable(more):
         menu.addSeparator()
-        menu.addAction("Others, and where it stands…", more)
+        menu.addAction(tr("Others, and where it stands…"), more)
     return menu
 
 
@@ -80,7 +85,11 @@ def fill_all(menu: QMenu, document: Document, ident: str, more: object = None) -
 
 
 def _set(document: Document, ident: str, side: int, changes: dict[str, object]) -> None:
-    words = {"character": "Change character", "project": "Change who moves", "audio": "Change voice"}
+    words = {
+        "character": tr("Change character"),
+        "project": tr("Change who moves"),
+        "audio": tr("Change voice"),
+    }
     text = next(t for name, t in words.items() if name in changes)
     try:
         document.edit(text, lambda p: change_side(p, ident, side, **changes))

@@ -10,10 +10,12 @@ from typing import Any
 import numpy as np
 from PySide6.QtCore import QObject, Signal
 
+from app.features.conversation.segment_lanes import KINDS
 from app.features.conversation.sound_reading import SideSound, Sounds
 from app.look.plural import many
 from app.project.document import Document, Edit
 from app.stage.session import Session
+from app.translation import tr
 from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import SPOKEN, Conversation, Segment, Sound
 from metagraph.graph.edits import EditError
@@ -145,7 +147,9 @@ class Editing(QObject):
     def relabel(self, kind: Sound) -> None:
         if self.chosen:
             self.change(
-                f"Label {many(len(self.chosen), 'segment')} as {kind}",
+                tr(
+                    "Label {segments} as {kind}", segments=many(len(self.chosen), "segment"), kind=KINDS[kind]
+                ),
                 conversation_edits.relabel_segments,
                 self.chosen,
                 kind,
@@ -162,7 +166,9 @@ class Editing(QObject):
             return
         side, at = min(self.chosen)
         if self.change(
-            f"Remove {many(len(self.chosen), 'segment')}", conversation_edits.remove_segments, self.chosen
+            tr("Remove {what}", what=many(len(self.chosen), "segment")),
+            conversation_edits.remove_segments,
+            self.chosen,
         ):
             of = self.conversation
             left = len(of.sides[side].segments) if of is not None else 0
@@ -174,12 +180,12 @@ class Editing(QObject):
         found = self.segment(place)
         if place is None or found is None:
             self.document.failed.emit(
-                "No segment is here: put the playhead, or the pointer, where one is to be split."
+                tr("No segment is here: put the playhead, or the pointer, where one is to be split.")
             )
             return
         second = found.peak is None or found.peak < seconds
         peak = self.highest(place[0], *((seconds, found.end) if second else (found.start, seconds)))
-        if self.change("Split segment", conversation_edits.split_segment, *place, seconds, peak):
+        if self.change(tr("Split segment"), conversation_edits.split_segment, *place, seconds, peak):
             self.select({place, (place[0], place[1] + 1)}, place)
 
     def under(self, seconds: float) -> Place | None:
@@ -197,7 +203,7 @@ class Editing(QObject):
 
     def address(self, to: int | None) -> None:
         """Say whom the selected segments are said to; None: it is inferred."""
-        self.change("Say whom segments are said to", conversation_edits.address_segments, self.chosen, to)
+        self.change(tr("Say whom segments are said to"), conversation_edits.address_segments, self.chosen, to)
 
     def merge(self) -> None:
         """Merge the selected segments of the side, with all between them; a single one with the next."""
@@ -207,7 +213,7 @@ class Editing(QObject):
         places = [at for s, at in self.chosen if s == side]
         first, last = min(places), max(places)
         if self.change(
-            "Merge segments", conversation_edits.merge_segments, side, first, max(last, first + 1)
+            tr("Merge segments"), conversation_edits.merge_segments, side, first, max(last, first + 1)
         ):
             self.select({(side, first)})
 
@@ -224,7 +230,7 @@ class Editing(QObject):
             )
             return project
 
-        if self.conversation is not None and self.edit("Add segment", edit):
+        if self.conversation is not None and self.edit(tr("Add segment"), edit):
             self.select({(side, made)})
 
     def add_here(self) -> None:
@@ -242,10 +248,10 @@ class Editing(QObject):
         if found is None or self.last is None:
             return
         if what == "body":
-            self.change("Move segment", conversation_edits.move_segment, *self.last, by)
+            self.change(tr("Move segment"), conversation_edits.move_segment, *self.last, by)
         else:
             self.change(
-                "Change segment",
+                tr("Change segment"),
                 conversation_edits.resize_segment,
                 *self.last,
                 **{what: getattr(found, what) + by},
@@ -260,10 +266,10 @@ class Editing(QObject):
         peak = seconds if inside else self.highest(self.last[0], found.start, found.end)
         if peak is None:
             self.document.failed.emit(
-                "No pitch was found in this segment: put the playhead in it, where the stress is."
+                tr("No pitch was found in this segment: put the playhead in it, where the stress is.")
             )
         else:
-            self.change("Move stress", conversation_edits.set_peak, *self.last, peak)
+            self.change(tr("Move stress"), conversation_edits.set_peak, *self.last, peak)
 
     def highest(self, side: int, start: float, end: float) -> float | None:
         """Return when in a stretch the voice is highest; None where none is heard."""

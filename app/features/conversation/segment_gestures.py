@@ -9,6 +9,7 @@ from PySide6.QtCore import QPointF
 from app.features.conversation.segment_hits import SegmentHit, snapped, word_edges
 from app.features.conversation.segment_host import SegmentHost
 from app.project.document import Edit
+from app.translation import tr
 from app.widgets.gesture import Gesture, PressDrag, Reason
 from metagraph.graph import conversation_edits
 from metagraph.graph.edits import EditError
@@ -60,7 +61,7 @@ class SegmentDrag(PressDrag):
 class EdgeDrag(SegmentDrag):
     """Drags where a segment begins or ends."""
 
-    text = "Change segment"
+    text = tr("Change segment")
 
     def edit(self, at: QPointF, free: bool) -> Edit | None:
         view, hit, ident = self.view, self.hit, self.view.session.onstage.conversation
@@ -78,7 +79,7 @@ class BodyDrag(SegmentDrag):
     it, it alone is selected.
     """
 
-    text = "Move segment"
+    text = tr("Move segment")
 
     def edit(self, at: QPointF, free: bool) -> Edit | None:
         view, hit, ident = self.view, self.hit, self.view.session.onstage.conversation
@@ -99,7 +100,7 @@ class BodyDrag(SegmentDrag):
 class PeakDrag(SegmentDrag):
     """Drags the stress of a clause; where the pitch is highest catches it."""
 
-    text = "Move stress"
+    text = tr("Move stress")
 
     def edit(self, at: QPointF, free: bool) -> Edit | None:
         view, hit, of = self.view, self.hit, self.view.editing.conversation
@@ -110,20 +111,20 @@ class PeakDrag(SegmentDrag):
         to = segment.peak + (at.x() - self.origin.x()) / view.each
         tops = [m for m in (heard.maxima if heard is not None else ()) if segment.start <= m <= segment.end]
         to = min(max(segment.start, snapped(to, tops, view.scale(), not free)), segment.end)
-        self.words, self.seconds = f"Stress at {to:.2f} s", to
+        self.words, self.seconds = tr("Stress at {to:.2f} s", to=to), to
         return lambda p: conversation_edits.set_peak(p, ident, hit.side, hit.at, to)
 
 
 class NewDrag(SegmentDrag):
     """Draws a new segment where none is."""
 
-    text = "Add segment"
+    text = tr("Add segment")
 
     def edit(self, at: QPointF, free: bool) -> Edit | None:
         view, side, ident = self.view, self.hit.side, self.view.session.onstage.conversation
         scale = view.scale()
         start, end = (self.snapped(scale.seconds(x), free) for x in (self.origin.x(), at.x()))
-        self.words, self.seconds = f"New: {abs(end - start):.2f} s", end
+        self.words, self.seconds = tr("New: {seconds:.2f} s", seconds=abs(end - start)), end
         self._span = start, end
         if ident is None or not _can(
             view, lambda p: conversation_edits.add_segment(p, ident, side, "clause", start, end)[0]

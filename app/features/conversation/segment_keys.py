@@ -11,9 +11,16 @@ from PySide6.QtGui import QKeySequence
 
 from app.features.conversation.segment_editing import Editing
 from app.look.theme import SOUND_MARKS
+from app.translation import tr
 from metagraph.graph.conversation import SPOKEN, Sound
 
 FINE, FAR = 0.02, 0.2  # seconds a key moves something
+TITLES = {"clause": tr("Clause"), "response": tr("Response"), "hesitation": tr("Hesitation")}
+NUDGES = {
+    "body": (tr("Move earlier"), tr("Move later")),
+    "end": (tr("Move the end earlier"), tr("Move the end later")),
+    "start": (tr("Move the start earlier"), tr("Move the start later")),
+}
 Key, Modifier = Qt.Key, Qt.KeyboardModifier
 
 
@@ -56,10 +63,9 @@ def _nudges() -> list[Deed]:
         (Modifier.ControlModifier | Modifier.ShiftModifier, "start"),
     ):
         for key, by in ((Key.Key_Left, -FINE), (Key.Key_Right, FINE)):
-            words = {"body": "Move", "end": "Move the end", "start": "Move the start"}[what]
             out.append(
                 Deed(
-                    f"{words} {'earlier' if by < 0 else 'later'}",
+                    NUDGES[what][by > 0],
                     (_combined(key, modifier),),
                     partial(_nudge, by, what),
                     hidden=True,
@@ -70,35 +76,39 @@ def _nudges() -> list[Deed]:
 
 DEEDS: tuple[Deed, ...] = (
     *(
-        Deed(f"{SOUND_MARKS[kind]}  {kind.capitalize()}", (_combined(key),), partial(_label, kind))
+        Deed(f"{SOUND_MARKS[kind]}  {TITLES[kind]}", (_combined(key),), partial(_label, kind))
         for kind, key in zip(SPOKEN, (Key.Key_1, Key.Key_2, Key.Key_3), strict=True)
     ),
-    Deed("Split here", (_combined(Key.Key_S),), lambda e, at: e.split(at), needs=False, line=True),
-    Deed("Merge with the next", (_combined(Key.Key_M),), lambda e, _: e.merge()),
-    Deed("Put the stress here", (_combined(Key.Key_P),), lambda e, at: e.stress(at)),
+    Deed(tr("Split here"), (_combined(Key.Key_S),), lambda e, at: e.split(at), needs=False, line=True),
+    Deed(tr("Merge with the next"), (_combined(Key.Key_M),), lambda e, _: e.merge()),
+    Deed(tr("Put the stress here"), (_combined(Key.Key_P),), lambda e, at: e.stress(at)),
     Deed(
-        "Remove",
+        tr("Remove"),
         (_combined(Key.Key_Delete), _combined(Key.Key_Backspace)),
         lambda e, _: e.remove(),
         line=True,
     ),
     Deed(
-        "Add a segment at the playhead",
+        tr("Add a segment at the playhead"),
         (_combined(Key.Key_Insert),),
         lambda e, _: e.add_here(),
         needs=False,
         line=True,
     ),
     Deed(
-        "Select all segments",
+        tr("Select all segments"),
         (_combined(Key.Key_A, Modifier.ControlModifier),),
         lambda e, _: e.select_all(),
         needs=False,
     ),
-    Deed("Next", (_combined(Key.Key_Right),), lambda e, _: e.step(1), needs=False, hidden=True),
-    Deed("Previous", (_combined(Key.Key_Left),), lambda e, _: e.step(-1), needs=False, hidden=True),
-    Deed("The speaker above", (_combined(Key.Key_Up),), lambda e, _: e.cross(-1), needs=False, hidden=True),
-    Deed("The speaker below", (_combined(Key.Key_Down),), lambda e, _: e.cross(1), needs=False, hidden=True),
+    Deed(tr("Next"), (_combined(Key.Key_Right),), lambda e, _: e.step(1), needs=False, hidden=True),
+    Deed(tr("Previous"), (_combined(Key.Key_Left),), lambda e, _: e.step(-1), needs=False, hidden=True),
+    Deed(
+        tr("The speaker above"), (_combined(Key.Key_Up),), lambda e, _: e.cross(-1), needs=False, hidden=True
+    ),
+    Deed(
+        tr("The speaker below"), (_combined(Key.Key_Down),), lambda e, _: e.cross(1), needs=False, hidden=True
+    ),
     *_nudges(),
 )
 _BY_KEY = {key: deed for deed in DEEDS for key in deed.keys}

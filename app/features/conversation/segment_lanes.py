@@ -14,9 +14,13 @@ from typing import Any
 import numpy as np
 from PySide6.QtCore import QRectF
 
+from app.translation import tr
 from app.widgets.lane_geometry import LEFT, RULER, Scale
 from metagraph.graph.conversation import Segment, Word
 
+# what the window calls the kinds of segments
+KINDS = {"clause": tr("clause"), "response": tr("response"), "hesitation": tr("hesitation")}
+PLURALS = {"clause": tr("clauses"), "response": tr("responses"), "hesitation": tr("hesitations")}
 GAP = 8.0  # pixels between two
 WORDS, SEGMENTS, TALLEST = 17.0, 26.0, 190.0  # pixels of the words, of the segments, of a side at most
 LEGIBLE = 18.0  # pixels segments need for their words
@@ -97,15 +101,17 @@ def segment_rect(segment: Segment, scale: Scale, lane: SegmentLane) -> QRectF:
 
 def segment_words(segment: Segment) -> str:
     """Return a segment in words: what is said, what it is, from when to when, and its stress."""
-    what = {"clause": "Clause", "response": "Listener response", "hesitation": "Hesitation pause"}[
-        segment.kind
-    ]
+    what = {
+        "clause": tr("Clause"),
+        "response": tr("Listener response"),
+        "hesitation": tr("Hesitation pause"),
+    }[segment.kind]
     lines = [f"“{segment.text}”"] if segment.text else []
-    lines.append(f"{what}, {segment.start:.2f} to {segment.end:.2f} s")
+    lines.append(tr("{what}, {start:.2f} to {end:.2f} s", what=what, start=segment.start, end=segment.end))
     if segment.kind == "clause":
         lines.append(
-            f"Stress at {segment.peak:.2f} s"
+            tr("Stress at {peak:.2f} s", peak=segment.peak)
             if segment.peak is not None
-            else "No stress: drag in the waveform above to set it"
+            else tr("No stress: drag in the waveform above to set it")
         )
     return "\n".join(lines)

@@ -21,6 +21,7 @@ from app.features.conversation.segment_lanes import (
 )
 from app.features.conversation.sound_reading import SideSound
 from app.look.theme import SOUND_MARKS, Theme
+from app.translation import tr
 from app.widgets.act_strip import STEPS, clock
 from app.widgets.lane_geometry import LEFT, RULER, Scale, advance, elided
 from app.widgets.waveforms import Envelope, joined, painted
@@ -115,9 +116,9 @@ def _titles(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: S
         if y > lane.wave.top() + 26 and y < lane.wave.bottom() - 5:
             painter.drawText(QRectF(12, y - 8, LEFT - 18, 16), right, f"{hertz:.0f} Hz")
     if lane.wave.height() > 34:
-        painter.drawText(QRectF(12, lane.words.top(), LEFT - 14, lane.words.height()), MIDDLE, "Words")
+        painter.drawText(QRectF(12, lane.words.top(), LEFT - 14, lane.words.height()), MIDDLE, tr("Words"))
         painter.drawText(
-            QRectF(12, lane.segments.top(), LEFT - 14, lane.segments.height()), MIDDLE, "Segments"
+            QRectF(12, lane.segments.top(), LEFT - 14, lane.segments.height()), MIDDLE, tr("Segments")
         )
     painter.setFont(own)
 
@@ -179,7 +180,7 @@ def _told(painter: QPainter, t: Theme, heard: SideSound | None, area: QRectF) ->
         words = (
             heard.missing
             if heard is not None
-            else "No sound is given for this side. Choose one in the menu “…” above."
+            else tr("No sound is given for this side. Choose one in the menu “…” above.")
         )
         painter.setPen(QColor(t.warning))
         painter.drawText(inner, MIDDLE | Qt.TextFlag.TextWordWrap, f"⚠  {words}")

@@ -38,6 +38,7 @@ from app.features.conversation.segment_paint import SegmentScene, empty, paint
 from app.features.conversation.sound_reading import Sounds
 from app.look.theme import theme
 from app.project.document import Edit
+from app.translation import tr
 from app.widgets.gesture import Hand
 from app.widgets.lane_geometry import LEFT, Scale
 from app.widgets.lane_paint import badge, playhead
@@ -47,13 +48,15 @@ from metagraph.graph.edits import EditError
 
 ZOOM, USUAL = 1.2, 100.0  # of a turn of the wheel; pixels a second to begin with: most words have room
 EMPTY = (
-    "Drop the sound of a conversation here",
-    "one file with a channel for each who speaks, or a file for each; with their words as TextGrid, ELAN, "
-    "subtitles or JSON, if there are any.",
-    "What they say then stands here, in clauses, responses and hesitations, and moves a character each.",
+    tr("Drop the sound of a conversation here"),
+    tr(
+        "one file with a channel for each who speaks, or a file for each; with their words as TextGrid, "
+        "ELAN, subtitles or JSON, if there are any."
+    ),
+    tr("What they say then stands here, in clauses, responses and hesitations, and moves a character each."),
 )
-UNCHOSEN = ("No conversation is on stage", "Choose one above, or drop the sound of another here.")
-TEXT = (
+UNCHOSEN = (tr("No conversation is on stage"), tr("Choose one above, or drop the sound of another here."))
+TEXT = tr(
     "Segments of a conversation. Left and Right choose one, Up and Down the speaker, 1 to 3 label it, S "
     "splits, M merges, Delete removes."
 )
@@ -81,7 +84,7 @@ class SegmentView(QWidget):
         self.setMinimumHeight(least(2))
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setAccessibleName("Conversation")
+        self.setAccessibleName(tr("Conversation"))
         self.setAccessibleDescription(TEXT)
         sounds.changed.connect(self._read)
         editing.changed.connect(self._chosen)
@@ -428,23 +431,32 @@ class SegmentView(QWidget):
             return ""
         if hit.at >= 0:
             words = segment_words(of.sides[hit.side].segments[hit.at]) + addressee_words(of, hit.side, hit.at)
-            return words + ("\nDrag it to another top of the pitch" if hit.part == "peak" else "")
+            return words + (tr("\nDrag it to another top of the pitch") if hit.part == "peak" else "")
         if hit.part == "wave":
             seconds = self.scale().seconds(at.x())
             said = [
                 w for w in words_in(of.sides[hit.side].words, seconds, seconds) if w.start <= seconds <= w.end
             ]
-            return f"{said[0].text}\n{said[0].start:.2f} to {said[0].end:.2f} s" if said else ""
+            return (
+                tr(
+                    "{word}\n{start:.2f} to {end:.2f} s",
+                    word=said[0].text,
+                    start=said[0].start,
+                    end=said[0].end,
+                )
+                if said
+                else ""
+            )
         if hit.part == "title":
             side, whose = of.sides[hit.side], hit.side == self.session.onstage.side
-            channel = f", channel {side.channel + 1}" if side.channel is not None else ""
+            channel = tr(", channel {number}", number=side.channel + 1) if side.channel is not None else ""
             sound = [f"{side.audio}{channel}"] if side.audio else []
-            mover = [f"Moved by {side.project}"] if side.project else []
+            mover = [tr("Moved by {project}", project=side.project)] if side.project else []
             shown = (
-                "Performance shows this one's plan"
+                tr("Performance shows this one's plan")
                 if whose
-                else "Click to see this one's plan in Performance"
+                else tr("Click to see this one's plan in Performance")
             )
-            other = "The arrow: another character, body or voice"
+            other = tr("The arrow: another character, body or voice")
             return "\n".join((side_name(of, hit.side), *sound, *mover, shown, other))
-        return "Drag to make a segment" if hit.part == "gap" else ""
+        return tr("Drag to make a segment") if hit.part == "gap" else ""

@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
 
 from app.features.conversation.conversation_settings import ORDINALS, SettingDialog, Tall, caption
 from app.project.speech_files import SOUNDS, channels_of
+from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.formats.store import SUFFIX, relative
@@ -34,7 +35,7 @@ ROWS = 8  # of the grid for each who talks
 class SidesDialog(SettingDialog):
     """Who talks, which sound is whose, whose graph moves each, and where they stand."""
 
-    title, text = "Sounds and names", "Change sounds and names"
+    title, text = tr("Sounds and names"), tr("Change sounds and names")
 
     def build(self, layout: QVBoxLayout) -> None:
         self.resize(720, 0 if len(self.conversation.sides) == 2 else 620)
@@ -53,7 +54,9 @@ class SidesDialog(SettingDialog):
         grid.setColumnStretch(1, 1)
         for side, of in enumerate(self.conversation.sides):
             top, ordinal = ROWS * side, ORDINALS[side]
-            grid.addWidget(caption(f"{ordinal.capitalize()} speaker", inside), top, 0, 1, 3)
+            grid.addWidget(
+                caption(tr("{ordinal} speaker", ordinal=ordinal.capitalize()), inside), top, 0, 1, 3
+            )
             name, sound, channel, mover, body = (
                 QLineEdit(of.name, inside),
                 QLineEdit(of.audio or "", inside),
@@ -61,36 +64,36 @@ class SidesDialog(SettingDialog):
                 QLineEdit(of.project or "", inside),
                 QLineEdit(of.character or "", inside),
             )
-            mover.setToolTip("The project whose graph and character move this one")
+            mover.setToolTip(tr("The project whose graph and character move this one"))
             body.setToolTip(
-                "The GLB this one is drawn with; any whose joints have the names of the skeleton's"
+                tr("The GLB this one is drawn with; any whose joints have the names of the skeleton's")
             )
             mover.setClearButtonEnabled(True)
             body.setClearButtonEnabled(True)
             for row, (words, widget, empty) in enumerate(
                 (
-                    ("Name", name, f"Speaker {side + 1}"),
-                    ("Sound", sound, "No sound"),
-                    ("Channel", channel, ""),
-                    ("Moved by", mover, "This project"),
-                    ("Character", body, "That project's"),
+                    (tr("Name"), name, tr("Speaker {number}", number=side + 1)),
+                    (tr("Sound"), sound, tr("No sound")),
+                    (tr("Channel"), channel, ""),
+                    (tr("Moved by"), mover, tr("This project")),
+                    (tr("Character"), body, tr("That project's")),
                 ),
                 top + 1,
             ):
-                widget.setAccessibleName(f"{words} of the {ordinal} speaker")
+                widget.setAccessibleName(tr("{what} of the {ordinal} speaker", what=words, ordinal=ordinal))
                 grid.addWidget(QLabel(words, inside), row, 0)
                 grid.addWidget(widget, row, 1)
                 if isinstance(widget, QLineEdit):
                     widget.setPlaceholderText(empty)
             for row, tip, choose in (
-                (top + 2, "Choose a sound file", self.choose),
-                (top + 4, "Choose a project", self.choose_project),
-                (top + 5, "Choose a character", self.choose_character),
+                (top + 2, tr("Choose a sound file"), self.choose),
+                (top + 4, tr("Choose a project"), self.choose_project),
+                (top + 5, tr("Choose a character"), self.choose_character),
             ):
-                button = make_widget(QToolButton, inside, text="Choose…", toolTip=tip)
+                button = make_widget(QToolButton, inside, text=tr("Choose…"), toolTip=tip)
                 button.clicked.connect(lambda _=False, side=side, choose=choose: choose(side))
                 grid.addWidget(button, row, 2)
-            grid.addWidget(QLabel("Stands", inside), top + 6, 0)
+            grid.addWidget(QLabel(tr("Stands"), inside), top + 6, 0)
             grid.addLayout(self._place_row(inside, side), top + 6, 1)
             grid.setRowMinimumHeight(top + 7, 6)
             self.names.append(name)
@@ -103,15 +106,19 @@ class SidesDialog(SettingDialog):
                 lambda side=side: self._show_channels(side, self.channels[side].currentData())
             )
         layout.addWidget(inside if count == 2 else Tall(inside, 520, self), 1)
-        between = "the two" if count == 2 else "neighbours in the circle"
+        between = tr("the two") if count == 2 else tr("neighbours in the circle")
         self.distance = DoubleSpinBox(
-            self, suffix=" m", decimals=2, singleStep=0.1, toolTip=f"How far apart {between} stand"
+            self,
+            suffix=" m",
+            decimals=2,
+            singleStep=0.1,
+            toolTip=tr("How far apart {between} stand", between=between),
         )
         self.distance.setRange(0.2, 20)
         self.distance.setValue(self.conversation.distance)
-        self.distance.setAccessibleName(f"Distance between {between}")
+        self.distance.setAccessibleName(tr("Distance between {between}", between=between))
         row_of = QHBoxLayout()
-        row_of.addWidget(QLabel("Distance", self))
+        row_of.addWidget(QLabel(tr("Distance"), self))
         row_of.addWidget(self.distance)
         row_of.addStretch(1)
         layout.addLayout(row_of)
@@ -119,22 +126,24 @@ class SidesDialog(SettingDialog):
     def _place_row(self, parent: QWidget, side: int) -> QHBoxLayout:
         """A place of one's own: to the right, and towards the viewer."""
         of = self.conversation.sides[side]
-        own = QCheckBox("at a place of its own", parent)
+        own = QCheckBox(tr("at a place of its own"), parent)
         own.setChecked(of.place is not None)
-        own.setAccessibleName(f"The {ORDINALS[side]} speaker stands at a place of its own")
+        own.setAccessibleName(
+            tr("The {ordinal} speaker stands at a place of its own", ordinal=ORDINALS[side])
+        )
         row = QHBoxLayout()
         row.setSpacing(10)
         row.addWidget(own)
         fields = []
         here = stands(self.conversation)[side]
         for at, words, tip in (
-            (here.x, "right", "Metres to the right of the middle; less than 0 to the left"),
-            (here.z, "nearer", "Metres towards the viewer; less than 0 away"),
+            (here.x, tr("right"), tr("Metres to the right of the middle; less than 0 to the left")),
+            (here.z, tr("nearer"), tr("Metres towards the viewer; less than 0 away")),
         ):
             field = DoubleSpinBox(parent, suffix=f" m {words}", decimals=2, singleStep=0.1, toolTip=tip)
             field.setRange(-50, 50)
             field.setValue(at)
-            field.setAccessibleName(f"{words} of the {ORDINALS[side]} speaker")
+            field.setAccessibleName(tr("{what} of the {ordinal} speaker", what=words, ordinal=ORDINALS[side]))
             field.setEnabled(own.isChecked())
             own.toggled.connect(field.setEnabled)
             row.addWidget(field)
@@ -157,24 +166,28 @@ class SidesDialog(SettingDialog):
         count = channels_of((self.document.folder or Path()) / name) if name else 0
         box = self.channels[side]
         box.clear()
-        box.addItem("All, mixed", None)
+        box.addItem(tr("All, mixed"), None)
         for n in range(max(count, 0 if chosen is None else chosen + 1)):
-            words = f"{n + 1}" + ((" (left)", " (right)")[n] if count == 2 and n < 2 else "")
+            words = f"{n + 1}" + ((tr(" (left)"), tr(" (right)"))[n] if count == 2 and n < 2 else "")
             box.addItem(words, n)
         box.setCurrentIndex(max(0, box.findData(chosen)))
 
     def choose(self, side: int) -> None:
         """Ask for a sound."""
-        if self._ask(self.sounds[side], "Choose a sound", f"Sounds ({' '.join(f'*{s}' for s in SOUNDS)})"):
+        if self._ask(
+            self.sounds[side],
+            tr("Choose a sound"),
+            tr("Sounds ({names})", names=" ".join(f"*{s}" for s in SOUNDS)),
+        ):
             self._show_channels(side, self.channels[side].currentData())
 
     def choose_project(self, side: int) -> None:
         """Ask for the project whose graph moves a side."""
-        self._ask(self.movers[side], "Choose a project", f"Projects (*{SUFFIX})")
+        self._ask(self.movers[side], tr("Choose a project"), tr("Projects (*{ends})", ends=SUFFIX))
 
     def choose_character(self, side: int) -> None:
         """Ask for the character a side is drawn with."""
-        self._ask(self.bodies[side], "Choose a character", "Characters (*.glb *.gltf)")
+        self._ask(self.bodies[side], tr("Choose a character"), tr("Characters (*.glb *.gltf)"))
 
     def _ask(self, field: QLineEdit, title: str, kinds: str) -> bool:
         folder = self.document.folder
@@ -193,8 +206,11 @@ class SidesDialog(SettingDialog):
         whole = (self.document.folder or Path()) / text
         if not whole.is_file():
             raise EditError(
-                f"there is no project at {whole}: choose another, or clear the field to let this project "
-                "move the speaker"
+                tr(
+                    "there is no project at {whole}: choose another, or clear the field to let this "
+                    "project move the speaker",
+                    whole=whole,
+                )
             )
         own = self.document.path
         return None if own is not None and own.exists() and whole.samefile(own) else text
@@ -208,8 +224,11 @@ class SidesDialog(SettingDialog):
             whole = (self.document.folder or Path()) / text
             if not whole.is_file():
                 raise EditError(
-                    f"there is no character at {whole}: choose another, or clear the field, so that the "
-                    "speaker is drawn with the character of the project that moves it"
+                    tr(
+                        "there is no character at {whole}: choose another, or clear the field, so that the "
+                        "speaker is drawn with the character of the project that moves it",
+                        whole=whole,
+                    )
                 )
         return text or None
 

@@ -17,6 +17,7 @@ from app.features.conversation.segment_hits import pitch_maxima
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.waveforms import Envelope, binned
 from metagraph.errors import FileError
 from metagraph.graph.conversation import Conversation
@@ -25,7 +26,7 @@ LONGEST = 36000.0  # seconds of a conversation
 KEPT = 16000  # samples a second that waveform and pitch need
 BLOCK = 60  # seconds of the waveform at a time
 HOPS = 100.0  # pitches a second
-ANEW = "Menu “…” above, Sounds and names, chooses another."
+ANEW = tr("Menu “…” above, Sounds and names, chooses another.")
 Key = tuple[str, int | None]  # a sound's path, and the channel
 
 
@@ -38,7 +39,7 @@ class SideSound:
 
     wave: Envelope | None = None
     pitch: Envelope | None = None
-    told: str = "Reading the sound …"
+    told: str = tr("Reading the sound …")
     part: float = 0.0
     missing: str = ""
     loudest: float = 0.0
@@ -116,7 +117,7 @@ class Sounds(QObject):
         wanted = {k: h for k, h in self.heard.items() if h.told}
         if wanted:
             work = _Work(wanted, self._read.emit)
-            self._job = self.jobs.start("Reading the conversation", work)
+            self._job = self.jobs.start(tr("Reading the conversation"), work)
             for signal in (self._job.progress, self._job.ended):
                 signal.connect(self._came)
         self.changed.emit()
@@ -131,7 +132,7 @@ class Sounds(QObject):
             ):
                 heard.told, heard.missing = (
                     "",
-                    "Reading was cancelled. Choose the conversation again to read its sound.",
+                    tr("Reading was cancelled. Choose the conversation again to read its sound."),
                 )
         self.changed.emit()
 
@@ -168,7 +169,7 @@ class _Work:
         for key, (sound, rate) in samples.items():
             if job.cancelled:
                 return
-            job.tell(done, steps, "pitch")
+            job.tell(done, steps, tr("pitch"))
             self._sing(self.wanted[key], sound, rate)
             done += 1
         job.tell(steps, steps)
@@ -182,7 +183,16 @@ class _Work:
         for key, heard in wanted.items():
             channel = key[1]
             if channel is not None and channel >= len(read.samples):
-                self.set(heard, told="", missing=f"{Path(path).name} has no channel {channel + 1}. {ANEW}")
+                self.set(
+                    heard,
+                    told="",
+                    missing=tr(
+                        "{name} has no channel {number}. {anew}",
+                        name=Path(path).name,
+                        number=channel + 1,
+                        anew=ANEW,
+                    ),
+                )
                 continue
             out[key] = (read.samples.mean(0) if channel is None else read.samples[channel], read.rate)
             self.set(heard, length=read.duration)
@@ -201,8 +211,8 @@ class _Work:
             self.hand_over(partial(wave.put, first, *binned(piece, each)))
             loudest = max(loudest, float(abs(piece).max()))
             self.set(heard, loudest=loudest, part=0.5 * begin / len(samples))
-            job.tell(*progress, "waveform")
-        self.set(heard, part=0.5, told="Finding the pitch …")
+            job.tell(*progress, tr("waveform"))
+        self.set(heard, part=0.5, told=tr("Finding the pitch …"))
 
     def _sing(self, heard: SideSound, samples: Any, rate: int) -> None:
         """Find the pitch."""

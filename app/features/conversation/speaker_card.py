@@ -16,22 +16,24 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.features.conversation.conversation_panel import PLURALS
 from app.features.conversation.conversation_settings import ORDINALS, Tall, caption
+from app.features.conversation.segment_lanes import KINDS, PLURALS
 from app.features.conversation.word_lists import language_name
 from app.look.plural import many
 from app.look.theme import SOUND_MARKS
+from app.translation import tr
 from app.widgets.making import make_widget
 from metagraph.graph.conversation import SPOKEN, Side
 
 
 class Card(QFrame):
     """One who talks: name, sound, words, and how many segments. taken: whether it is in the conversation; of
-    two both are. earlier: lets it stand before the one on its left.
+    two both are. ordinal: "first", "second". earlier: lets it stand before the one on its left.
     """
 
-    def __init__(self, title: str, parent: QWidget, first: bool = True) -> None:
+    def __init__(self, ordinal: str, parent: QWidget, first: bool = True) -> None:
         super().__init__(parent)
+        title = tr("{ordinal} speaker", ordinal=ordinal.capitalize())
         self.setObjectName("card")
         grid = QGridLayout(self)
         grid.setContentsMargins(14, 10, 14, 12)
@@ -40,14 +42,14 @@ class Card(QFrame):
         grid.setColumnStretch(1, 1)
         row_of = QHBoxLayout()
         row_of.addWidget(caption(title, self), 1)
-        self.taken = QCheckBox("Takes part", self)
+        self.taken = QCheckBox(tr("Takes part"), self)
         self.taken.setChecked(True)
-        self.taken.setToolTip("Whether this speaker is in the conversation, with a character of its own")
-        self.taken.setAccessibleName(f"The {title.lower()} takes part")
+        self.taken.setToolTip(tr("Whether this speaker is in the conversation, with a character of its own"))
+        self.taken.setAccessibleName(tr("The {ordinal} speaker takes part", ordinal=ordinal))
         self.earlier = make_widget(
-            QToolButton, self, text="←", toolTip="Before the one on the left: who stands where"
+            QToolButton, self, text="←", toolTip=tr("Before the one on the left: who stands where")
         )
-        self.earlier.setAccessibleName(f"Move the {title.lower()} one place forward")
+        self.earlier.setAccessibleName(tr("Move the {ordinal} speaker one place forward", ordinal=ordinal))
         self.earlier.setEnabled(not first)
         for choice in (self.taken, self.earlier):
             choice.hide()
@@ -55,10 +57,15 @@ class Card(QFrame):
         grid.addLayout(row_of, 0, 0, 1, 2)
         self.name = QLineEdit(self)
         self.name.setPlaceholderText(title)
-        self.name.setAccessibleName(f"Name of the {title.lower()}")
+        self.name.setAccessibleName(tr("Name of the {ordinal} speaker", ordinal=ordinal))
         self.sound, self.words, self.segments = QLabel(self), QLabel(self), QLabel(self)
         for row, (words, widget) in enumerate(
-            (("Name", self.name), ("Sound", self.sound), ("Words", self.words), ("Segments", self.segments)),
+            (
+                (tr("Name"), self.name),
+                (tr("Sound"), self.sound),
+                (tr("Words"), self.words),
+                (tr("Segments"), self.segments),
+            ),
             1,
         ):
             grid.addWidget(caption(words, self, True), row, 0)
@@ -72,15 +79,21 @@ class Card(QFrame):
             for label in (self.sound, self.words, self.segments):
                 label.setText("…")
             return
-        sound = Path(side.audio).name if side.audio else "none"
-        self.sound.setText(f"{sound}, channel {side.channel + 1}" if side.channel is not None else sound)
+        sound = Path(side.audio).name if side.audio else tr("none")
+        self.sound.setText(
+            tr("{sound}, channel {number}", sound=sound, number=side.channel + 1)
+            if side.channel is not None
+            else sound
+        )
         spoken = f", {language_name(side.language)}" if side.language else ""
         self.words.setText(
-            many(len(side.words), "word") + spoken if side.words else "none: told by its loudness"
+            many(len(side.words), "word") + spoken if side.words else tr("none: told by its loudness")
         )
         counts = {k: sum(s.kind == k for s in side.segments) for k in SPOKEN}
         self.segments.setText(
-            "   ".join(f"{SOUND_MARKS[k]} {n:,} {PLURALS[k] if n != 1 else k}" for k, n in counts.items())
+            "   ".join(
+                f"{SOUND_MARKS[k]} {n:,} {KINDS[k] if n == 1 else PLURALS[k]}" for k, n in counts.items()
+            )
         )
 
 
@@ -95,7 +108,7 @@ class Cards(Tall):
     def __init__(self, parent: QWidget) -> None:
         inside = QWidget(parent)
         super().__init__(inside, 330, parent)  # two rows; more are scrolled
-        self.setAccessibleName("Who was read")
+        self.setAccessibleName(tr("Who was read"))
         self.cards: list[Card] = []
         self.grid = QGridLayout(inside)
         self.grid.setContentsMargins(0, 0, 0, 0)
@@ -106,9 +119,9 @@ class Cards(Tall):
             QToolButton,
             inside,
             text="⇄",
-            toolTip="Swap the two: who stands left, and is driven by this project's own graph",
+            toolTip=tr("Swap the two: who stands left, and is driven by this project's own graph"),
         )
-        self.swap.setAccessibleName("Swap the two")
+        self.swap.setAccessibleName(tr("Swap the two"))
         self.swap.clicked.connect(lambda: self.moved.emit(1))
         self.grid.addWidget(self.swap, 0, 1)
         self.deal(2)
@@ -121,7 +134,7 @@ class Cards(Tall):
             card.deleteLater()
         del self.cards[count:]
         for n in range(len(self.cards), count):
-            card = Card(f"{ORDINALS[n].capitalize()} speaker", self.inside, n == 0)
+            card = Card(ORDINALS[n], self.inside, n == 0)
             card.earlier.clicked.connect(lambda _=False, n=n: self.moved.emit(n))
             card.taken.toggled.connect(lambda _: self.chosen.emit())
             self.cards.append(card)

@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 
 from app.features.conversation.conversation_settings import SettingDialog, Tall, asked, caption
 from app.look.theme import SOUND_MARKS
+from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph import conversation_edits
@@ -34,7 +35,7 @@ LOW = 84  # pixels
 def language_name(code: str) -> str:
     """Return what the language of a code is called; "" of none."""
     pack = languages().get(code)
-    return pack.name if pack is not None else {"": "", "und": "language not known"}.get(code, f"'{code}'")
+    return pack.name if pack is not None else {"": "", "und": tr("language not known")}.get(code, f"'{code}'")
 
 
 class LanguageBox(ComboBox):
@@ -42,11 +43,13 @@ class LanguageBox(ComboBox):
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
-        self.addItem("Automatic", AUTO)
+        self.addItem(tr("Automatic"), AUTO)
         for pack in languages().values():
             self.addItem(pack.name if pack.name == pack.own else f"{pack.name} · {pack.own}", pack.code)
-        self.setAccessibleName("Language")
-        self.setToolTip("By whose lists words are responses and hesitations; Automatic: as the words tell")
+        self.setAccessibleName(tr("Language"))
+        self.setToolTip(
+            tr("By whose lists words are responses and hesitations; Automatic: as the words tell")
+        )
 
     def show_code(self, code: str) -> None:
         """Show a code without telling of it; of a list of one's own it is only named."""
@@ -73,12 +76,15 @@ class WordLists(QWidget):
         self.usual: Lists = (english.responses, english.hesitations)
         self.edits: list[QPlainTextEdit] = []
         for column, (title, kind) in enumerate(
-            (("Listener responses", "response"), ("Hesitations", "hesitation"))
+            ((tr("Listener responses"), "response"), (tr("Hesitations"), "hesitation"))
         ):
             row = QHBoxLayout()
             row.addWidget(caption(f"{SOUND_MARKS[kind]}  {title}", self), 1)
             reset = make_widget(
-                QToolButton, self, text="Usual", toolTip="The language's list as it comes with the program"
+                QToolButton,
+                self,
+                text=tr("Usual"),
+                toolTip=tr("The language's list as it comes with the program"),
             )
             reset.clicked.connect(
                 lambda _=False, n=column: self.edits[n].setPlainText(", ".join(self.usual[n]))
@@ -116,21 +122,24 @@ class WordLists(QWidget):
 class WordsDialog(SettingDialog):
     """Which words make a segment a response or a hesitation, of all or of each."""
 
-    title, text = "Word lists", "Change word lists"
+    title, text = tr("Word lists"), tr("Change word lists")
 
     def build(self, layout: QVBoxLayout) -> None:
         layout.addWidget(
             caption(
-                "Segments made of nothing but these words are labelled so; what you labelled yourself stays.",
+                tr(
+                    "Segments made of nothing but these words are labelled so; "
+                    "what you labelled yourself stays."
+                ),
                 self,
                 True,
             )
         )
         of = self.conversation
-        self.apart = QCheckBox("Each has lists of its own", self)
+        self.apart = QCheckBox(tr("Each has lists of its own"), self)
         self.sides = range(len(of.sides))
         self.apart.setChecked(any(lists_of(of, n) != lists_of(of, 0) for n in self.sides))
-        everyone = "Both" if len(self.sides) == 2 else "All"
+        everyone = tr("Both") if len(self.sides) == 2 else tr("All")
         inside = QWidget(self)
         inner = QVBoxLayout(inside)
         inner.setContentsMargins(0, 0, 0, 0)
@@ -146,7 +155,7 @@ class WordsDialog(SettingDialog):
             box.activated.connect(lambda _, n=side: self._take_language(n))
             lists.show_lists(lists_of(of, side), of.sides[side].language)
             row.addWidget(name, 1)
-            row.addWidget(caption("Language", whole, True))
+            row.addWidget(caption(tr("Language"), whole, True))
             row.addWidget(box)
             column.addLayout(row)
             column.addWidget(lists, 1)

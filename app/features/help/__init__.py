@@ -17,16 +17,16 @@ from app.translation import tr
 from metagraph.graph.model import KINDS
 
 TIMELINE = (  # and what the timeline does
-    ("Add a marker", "M"),
-    ("Move requests or a marker", "arrows, with Shift by a second"),
-    ("Take requests back and close up", "Shift+Del"),
-    ("Cut, copy, paste requests", "Ctrl+X, Ctrl+C, Ctrl+V"),
-    ("Copy requests a second later", "Ctrl+D"),
-    ("Ask for something", "Insert"),
-    ("Cut to all, over a shoulder, close", "1 to 9"),
-    ("Take the cut away", "0"),
-    ("Zoom in and out", "+, −"),
-    ("Drag without snapping", "Shift"),
+    (tr("Add a marker"), "M"),
+    (tr("Move requests or a marker"), tr("arrows, with Shift by a second")),
+    (tr("Take requests back and close up"), tr("Shift+Del")),
+    (tr("Cut, copy, paste requests"), tr("Ctrl+X, Ctrl+C, Ctrl+V")),
+    (tr("Copy requests a second later"), tr("Ctrl+D")),
+    (tr("Ask for something"), tr("Insert")),
+    (tr("Cut to all, over a shoulder, close"), tr("1 to 9")),
+    (tr("Take the cut away"), "0"),
+    (tr("Zoom in and out"), "+, −"),
+    (tr("Drag without snapping"), tr("Shift")),
 )
 LANES = (  # what the lanes take for themselves
     (tr("Label as clause, response, hesitation"), "1, 2, 3"),
@@ -48,7 +48,12 @@ def contribute(shell: Shell) -> Contribution:
                 continue
             tip = command.tip if command.tip != command.plain else ""
             yield Entry(
-                command.menu.replace("&", ""), command.plain, keys, tip, action.trigger, action.isEnabled()
+                tr(command.menu).replace("&", ""),
+                command.plain,
+                keys,
+                tip,
+                action.trigger,
+                action.isEnabled(),
             )
         if keyed:
             yield from (Entry(tr("On the timeline"), words, keys) for words, keys in TIMELINE)

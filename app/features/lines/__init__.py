@@ -11,6 +11,7 @@ from app.project.files import Files
 from app.project.importing import FileDrop
 from app.project.speech_files import SOUNDS, kinds_of
 from app.shell.context import Contribution, Panel, Shell
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -37,7 +38,7 @@ def contribute(shell: Shell) -> Contribution:
         panels=(
             Panel(
                 "lines",
-                "Lines",
+                tr("Lines"),
                 "bottom",
                 make,
                 study=False,

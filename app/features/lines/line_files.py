@@ -12,6 +12,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
+from app.translation import tr
 from metagraph.budgets import LIST_FILE
 from metagraph.errors import FileError
 from metagraph.files import is_file, is_inside, read_file, unforeseen
@@ -59,8 +60,8 @@ def read_lines(
             else:
                 raise FileError(
                     path,
-                    "is no sound and no list of lines",
-                    remedy=f"Sounds are {', '.join(SOUNDS)}, lists are .csv or .tsv.",
+                    tr("is no sound and no list of lines"),
+                    remedy=tr("Sounds are {names}, lists are .csv or .tsv.", names=", ".join(SOUNDS)),
                 )
         except Exception as error:  # one bad file spoils no other
             notes.append(str(unforeseen(path, error)))
@@ -115,11 +116,15 @@ def _listed(path: Path, folder: Path | None) -> list[tuple[str, Line]]:
     except csv.Error as error:
         raise FileError(
             path,
-            f"is no list of lines: {error}",
-            remedy="Write one line a row: id, text, and perhaps a sound file.",
+            tr("is no list of lines: {error}", error=error),
+            remedy=tr("Write one line a row: id, text, and perhaps a sound file."),
         ) from None
     if len(rows) > MOST:
-        raise FileError(path, f"has more than {MOST:,} rows", remedy=f"A list has {MOST:,} lines at most.")
+        raise FileError(
+            path,
+            tr("has more than {count:,} rows", count=MOST),
+            remedy=tr("A list has {count:,} lines at most.", count=MOST),
+        )
     for n, row in enumerate(rows):
         cells = [c.strip() for c in row]
         if not any(cells) or (n == 0 and cells[0].lower() in ("id", "line", "number", "nr", "no")):
@@ -127,17 +132,17 @@ def _listed(path: Path, folder: Path | None) -> list[tuple[str, Line]]:
         if len(cells) < 2 or not cells[0]:
             raise FileError(
                 path,
-                "has no id and text",
-                f"row {n + 1}",
-                "Write one line a row: id, text, and perhaps a sound file.",
+                tr("has no id and text"),
+                tr("row {number}", number=n + 1),
+                tr("Write one line a row: id, text, and perhaps a sound file."),
             )
         audio = path.parent / cells[2] if len(cells) > 2 and cells[2] else None
         if audio is not None and not is_file(audio):
             raise FileError(
                 path,
-                f"names a sound that is not there: {cells[2]}",
-                f"row {n + 1}",
-                "Put it beside the list, or correct its name.",
+                tr("names a sound that is not there: {name}", name=cells[2]),
+                tr("row {number}", number=n + 1),
+                tr("Put it beside the list, or correct its name."),
             )
         out.append(
             (cells[0][:200], Line(text=cells[1][:LONGEST], audio=kept_path(audio, folder) if audio else None))

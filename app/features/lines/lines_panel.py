@@ -36,6 +36,7 @@ from app.project.document import Document, Edit
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.flow import Flow
 from app.widgets.making import make_widget
 from metagraph.graph import performance_edits
@@ -44,10 +45,10 @@ from metagraph.graph.model import Project
 from metagraph.graph.requests import Line, Say
 from metagraph.playback.line_lengths import spoken_seconds
 
-COLUMNS = ("Id", "Words", "Sound", "Length", "With it")
+COLUMNS = (tr("Id"), tr("Words"), tr("Sound"), tr("Length"), tr("With it"))
 ID, WORDS, SOUND, LENGTH, ASKS = range(5)
 WIDEST = 180  # pixels of the ids at most
-EMPTY = (
+EMPTY = tr(
     "Drop sound files here, or a list (CSV: id, text, sound).\nAn agent then says a line by its id, and "
     "the lips follow its sound."
 )
@@ -105,8 +106,8 @@ class LinesPanel(QWidget):
         layout.setContentsMargins(12, 6, 12, 6)
         layout.setSpacing(6)
         row = Flow(spacing=6)
-        self.search = QLineEdit(self, placeholderText="Search lines", clearButtonEnabled=True)
-        self.search.setAccessibleName("Search lines")
+        self.search = QLineEdit(self, placeholderText=tr("Search lines"), clearButtonEnabled=True)
+        self.search.setAccessibleName(tr("Search lines"))
         self.search.setFixedWidth(170)
         self.search.textChanged.connect(self._search)
         row.addWidget(self.search)
@@ -114,9 +115,9 @@ class LinesPanel(QWidget):
         self.words.setProperty("dim", True)
         row.addWidget(self.words)
         for text, tip, run in (
-            ("Say it now", "The selected line, at the playhead (Enter)", self.say),
-            ("Add files…", "Sounds, or a list of lines", self.ask_files),
-            ("Add words…", "A line without sound", self.add_words),
+            (tr("Say it now"), tr("The selected line, at the playhead (Enter)"), self.say),
+            (tr("Add files…"), tr("Sounds, or a list of lines"), self.ask_files),
+            (tr("Add words…"), tr("A line without sound"), self.add_words),
         ):
             button = make_widget(QToolButton, self, text=text, toolTip=tip)
             button.clicked.connect(run)
@@ -144,7 +145,7 @@ class LinesPanel(QWidget):
             lambda: self.say_button.setEnabled(bool(self.table.selectedItems()))
         )
         self.say_button.setEnabled(False)
-        self.table.setAccessibleName("Lines")
+        self.table.setAccessibleName(tr("Lines"))
         self.table.deleted.connect(self.remove)
         self.table.said.connect(self.say)
         layout.addWidget(self.table, 1)
@@ -208,10 +209,9 @@ class LinesPanel(QWidget):
         self.empty.setVisible(not project.lines)
         self.search.setVisible(bool(project.lines))
         silent = sum(1 for x in project.lines.values() if not x.audio)
+        words = many(len(project.lines), "line") if project.lines else ""
         self.words.setText(
-            f"{many(len(project.lines), 'line')}{f', {silent} without sound' if silent else ''}"
-            if project.lines
-            else ""
+            tr("{lines}, {silent} without sound", lines=words, silent=silent) if silent else words
         )
         self._search(self.search.text())
 
@@ -234,7 +234,7 @@ class LinesPanel(QWidget):
             if column == SOUND:
                 item.setForeground(QColor(look.warning if lost else look.dim))
                 item.setToolTip(
-                    f"{line.audio}\nThe sound could not be read; the lips follow the letters"
+                    tr("{audio}\nThe sound could not be read; the lips follow the letters", audio=line.audio)
                     if lost
                     else line.audio or ""
                 )
@@ -272,11 +272,11 @@ class LinesPanel(QWidget):
         ident, text = str(item.data(Qt.ItemDataRole.UserRole)), item.text()
         self._rows.pop(item.row(), None)  # what was typed may be refused
         if item.column() == ID:
-            self._try("Rename line", lambda p: performance_edits.rename_line(p, ident, text))
+            self._try(tr("Rename line"), lambda p: performance_edits.rename_line(p, ident, text))
         else:
             line = self.document.project.lines[ident]
             self._try(
-                "Change line",
+                tr("Change line"),
                 lambda p: performance_edits.set_line(
                     p, ident, msgspec.structs.replace(line, text=text.strip()[:20000])
                 ),
@@ -292,21 +292,26 @@ class LinesPanel(QWidget):
             return project
 
         if chosen:
-            self._try(f"Remove {many(len(chosen), 'line')}", edit)
+            self._try(tr("Remove {what}", what=many(len(chosen), "line")), edit)
 
     def add_words(self) -> None:
         """Add a line and let its words be typed."""
         lines = self.document.project.lines
         self.search.clear()  # the new one must be seen
         number = next(n for n in range(1, len(lines) + 2) if str(n) not in lines)
-        self._try("Add line", lambda p: performance_edits.set_line(p, str(number), Line(text="Hello")))
+        self._try(
+            tr("Add line"), lambda p: performance_edits.set_line(p, str(number), Line(text=tr("Hello")))
+        )
         self.table.setCurrentCell(len(lines), WORDS)
         self.table.edit(self.table.model().index(len(lines), WORDS))
 
     def ask_files(self) -> None:
         names = " ".join(f"*{s}" for s in (*SOUNDS, *LISTS))
         paths, _ = QFileDialog.getOpenFileNames(
-            self, "Add lines", str(self.document.folder or Path.home()), f"Sounds and lists ({names})"
+            self,
+            tr("Add lines"),
+            str(self.document.folder or Path.home()),
+            tr("Sounds and lists ({names})", names=names),
         )
         if paths:
             self.add_files([Path(p) for p in paths])
@@ -317,13 +322,13 @@ class LinesPanel(QWidget):
 
         def done(read: Lines) -> None:
             if read.lines:
-                self._try(f"Add {many(len(read.lines), 'line')}", lambda p: add_lines(p, read))
+                self._try(tr("Add {what}", what=many(len(read.lines), "line")), lambda p: add_lines(p, read))
             if read.notes:
-                more = f" (and {len(read.notes) - 1} more)" if len(read.notes) > 1 else ""
+                more = tr(" (and {count} more)", count=len(read.notes) - 1) if len(read.notes) > 1 else ""
                 self.told.emit(read.notes[0] + more)
 
         self.jobs.start(
-            "Reading lines",
+            tr("Reading lines"),
             lambda _: read_lines(paths, folder, keep_chosen),
             done,
             lambda error: self.told.emit(str(error)),
@@ -332,7 +337,7 @@ class LinesPanel(QWidget):
     def say(self) -> None:
         """Ask for the selected line at the playhead."""
         for ident in self.chosen()[:1]:
-            self.performance.requests.ask(Say(line=ident), "Ask for a line")
+            self.performance.requests.ask(Say(line=ident), tr("Ask for a line"))
 
     # --- files dropped
 

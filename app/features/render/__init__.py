@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -14,8 +15,8 @@ def contribute(shell: Shell) -> Contribution:
 
     return Contribution(
         commands=(
-            Command("render", "&File", "write", "&Write performance…", render, ("Ctrl+R",),
-                    tip="Video with sound, contact sheet, or motion",
+            Command("render", "&File", "write", tr("&Write performance…"), render, ("Ctrl+R",),
+                    tip=tr("Video with sound, contact sheet, or motion"),
                     enabled=lambda: shell.document.project.skeleton is not None, when="meta"),
         ),
     )  # fmt: skip

@@ -26,11 +26,27 @@ from app.project.jobs import Job, Jobs
 from app.stage.performance import Performance
 from app.stage.render_process import SUFFIXES, RenderOrder, write
 from app.stage.session import Session
+from app.translation import tr, tr_noop
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.graph import requests
 from metagraph.graph.conversation import Conversation
 from preview.looks import BACKDROPS, LIGHTS, words_of
 
+LOOKS = (  # what the preview calls its lights and backgrounds
+    tr_noop("Studio"),
+    tr_noop("Day"),
+    tr_noop("Evening, from the side"),
+    tr_noop("Rim, from behind"),
+    tr_noop("Flat"),
+    tr_noop("Stage, as the window"),
+    tr_noop("Sky"),
+    tr_noop("Dusk"),
+    tr_noop("Warm paper"),
+    tr_noop("Neutral grey, for recording"),
+    tr_noop("White"),
+    tr_noop("Black"),
+    tr_noop("Green, to be cut out"),
+)
 SIZES = ((640, 360), (960, 540), (1280, 720), (1920, 1080))
 
 
@@ -48,7 +64,9 @@ class RenderDialog(QDialog):
         kept: requests.Performance | Conversation | None = performance.requests.kept
         if performance.conversation is not None:
             kept = performance.document.project.conversations[performance.conversation]
-        self.setWindowTitle(f"Write '{kept.name}'" if kept is not None else "Write the performance")
+        self.setWindowTitle(
+            tr("Write '{name}'", name=kept.name) if kept is not None else tr("Write the performance")
+        )
         self.setMinimumWidth(520)
         layout = QVBoxLayout(self)
         form = QFormLayout()
@@ -57,54 +75,57 @@ class RenderDialog(QDialog):
         for suffix, words in SUFFIXES.items():
             self.kind.addItem(words, suffix)
         self.kind.activated.connect(lambda _: self._suffixed())
-        form.addRow("As", self.kind)
+        form.addRow(tr("As"), self.kind)
         row = QHBoxLayout()
         folder = performance.document.folder or Path.home()
         name = kept.name if kept is not None else performance.document.project.name
         self.file = QLineEdit(str(folder / f"{name}.mp4"), self)
-        self.file.setAccessibleName("File")
-        browse = QPushButton("Choose…", self, autoDefault=False)
+        self.file.setAccessibleName(tr("File"))
+        browse = QPushButton(tr("Choose…"), self, autoDefault=False)
         browse.clicked.connect(self._browse)
         row.addWidget(self.file, 1)
         row.addWidget(browse)
-        form.addRow("File", row)
+        form.addRow(tr("File"), row)
         self.seconds = DoubleSpinBox(self, minimum=0.1, maximum=3600, decimals=1, suffix=" s")
         self.seconds.setValue(kept.length if kept is not None else min(30.0, performance.length))
-        self.part = ComboBox(self, toolTip="All of it, or what is between in and out on the timeline")
-        self.part.addItem("All, from the beginning", None)
+        self.part = ComboBox(self, toolTip=tr("All of it, or what is between in and out on the timeline"))
+        self.part.addItem(tr("All, from the beginning"), None)
         self.range = performance.timeline.range
         if self.range is not None:
-            self.part.addItem(f"The range, {self.range[0]:.2f} to {self.range[1]:.2f} s", self.range)
+            self.part.addItem(
+                tr("The range, {start:.2f} to {end:.2f} s", start=self.range[0], end=self.range[1]),
+                self.range,
+            )
             self.part.setCurrentIndex(1)
         self.part.activated.connect(lambda _: self._suffixed())
-        form.addRow("What", self.part)
-        form.addRow("Length", self.seconds)
+        form.addRow(tr("What"), self.part)
+        form.addRow(tr("Length"), self.seconds)
         self.size_box = ComboBox(self)
         for width, height in SIZES:
             self.size_box.addItem(f"{width} × {height}", (width, height))
         self.size_box.setCurrentIndex(int(str(QSettings().value("render/size", 2))))
-        form.addRow("Size", self.size_box)
+        form.addRow(tr("Size"), self.size_box)
         self.fps = ComboBox(self)
         for fps in (24.0, 25.0, 30.0, 60.0):
-            self.fps.addItem(f"{fps:g} a second", fps)
+            self.fps.addItem(tr("{fps:g} a second", fps=fps), fps)
         self.fps.setCurrentIndex(2)
-        form.addRow("Pictures", self.fps)
+        form.addRow(tr("Pictures"), self.fps)
         self.light, self.background = ComboBox(self), ComboBox(self)
         for box, choices, now in (
             (self.light, LIGHTS, session.watch.now.light),
             (self.background, BACKDROPS, session.watch.now.background),
         ):
             for name in choices:
-                box.addItem(words_of(name), name)
+                box.addItem(tr(words_of(name)), name)
             box.setCurrentIndex(box.findData(now))
-        form.addRow("Light", self.light)
-        form.addRow("Background", self.background)
-        self.captions = QCheckBox("Words of who speaks, at the bottom", self)
+        form.addRow(tr("Light"), self.light)
+        form.addRow(tr("Background"), self.background)
+        self.captions = QCheckBox(tr("Words of who speaks, at the bottom"), self)
         self.captions.setChecked(performance.timeline.now.captions)
-        form.addRow("Captions", self.captions)
-        self.cuts = QCheckBox("Cut as the camera lane says", self)
+        form.addRow(tr("Captions"), self.captions)
+        self.cuts = QCheckBox(tr("Cut as the camera lane says"), self)
         self.cuts.setChecked(True)
-        form.addRow("Camera", self.cuts)
+        form.addRow(tr("Camera"), self.cuts)
         self.form = form
         self.words = QLabel(self, wordWrap=True)
         self.words.setProperty("dim", True)
@@ -113,12 +134,12 @@ class RenderDialog(QDialog):
         self.progress.hide()
         layout.addWidget(self.progress)
         self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
-        self.show_button = self.buttons.addButton("Open folder", QDialogButtonBox.ButtonRole.ActionRole)
+        self.show_button = self.buttons.addButton(tr("Open folder"), QDialogButtonBox.ButtonRole.ActionRole)
         self.show_button.setEnabled(False)
         self.show_button.clicked.connect(
             lambda: QDesktopServices.openUrl(QUrl.fromLocalFile(str(Path(self.file.text()).parent)))
         )
-        self.go = self.buttons.addButton("Write", QDialogButtonBox.ButtonRole.AcceptRole)
+        self.go = self.buttons.addButton(tr("Write"), QDialogButtonBox.ButtonRole.AcceptRole)
         strengthen(self.go)
         self.buttons.accepted.connect(self._write)
         self.buttons.rejected.connect(self.reject)
@@ -138,16 +159,16 @@ class RenderDialog(QDialog):
         self.form.setRowVisible(self.captions, drawn)
         self.form.setRowVisible(self.cuts, drawn and bool(self.performance.timeline.now.cuts))
         self.words.setText({
-            ".mp4": "H.264, with the sound of what is said.",
-            ".png": "24 pictures over the performance, on one sheet.",
-            ".glb": "The motion of every joint, with the character, for any 3-D program.",
-            ".bvh": "The motion of every joint, without a mesh.",
+            ".mp4": tr("H.264, with the sound of what is said."),
+            ".png": tr("24 pictures over the performance, on one sheet."),
+            ".glb": tr("The motion of every joint, with the character, for any 3-D program."),
+            ".bvh": tr("The motion of every joint, without a mesh."),
         }[suffix])  # fmt: skip
 
     def _browse(self) -> None:
         suffix = self.kind.currentData()
         name, _ = QFileDialog.getSaveFileName(
-            self, "Write the performance", self.file.text(), f"{SUFFIXES[suffix]} (*{suffix})"
+            self, tr("Write the performance"), self.file.text(), f"{SUFFIXES[suffix]} (*{suffix})"
         )
         if name:
             self.file.setText(str(Path(name).with_suffix(suffix)))
@@ -178,7 +199,7 @@ class RenderDialog(QDialog):
         def work(job: Job) -> Path:
             return write(project, folder, wanted, job)
 
-        job = self.jobs.start("Writing the performance", work, self._done, self._failed)
+        job = self.jobs.start(tr("Writing the performance"), work, self._done, self._failed)
         job.progress.connect(self._tell)
         job.ended.connect(self._ended)
 
@@ -192,7 +213,9 @@ class RenderDialog(QDialog):
 
     def _done(self, path: Path) -> None:
         self.show_button.setEnabled(True)
-        self.words.setText(f"Written: {path.name} ({path.stat().st_size / 1e6:.1f} MB).")
+        self.words.setText(
+            tr("Written: {name} ({size:.1f} MB).", name=path.name, size=path.stat().st_size / 1e6)
+        )
         self.written.emit(str(path))
 
     def _failed(self, error: Exception) -> None:

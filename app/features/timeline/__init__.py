@@ -9,6 +9,7 @@ from app.project.importing import Importing
 from app.shell.actions import Command
 from app.shell.context import Contribution, Panel, Shell
 from app.shell.verbs import Verbs
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -52,7 +53,7 @@ def contribute(shell: Shell) -> Contribution:
         panels=(
             Panel(
                 "timeline",
-                "Performance",
+                tr("Performance"),
                 "bottom",
                 make,
                 least=(400, 236),
@@ -66,10 +67,10 @@ def contribute(shell: Shell) -> Contribution:
                 "live",
                 "&Play",
                 "live",
-                "Li&ve",
+                tr("Li&ve"),
                 toggle_live,
                 ("Ctrl+L",),
-                tip="Let programs on this machine drive the character",
+                tip=tr("Let programs on this machine drive the character"),
                 enabled=lambda: document.project.skeleton is not None,
                 checked=lambda: performance.live.stage is not None,
                 when="meta",

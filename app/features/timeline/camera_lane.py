@@ -10,13 +10,14 @@ from PySide6.QtGui import QColor, QPainter, QPen
 from PySide6.QtWidgets import QMenu
 
 from app.look.theme import Theme
+from app.translation import tr
 from app.widgets.gesture import PressDrag
 from app.widgets.lane_geometry import LEFT, elided, lanes
 from metagraph.graph.conversation import Conversation, side_name
 from metagraph.graph.timeline import Cut, Shot
 
 EDGE = 4.0  # pixels on either side of a cut that take hold of it
-HINT = "No cuts: the camera is yours. Double-click here, or 1 to 9, cuts to a picture"
+HINT = tr("No cuts: the camera is yours. Double-click here, or 1 to 9, cuts to a picture")
 NAME = "cameras"
 
 
@@ -24,9 +25,9 @@ def pictures_of(talk: Conversation) -> tuple[tuple[Shot, int, str], ...]:
     """Return what can be cut to, in the order of the keys from 1: shot, side and words."""
     sides = range(len(talk.sides))
     return (
-        ("two", 0, "Two-shot" if len(talk.sides) == 2 else "All"),
-        *(("over", n, f"Over the shoulder, {side_name(talk, n)}") for n in sides),
-        *(("close", n, f"Close, {side_name(talk, n)}") for n in sides),
+        ("two", 0, tr("Two-shot") if len(talk.sides) == 2 else tr("All")),
+        *(("over", n, tr("Over the shoulder, {name}", name=side_name(talk, n))) for n in sides),
+        *(("close", n, tr("Close, {name}", name=side_name(talk, n))) for n in sides),
     )
 
 
@@ -34,7 +35,15 @@ def words_of(cut: Cut, talk: Conversation) -> str:
     """Return a cut's picture in a few words."""
     known = pictures_of(talk)
     found = (w for shot, side, w in known if shot == cut.shot and (shot == "two" or side == cut.side))
-    return next(found, "Nobody")
+    return next(found, tr("Nobody"))
+
+
+def short_words(cut: Cut, talk: Conversation) -> str:
+    """Return the same in fewer words, for the lane."""
+    if cut.shot == "two" or cut.side >= len(talk.sides):
+        return words_of(cut, talk)
+    name = side_name(talk, cut.side)
+    return tr("Over: {name}", name=name) if cut.shot == "over" else tr("Close: {name}", name=name)
 
 
 class CutDrag(PressDrag):
@@ -134,12 +143,14 @@ class CameraLane:
             menu.addAction(f"{words}{key}", partial(timeline.cut_to, shot, side, seconds))
         menu.addSeparator()
         here = self.cut_at(at)
-        remove = menu.addAction("Remove this cut\t0 at the playhead", lambda: timeline.remove_cut(here))
+        remove = menu.addAction(tr("Remove this cut\t0 at the playhead"), lambda: timeline.remove_cut(here))
         remove.setEnabled(here is not None)
-        menu.addAction("Automatic cuts", lambda: timeline.automatic(talk))
-        menu.addAction("No cuts", lambda: timeline.set_cuts("Remove cuts", ())).setEnabled(bool(self.cuts))
+        menu.addAction(tr("Automatic cuts"), lambda: timeline.automatic(talk))
+        menu.addAction(tr("No cuts"), lambda: timeline.set_cuts(tr("Remove cuts"), ())).setEnabled(
+            bool(self.cuts)
+        )
         menu.addSeparator()
-        captions = menu.addAction("Captions", lambda: timeline.show_captions(not timeline.now.captions))
+        captions = menu.addAction(tr("Captions"), lambda: timeline.show_captions(not timeline.now.captions))
         captions.setCheckable(True)
         captions.setChecked(timeline.now.captions)
         return menu
@@ -151,7 +162,11 @@ class CameraLane:
         if here is None:
             return HINT
         cut = self.cuts[here]
-        return f"{words_of(cut, talk)}, from {cut.at:.2f} s\nDrag a border, double-click or 1 to 9 to cut"
+        return tr(
+            "{picture}, from {at:.2f} s\nDrag a border, double-click or 1 to 9 to cut",
+            picture=words_of(cut, talk),
+            at=cut.at,
+        )
 
     def paint(self, painter: QPainter, t: Theme, lane: QRectF, width: float, end: float) -> None:
         """Paint the pictures that are cut to; end: seconds at which all ends."""
@@ -189,10 +204,7 @@ class CameraLane:
             inner = QRectF(max(left, LEFT) + 7, rect.top(), 0, rect.height())
             inner.setRight(min(rect.right(), width) - 3)
             if inner.width() > 12:
-                short = (
-                    words_of(cut, talk).replace("Over the shoulder, ", "Over: ").replace("Close, ", "Close: ")
-                )
                 painter.setPen(QColor(t.text))
-                words = elided(short, font.toString(), int(inner.width()))
+                words = elided(short_words(cut, talk), font.toString(), int(inner.width()))
                 painter.drawText(inner, Qt.AlignmentFlag.AlignVCenter, words)
         painter.restore()

@@ -24,6 +24,7 @@ from app.look.plural import many
 from app.look.theme import theme
 from app.project.importing import Importing
 from app.project.load import Load
+from app.translation import tr
 from app.widgets.lane_geometry import lane_at
 from app.widgets.lane_paint import badge
 from app.widgets.mime import load_of
@@ -44,7 +45,7 @@ class LaneDrop:
     seconds: float
     stance: str | None = None
     possible: bool = False
-    words: str = "drop on the lane of a layer"
+    words: str = tr("drop on the lane of a layer")
 
 
 def lane_drop(
@@ -54,23 +55,29 @@ def lane_drop(
     if layer is None or not load:
         return LaneDrop(layer, seconds, stance)
     found = project.stance(stance)
-    name, at = plain(found.name) if found is not None else "", f"at {seconds:.2f} s"
+    name, at = plain(found.name) if found is not None else "", tr("at {seconds:.2f} s", seconds=seconds)
     if load.actions:
         actions = [a for i in load.actions if (a := project.action(i)) is not None]
         if any(a.kind == "stance" for a in actions):
-            return LaneDrop(layer, seconds, stance, False, "a stance's loop is no action: ask for the stance")
+            return LaneDrop(
+                layer, seconds, stance, False, tr("a stance's loop is no action: ask for the stance")
+            )
         what = plain(actions[0].name) if len(actions) == 1 else many(len(actions), "action")
-        return LaneDrop(layer, seconds, stance, True, f"ask for {what} {at}")
+        return LaneDrop(layer, seconds, stance, True, tr("ask for {what} {at}", what=what, at=at))
     if load.clips and all(playing(project, layer, clip) is not None for clip in load.clips):
         first = plain(project.clips[load.clips[0]].name)
         what = first if load.count == 1 else many(load.count, "clip")
-        return LaneDrop(layer, seconds, stance, True, f"ask for {what} {at}")
+        return LaneDrop(layer, seconds, stance, True, tr("ask for {what} {at}", what=what, at=at))
     if found is None:
-        return LaneDrop(layer, seconds, None, False, f"make a stance of the {layer} layer first")
-    noun = "clip" if load.clips else "file"
-    what = f"this {noun}" if load.count == 1 else many(load.count, noun)
-    kind, them = ("a gesture", "it") if load.count == 1 else ("gestures", "them")
-    words = f"place {what} as {kind} of {name}, and ask for {them} {at}"
+        return LaneDrop(
+            layer, seconds, None, False, tr("make a stance of the {layer} layer first", layer=tr(layer))
+        )
+    if load.count == 1:
+        what = tr("this clip") if load.clips else tr("this file")
+        words = tr("place {what} as a gesture of {name}, and ask for it {at}", what=what, name=name, at=at)
+    else:
+        what = many(load.count, "clip") if load.clips else many(load.count, "file")
+        words = tr("place {what} as gestures of {name}, and ask for them {at}", what=what, name=name, at=at)
     return LaneDrop(layer, seconds, stance, True, words)
 
 
@@ -120,7 +127,7 @@ class LaneDrops(QObject):
         plan = lanes.performance.shown.plan
         stance = plan.layers[layer].stance_at(seconds) if layer is not None else None
         if lanes.session.transport.show != "plan" or lanes.session.onstage.mode != "meta":
-            return LaneDrop(None, seconds, None, False, "show the performance first")
+            return LaneDrop(None, seconds, None, False, tr("show the performance first"))
         return lane_drop(self.document.project, layer, stance, seconds, load)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
@@ -163,7 +170,8 @@ class LaneDrops(QObject):
             return
         if project is not self.document.project:
             self.document.edit(
-                f"Place {many(len(load.clips), 'clip')}", lambda p: asked_for(p, drop, load)[0]
+                tr("Place {clips}", clips=many(len(load.clips), "clip")),
+                lambda p: asked_for(p, drop, load)[0],
             )
         for ask in asked:
             requests.ask(ask)

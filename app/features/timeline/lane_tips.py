@@ -9,8 +9,12 @@ from PySide6.QtWidgets import QApplication
 
 from app.features.timeline.what_if import seed_of
 from app.look.names import told_names
+from app.translation import tr, tr_noop
 from app.widgets.lane_geometry import LEFT, RULER, cue_at, lane_at, lanes, mark_at, told
 from app.widgets.lane_paint import cue_words
+
+# of actions, within a sentence
+KINDS = (tr_noop("stance"), tr_noop("gesture"), tr_noop("fidget"), tr_noop("transition"))
 
 
 def tip_at(view: Any, at: QPointF) -> str:
@@ -26,10 +30,16 @@ def tip_at(view: Any, at: QPointF) -> str:
     if found is not None:
         cue = found[1]
         name = told_names(cue_words(view.performance.shown.project, cue.action), cue.action.name)
-        words = f"{name}\n{cue.action.kind}, {cue.start:.2f} to {cue.end:.2f} s"
+        words = tr(
+            "{name}\n{kind}, {start:.2f} to {end:.2f} s",
+            name=name,
+            kind=tr(cue.action.kind),
+            start=cue.start,
+            end=cue.end,
+        )
         if cue.hold > 0:
-            words += f", held {cue.hold:.2f} s"
-        return words + "\nClick selects it, double-click plays it in context"
+            words += tr(", held {hold:.2f} s", hold=cue.hold)
+        return words + tr("\nClick selects it, double-click plays it in context")
     lane = lane_at(view.height(), at, view.sizes)
     if lane is None:
         return ""
@@ -42,11 +52,15 @@ def tip_at(view: Any, at: QPointF) -> str:
     if lane == "words":
         at_time = view.scale().seconds(at.x())
         word = next((w for w in view.words() if w[0] <= at_time < w[1]), None)
-        return f"'{word[2]}', {word[0]:.2f} to {word[1]:.2f} s" if word is not None else ""
+        return (
+            tr("'{word}', {start:.2f} to {end:.2f} s", word=word[2], start=word[0], end=word[1])
+            if word is not None
+            else ""
+        )
     shown, here = view.performance.shown, ""
     plan = next((p for layer, p in shown.plan.layers.items() if layer == lane), None)
     if plan is not None:
         stance = shown.project.stance(plan.stance_at(view.scale().seconds(at.x())))
         here = stance.name if stance is not None else ""
-    more = "" if QApplication.mouseButtons() else "Double-click to ask for something here"
+    more = "" if QApplication.mouseButtons() else tr("Double-click to ask for something here")
     return "\n".join(x for x in (here, more) if x)

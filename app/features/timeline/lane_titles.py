@@ -15,13 +15,15 @@ from PySide6.QtWidgets import QMenu
 
 from app.look.theme import Theme
 from app.stage.performance import Performance
+from app.translation import tr, tr_noop
 from app.widgets.gesture import PressDrag, Reason
 from app.widgets.lane_geometry import LEFT, NAMES, RULER, TITLES, Sizes, lanes
 from metagraph.graph.model import LAYERS, Layer
 from metagraph.graph.timeline import Lane
 
 SETTING = "timeline/heights"
-HEIGHTS = {"Compact": 0.6, "Normal": 1.0, "Tall": 1.8}  # of a lane's usual height
+HEIGHTS = {tr("Compact"): 0.6, tr("Normal"): 1.0, tr("Tall"): 1.8}  # of a lane's usual height
+SAID = (tr_noop("body"), tr_noop("arms"), tr_noop("head"))  # of layers, within a sentence
 GRIP = 4.0  # pixels on either side of a border that take hold of it
 LOCK = 20.0  # pixels at the right of a title that are its padlock's
 
@@ -127,15 +129,15 @@ class LaneTitles:
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         if lane in LAYERS:
             layer = lane
-            mute = menu.addAction("Mute\tclick", lambda: self.click(layer, False))
+            mute = menu.addAction(tr("Mute\tclick"), lambda: self.click(layer, False))
             mute.setCheckable(True)
             mute.setChecked(layer in muted)
-            alone = menu.addAction("Solo\tAlt+click", lambda: self.click(layer, True))
+            alone = menu.addAction(tr("Solo\tAlt+click"), lambda: self.click(layer, True))
             alone.setCheckable(True)
             alone.setChecked(muted == set(LAYERS) - {layer})
         if lane in NAMES:
             of, timeline = cast(Lane, lane), self.performance.timeline
-            lock = menu.addAction("Lock", lambda: timeline.lock(of, of not in timeline.now.locked))
+            lock = menu.addAction(tr("Lock"), lambda: timeline.lock(of, of not in timeline.now.locked))
             lock.setCheckable(True)
             lock.setChecked(of in timeline.now.locked)
         menu.addSeparator()
@@ -144,26 +146,32 @@ class LaneTitles:
             size = menu.addAction(words, partial(self.size, lane, factor))
             size.setCheckable(True)
             size.setChecked(now == factor)
-        menu.addAction("All lanes as usual", lambda: self.size(None)).setEnabled(bool(self.view.sizes.tall))
+        menu.addAction(tr("All lanes as usual"), lambda: self.size(None)).setEnabled(
+            bool(self.view.sizes.tall)
+        )
         menu.addSeparator()
-        menu.addAction("Let all be seen", lambda: self.performance.mute(())).setEnabled(bool(muted))
+        menu.addAction(tr("Let all be seen"), lambda: self.performance.mute(())).setEnabled(bool(muted))
         return menu
 
     def tip(self, place: QPointF) -> str:
         lane = self.lane_at(place)
         if self.border_at(place) is not None:
-            return "Drag to make the lane taller or lower"
+            return tr("Drag to make the lane taller or lower")
         locked = self.lock_at(place)
         if locked is not None:
             name = TITLES[locked]
-            on = locked in self.performance.timeline.now.locked
-            state = "is locked: its requests cannot be moved or taken back" if on else "is not locked"
-            return f"{name} {state}\nClick {'unlocks' if on else 'locks'} it"
+            if locked in self.performance.timeline.now.locked:
+                return tr(
+                    "{name} is locked: its requests cannot be moved or taken back\nClick unlocks it",
+                    name=name,
+                )
+            return tr("{name} is not locked\nClick locks it", name=name)
         if lane not in LAYERS:
             return ""
-        state = "rests while you look" if lane in self.performance.muted else "is seen"
-        how = "Click mutes it, Alt+click leaves it alone; exports do not change"
-        return f"The {lane} layer {state}\n{how}"
+        how = tr("Click mutes it, Alt+click leaves it alone; exports do not change")
+        if lane in self.performance.muted:
+            return tr("The {layer} layer rests while you look\n{how}", layer=tr(lane), how=how)
+        return tr("The {layer} layer is seen\n{how}", layer=tr(lane), how=how)
 
 
 def padlock(painter: QPainter, t: Theme, at: QPointF, locked: bool) -> None:

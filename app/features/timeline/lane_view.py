@@ -36,6 +36,7 @@ from app.features.timeline.what_if import WhatIf, seed_of
 from app.look.theme import theme
 from app.stage.performance import Performance
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.gesture import Hand
 from app.widgets.lane_geometry import (
     LEFT,
@@ -57,7 +58,7 @@ from metagraph.graph.model import LAYERS
 CATCH = 3  # pixels the mouse must move for a press to become a drag
 LEAST = 38  # pixels of a layer in which its two rows are read
 COPIES = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier
-TEXT = (
+TEXT = tr(
     "Requests, and what plays. Up and Down choose a request, Left and Right move it, Enter changes it, "
     "Insert asks for something. M adds a marker, I and O begin and end the loop range."
 )
@@ -88,7 +89,7 @@ class Lanes(LaneSpan):
         self.setMinimumHeight(RULER + 4 * LEAST)
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setAccessibleName("Timeline")
+        self.setAccessibleName(tr("Timeline"))
         self.setAccessibleDescription(TEXT)
         performance.changed.connect(self.update)
         performance.timeline.changed.connect(self.update)
@@ -159,9 +160,9 @@ class Lanes(LaneSpan):
                 font.setFeature(QFont.Tag("tnum"), 1)
                 painter.setFont(font)
                 line = self.magnet.line
-                words = f"{max(0.0, held.at):.2f} s  ({drag.by:+.2f}){'  copy' if drag.copy else ''}"
+                words = f"{max(0.0, held.at):.2f} s  ({drag.by:+.2f}){tr('  copy') if drag.copy else ''}"
                 if line is not None and not line.weak:
-                    words += f"  at {line.what}"
+                    words += tr("  at {what}", what=line.what)
                 badge(painter, t, QPointF(held.rect.left(), 0), words, self.width())
         if self.hasFocus() and self._by_keys:
             painter.setPen(QPen(QColor(t.dim), 1))

@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.stage.performance import Performance
+from app.translation import tr, tr_noop
 from app.widgets.lane_geometry import outcome
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from app.widgets.request_menu import MODE_WORDS, MOOD_WORDS, mood_words, request_words
@@ -29,46 +30,47 @@ from metagraph.graph.model import LAYERS, LIMBS, MODES, Project
 from metagraph.graph.timeline import lane_of
 from metagraph.graph.words import FEELINGS
 
-UNSET = "as it comes"
+SIDES = (tr_noop("left"), tr_noop("right"), tr_noop("both"))  # of an arm, or of two
+UNSET = tr("as it comes")
 LABELS = {
-    "at": "At",
-    "stroke": "Stroke at",
-    "duration": "Wanted for",
-    "hold": "Hold",
-    "late": "Late by at most",
-    "priority": "Priority",
-    "tags": "Tags",
-    "limb": "Arm",
-    "prepare": "Prepare",
-    "resume": "Go on after a cut",
-    "action": "Action",
-    "stance": "Stance",
-    "to": "Look at",
-    "amount": "How far",
-    "strict": "Without averting",
-    "line": "Line",
-    "text": "Words",
-    "gestures": "With its gestures",
-    "mode": "Mode",
-    "mood": "Mood",
-    "intensity": "Intensity",
-    "name": "Point",
-    "stay": "Stay there",
+    "at": tr("At"),
+    "stroke": tr("Stroke at"),
+    "duration": tr("Wanted for"),
+    "hold": tr("Hold"),
+    "late": tr("Late by at most"),
+    "priority": tr("Priority"),
+    "tags": tr("Tags"),
+    "limb": tr("Arm"),
+    "prepare": tr("Prepare"),
+    "resume": tr("Go on after a cut"),
+    "action": tr("Action"),
+    "stance": tr("Stance"),
+    "to": tr("Look at"),
+    "amount": tr("How far"),
+    "strict": tr("Without averting"),
+    "line": tr("Line"),
+    "text": tr("Words"),
+    "gestures": tr("With its gestures"),
+    "mode": tr("Mode"),
+    "mood": tr("Mood"),
+    "intensity": tr("Intensity"),
+    "name": tr("Point"),
+    "stay": tr("Stay there"),
 }
 TIPS = {
-    "at": "Seconds of the performance; it may come later when something else plays",
-    "stroke": "When its most telling moment should come, instead of when it begins",
-    "late": "Seconds by which its stroke, or else its start, may come late, or it does not play",
-    "hold": "How long the hold lasts; the motion before and after keeps its speed",
-    "prepare": "Off: the preparation is skipped, and it begins shortly before its stroke",
-    "priority": "Higher wins over lower; what the models play gives way to all",
-    "duration": "How long the activity is wanted",
-    "tags": "Words apart by commas; all must be among the action's tags",
-    "resume": "When something more important cuts it, its rest plays afterwards",
-    "strict": "The gaze stays there without looking away now and then",
-    "mood": "Which actions are likely, how large and fast they are played, posture and face",
-    "intensity": "How large it is played; 1 as it was made",
-    "stay": "The models do not leave the stance, until another one is asked for",
+    "at": tr("Seconds of the performance; it may come later when something else plays"),
+    "stroke": tr("When its most telling moment should come, instead of when it begins"),
+    "late": tr("Seconds by which its stroke, or else its start, may come late, or it does not play"),
+    "hold": tr("How long the hold lasts; the motion before and after keeps its speed"),
+    "prepare": tr("Off: the preparation is skipped, and it begins shortly before its stroke"),
+    "priority": tr("Higher wins over lower; what the models play gives way to all"),
+    "duration": tr("How long the activity is wanted"),
+    "tags": tr("Words apart by commas; all must be among the action's tags"),
+    "resume": tr("When something more important cuts it, its rest plays afterwards"),
+    "strict": tr("The gaze stays there without looking away now and then"),
+    "mood": tr("Which actions are likely, how large and fast they are played, posture and face"),
+    "intensity": tr("How large it is played; 1 as it was made"),
+    "stay": tr("The models do not leave the stance, until another one is asked for"),
 }
 ORDER = tuple(LABELS)
 
@@ -81,7 +83,9 @@ class RequestEditor(QDialog):
         self.setMinimumWidth(340)
         ask = self._ask()
         self.setWindowTitle(
-            f"Request: {request_words(ask, performance.document.project)}" if ask is not None else "Request"
+            tr("Request: {what}", what=request_words(ask, performance.document.project))
+            if ask is not None
+            else tr("Request")
         )
         layout = QVBoxLayout(self)
         form = QFormLayout()
@@ -99,7 +103,7 @@ class RequestEditor(QDialog):
         self.words.setProperty("dim", True)
         layout.addWidget(self.words)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
-        self.remove = buttons.addButton("Take it back", QDialogButtonBox.ButtonRole.DestructiveRole)
+        self.remove = buttons.addButton(tr("Take it back"), QDialogButtonBox.ButtonRole.DestructiveRole)
         self.remove.clicked.connect(self._remove)
         buttons.rejected.connect(self.accept)
         for button in buttons.findChildren(QPushButton):  # Enter takes over what was typed, it does not close
@@ -114,7 +118,7 @@ class RequestEditor(QDialog):
     def _told(self) -> None:
         ask = self._ask()
         if ask is None:
-            self.words.setText("This request is not there any more.")
+            self.words.setText(tr("This request is not there any more."))
         else:
             self.words.setText(outcome(ask, self.performance.answers().get(self.ident)))
         self.remove.setEnabled(ask is not None)
@@ -202,13 +206,13 @@ class RequestEditor(QDialog):
         ask = self._ask()
         items: list[tuple[str, Any]]
         if name == "limb":
-            items = [("any", None), *((x, x) for x in LIMBS)]
+            items = [(tr("any"), None), *((tr(x), x) for x in LIMBS)]
         elif name == "mode":
-            items = [("as it comes", None), *((MODE_WORDS[m], m) for m in MODES)]
+            items = [(tr("as it comes"), None), *((MODE_WORDS[m], m) for m in MODES)]
         elif name == "mood":
             items = [(UNSET, None), *((MOOD_WORDS[m], m) for m in FEELINGS)]
         elif name == "line":
-            items = [("none", None), *((i, i) for i in project.lines)]
+            items = [(tr("none"), None), *((i, i) for i in project.lines)]
             value = None if value is None else str(value)
         elif name == "stance":
             lane = lane_of(ask, project)
@@ -227,7 +231,7 @@ class RequestEditor(QDialog):
             return None
         box = ComboBox(self)
         if value not in [v for _, v in items]:
-            point = mood_words(value, None) if name == "mood" else "a point"
+            point = mood_words(value, None) if name == "mood" else tr("a point")
             items.append((value if isinstance(value, str) else point, value))
         for words, data in items:
             box.addItem(words, data)

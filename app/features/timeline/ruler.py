@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QInputDialog, QMenu
 
 from app.features.timeline.ruler_drags import Grip, MarkerDrag, RangeDrag
 from app.look.theme import Theme
+from app.translation import tr
 from app.widgets.lane_geometry import LEFT, NUMBERS, RULER, advance, elided
 from metagraph.graph.timeline import Marker
 
@@ -110,7 +111,7 @@ class Ruler:
         timeline = self.view.performance.timeline
         marker = next((m for m in timeline.now.markers if m.id == ident), None)
         if marker is not None:
-            name, ok = QInputDialog.getText(self.view, "Rename marker", "Name", text=marker.name)
+            name, ok = QInputDialog.getText(self.view, tr("Rename marker"), tr("Name"), text=marker.name)
             if ok:
                 timeline.rename_marker(ident, name)
 
@@ -121,37 +122,40 @@ class Ruler:
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         if marker is not None:
             timeline.select(marker.id)
-            menu.addAction("Rename marker…\tdouble-click", lambda: self.rename(marker.id))
-            menu.addAction("Remove marker\tDel", lambda: timeline.remove_marker(marker.id))
+            menu.addAction(tr("Rename marker…\tdouble-click"), lambda: self.rename(marker.id))
+            menu.addAction(tr("Remove marker\tDel"), lambda: timeline.remove_marker(marker.id))
             menu.addSeparator()
         else:
-            menu.addAction("Add marker here\tM at the playhead", lambda: timeline.add_marker(seconds))
-        many = menu.addAction("Remove all markers", lambda: timeline.remove_marker())
+            menu.addAction(tr("Add marker here\tM at the playhead"), lambda: timeline.add_marker(seconds))
+        many = menu.addAction(tr("Remove all markers"), lambda: timeline.remove_marker())
         many.setEnabled(bool(timeline.now.markers))
         menu.addSeparator()
-        menu.addAction("Loop from here\tI at the playhead", lambda: timeline.set_in(seconds))
-        menu.addAction("Loop to here\tO at the playhead", lambda: timeline.set_out(seconds))
-        clear = menu.addAction("Clear loop range\tCtrl+Shift+X", timeline.clear_range)
+        menu.addAction(tr("Loop from here\tI at the playhead"), lambda: timeline.set_in(seconds))
+        menu.addAction(tr("Loop to here\tO at the playhead"), lambda: timeline.set_out(seconds))
+        clear = menu.addAction(tr("Clear loop range\tCtrl+Shift+X"), timeline.clear_range)
         clear.setEnabled(timeline.range is not None)
         menu.addSeparator()
-        menu.addAction("Zoom to all\tShift+Z", self.view.zoom_all)
-        menu.addAction("Zoom to selection\tZ", self.view.zoom_selection)
+        menu.addAction(tr("Zoom to all\tShift+Z"), self.view.zoom_all)
+        menu.addAction(tr("Zoom to selection\tZ"), self.view.zoom_selection)
         return menu
 
     def tip(self, at: QPointF) -> str:
         marker = self.marker_at(at)
         if marker is not None:
-            how = "Drag moves it, double-click renames it, Delete removes it"
-            return f"{marker.name or 'Marker'}, at {marker.at:.2f} s\n{how}"
+            how = tr("Drag moves it, double-click renames it, Delete removes it")
+            return tr("{name}, at {at:.2f} s\n{how}", name=marker.name or tr("Marker"), at=marker.at, how=how)
         found = self.range
         if self.grip_at(at) is None:
             return ""
         if found is not None:
-            words = (
-                f"Played again and again: {found[0]:.2f} to {found[1]:.2f} s ({found[1] - found[0]:.2f} s)"
+            words = tr(
+                "Played again and again: {start:.2f} to {end:.2f} s ({length:.2f} s)",
+                start=found[0],
+                end=found[1],
+                length=found[1] - found[0],
             )
-            return f"{words}\nDrag it or its ends; Ctrl+Shift+X clears it"
-        return "Drag here for the range that is played again and again (I and O set its ends)"
+            return tr("{words}\nDrag it or its ends; Ctrl+Shift+X clears it", words=words)
+        return tr("Drag here for the range that is played again and again (I and O set its ends)")
 
     # --- painting
 

@@ -11,9 +11,11 @@ from PySide6.QtCore import QSettings
 
 from app.look.names import plain
 from app.stage.performance import Performance
+from app.translation import tr
 from app.widgets.lane_geometry import Mark, Scale
 from metagraph.playback.phases import phases
 
+WORDS = {"in": tr("in of the range"), "out": tr("out of the range")}
 REACH = 8.0  # pixels from which something is drawn to a line; ours
 WIDE = 24.0  # pixels of a gesture from which its stroke is a line of its own
 SETTING = "timeline/magnet"
@@ -47,26 +49,33 @@ def snap_lines(
     """
     begin, end = scale.seconds(0), scale.seconds(width)
     shown, noted = performance.shown, performance.timeline.now
-    out = [SnapLine(m.at, f"marker {m.name}".strip()) for m in noted.markers if m.id not in but]
+    out = [SnapLine(m.at, tr("marker {name}", name=m.name).strip()) for m in noted.markers if m.id not in but]
     if noted.range is not None:
         ends = zip(("in", "out"), noted.range, strict=True)
-        out += [SnapLine(at, f"{name} of the range") for name, at in ends if name not in but]
+        out += [SnapLine(at, WORDS[name]) for name, at in ends if name not in but]
     out += [SnapLine(m.at, m.words) for m in marks if m.ask.id not in but]
     for first, last, text in words:
-        out += [SnapLine(first, f"'{text}'"), SnapLine(last, f"end of '{text}'")]
+        out += [SnapLine(first, f"'{text}'"), SnapLine(last, tr("end of '{word}'", word=text))]
     for of in shown.plan.layers.values():
         for cue in of.cues:
             if cue.end < begin or cue.start > end or cue.meta.partition("+")[0] in but:
                 continue
             name = plain(cue.action.name)
-            out += [SnapLine(cue.start, f"start of {name}"), SnapLine(cue.end, f"end of {name}")]
+            out += [
+                SnapLine(cue.start, tr("start of {name}", name=name)),
+                SnapLine(cue.end, tr("end of {name}", name=name)),
+            ]
             if cue.action.kind == "gesture" and (cue.end - cue.start) * scale.each >= WIDE:
                 stroke = phases(shown.project, cue.action).stroke
                 if cue.entry <= stroke <= cue.last:
-                    out.append(SnapLine(cue.start + (stroke - cue.entry) / cue.tempo, f"stroke of {name}"))
-    out.append(SnapLine(performance.session.transport.seconds, "playhead"))
+                    out.append(
+                        SnapLine(
+                            cue.start + (stroke - cue.entry) / cue.tempo, tr("stroke of {name}", name=name)
+                        )
+                    )
+    out.append(SnapLine(performance.session.transport.seconds, tr("playhead")))
     if performance.ends:
-        out.append(SnapLine(shown.length, "end"))
+        out.append(SnapLine(shown.length, tr("end")))
     step = scale.step() / (5 if scale.step() * scale.each > 200 else 1)
     first = int(max(0.0, begin) // step)
     out += [SnapLine(round(n * step, 3), f"{n * step:g} s", True) for n in range(first, int(end / step) + 2)]

@@ -28,6 +28,7 @@ from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.lane_geometry import outcome, wanted
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
@@ -42,12 +43,12 @@ from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.requests import Performance as KeptPerformance
 from metagraph.graph.words import FEELINGS
 
-IMPROVISED = "Improvised"
-MAGNET = (
+IMPROVISED = tr("Improvised")
+MAGNET = tr(
     "Snap what is dragged to markers, words, strokes, beginnings, ends and seconds (S; hold Shift for not)"
 )
-GHOSTS = "What other seeds would play, as rows under the lanes; a click takes one over (Shift+W)"
-RIPPLE = "Ripple: what follows goes along with what is moved (Shift+R)"
+GHOSTS = tr("What other seeds would play, as rows under the lanes; a click takes one over (Shift+W)")
+RIPPLE = tr("Ripple: what follows goes along with what is moved (Shift+R)")
 
 
 class TimelinePanel(QWidget):
@@ -73,54 +74,57 @@ class TimelinePanel(QWidget):
         row.setContentsMargins(12, 0, 12, 2)
         row.setSpacing(8)
         self.stage = ComboBox(
-            self, toolTip="Which performance is on stage; improvised, the models fill the time on their own"
+            self,
+            toolTip=tr("Which performance is on stage; improvised, the models fill the time on their own"),
         )
-        self.stage.setAccessibleName("Performance")
+        self.stage.setAccessibleName(tr("Performance"))
         self.stage.setMinimumWidth(150)
         self.stage.activated.connect(self._put_on)
         row.addWidget(self.stage)
-        self.more = MoreButton(session.look, "Performances", "New, rename, length, remove", self)
+        self.more = MoreButton(session.look, tr("Performances"), tr("New, rename, length, remove"), self)
         self.more_menu = self.more.menu_of
         self.more_menu.aboutToShow.connect(self._fill)
         row.addWidget(self.more)
         self.title = Sentence(self)
         self.title.setMinimumHeight(2 * self.title.fontMetrics().height())
         row.addWidget(self.title, 1)
-        self.magnet = self._switch(MAGNET, "Snap", self.lanes.magnet.on)
-        self.ripple = self._switch(RIPPLE, "Ripple", performance.requests.ripple)
+        self.magnet = self._switch(MAGNET, tr("Snap"), self.lanes.magnet.on)
+        self.ripple = self._switch(RIPPLE, tr("Ripple"), performance.requests.ripple)
         for switch in (self.magnet, self.ripple):
             row.addWidget(switch)
         self.lost = make_widget(
-            QToolButton, self, toolTip="Select the next of them; its reason then stands beside"
+            QToolButton, self, toolTip=tr("Select the next of them; its reason then stands beside")
         )
         self.lost.clicked.connect(self.show_lost)
         row.addWidget(self.lost)
         self.now = make_widget(
-            QToolButton, self, text="Back to now", toolTip="Follow what is played live again"
+            QToolButton, self, text=tr("Back to now"), toolTip=tr("Follow what is played live again")
         )
         self.now.clicked.connect(performance.live.follow)
         row.addWidget(self.now)
-        self.live = make_widget(QToolButton, self, text="Live", checkable=True)
+        self.live = make_widget(QToolButton, self, text=tr("Live"), checkable=True)
         self.live.setToolTip(
-            "Let programs on this machine drive the character, over WebSocket and OSC (Ctrl+L)"
+            tr("Let programs on this machine drive the character, over WebSocket and OSC (Ctrl+L)")
         )
         self.live.clicked.connect(self.toggle_live)
         row.addWidget(self.live)
         self.ask = make_widget(
-            QToolButton, self, text="Ask for…", toolTip="Ask the character for something now"
+            QToolButton, self, text=tr("Ask for…"), toolTip=tr("Ask the character for something now")
         )
         self.ask.clicked.connect(self._ask)
         row.addWidget(self.ask)
-        row.addWidget(QLabel("Seed", self))
+        row.addWidget(QLabel(tr("Seed"), self))
         # Whole numbers of 32 bits without a sign, which the other field does not hold.
-        self.seed = DoubleSpinBox(self, toolTip="Another seed gives another performance of the same graph")
+        self.seed = DoubleSpinBox(
+            self, toolTip=tr("Another seed gives another performance of the same graph")
+        )
         self.seed.setDecimals(0)
         self.seed.setFixedWidth(112)
         self.seed.setRange(0, 0xFFFFFFFF)
-        self.seed.setAccessibleName("Seed")
+        self.seed.setAccessibleName(tr("Seed"))
         self.seed.valueChanged.connect(self._seeded)
         row.addWidget(self.seed)
-        self.ghosts = self._switch(GHOSTS, "What if", False)
+        self.ghosts = self._switch(GHOSTS, tr("What if"), False)
         self.ghosts.toggled.connect(self.what_if.set_on)
         self.what_if.changed.connect(lambda: self.ghosts.setChecked(self.what_if.on))
         row.addWidget(self.ghosts)
@@ -196,48 +200,51 @@ class TimelinePanel(QWidget):
     def _fill(self) -> None:
         menu, kept = self.more_menu, self.performance.requests.kept
         menu.clear()
-        menu.addAction("New performance", self.new)
+        menu.addAction(tr("New performance"), self.new)
         played = self.performance.live.last
         if played is not None:
-            menu.addAction("Keep what was played live", lambda: self._keep("Keep live session", played))
+            menu.addAction(
+                tr("Keep what was played live"), lambda: self._keep(tr("Keep live session"), played)
+            )
         if kept is None:
             return
-        menu.addAction("Rename…", self.rename)
-        menu.addAction("Duplicate", self.duplicate)
-        menu.addAction("Length…", self.set_length)
+        menu.addAction(tr("Rename…"), self.rename)
+        menu.addAction(tr("Duplicate"), self.duplicate)
+        menu.addAction(tr("Length…"), self.set_length)
         fill = menu.addAction(
-            "The models fill the rest", lambda: self._change("Change who fills the rest", idle=not kept.idle)
+            tr("The models fill the rest"),
+            lambda: self._change(tr("Change who fills the rest"), idle=not kept.idle),
         )
         fill.setCheckable(True)
         fill.setChecked(kept.idle)
-        self._fill_moods(menu.addMenu("Mood"), kept)
-        own = menu.addAction("A seed of its own", self._own_seed)
+        self._fill_moods(menu.addMenu(tr("Mood")), kept)
+        own = menu.addAction(tr("A seed of its own"), self._own_seed)
         own.setCheckable(True)
         own.setChecked(kept.seed is not None)
         menu.addSeparator()
-        menu.addAction("Remove…", self.remove)
+        menu.addAction(tr("Remove…"), self.remove)
 
     def _fill_moods(self, menu: QMenu, kept: KeptPerformance) -> None:
         """Fill a menu with the moods a whole performance may be in, and how strongly."""
-        moods: list[tuple[str, str | None]] = [("The character's own", None)]
+        moods: list[tuple[str, str | None]] = [(tr("The character's own"), None)]
         moods += [(MOOD_WORDS[feeling], feeling) for feeling in FEELINGS]
         for words, mood in moods:
             choice = menu.addAction(
-                words, partial(self._change, "Change the mood of a performance", mood=mood)
+                words, partial(self._change, tr("Change the mood of a performance"), mood=mood)
             )
             choice.setCheckable(True)
             choice.setChecked(kept.mood == mood)
         menu.addSeparator()
-        menu.addAction("Intensity…", self.set_intensity)
+        menu.addAction(tr("Intensity…"), self.set_intensity)
 
     def set_intensity(self) -> None:
         kept = self.performance.requests.kept
         if kept is not None:
             now = 1.0 if kept.intensity is None else kept.intensity
-            words = "How large gestures are played; 1 as they were made"
-            value, ok = QInputDialog.getDouble(self, "Intensity", words, now, 0.0, 2.0, 2)
+            words = tr("How large gestures are played; 1 as they were made")
+            value, ok = QInputDialog.getDouble(self, tr("Intensity"), words, now, 0.0, 2.0, 2)
             if ok:
-                self._change("Change the intensity of a performance", intensity=value)
+                self._change(tr("Change the intensity of a performance"), intensity=value)
 
     def _keep(self, text: str, performance: KeptPerformance) -> None:
         made = ""
@@ -252,33 +259,33 @@ class TimelinePanel(QWidget):
         self.session.transport.show_plan()
 
     def new(self) -> None:
-        self._keep("New performance", KeptPerformance(name="Performance"))
+        self._keep(tr("New performance"), KeptPerformance(name=tr("Performance")))
 
     def duplicate(self) -> None:
         if self.performance.requests.kept is not None:
-            self._keep("Duplicate performance", self.performance.requests.kept)
+            self._keep(tr("Duplicate performance"), self.performance.requests.kept)
 
     def rename(self) -> None:
         kept = self.performance.requests.kept
         if kept is not None:
-            name, ok = QInputDialog.getText(self, "Rename performance", "Name", text=kept.name)
+            name, ok = QInputDialog.getText(self, tr("Rename performance"), tr("Name"), text=kept.name)
             if ok and name.strip():
-                self._change("Rename performance", name=name)
+                self._change(tr("Rename performance"), name=name)
 
     def set_length(self) -> None:
         kept = self.performance.requests.kept
         if kept is not None:
             seconds, ok = QInputDialog.getDouble(
-                self, "Length of the performance", "Seconds", kept.length, 0.1, 36000, 1
+                self, tr("Length of the performance"), tr("Seconds"), kept.length, 0.1, 36000, 1
             )
             if ok:
-                self._change("Change length", length=round(seconds, 3))
+                self._change(tr("Change length"), length=round(seconds, 3))
 
     def _own_seed(self) -> None:
         kept = self.performance.requests.kept
         if kept is not None:
             self._change(
-                "Change seed", seed=self.document.project.settings.seed if kept.seed is None else None
+                tr("Change seed"), seed=self.document.project.settings.seed if kept.seed is None else None
             )
 
     def remove(self) -> None:
@@ -286,10 +293,17 @@ class TimelinePanel(QWidget):
         if kept is None or ident is None:
             return
         if kept.asks:
-            question = f"Remove '{kept.name}' and its {many(len(kept.asks), 'request')}? It can be undone."
-            if QMessageBox.question(self, "Remove performance", question) != QMessageBox.StandardButton.Yes:
+            question = tr(
+                "Remove '{name}' and its {requests}? It can be undone.",
+                name=kept.name,
+                requests=many(len(kept.asks), "request"),
+            )
+            if (
+                QMessageBox.question(self, tr("Remove performance"), question)
+                != QMessageBox.StandardButton.Yes
+            ):
                 return
-        self.document.edit("Remove performance", lambda p: performance_edits.remove_performance(p, ident))
+        self.document.edit(tr("Remove performance"), lambda p: performance_edits.remove_performance(p, ident))
 
     def _change(self, text: str, **changes: object) -> None:
         ident = self.session.onstage.performance
@@ -313,7 +327,7 @@ class TimelinePanel(QWidget):
     def _live(self) -> None:
         on = self.performance.live.stage is not None
         self.live.setChecked(on)
-        self.live.setText("● Live" if on else "Live")
+        self.live.setText(f"● {tr('Live')}" if on else tr("Live"))
         self.stage.setEnabled(not on)
         self.more.setEnabled(not on)
         self.seed.setEnabled(not on)
@@ -336,13 +350,13 @@ class TimelinePanel(QWidget):
         if talk is not None:
             if seed != self.document.project.conversations[talk].seed:
                 self.document.edit(
-                    "Change seed", lambda p: change_conversation(p, talk, seed=seed), merge="seed"
+                    tr("Change seed"), lambda p: change_conversation(p, talk, seed=seed), merge="seed"
                 )
         elif kept is not None and kept.seed is not None:
             if seed != kept.seed:
-                self._change("Change seed", seed=seed)
+                self._change(tr("Change seed"), seed=seed)
         elif seed != self.document.project.settings.seed:
-            self.document.edit("Change seed", lambda p: edits.set_settings(p, seed=seed), merge="seed")
+            self.document.edit(tr("Change seed"), lambda p: edits.set_settings(p, seed=seed), merge="seed")
 
     def _show_seed(self) -> None:
         kept, talk = self.performance.requests.kept, self.performance.conversation
@@ -369,36 +383,46 @@ class TimelinePanel(QWidget):
         answers = self.performance.answers() if plan else {}
         lost = sum(1 for a in answers.values() if a.state == "refused")
         self.lost.setVisible(lost > 0)
-        self.lost.setText(f"⚠ {lost:,} not met")
-        self.lost.setAccessibleName(f"{many(lost, 'request')} could not be met")
+        self.lost.setText(tr("⚠ {lost:,} not met", lost=lost))
+        self.lost.setAccessibleName(tr("{requests} could not be met", requests=many(lost, "request")))
         chosen = self.session.onstage.requests if plan else ()
         marks = [m for m in self.lanes.marks() if m.ask.id in chosen] if chosen else []
         if len(marks) == 1:
             self.title.say(
-                f"{outcome(marks[0].ask, marks[0].answer)} Asked for: {wanted(marks[0])}.".strip(), True
+                tr(
+                    "{outcome} Asked for: {wanted}.",
+                    outcome=outcome(marks[0].ask, marks[0].answer),
+                    wanted=wanted(marks[0]),
+                ).strip(),
+                True,
             )
             return
         if marks:
-            unmet = sum(1 for m in marks if m.lost)
+            unmet, chosen_words = sum(1 for m in marks if m.lost), many(len(marks), "request")
             self.title.say(
-                f"{many(len(marks), 'request')} selected"
-                + (f", {unmet:,} of them could not be met" if unmet else ""),
+                tr("{requests} selected", requests=chosen_words)
+                if not unmet
+                else tr(
+                    "{requests} selected, {unmet:,} of them could not be met",
+                    requests=chosen_words,
+                    unmet=unmet,
+                ),
                 True,
             )
         elif self.performance.live.stage is not None and plan:
             self.title.say(self.performance.live.stage.words())
         elif shown.clip is not None:
-            self.title.say("A clip alone. Click it again to play it in context, Esc for the performance.")
+            self.title.say(tr("A clip alone. Click it again to play it in context, Esc for the performance."))
         elif self.session.onstage.mode == "manual":
             count = sum(len(shown.plan.layers[layer].cues) for layer in LAYERS)
             lost_words = "".join(f" {r.message[:1].upper()}{r.message[1:]}." for r in shown.plan.reports[-1:])
             words = (
-                f"{many(count, 'state')} in {shown.length:g} s."
+                tr("{states} in {length:g} s.", states=many(count, "state"), length=shown.length)
                 if count
-                else "Nothing plays yet: drop clips and draw links."
+                else tr("Nothing plays yet: drop clips and draw links.")
             )
             self.title.say(
-                "Alone. Esc for the whole machine."
+                tr("Alone. Esc for the whole machine.")
                 if self.session.transport.show == "context"
                 else words + lost_words
             )
@@ -406,23 +430,33 @@ class TimelinePanel(QWidget):
             talk = self.performance.document.project.conversations.get(
                 self.session.onstage.conversation or ""
             )
-            who = side_name(talk, shown.side) if talk is not None else "One who talks"
+            who = side_name(talk, shown.side) if talk is not None else tr("One who talks")
             gestures = sum(1 for cue in shown.plan.layers["arms"].cues if cue.action.kind == "gesture")
             nods = len(shown.plan.layers["head"].cues)
             if shown.motion is not None:
                 self.title.say(
-                    f"{who} moves with '{shown.project.clips[shown.motion].name}'; its graph would do this."
+                    tr(
+                        "{who} moves with '{name}'; its graph would do this.",
+                        who=who,
+                        name=shown.project.clips[shown.motion].name,
+                    )
                 )
                 return
             self.title.say(
-                f"{who} in conversation: {many(gestures, 'gesture')} of the hands, {many(nods, 'nod')}."
+                tr(
+                    "{who} in conversation: {gestures} of the hands, {nods}.",
+                    who=who,
+                    gestures=many(gestures, "gesture"),
+                    nods=many(nods, "nod"),
+                )
             )
         elif self.session.transport.show == "context":
-            self.title.say("In context: stance, action, back to the stance. Esc for the performance.")
+            self.title.say(tr("In context: stance, action, back to the stance. Esc for the performance."))
         else:
             count = sum(len(shown.plan.layers[layer].cues) for layer in LAYERS)
-            words = f"{many(count, 'action')} in {shown.length:g} s"
-            empty = "Nothing plays yet: drop a clip on a stance and some around it."
+            words = tr("{actions} in {length:g} s", actions=many(count, "action"), length=shown.length)
+            empty = tr("Nothing plays yet: drop a clip on a stance and some around it.")
             self.title.say(
-                (words if count else empty) + (f", {many(lost, 'request')} could not be met" if lost else "")
+                (words if count else empty)
+                + (tr(", {requests} could not be met", requests=many(lost, "request")) if lost else "")
             )

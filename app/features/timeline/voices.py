@@ -12,6 +12,7 @@ from PySide6.QtCore import QObject, Signal
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.performance import Performance
+from app.translation import tr
 from app.widgets.memo import Once
 from metagraph.errors import FileError
 from metagraph.graph.requests import Line
@@ -77,7 +78,7 @@ class Voices(QObject):
             return
         self._read.update(dict.fromkeys(missing))
         self.jobs.start(
-            "Reading voices", lambda job: _read_all(list(missing), job), self._came, lambda error: None
+            tr("Reading voices"), lambda job: _read_all(list(missing), job), self._came, lambda error: None
         )
 
     def _came(self, found: dict[Key, Voice]) -> None:

@@ -13,6 +13,7 @@ from app.look.theme import Theme
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
+from app.translation import tr
 from app.widgets.lane_geometry import LEFT, Scale
 from metagraph.graph import edits, performance_edits
 from metagraph.graph.model import LAYERS, Layer, Project
@@ -105,7 +106,7 @@ class WhatIf(QObject):
         def work(_: object) -> tuple[tuple[object, ...], dict[int, Plan]]:
             return made_of, {seed: plan_with(project, kept, length, seed) for seed in seeds}
 
-        self.jobs.start("what if", work, self._came, lambda error: None, quick=True)
+        self.jobs.start(tr("what if"), work, self._came, lambda error: None, quick=True)
 
     def _came(self, found: tuple[tuple[object, ...], dict[int, Plan]]) -> None:
         if found[0] is self._made_of:  # else others are wanted by now
@@ -117,10 +118,10 @@ class WhatIf(QObject):
         stage, kept = self.performance.session.onstage.performance, self.performance.requests.kept
         if stage is not None and kept is not None and kept.seed is not None:
             self.document.edit(
-                "Change seed", lambda p: performance_edits.change_performance(p, stage, seed=seed)
+                tr("Change seed"), lambda p: performance_edits.change_performance(p, stage, seed=seed)
             )
         else:
-            self.document.edit("Change seed", lambda p: edits.set_settings(p, seed=seed))
+            self.document.edit(tr("Change seed"), lambda p: edits.set_settings(p, seed=seed))
 
     def cue_at(self, seed: int, seconds: float, part: float) -> Cue | None:
         """Return what a row shows at a time. part: how far down in the row, 0..1."""
@@ -131,8 +132,21 @@ class WhatIf(QObject):
 
     def tip(self, seed: int, seconds: float, part: float) -> str:
         cue = self.cue_at(seed, seconds, part)
-        here = f"{plain(cue.action.name)}, {cue.start:.2f} to {cue.end:.2f} s\n" if cue is not None else ""
-        return f"{here}What seed {seed} would play: head, arms, body\nClick plays it instead"
+        here = (
+            tr(
+                "{name}, {start:.2f} to {end:.2f} s\n",
+                name=plain(cue.action.name),
+                start=cue.start,
+                end=cue.end,
+            )
+            if cue is not None
+            else ""
+        )
+        return tr(
+            "{here}What seed {seed} would play: head, arms, body\nClick plays it instead",
+            here=here,
+            seed=seed,
+        )
 
 
 def plan_with(project: Project, kept: KeptPerformance | None, length: float, seed: int) -> Plan:
