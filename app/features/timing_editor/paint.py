@@ -15,6 +15,8 @@ from app.features.timing_editor.numbers import placed
 from app.features.timing_editor.rows import GUTTER, RIGHT, RULER, TITLES, TrackRows
 from app.features.timing_editor.track import Facts
 from app.look.theme import KIND_MARKS, Theme
+from app.translation import tr
+from app.widgets.vocabulary import word
 from app.widgets.waveforms import joined, painted
 
 Array = NDArray[Any]
@@ -164,7 +166,7 @@ def stays(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Fac
         painter.fillRect(box, QBrush(hatched, Qt.BrushStyle.BDiagPattern))
         painter.setPen(QPen(QColor(look.t.text), 1.2))
         painter.drawLine(box.topRight(), box.bottomRight())
-        words = f"held +{stay.hold.seconds:.2f} s"
+        words = tr("held +{seconds:.2f} s", seconds=stay.hold.seconds)
         if look.wide(words) + 8 <= box.width():
             label = QRectF(box.center().x() - look.wide(words) / 2 - 4, box.center().y() - 8, 0, 16)
             label.setWidth(look.wide(words) + 8)
@@ -188,8 +190,8 @@ def blocks(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Fa
         painter.drawRoundedRect(box, 3, 3)
         inner = QRectF(max(left, axis.left) + 6, rect.top(), 0, rect.height())
         inner.setRight(min(right, axis.left + axis.width) - 4)
-        full = f"{name} {last - first:.2f} s"
-        words = next((w for w in (full, name) if look.wide(w) <= inner.width()), "")
+        full = f"{word(name)} {last - first:.2f} s"
+        words = next((w for w in (full, word(name)) if look.wide(w) <= inner.width()), "")
         painter.setPen(QColor(INK))
         painter.drawText(inner, MIDDLE, words)
 
@@ -266,7 +268,7 @@ def _numbers(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: 
     rect, t = rows.rows["numbers"], look.t
     painter.setFont(look.small)
     chosen = [h for n in ORDER if (h := facts.handle(n)) is not None]
-    shown = [(h, _words(h.words, h.name, facts, h.at)) for h in chosen if _in_sight(axis, h.at)]
+    shown = [(h, _words(word(h.words), h.name, facts, h.at)) for h in chosen if _in_sight(axis, h.at)]
     widths = [look.wide(words) + 10 for _, words in shown]
     places = placed(
         [(axis.x(h.at), w) for (h, _), w in zip(shown, widths, strict=True)],

@@ -11,6 +11,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from app.look.names import plain
+from app.translation import tr
 from app.widgets.memo import Once
 from metagraph.graph import anatomy, end_gaps
 from metagraph.graph.clip_source import course_of
@@ -164,7 +165,8 @@ def kept_of(project: Project, entry: ClipEntry) -> tuple[Kept, ...]:
     if course is None:
         return ()
     roles, names = anatomy.roles(project), project.skeleton.names if project.skeleton is not None else ()
-    sides = {names[roles[f"{s}_hand"]]: f"{s} hand" for s in ("left", "right") if f"{s}_hand" in roles}
+    words = (("left_hand", tr("left hand")), ("right_hand", tr("right hand")))
+    sides = {names[roles[role]]: said for role, said in words if role in roles}
     return tuple(
         Kept(n, sides.get(c.hand, c.hand), c.to, course.time(c.first), course.time(c.last, late=True))
         for n, c in enumerate(entry.retime.contacts)
