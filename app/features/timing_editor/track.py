@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 from app.look.names import plain
 from app.translation import tr
 from app.widgets.memo import Once
+from app.widgets.vocabulary import word
 from metagraph.graph import anatomy, end_gaps
 from metagraph.graph.clip_source import course_of
 from metagraph.graph.model import Action, ClipEntry, Project, Timing
 from metagraph.motion.retime import Hold
 from metagraph.playback.speed_curves import SpeedCurve, curves_of, speed_of
-from metagraph.playback.timing import Block, Handle, blocks_of, handles_of
+from metagraph.playback.timing import WORDS, Block, Handle, blocks_of, handles_of
 from metagraph.suggest.jumps import Curves
 from metagraph.suggest.seen_jumps import Seen, far_ends, verdict
 from metagraph.suggest.stance_distance import StanceDistance, distance_of, measured
@@ -179,6 +180,11 @@ def stays_of(entry: ClipEntry) -> tuple[Stay, ...]:
     if course is None:
         return ()
     return tuple(Stay(hold, *ends) for hold, ends in zip(entry.retime.holds, course.stays, strict=True))
+
+
+def handle_words(handle: Handle) -> str:
+    """Return a handle's name and number: "blend in 0.20"."""
+    return f"{word(WORDS[handle.name])} {handle.number:.2f}"
 
 
 def _verdict(project: Project, action: Action, seen: Seen | None) -> tuple[str, bool]:

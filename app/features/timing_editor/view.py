@@ -31,7 +31,7 @@ from app.features.timing_editor.rows import (
     least_height,
 )
 from app.features.timing_editor.subject import Subject
-from app.features.timing_editor.track import Facts, Kept
+from app.features.timing_editor.track import Facts, Kept, handle_words
 from app.look.theme import theme
 from app.project.document import Document
 from app.stage.session import Session
@@ -262,7 +262,7 @@ class TimingView(QWidget):
         def words(_: float) -> str:
             shown = self.subject.facts().get(facts.action.id, facts)
             handle = shown.handle(name)
-            return f"{handle.words} s" if handle is not None else name
+            return f"{handle_words(handle)} s" if handle is not None else name
 
         return drags.TimingDrag(self, facts, grip, snaps, drags.handle_change(self.idents(), name), words)
 
