@@ -30,6 +30,7 @@ MOOD_TITLES = (
     *(tr_noop("Excited"), tr_noop("Tense"), tr_noop("Angry"), tr_noop("Afraid"), tr_noop("Sad")),
     *(tr_noop("Bored"), tr_noop("Tired")),
 )
+JOINS = (tr_noop("to"), tr_noop("from"))
 OTHERS = (tr_noop("Likelihood"), tr_noop("Mask"), tr_noop("Stroke"), tr_noop("User"))
 
 
