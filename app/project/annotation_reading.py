@@ -8,6 +8,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+from app.translation import tr
 from metagraph.graph import edits, performance_edits
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.playback.annotation import SPEECH, Annotation, Label, guess_roles, labels
@@ -146,10 +147,20 @@ def told(reading: Reading) -> list[str]:
     """Return in words what is doubtful about a reading."""
     out = list(reading.annotation.notes)
     if not reading.observed:
-        out.append("No tier is read as an arm, the head or the body yet: choose what the tiers stand for.")
+        out.append(
+            tr("No tier is read as an arm, the head or the body yet: choose what the tiers stand for.")
+        )
     for layer, acts in reading.observed.items():
         if not acts:
-            out.append(f"The {layer} tiers hold nothing that counts: see what their labels mean.")
+            out.append(
+                tr("The {layer} tiers hold nothing that counts: see what their labels mean.", layer=tr(layer))
+            )
         elif len(acts) < FEW:
-            out.append(f"Only {len(acts)} actions of the {layer}: its model will be a rough one.")
+            out.append(
+                tr(
+                    "Only {acts} actions of the {layer}: its model will be a rough one.",
+                    acts=len(acts),
+                    layer=tr(layer),
+                )
+            )
     return out

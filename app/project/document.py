@@ -16,6 +16,7 @@ from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.project.opening import with_motion_of
 from app.project.writing import Writing, project_name
+from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.formats.history import Step
 from metagraph.formats.journal import How, Journal, journal_path
@@ -166,7 +167,7 @@ class Document(QObject):
             try:
                 self._journal.edit(before, after, text, how)
             except (FileError, OSError) as error:
-                self.failed.emit(f"This edit was not autosaved: {error}")
+                self.failed.emit(tr("This edit was not autosaved: {error}", error=error))
 
     def undo(self) -> None:
         self.undo_stack.undo()
@@ -235,7 +236,7 @@ class Document(QObject):
         state.
         """
         if project != self.project:
-            self.undo_stack.push(_Change(self, "Reload from disk", self.project, project, None))
+            self.undo_stack.push(_Change(self, tr("Reload from disk"), self.project, project, None))
         self.common, self.digest = self.project, digest
         self.undo_stack.setClean()
         self._begin_journal(None)
@@ -245,7 +246,7 @@ class Document(QObject):
         """Take over what was made of this project and of what another program has made of the file: one step,
         to be saved. theirs, digest: what the file holds, and that file's.
         """
-        self.undo_stack.push(_Change(self, "Merge with the file", self.project, project, None))
+        self.undo_stack.push(_Change(self, tr("Merge with the file"), self.project, project, None))
         self.common, self.digest = theirs, digest
         self.undo_stack.resetClean()
         self.keep_all()
@@ -339,7 +340,7 @@ class Document(QObject):
                 journal.begin(base, unsaved)
             except (FileError, OSError) as error:  # what was in the old one stays there
                 self._journal = journal  # which tries again with each edit
-                self.failed.emit(f"Autosave is off: {error}")
+                self.failed.emit(tr("Autosave is off: {error}", error=error))
                 return
         if (
             base is not None or not self.read_only

@@ -23,6 +23,7 @@ from app.project.questions import ask_held, holder_words
 from app.project.recovering import Choice, ask_recover
 from app.project.saver import Saver
 from app.project.unsaved import Unsaved, not_steps
+from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.history import Step
@@ -32,7 +33,7 @@ from metagraph.formats.store import SUFFIX, Opened, absolute, read_project
 from metagraph.graph.model import Project
 
 RECENT = 10
-FILTER = f"Metagraph projects (*{SUFFIX} *.yaml);;All files (*)"
+FILTER = tr("Metagraph projects (*{ending} *.yaml);;All files (*)", ending=SUFFIX)
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_clips" / f"sample{SUFFIX}"
 SEATED = Path(__file__).resolve().parents[2] / "sample_clips" / f"seated{SUFFIX}"
 PRACTICE = Path(__file__).resolve().parents[2] / "sample_clips" / f"practice{SUFFIX}"
@@ -79,7 +80,7 @@ class Files(QObject):
         if self.refuse():
             return
         name, _ = QFileDialog.getOpenFileName(
-            self.window, "Open project", str(self.document.folder or Path.home()), FILTER
+            self.window, tr("Open project"), str(self.document.folder or Path.home()), FILTER
         )
         if name:
             self.open(Path(name))
@@ -100,7 +101,7 @@ class Files(QObject):
             return
         owner = self.document.owner
         self.jobs.start(
-            f"Opening {path.name}",
+            tr("Opening {name}", name=path.name),
             lambda _: look_beside(path, owner),
             lambda found: self._looked(path, left, found),
             self.show_failure,
@@ -125,7 +126,7 @@ class Files(QObject):
             _release(found.lock, self.document)
             return
         if found.notes and not found.left:
-            self.report.emit("Edits that cannot be recovered are kept", list(found.notes))
+            self.report.emit(tr("Edits that cannot be recovered are kept"), list(found.notes))
         self._open(path, before, found, tuple(zip(found.left, choices, strict=True)), read_only=read_only)
 
     def _open(
@@ -179,15 +180,15 @@ class Files(QObject):
             if chosen is not None and chosen.behind:
                 self.look_at_file()
             if kept:
-                self.told.emit(f"Saved beside it: {', '.join(place.name for place in kept)}")
+                self.told.emit(tr("Saved beside it: {names}", names=", ".join(place.name for place in kept)))
             if opened.notes:
-                self.report.emit(f"{path.name} was opened, but", list(opened.notes))
+                self.report.emit(tr("{name} was opened, but", name=path.name), list(opened.notes))
 
         def failed(error: Exception) -> None:
             _release(lock, self.document)
             self.show_failure(error)
 
-        self.jobs.start(f"Opening {path.name}", work, done, failed)
+        self.jobs.start(tr("Opening {name}", name=path.name), work, done, failed)
 
     def recover_untitled(self, otherwise: Callable[[], object] | None = None) -> None:
         """Offer what was never saved before a crash; where nothing is, or is wanted, do `otherwise`."""
@@ -211,7 +212,7 @@ class Files(QObject):
     def save_as(self) -> bool:
         start = self.document.folder or Path.home()
         name, _ = QFileDialog.getSaveFileName(
-            self.window, "Save project as", str(start / f"{self.document.project.name}{SUFFIX}"), FILTER
+            self.window, tr("Save project as"), str(start / f"{self.document.project.name}{SUFFIX}"), FILTER
         )
         if not name:
             return False
@@ -222,8 +223,12 @@ class Files(QObject):
         if holder is not None:
             QMessageBox.warning(
                 self.window,
-                "Not saved",
-                f"{path.name} is open in another window, by {holder_words(holder)}. Choose another name.",
+                tr("Not saved"),
+                tr(
+                    "{name} is open in another window, by {holder}. Choose another name.",
+                    name=path.name,
+                    holder=holder_words(holder),
+                ),
             )
             return False
         if self.document.path is not None and Lock(self.document.path, self.document.owner).path == lock.path:
@@ -237,13 +242,13 @@ class Files(QObject):
     def _saved(self, path: Path) -> None:
         self._asked_for = None  # the document's now
         self._remember(path)
-        self.told.emit(f"Saved {path.name}")
+        self.told.emit(tr("Saved {name}", name=path.name))
 
     def _not_saved(self, error: Exception, path: Path | None) -> None:
         if self._asked_for is not None:
             self._asked_for.release()
             self._asked_for = None
-        QMessageBox.warning(self.window, "Not saved", str(error))
+        QMessageBox.warning(self.window, tr("Not saved"), str(error))
 
     def look_at_file(self) -> None:
         """Look whether the project file has changed on disk, and say so."""
@@ -256,8 +261,8 @@ class Files(QObject):
         box = QMessageBox.StandardButton
         answer = QMessageBox.question(
             self.window,
-            "Save changes?",
-            f"'{self.document.project.name}' has changes that are not saved.",
+            tr("Save changes?"),
+            tr("'{name}' has changes that are not saved.", name=self.document.project.name),
             box.Save | box.Discard | box.Cancel,
             box.Save,
         )
@@ -278,7 +283,7 @@ class Files(QObject):
         try:
             write_atomically(state_folder() / "recent.json", json.dumps(names[:RECENT]).encode())
         except (FileError, OSError):
-            self.told.emit("The list of recent projects could not be written.")
+            self.told.emit(tr("The list of recent projects could not be written."))
 
 
 def _release(lock: Lock | None, document: Document) -> None:

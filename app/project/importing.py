@@ -18,6 +18,7 @@ from app.project.jobs import Job, Jobs
 from app.project.kept_maps import kept_maps
 from app.project.load import Load
 from app.project.opening import take_over
+from app.translation import tr
 from metagraph.formats.clips import SUFFIXES
 from metagraph.formats.import_words import Remedy, counted, head, said
 from metagraph.formats.imports import Imported, Strangers, import_files
@@ -26,7 +27,7 @@ from metagraph.formats.store import Opened, load_returned
 from metagraph.formats.takes import NAME
 from metagraph.graph.model import Project
 
-CLIPS = "Clips (*.bvh *.glb *.gltf *.vrm *.vrma *.fbx *.csv);;All files (*)"
+CLIPS = tr("Clips (*.bvh *.glb *.gltf *.vrm *.vrma *.fbx *.csv);;All files (*)")
 Retarget = Callable[[Sequence[Strangers], Callable[[Imported], None]], None]
 
 
@@ -78,7 +79,7 @@ class Importing(QObject):
         if self.files.refuse():
             return
         name = QFileDialog.getExistingDirectory(
-            self.widget, "Import a folder of clips", str(self.document.folder or Path.home())
+            self.widget, tr("Import a folder of clips"), str(self.document.folder or Path.home())
         )
         if name:
             self.import_paths([name])
@@ -87,7 +88,7 @@ class Importing(QObject):
         if self.files.refuse():
             return
         names, _ = QFileDialog.getOpenFileNames(
-            self.widget, "Import clips", str(self.document.folder or Path.home()), CLIPS
+            self.widget, tr("Import clips"), str(self.document.folder or Path.home()), CLIPS
         )
         if names:
             self.import_paths(names)
@@ -111,7 +112,7 @@ class Importing(QObject):
             if era == self._era:
                 self._imported(result, drop)
             else:
-                self.told.emit("The import was dropped, since another project was opened.")
+                self.told.emit(tr("The import was dropped, since another project was opened."))
 
         maps = kept_maps()
 
@@ -121,12 +122,12 @@ class Importing(QObject):
             return import_files(project, folder, paths, tell, lambda: job.cancelled, "ask", remembered)
 
         self.begun.emit()
-        self.jobs.start("Importing clips", work, done, self.files.show_failure)
+        self.jobs.start(tr("Importing clips"), work, done, self.files.show_failure)
 
     def _imported(self, result: Imported, drop: object) -> None:
         count = len(result.loaded)
         if count:
-            self.document.edit(f"Import {clips_words(count)}", result.into)
+            self.document.edit(tr("Import {clips}", clips=clips_words(count)), result.into)
         self.imported.emit(result, drop)
         if not result.strangers or self.retarget is None:
             self._tell_imported(result)
@@ -141,7 +142,9 @@ class Importing(QObject):
 
         def then(brought: Imported) -> None:
             if brought.loaded:
-                self.document.edit(f"Retarget {clips_words(len(brought.loaded))}", brought.into)
+                self.document.edit(
+                    tr("Retarget {clips}", clips=clips_words(len(brought.loaded))), brought.into
+                )
                 self.imported.emit(brought, drop)
             parts.append(brought)
             if len(parts) > groups:
@@ -166,8 +169,8 @@ class Importing(QObject):
         """Say what came of an import."""
         if not result.loaded and not result.apart and not result.failures:
             self.report.emit(
-                "Nothing was imported",
-                ["No clip was found there. Clips are BVH, GLB, glTF, VRM animation or FBX files."],
+                tr("Nothing was imported"),
+                [tr("No clip was found there. Clips are BVH, GLB, glTF, VRM animation or FBX files.")],
             )
             return
         before = [note for note in result.notes if note.endswith("retargeted as before")]
@@ -196,20 +199,20 @@ class Importing(QObject):
         project, era, folder = self.document.project, self._era, self.document.folder
         count = sum(1 for e in project.clips.values() if e.motion is None)
         if not count:
-            self.told.emit("No clip file is missing.")
+            self.told.emit(tr("No clip file is missing."))
             return
 
         def done(back: Opened) -> None:
             if era != self._era:
                 return
-            self.document.take_motion("Read clips that are back", lambda p: take_over(p, back.project))
+            self.document.take_motion(tr("Read clips that are back"), lambda p: take_over(p, back.project))
             if any(e.motion is None for e in self.document.project.clips.values()):
                 self._ask_for_missing(count)
             else:
-                self.told.emit(f"Found {count} of {count} missing clips.")
+                self.told.emit(tr("Found {found} of {count} missing clips.", found=count, count=count))
 
         self.jobs.start(
-            "Looking for clips",
+            tr("Looking for clips"),
             lambda job: load_returned(project, folder, job.tell),
             done,
             self.files.show_failure,
@@ -221,7 +224,7 @@ class Importing(QObject):
         missing = [e for e in project.clips.values() if e.motion is None]
         name = QFileDialog.getExistingDirectory(
             self.widget,
-            f"Where are the {len(missing)} missing clips?",
+            tr("Where are the {missing} missing clips?", missing=len(missing)),
             str(self.document.folder or Path.home()),
         )
         if not name:
@@ -236,11 +239,11 @@ class Importing(QObject):
         def done(found: Project) -> None:
             if era != self._era:
                 return
-            self.document.take_motion("Find missing clips", lambda p: take_over(p, found))
+            self.document.take_motion(tr("Find missing clips"), lambda p: take_over(p, found))
             left = sum(1 for e in self.document.project.clips.values() if e.motion is None)
-            self.told.emit(f"Found {count - left} of {count} missing clips.")
+            self.told.emit(tr("Found {found} of {count} missing clips.", found=count - left, count=count))
 
-        self.jobs.start("Looking for clips", work, done, self.files.show_failure)
+        self.jobs.start(tr("Looking for clips"), work, done, self.files.show_failure)
 
 
 def _together(parts: Sequence[Imported]) -> Imported:

@@ -8,6 +8,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.project.document import Document
 from app.project.jobs import Jobs
+from app.translation import tr
 from metagraph.formats.locking import REFRESH
 
 
@@ -43,8 +44,11 @@ class Keeper(QObject):
             if not ours and document.lock is lock and document.path is not None:
                 document.lose_lock()
                 self.told.emit(
-                    f"Another window has taken {document.path.name} over. This one can look and try, and "
-                    "save elsewhere."
+                    tr(
+                        "Another window has taken {name} over. This one can look and try, and "
+                        "save elsewhere.",
+                        name=document.path.name,
+                    )
                 )
 
         self.jobs.start("lock", work, done, lambda _: done(True), quick=True)

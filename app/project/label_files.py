@@ -15,13 +15,14 @@ from app.project.document import Document
 from app.project.files import Files
 from app.project.importing import FileDrop, Importing
 from app.project.jobs import Job, Jobs
+from app.translation import tr
 from metagraph.formats.action_labels import LabelRow, labelled, read_labels
 from metagraph.formats.clips import SUFFIXES
 from metagraph.formats.imports import Imported, import_files
 from metagraph.graph.model import Project
 
 ENDING = ".labels.json"
-FILES = f"Labels (*{ENDING});;JSON (*.json);;All files (*)"
+FILES = tr("Labels (*{ending});;JSON (*.json);;All files (*)", ending=ENDING)
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ class LabelFiles:
         if self._files.refuse():
             return
         name, _ = QFileDialog.getOpenFileName(
-            self._widget, "Import labels", str(self._document.folder or Path.home()), FILES
+            self._widget, tr("Import labels"), str(self._document.folder or Path.home()), FILES
         )
         if name:
             self.take([Path(name)])
@@ -95,11 +96,13 @@ class LabelFiles:
                 project, met, left = read.into(project)
                 return project
 
-            self._document.edit(f"Import labels of {many(len(read.rows), 'action')}", edit)
-            told = f"Labelled {met} of {many(len(read.rows), 'action')}"
+            self._document.edit(
+                tr("Import labels of {actions}", actions=many(len(read.rows), "action")), edit
+            )
+            told = tr("Labelled {met} of {actions}", met=met, actions=many(len(read.rows), "action"))
             why = (*left, *read.clips.failures)
             if why:
                 self._importing.report.emit(told, list(why))
             self._importing.told.emit(told)
 
-        self._jobs.start("Importing labels", work, done, self._files.show_failure)
+        self._jobs.start(tr("Importing labels"), work, done, self._files.show_failure)

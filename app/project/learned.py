@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QLockFile, QObject, QSettings, Signal
 
 from app.project.document import Document, state_folder
+from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 
@@ -150,12 +151,23 @@ class Learned(QObject):
             try:
                 memory = Memory.from_json(json.loads(path.read_text(encoding="utf-8")))
             except OSError as error:
-                self.failed.emit(f"What was learned cannot be read: {path}: {error.strerror or error}.")
+                self.failed.emit(
+                    tr(
+                        "What was learned cannot be read: {path}: {why}.",
+                        path=path,
+                        why=error.strerror or error,
+                    )
+                )
                 return Memory()
             except (MemoryFormatError, ValueError, RecursionError) as error:
                 aside = _set_aside(path)
                 self.failed.emit(
-                    f"What was learned cannot be read: {path.name}: {error}. It was set aside as {aside}."
+                    tr(
+                        "What was learned cannot be read: {name}: {error}. It was set aside as {aside}.",
+                        name=path.name,
+                        error=error,
+                        aside=aside,
+                    )
                 )
                 return Memory()
             self._read[file] = stamp, memory
@@ -167,8 +179,11 @@ class Learned(QObject):
         lock = QLockFile(str(path.with_suffix(".lock")))
         if not lock.tryLock(LOCK_WAIT):
             self.failed.emit(
-                f"Nothing was learned: another window holds {path.name}. It will be tried again with the "
-                "next correction."
+                tr(
+                    "Nothing was learned: another window holds {name}. It will be tried again with the "
+                    "next correction.",
+                    name=path.name,
+                )
             )
             return
         try:
@@ -181,7 +196,7 @@ class Learned(QObject):
                 state = path.stat()
                 self._read[file] = (state.st_mtime_ns, state.st_size), after
         except FileError as error:
-            self.failed.emit(f"Nothing was learned: {error}")
+            self.failed.emit(tr("Nothing was learned: {error}", error=error))
             return
         finally:
             lock.unlock()

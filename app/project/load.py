@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from importlib.util import find_spec
 
+from app.translation import tr
+
 ANNOTATIONS = ".eaf"
 
 
@@ -27,5 +29,5 @@ class Load:
 def readable() -> str:
     """Return the formats of clips that can be read here, in words."""
     if find_spec("ufbx") is None:
-        return "BVH, GLB, glTF, VRM animation\n(FBX needs the extra 'fbx')"
-    return "BVH, FBX, GLB, glTF, VRM animation"
+        return tr("BVH, GLB, glTF, VRM animation\n(FBX needs the extra 'fbx')")
+    return tr("BVH, FBX, GLB, glTF, VRM animation")

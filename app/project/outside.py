@@ -14,6 +14,7 @@ from app.project.jobs import Job
 from app.project.opening import load_whole, with_motion_of
 from app.project.questions import ask_changed
 from app.project.writing import FileChangedError, file_changed
+from app.translation import tr
 from metagraph.formats.merging import MergeError, merge
 from metagraph.formats.store import Opened
 from metagraph.graph.model import Project
@@ -56,9 +57,13 @@ class Outside(QObject):
                 return
             self._told_of = changed.digest
             document.keep_all()
-            what = "look…" if document.dirty else "reload…"
-            tip = "Another program, another window or a version control update has written it"
-            files.noticed.emit(f"{path.name} changed on disk: {what}", tip, lambda: self.ask(changed))
+            what = tr("look…") if document.dirty else tr("reload…")
+            tip = tr("Another program, another window or a version control update has written it")
+            files.noticed.emit(
+                tr("{name} changed on disk: {what}", name=path.name, what=what),
+                tip,
+                lambda: self.ask(changed),
+            )
 
         files.jobs.start("project file", lambda _: file_changed(path, digest), done, quick=True)
 
@@ -81,7 +86,7 @@ class Outside(QObject):
                 self._merge(changed, document.common, theirs, digest)
 
     def _start(self, changed: FileChangedError, work: Callable[[Job], object], done: Callable) -> None:
-        title = f"Reading {changed.path.name} again"
+        title = tr("Reading {name} again", name=changed.path.name)
         self.files.jobs.start(title, work, done, self.files.show_failure)
 
     def _reload(self, changed: FileChangedError, theirs: Project, digest: str) -> None:
@@ -90,7 +95,7 @@ class Outside(QObject):
         def done(opened: Opened) -> None:
             if era == self._era:
                 self.document.reload(opened.project, digest)
-                self.files.told.emit(f"Read {changed.path.name} again")
+                self.files.told.emit(tr("Read {name} again", name=changed.path.name))
 
         self._start(changed, lambda job: load_whole(theirs, changed.path.parent, job.tell), done)
 
@@ -109,15 +114,17 @@ class Outside(QObject):
             if era != self._era:
                 return
             if isinstance(found, MergeError):
-                words = f"The two do not go together: {found}. Save yours under another name instead."
-                QMessageBox.warning(self.files.window, "Not merged", words)
+                words = tr(
+                    "The two do not go together: {found}. Save yours under another name instead.", found=found
+                )
+                QMessageBox.warning(self.files.window, tr("Not merged"), words)
             elif self.document.project is not mine:
                 self.ask(changed)  # it was edited meanwhile
             else:
                 opened, kept = found
                 self.document.merge(opened.project, theirs, digest)
-                self.files.told.emit(f"Merged with {changed.path.name}; saving writes both")
+                self.files.told.emit(tr("Merged with {name}; saving writes both", name=changed.path.name))
                 if kept:
-                    self.files.report.emit("Merged; what both had changed is as it was here", list(kept))
+                    self.files.report.emit(tr("Merged; what both had changed is as it was here"), list(kept))
 
         self._start(changed, work, done)

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.translation import tr
 from metagraph.budgets import LIST_FILE
 from metagraph.errors import FileError
 from metagraph.files import read_file
@@ -14,7 +15,7 @@ from metagraph.formats.atomic import write_atomically
 if TYPE_CHECKING:
     from metagraph.suggest.words_patterns import Patterns
 
-REMEDY = "Export name patterns from the window, or write them as docs/labels.md says."
+REMEDY = tr("Export name patterns from the window, or write them as docs/labels.md says.")
 
 
 def read_patterns(path: Path) -> Patterns:
@@ -24,11 +25,13 @@ def read_patterns(path: Path) -> Patterns:
     try:
         return Patterns.from_json(json.loads(read_file(path, LIST_FILE).decode("utf-8")))
     except json.JSONDecodeError as error:
-        raise FileError(path, f"it is not JSON: {error.msg}", f"line {error.lineno}", REMEDY) from None
+        raise FileError(
+            path, tr("it is not JSON: {why}", why=error.msg), tr("line {number}", number=error.lineno), REMEDY
+        ) from None
     except (UnicodeDecodeError, RecursionError):
-        raise FileError(path, "it is not JSON", "on reading name patterns", REMEDY) from None
+        raise FileError(path, tr("it is not JSON"), tr("on reading name patterns"), REMEDY) from None
     except PatternsError as error:
-        raise FileError(path, str(error), "on reading name patterns", REMEDY) from None
+        raise FileError(path, str(error), tr("on reading name patterns"), REMEDY) from None
 
 
 def write_patterns(path: Path, patterns: Patterns) -> None:

@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import strengthen
 from app.project.writing import FileChangedError
+from app.translation import tr
 from metagraph.formats.locking import Holder
 from metagraph.graph.differences import differences
 from metagraph.graph.model import Project
@@ -33,35 +34,49 @@ Changed = Literal["merge", "save as", "reload", "anyway"]
 def moment_words(seconds: float) -> str:
     """Return a time since 1970 as people say it: the hour, and the day where it is another than today."""
     then, now = time.localtime(seconds), time.localtime()
-    return time.strftime("%H:%M" if then[:3] == now[:3] else "%H:%M on %d %B %Y", then)
+    return time.strftime("%H:%M" if then[:3] == now[:3] else tr("%H:%M on %d %B %Y"), then)
 
 
 def holder_words(holder: Holder) -> str:
     """Say who has a file: user, computer, since when."""
     owner = holder.owner
     if owner is None:
-        return "another window, which does not say whose it is"
-    return f"{owner.user} on {owner.host}, since {moment_words(owner.since)}"
+        return tr("another window, which does not say whose it is")
+    return tr(
+        "{user} on {host}, since {since}",
+        user=owner.user,
+        host=owner.host,
+        since=moment_words(owner.since),
+    )
 
 
 def ask_held(window: QWidget, path: Path, holder: Holder) -> Held | None:
     """Ask how to open a file that another window has."""
     box = QMessageBox(
-        QMessageBox.Icon.Question, "Already open", f"{path.name} is open in another window.", parent=window
+        QMessageBox.Icon.Question,
+        tr("Already open"),
+        tr("{name} is open in another window.", name=path.name),
+        parent=window,
     )
-    words = f"By {holder_words(holder)}.\n\n"
+    words = tr("By {holder}.", holder=holder_words(holder)) + "\n\n"
     if holder.gone:
-        words += "That window has not been heard of for a while: it may be gone, or its computer asleep. "
-        words += "Take over if you know that it is gone.\n\n"
-    words += (
+        words += tr(
+            "That window has not been heard of for a while: it may be gone, or its computer asleep. "
+            "Take over if you know that it is gone."
+        )
+        words += "\n\n"
+    words += tr(
         "Read-only, you can look, play and try anything, and save it elsewhere. A copy is a project of "
         "your own."
     )
     box.setInformativeText(words)
-    first = box.addButton("Open read-only", Role.AcceptRole)
-    answers: dict[object, Held] = {first: "read only", box.addButton("Open a copy", Role.AcceptRole): "copy"}
+    first = box.addButton(tr("Open read-only"), Role.AcceptRole)
+    answers: dict[object, Held] = {
+        first: "read only",
+        box.addButton(tr("Open a copy"), Role.AcceptRole): "copy",
+    }
     if holder.gone:
-        answers[box.addButton("Take over", Role.DestructiveRole)] = "take over"
+        answers[box.addButton(tr("Take over"), Role.DestructiveRole)] = "take over"
     box.addButton(QMessageBox.StandardButton.Cancel)
     box.setDefaultButton(first)
     box.exec()
@@ -77,32 +92,35 @@ def ask_changed(
     """
     name = changed.path.name
     box = QMessageBox(
-        QMessageBox.Icon.Question, "Changed on disk", f"{name} has changed on disk.", parent=window
+        QMessageBox.Icon.Question,
+        tr("Changed on disk"),
+        tr("{name} has changed on disk.", name=name),
+        parent=window,
     )
-    words = (
+    words = tr(
         "Another program, another window or a version control update has written it since it was opened "
         "or saved here."
     )
     if changed.theirs is None:
-        words += f"\n\nIt cannot be read: {changed.why}"
+        words += "\n\n" + tr("It cannot be read: {why}", why=changed.why)
     if dirty:
-        words += (
-            "\n\nMerging takes what was done on both sides. Saving anyway replaces what is there. "
+        words += "\n\n" + tr(
+            "Merging takes what was done on both sides. Saving anyway replaces what is there. "
             "Merging and reloading are steps that can be undone; your edits are kept in them."
         )
     box.setInformativeText(words)
     ways: list[tuple[QPushButton, Changed]] = []
     if dirty and changed.theirs is not None and common is not None:
-        ways.append((box.addButton("Merge", Role.AcceptRole), "merge"))
+        ways.append((box.addButton(tr("Merge"), Role.AcceptRole), "merge"))
     if dirty:
-        ways.append((box.addButton("Save as…", Role.AcceptRole), "save as"))
+        ways.append((box.addButton(tr("Save as…"), Role.AcceptRole), "save as"))
     if changed.theirs is not None:
-        ways.append((box.addButton("Reload", Role.AcceptRole), "reload"))
-    show = box.addButton("Show differences", Role.ActionRole)
+        ways.append((box.addButton(tr("Reload"), Role.AcceptRole), "reload"))
+    show = box.addButton(tr("Show differences"), Role.ActionRole)
     cancel = box.addButton(QMessageBox.StandardButton.Cancel)
     box.setDefaultButton(ways[0][0] if ways else cancel)
     if dirty:
-        ways.append((box.addButton("Save anyway", Role.DestructiveRole), "anyway"))
+        ways.append((box.addButton(tr("Save anyway"), Role.DestructiveRole), "anyway"))
     answers: dict[object, Changed] = dict(ways)
     while True:
         box.exec()
@@ -121,12 +139,12 @@ class DifferencesDialog(QDialog):
         self, changed: FileChangedError, common: Project | None, mine: Project, parent: QWidget | None = None
     ) -> None:
         super().__init__(parent)
-        self.setWindowTitle("Differences")
+        self.setWindowTitle(tr("Differences"))
         self.resize(860, 460)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(16, 14, 16, 14)
         layout.setSpacing(8)
-        headline = QLabel(f"{changed.path.name}, on disk and here", self)
+        headline = QLabel(tr("{name}, on disk and here", name=changed.path.name), self)
         headline.setProperty("heading", True)
         layout.addWidget(headline)
         row = QHBoxLayout()
@@ -134,16 +152,18 @@ class DifferencesDialog(QDialog):
         layout.addLayout(row, 1)
         theirs = changed.theirs
         if theirs is None:
-            self._column(row, "On disk", [f"It cannot be read: {changed.why}"])
+            self._column(row, tr("On disk"), [tr("It cannot be read: {why}", why=changed.why)])
         elif common is not None:
             self._column(
-                row, "Done on disk", differences(common, theirs) or ["Nothing but spacing or comments"]
+                row,
+                tr("Done on disk"),
+                differences(common, theirs) or [tr("Nothing but spacing or comments")],
             )
         if common is not None:
-            self._column(row, "Done here", differences(common, mine) or ["Nothing"])
+            self._column(row, tr("Done here"), differences(common, mine) or [tr("Nothing")])
         elif theirs is not None:
             self._column(
-                row, "From the file on disk to what is here", differences(theirs, mine) or ["Nothing"]
+                row, tr("From the file on disk to what is here"), differences(theirs, mine) or [tr("Nothing")]
             )
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
         strengthen(buttons.button(QDialogButtonBox.StandardButton.Close))

@@ -19,9 +19,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.look.plural import many
 from app.look.theme import strengthen, theme
 from app.project.leftovers import FoundJournal
 from app.project.questions import moment_words
+from app.translation import tr
 from metagraph.formats.recovery import Left
 from metagraph.graph.model import KINDS, LAYERS, Project
 from metagraph.motion.clip import Clip
@@ -29,10 +31,10 @@ from preview.joints import above, drawn
 
 Choice = Literal["recover", "copy", "later", "discard"]
 WORDS: dict[Choice, str] = {
-    "recover": "Go on with it",
-    "copy": "Save as a copy beside it",
-    "later": "Keep for later",
-    "discard": "Discard",
+    "recover": tr("Go on with it"),
+    "copy": tr("Save as a copy beside it"),
+    "later": tr("Keep for later"),
+    "discard": tr("Discard"),
 }
 PICTURE = QSize(132, 76)  # pixels
 SHOWN = 4  # sittings that are seen at once
@@ -40,18 +42,20 @@ SHOWN = 4  # sittings that are seen at once
 
 def left_words(left: Left, saved: Path | None) -> tuple[str, str]:
     """Return what a sitting is called, and what is to be known of it."""
-    name = saved.name if saved is not None else left.project.name or "untitled"
-    edits = f"{left.edits} edit{'s' if left.edits != 1 else ''}"
-    clips = len(left.project.clips)
+    name = saved.name if saved is not None else left.project.name or tr("untitled")
     words = [
-        f"{edits} in no file, the last of {moment_words(left.written)}",
-        f"{clips} clip{'s' if clips != 1 else ''}, {sum(1 for _ in left.project.actions())} actions",
+        tr(
+            "{edits} in no file, the last of {moment}",
+            edits=many(left.edits, "edit"),
+            moment=moment_words(left.written),
+        ),
+        f"{many(len(left.project.clips), 'clip')}, {many(sum(1 for _ in left.project.actions()), 'action')}",
     ]
     if left.behind:
-        words.append("The file has been saved by somebody else since: both can be merged.")
+        words.append(tr("The file has been saved by somebody else since: both can be merged."))
     if left.worked_in:
-        words.append("The file has changed since: the edits are worked into what it is now.")
-    return name if saved is not None else f"{name}, never saved", "\n".join(words)
+        words.append(tr("The file has changed since: the edits are worked into what it is now."))
+    return name if saved is not None else tr("{name}, never saved", name=name), "\n".join(words)
 
 
 def ask_recover(window: QWidget, found: FoundJournal, saved: Path | None) -> tuple[Choice, ...] | None:
@@ -75,11 +79,15 @@ class RecoverDialog(QDialog):
 
     def __init__(self, found: FoundJournal, saved: Path | None, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.setWindowTitle("Recover edits?")
+        self.setWindowTitle(tr("Recover edits?"))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(16, 14, 16, 14)
         layout.setSpacing(10)
-        title = f"{saved.name} was not closed properly" if saved is not None else "Work that was never saved"
+        title = (
+            tr("{name} was not closed properly", name=saved.name)
+            if saved is not None
+            else tr("Work that was never saved")
+        )
         heading = QLabel(title, self)
         heading.setProperty("heading", True)
         layout.addWidget(heading)
@@ -105,7 +113,7 @@ class RecoverDialog(QDialog):
             for choice in offered:
                 field.addItem(WORDS[choice], choice)
             field.setCurrentIndex(0 if n == 0 else offered.index("later"))
-            field.setAccessibleName(f"What becomes of {name}")
+            field.setAccessibleName(tr("What becomes of {name}", name=name))
             field.activated.connect(lambda _, chosen=field: self._only(chosen))
             grid.addWidget(field, n, 2)
             self.fields.append(field)
@@ -116,9 +124,11 @@ class RecoverDialog(QDialog):
             notes.setProperty("dim", True)
             layout.addWidget(notes)
         buttons = QDialogButtonBox(self)
-        go = buttons.addButton("Continue", QDialogButtonBox.ButtonRole.AcceptRole)
-        put_off = "Cancel" if saved is not None else "Not now"
-        buttons.addButton(put_off, QDialogButtonBox.ButtonRole.RejectRole).setToolTip("All is kept as it is")
+        go = buttons.addButton(tr("Continue"), QDialogButtonBox.ButtonRole.AcceptRole)
+        put_off = tr("Cancel") if saved is not None else tr("Not now")
+        buttons.addButton(put_off, QDialogButtonBox.ButtonRole.RejectRole).setToolTip(
+            tr("All is kept as it is")
+        )
         strengthen(go)
         go.setDefault(True)
         buttons.accepted.connect(self.accept)
@@ -160,7 +170,7 @@ class SittingPicture(QWidget):
         self.project = project
         self._figure = _figure(clip) if clip is not None else None
         self.setFixedSize(PICTURE)
-        self.setAccessibleName("What was in it")
+        self.setAccessibleName(tr("What was in it"))
 
     def paintEvent(self, event: QPaintEvent) -> None:
         painter = QPainter(self)

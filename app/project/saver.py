@@ -9,6 +9,7 @@ from PySide6.QtCore import QEventLoop, QObject, Signal
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.project.writing import FileChangedError, Writing
+from app.translation import tr
 
 
 class Saver(QObject):
@@ -51,7 +52,7 @@ class Saver(QObject):
             return writing
 
         self.jobs.start(
-            f"Saving {writing.target.name}",
+            tr("Saving {name}", name=writing.target.name),
             work,
             self._written,
             lambda error: self._stopped(error, path),

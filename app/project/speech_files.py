@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from app.translation import tr
 from metagraph.graph.conversation import MOST_SPEAKERS
 
 SOUNDS = (".wav", ".flac", ".ogg", ".mp3")
@@ -69,10 +70,8 @@ def facts_of(path: Path) -> str:
     except (soundfile.LibsndfileError, RuntimeError, OSError):
         return path.name
     minutes, seconds = divmod(round(info.duration), 60)
-    return (
-        f"{path.name} ({'one channel' if info.channels == 1 else f'{info.channels} channels'}, "
-        f"{minutes}:{seconds:02d})"
-    )
+    channels = tr("one channel") if info.channels == 1 else tr("{count} channels", count=info.channels)
+    return f"{path.name} ({channels}, {minutes}:{seconds:02d})"
 
 
 def beside(sounds: Sequence[Path]) -> tuple[Path, ...]:

@@ -13,6 +13,7 @@ from PySide6.QtCore import QObject
 from app.project.leftovers import FoundJournal, forget, read_untitled, untitled_journals
 from app.project.opening import load_recovered
 from app.project.recovering import ask_recover
+from app.translation import tr
 from metagraph.formats.history import Step
 from metagraph.formats.recovery import Left
 from metagraph.formats.store import Opened
@@ -36,7 +37,7 @@ class Unsaved(QObject):
             return
         files = self.files
         files.jobs.start(
-            "Recovering",
+            tr("Recovering"),
             lambda _: read_untitled(journals),
             lambda found: self._offer(found, otherwise),
             files.show_failure,
@@ -46,20 +47,24 @@ class Unsaved(QObject):
         """Say in the status bar that there are some, when a project is opened by its name."""
         count = len(untitled_journals())
         if count:
-            words = f"{count} unsaved project{'s' if count != 1 else ''} can be recovered: look…"
-            tip = "Work that was never saved, of windows that were not closed properly"
+            words = (
+                tr("1 unsaved project can be recovered: look…")
+                if count == 1
+                else tr("{count} unsaved projects can be recovered: look…", count=count)
+            )
+            tip = tr("Work that was never saved, of windows that were not closed properly")
             self.files.noticed.emit(words, tip, self.offer)
 
     def _nothing(self, otherwise: Callable[[], object] | None) -> None:
         if otherwise is not None:
             otherwise()
         else:
-            self.files.told.emit("There is nothing to recover.")
+            self.files.told.emit(tr("There is nothing to recover."))
 
     def _offer(self, found: FoundJournal, otherwise: Callable[[], object] | None) -> None:
         files = self.files
         if found.notes and not found.left:
-            files.report.emit("Edits that cannot be recovered are kept", list(found.notes))
+            files.report.emit(tr("Edits that cannot be recovered are kept"), list(found.notes))
         if not found.left:
             self._nothing(otherwise)
             return
@@ -72,7 +77,9 @@ class Unsaved(QObject):
                 forget(left.path)
         kept = sum(choice == "later" for choice in choices)
         if kept:
-            files.told.emit(f"{kept} kept: File > Recover unsaved work offers what is kept again.")
+            files.told.emit(
+                tr("{kept} kept: File > Recover unsaved work offers what is kept again.", kept=kept)
+            )
         if chosen is None:
             if otherwise is not None:
                 otherwise()
@@ -92,10 +99,10 @@ class Unsaved(QObject):
                 forget(left.path)
             files.opened.emit()
             if opened.notes:
-                files.report.emit("It was recovered, but", list(opened.notes))
+                files.report.emit(tr("It was recovered, but"), list(opened.notes))
 
         files.jobs.start(
-            "Recovering", lambda job: load_recovered(left, Path("/"), job.tell), done, files.show_failure
+            tr("Recovering"), lambda job: load_recovered(left, Path("/"), job.tell), done, files.show_failure
         )
 
 

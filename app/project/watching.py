@@ -14,9 +14,11 @@ from dataclasses import replace
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
+from app.look.plural import clips_words
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.project.opening import take_over
+from app.translation import tr
 from metagraph.formats.imports import Imported, import_files
 from metagraph.formats.store import Opened, load_returned
 from metagraph.graph.model import ClipEntry
@@ -79,7 +81,7 @@ class Watcher(QObject):
             )
 
         self.jobs.start(
-            "Looking for changed files",
+            tr("Looking for changed files"),
             work,
             lambda found: self._compare(known, *found),
             self._failed,
@@ -137,7 +139,7 @@ class Watcher(QObject):
             if known is self._known:
                 self._taken(*read)
 
-        self.jobs.start("Reading changed clips", work, done, lambda error: self.told.emit(str(error)))
+        self.jobs.start(tr("Reading changed clips"), work, done, lambda error: self.told.emit(str(error)))
 
     def _taken(self, result: Imported, returned: Opened | None) -> None:
         if returned is not None:
@@ -145,28 +147,34 @@ class Watcher(QObject):
         known = {(clip.path, clip.take): clip.digest for clip in self.document.project.clips.values()}
         again = tuple(x for x in result.loaded if known.get((x[0], x[1]), x[2]) != x[2])
         if again:
-            count = len(again)
             self.document.edit(
-                f"Refresh {count} clip{'s' if count != 1 else ''}",
+                tr("Refresh {clips}", clips=clips_words(len(again))),
                 replace(result, loaded=again, character=None).into,
             )
-            self.told.emit(f"Changed on disk and read again: {_names([x[3].name for x in again])}")
+            self.told.emit(
+                tr("Changed on disk and read again: {names}", names=_names([x[3].name for x in again]))
+            )
         if result.failures:
-            self.told.emit(f"Changed on disk, but: {result.failures[0]}")
+            self.told.emit(tr("Changed on disk, but: {why}", why=result.failures[0]))
 
     def _put_back(self, returned: Opened) -> None:
         before = self.document.project
-        self.document.take_motion("Read clips that are back", lambda p: take_over(p, returned.project))
+        self.document.take_motion(tr("Read clips that are back"), lambda p: take_over(p, returned.project))
         back = [
             e.name
             for i, e in self.document.project.clips.items()
             if e.motion is not None and before.clips[i].motion is None
         ]
         if back:
-            self.told.emit(f"Back again: {_names(back)}")
+            self.told.emit(tr("Back again: {names}", names=_names(back)))
         else:
             told = [note for note in returned.notes if not note.endswith("is missing")]
-            self.told.emit(f"A missing file is back, but: {told[0] if told else 'its clip cannot be read'}")
+            self.told.emit(
+                tr(
+                    "A missing file is back, but: {why}",
+                    why=told[0] if told else tr("its clip cannot be read"),
+                )
+            )
 
 
 def _names(names: list[str]) -> str:

@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
 from app import faults
 from app.look.theme import strengthen
 from app.project.document import Document, state_folder
+from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 
@@ -68,7 +69,7 @@ class FaultTeller(QObject):
         dialog = self.window.findChild(FaultDialog)
         if dialog is None:
             dialog = FaultDialog(self.window)
-        dialog.say("Something went wrong", _sentence(safe), faults.report())
+        dialog.say(tr("Something went wrong"), _sentence(safe), faults.report())
         dialog.show()
 
     def offer_left(self) -> None:
@@ -77,23 +78,28 @@ class FaultTeller(QObject):
         if left:
             faults.note("started after it had ended by itself")
             dialog = FaultDialog(self.window)
-            words = (
+            words = tr(
                 "Metagraph ended by itself the last time. Edits that were finished are offered for recovery. "
                 "A report of where it ended helps to mend it; it holds nothing of your projects."
             )
-            dialog.say("Metagraph ended by itself", words, f"{faults.report()}\n{left}")
+            dialog.say(tr("Metagraph ended by itself"), words, f"{faults.report()}\n{left}")
             dialog.show()
 
 
 def _sentence(safe: bool) -> str:
     what = (
-        "A part of the window could not do its work. The rest goes on, and every finished edit is in the "
-        "journal."
+        tr(
+            "A part of the window could not do its work. The rest goes on, and every finished edit is in the "
+            "journal."
+        )
         if safe
-        else "A part of the window could not do its work, and your last edits are in no file: save the "
-        "project now, elsewhere if need be."
+        else tr(
+            "A part of the window could not do its work, and your last edits are in no file: save the "
+            "project now, elsewhere if need be."
+        )
     )
-    return f"{what} If it stays wrong, save and start again. The report below holds nothing of your project."
+    then = tr("If it stays wrong, save and start again. The report below holds nothing of your project.")
+    return f"{what} {then}"
 
 
 class FaultDialog(QDialog):
@@ -111,12 +117,12 @@ class FaultDialog(QDialog):
         self.sentence.setWordWrap(True)
         self.text = QPlainTextEdit(self)
         self.text.setReadOnly(True)
-        self.text.setAccessibleName("What the report holds")
+        self.text.setAccessibleName(tr("What the report holds"))
         for widget in (self.heading, self.sentence):
             layout.addWidget(widget)
         layout.addWidget(self.text, 1)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
-        self.save = buttons.addButton("Save report…", QDialogButtonBox.ButtonRole.ActionRole)
+        self.save = buttons.addButton(tr("Save report…"), QDialogButtonBox.ButtonRole.ActionRole)
         strengthen(buttons.button(QDialogButtonBox.StandardButton.Close))
         self.save.clicked.connect(self._save)
         buttons.rejected.connect(self.hide)
@@ -130,11 +136,15 @@ class FaultDialog(QDialog):
 
     def _save(self) -> None:
         name = f"metagraph report {time.strftime('%Y-%m-%d %H.%M')}.txt"
-        place, _ = QFileDialog.getSaveFileName(self, "Save report", str(Path.home() / name), "Text (*.txt)")
+        place, _ = QFileDialog.getSaveFileName(
+            self, tr("Save report"), str(Path.home() / name), tr("Text (*.txt)")
+        )
         if not place:
             return
         try:
             write_atomically(Path(place), self.text.toPlainText().encode())
-            self.sentence.setText(f"Saved {Path(place).name}. Send it to whoever gave you Metagraph.")
+            self.sentence.setText(
+                tr("Saved {name}. Send it to whoever gave you Metagraph.", name=Path(place).name)
+            )
         except FileError as error:
             self.sentence.setText(str(error))

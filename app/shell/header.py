@@ -16,6 +16,7 @@ from app.project.document import Document
 from app.shell.actions import Actions
 from app.shell.context import HeaderItem
 from app.stage.session import Session
+from app.translation import tr
 
 NARROW, WIDE = 100, 1600  # pixels of the project's name, and of a window that has room for three times that
 
@@ -33,7 +34,7 @@ class Header(QToolBar):
         items: Iterable[HeaderItem],
         parent: QWidget,
     ) -> None:
-        super().__init__("Main", parent)
+        super().__init__(tr("Main"), parent)
         self.document, self.session = document, session
         self.setObjectName("toolbar")
         self.setMovable(False)
@@ -60,8 +61,8 @@ class Header(QToolBar):
     def refresh(self) -> None:
         """Show name and dirty mark as they are now."""
         d = self.document
-        saved = "not saved" if d.path is None else "edited" if d.dirty else "saved"
-        saved = f"read-only, {saved}" if d.read_only else saved
+        saved = tr("not saved") if d.path is None else tr("edited") if d.dirty else tr("saved")
+        saved = tr("read-only, {saved}", saved=saved) if d.read_only else saved
         dim = theme(self.session.look.name).dim
         room = NARROW if self.width() < WIDE else 3 * NARROW
         name = self.name.fontMetrics().elidedText(d.project.name, Qt.TextElideMode.ElideMiddle, room)

@@ -6,6 +6,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QToolButton, QWidget
 
 from app.project.jobs import Jobs
+from app.translation import tr
 from app.widgets.making import make_widget
 
 
@@ -21,7 +22,7 @@ class JobLine(QWidget):
         row.setContentsMargins(0, 0, 0, 0)
         self.label, self.bar = QLabel(self), QProgressBar(self)
         self.bar.setFixedWidth(180)
-        self.cancel = make_widget(QToolButton, self, text="Cancel", toolTip="Cancel this job")
+        self.cancel = make_widget(QToolButton, self, text=tr("Cancel"), toolTip=tr("Cancel this job"))
         self.cancel.clicked.connect(self._cancel)
         for widget in (self.label, self.bar, self.cancel):
             row.addWidget(widget)
@@ -45,4 +46,4 @@ class JobLine(QWidget):
     def _cancel(self) -> None:
         if self.jobs.running:
             self.jobs.running[-1].cancel()
-            self.told.emit("Cancelled.")
+            self.told.emit(tr("Cancelled."))

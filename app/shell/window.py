@@ -34,6 +34,7 @@ from app.shell.workspace_tabs import WorkspaceTabs, commands
 from app.stage.compatibility_state import Compatibility
 from app.stage.problem_watch import ProblemWatch
 from app.stage.stage import Stage
+from app.translation import tr
 from metagraph.graph.model import Project
 
 LATE = 4000  # milliseconds after which the late panels are made whatever else is going on
@@ -126,13 +127,15 @@ class Window(QMainWindow):
         light = lambda: session.look.name == "light"  # noqa: E731
         return Contribution(
             commands=(
-                Command("quit", "&File", "quit", "&Quit", self.close, (Standard.Quit, "Ctrl+Q"), study=True),
+                Command(
+                    "quit", "&File", "quit", tr("&Quit"), self.close, (Standard.Quit, "Ctrl+Q"), study=True
+                ),
                 *commands(lambda: self.workspaces, self),
                 Command(
                     "theme",
                     "&View",
                     "look",
-                    "&Light theme",
+                    tr("&Light theme"),
                     lambda: session.look.choose("dark" if light() else "light"),
                     checked=light,
                     icon="theme",
@@ -143,7 +146,7 @@ class Window(QMainWindow):
         )
 
     def _add_toggles(self) -> None:
-        panels = self.menus["&View"].addMenu("Panels")
+        panels = self.menus["&View"].addMenu(tr("Panels"))
         for dock in self.places.docks.values():
             panels.addAction(dock.toggleViewAction())
 
@@ -227,9 +230,8 @@ class Window(QMainWindow):
         """Show the state of document and session in title, header and menus."""
         document = self.shell.document
         self.shell.actions.refresh()
-        self.setWindowTitle(
-            f"{document.project.name}{'[*]'}{' (read-only)' if document.read_only else ''} - Metagraph"
-        )
+        read_only = tr(" (read-only)") if document.read_only else ""
+        self.setWindowTitle(f"{document.project.name}{'[*]'}{read_only} - Metagraph")
         self.setWindowModified(document.dirty)
         self.header.refresh()
 

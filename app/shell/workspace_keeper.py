@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 
 from app.shell.places import ARRANGED, Places
 from app.shell.workspaces import ALL, FIRST, WORKSPACES, Workspace
+from app.translation import tr
 
 GROUP = (
     f"workspaces {ARRANGED}"  # what was kept when docks were made otherwise lies elsewhere, and is not read
@@ -196,16 +197,19 @@ class Workspaces(QObject):
     def _mine(self) -> Tab:
         if not self.tab.own:
             raise ValueError(
-                f"The workspace {self.tab.title} comes with the program and stays as it is named."
+                tr(
+                    "The workspace {title} comes with the program and stays as it is named.",
+                    title=self.tab.title,
+                )
             )
         return self.tab
 
     def _free(self, title: str) -> str:
         title = " ".join(title.split())
         if not title:
-            raise ValueError("A workspace needs a name.")
+            raise ValueError(tr("A workspace needs a name."))
         if any(t.title.casefold() == title.casefold() for t in self.tabs):
-            raise ValueError(f"There is a workspace {title} already.")
+            raise ValueError(tr("There is a workspace {title} already.", title=title))
         return title
 
     def _keep_own(self) -> None:

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QHBoxLayout, QInputDialog, QMenu, QMessageBox, QTo
 from app.shell.actions import Actions, Command
 from app.shell.workspace_keeper import Workspaces
 from app.shell.workspaces import WORKSPACES
+from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.one_stop import OneStop
 
@@ -29,13 +30,13 @@ def commands(keeper: Callable[[], Workspaces], window: QWidget) -> tuple[Command
         return place < len(keeper().tabs)
 
     def title(place: int) -> str:
-        return keeper().tabs[place].title if there(place) else f"Workspace {place + 1}"
+        return keeper().tabs[place].title if there(place) else tr("Workspace {title}", title=place + 1)
 
     def on(place: int) -> bool:
         return there(place) and keeper().tabs[place].id == keeper().current
 
     def ask(words: str, title: str, do: Callable[[str], None]) -> None:
-        name, said = QInputDialog.getText(window, words, "Name", text=title)
+        name, said = QInputDialog.getText(window, words, tr("Name"), text=title)
         if not said:
             return
         try:
@@ -54,7 +55,7 @@ def commands(keeper: Callable[[], Workspaces], window: QWidget) -> tuple[Command
                 partial(title, n),
                 partial(choose, n),
                 (f"Ctrl+Alt+{n + 1}",),
-                tip=WORKSPACES[n].tip if n < len(WORKSPACES) else "A workspace of your own",
+                tip=WORKSPACES[n].tip if n < len(WORKSPACES) else tr("A workspace of your own"),
                 enabled=partial(there, n),
                 visible=partial(there, n),
                 checked=partial(on, n),
@@ -65,24 +66,24 @@ def commands(keeper: Callable[[], Workspaces], window: QWidget) -> tuple[Command
             "arrange",
             view,
             "workspace",
-            "&Reset workspace",
+            tr("&Reset workspace"),
             lambda: keeper().reset(),
-            tip="Put the panels of this workspace back",
+            tip=tr("Put the panels of this workspace back"),
         ),
         Command(
             "save_workspace",
             view,
             "workspace",
-            "Save &workspace as…",
-            lambda: ask("Save workspace as", "", keeper().save_as),
-            tip="Keep the panels as they stand now as a tab of your own",
+            tr("Save &workspace as…"),
+            lambda: ask(tr("Save workspace as"), "", keeper().save_as),
+            tip=tr("Keep the panels as they stand now as a tab of your own"),
         ),
         Command(
             "rename_workspace",
             view,
             "workspace",
-            "Re&name workspace…",
-            lambda: ask("Rename workspace", keeper().tab.title, keeper().rename),
+            tr("Re&name workspace…"),
+            lambda: ask(tr("Rename workspace"), keeper().tab.title, keeper().rename),
             enabled=own,
             menus=("workspace",),
         ),
@@ -90,7 +91,7 @@ def commands(keeper: Callable[[], Workspaces], window: QWidget) -> tuple[Command
             "delete_workspace",
             view,
             "workspace",
-            "&Delete workspace",
+            tr("&Delete workspace"),
             lambda: keeper().delete(),
             enabled=own,
             menus=("workspace",),
@@ -104,7 +105,7 @@ class WorkspaceTabs(QWidget):
     def __init__(self, keeper: Workspaces, actions: Actions, parent: QWidget) -> None:
         super().__init__(parent)
         self.keeper, self.commands = keeper, actions
-        self.setAccessibleName("Workspaces")
+        self.setAccessibleName(tr("Workspaces"))
         self._row = QHBoxLayout(self)
         self._row.setContentsMargins(0, 0, 0, 0)
         self._row.setSpacing(2)
@@ -126,7 +127,7 @@ class WorkspaceTabs(QWidget):
         for place, (tab, button) in enumerate(zip(tabs, self.buttons, strict=True)):
             words = button.fontMetrics().elidedText(tab.title, Qt.TextElideMode.ElideMiddle, WIDEST)
             button.setText(words)
-            button.setAccessibleName(f"Workspace {tab.title}")
+            button.setAccessibleName(tr("Workspace {title}", title=tab.title))
             button.setChecked(tab.id == self.keeper.current)
             button.setToolTip(self._tip(place))
 

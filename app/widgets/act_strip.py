@@ -12,6 +12,8 @@ from PySide6.QtWidgets import QToolTip, QWidget
 
 from app.look.theme import KIND_MARKS, Theme, theme
 from app.stage.session import Session
+from app.translation import tr
+from app.widgets.vocabulary import titled
 from metagraph.graph.model import KINDS, Layer
 from metagraph.playback.learn import Act, state_of, state_words
 
@@ -49,7 +51,7 @@ class Strip(QWidget):
         self.first, self.zoom = 0.0, 1.0
         self._grip: float | None = None
         self.setMouseTracking(True)
-        self.setAccessibleName("What is done when")
+        self.setAccessibleName(tr("What is done when"))
         session.look.changed.connect(self.update)
 
     def show_acts(self, acts: Mapping[Layer, Sequence[Act]], seconds: float | None = None) -> None:
@@ -103,7 +105,7 @@ class Strip(QWidget):
                 painter.drawText(
                     QRectF(2, lane.top(), LEFT - 8, lane.height()),
                     Qt.AlignmentFlag.AlignVCenter,
-                    layer.capitalize(),
+                    titled(layer),
                 )
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(QColor(t.field))
@@ -184,9 +186,12 @@ class Strip(QWidget):
             words = ""
             if found is not None:
                 layer, act = found
-                words = (
-                    f"{state_words(state_of(act, True), layer)}\n{act.start:.2f} to {act.end:.2f} s, "
-                    f"{act.length:.2f} s long"
+                words = tr(
+                    "{state}\n{start:.2f} to {end:.2f} s, {length:.2f} s long",
+                    state=state_words(state_of(act, True), layer),
+                    start=act.start,
+                    end=act.end,
+                    length=act.length,
                 )
             QToolTip.showText(event.globalPos(), words, self)
             return True

@@ -8,8 +8,10 @@ from typing import Any
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QToolButton, QWidget
 
+from app.translation import tr
 from app.widgets.form_fields import Mixed
 from app.widgets.making import make_widget
+from app.widgets.vocabulary import titled, word
 from metagraph.graph.model import LIMBS
 
 
@@ -50,10 +52,12 @@ class LimbRow(ChoiceRow):
     """The arms that something moves; the other keeps to what `keeps` names."""
 
     def __init__(self, parent: QWidget, keeps: str) -> None:
-        words = (
-            (x, f"Moves {x} arm{'s' if x == 'both' else ''}; the other keeps to the {keeps}") for x in LIMBS
-        )
-        super().__init__(parent, ((x.capitalize(), tip) for x, tip in words))
+        tips = {
+            "left": tr("Moves left arm; the other keeps to the {keeps}", keeps=word(keeps)),
+            "right": tr("Moves right arm; the other keeps to the {keeps}", keeps=word(keeps)),
+            "both": tr("Moves both arms; the other keeps to the {keeps}", keeps=word(keeps)),
+        }
+        super().__init__(parent, ((titled(x), tips[x]) for x in LIMBS))
 
     def show_limb(self, limb: Any) -> None:
         """Show a limb, or the marker `Mixed`."""

@@ -11,9 +11,10 @@ from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QKeyEvent, QKeySequence
 from PySide6.QtWidgets import QComboBox, QLineEdit, QWidget
 
+from app.translation import tr
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 
-MIXED = "mixed"
+MIXED = tr("mixed")
 
 
 class _MixedType:

@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 
 from app.project.document import Document
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.joint_figure import JointFigure
 from app.widgets.tree_items import items_below
 from metagraph.graph import edits
@@ -50,18 +51,21 @@ class MaskDialog(QDialog):
         super().__init__(parent)
         self.document, self.session = document, session
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle("Joints the action moves")
+        self.setWindowTitle(tr("Joints the action moves"))
         self.resize(720, 620)
         layout = QVBoxLayout(self)
         words = QLabel(
-            "Only ticked joints move; the others keep to the stance. Ticking a joint ticks what hangs on it; "
-            "a drag across the figure ticks the joints within, with Alt or the right button it unticks them.",
+            tr(
+                "Only ticked joints move; the others keep to the stance. Ticking a joint ticks what hangs on "
+                "it; a drag across the figure ticks the joints within, with Alt or the right button it "
+                "unticks them."
+            ),
             self,
             wordWrap=True,
         )
         layout.addWidget(words)
         self.tree = QTreeWidget(self)
-        self.tree.setAccessibleName("Joints that move")
+        self.tree.setAccessibleName(tr("Joints that move"))
         self.tree.setHeaderHidden(True)
         both = QHBoxLayout()
         both.addWidget(self.tree, 1)
@@ -82,7 +86,7 @@ class MaskDialog(QDialog):
         self.tree.itemChanged.connect(self._ticked)
         self._show()
         row = QHBoxLayout()
-        for text, on in (("All", True), ("None", False)):
+        for text, on in ((tr("All"), True), (tr("None"), False)):
             button = QPushButton(text, self)
             button.clicked.connect(lambda _=False, o=on: self._all(o))
             row.addWidget(button)
@@ -144,7 +148,7 @@ class MaskDialog(QDialog):
     def accept(self) -> None:
         joints, chosen = self.joints(), self.session.selection.actions
         if not joints and any(i.checkState(0) == Qt.CheckState.Unchecked for i in self.items.values()):
-            self.document.failed.emit("An action must move at least one joint.")
+            self.document.failed.emit(tr("An action must move at least one joint."))
             return
-        self.document.edit("Change joints", lambda p: edits.update_actions(p, chosen, joints=joints))
+        self.document.edit(tr("Change joints"), lambda p: edits.update_actions(p, chosen, joints=joints))
         super().accept()

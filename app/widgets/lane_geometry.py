@@ -15,6 +15,7 @@ from PySide6.QtGui import QFont
 
 from app.look.shortening import measured
 from app.stage.playback_source import Shown
+from app.translation import tr
 from app.widgets.request_menu import STAGE, kind_of, request_words
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
@@ -29,12 +30,12 @@ ROW, TALLEST = 19.0, 22.0  # pixels of a row of requests, at least and at most
 STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0)
 NAMES = (STAGE, *LAYERS)
 TITLES = {
-    "cameras": "Cameras",
-    STAGE: "Speech",
-    "words": "Words",
-    "body": "Body",
-    "arms": "Arms",
-    "head": "Head",
+    "cameras": tr("Cameras"),
+    STAGE: tr("Speech"),
+    "words": tr("Words"),
+    "body": tr("Body"),
+    "arms": tr("Arms"),
+    "head": tr("Head"),
 }
 FIXED = {"cameras": 18.0, "words": 40.0}  # pixels of lanes that have no requests
 GHOST = 20.0  # the same of another seed's
@@ -251,12 +252,12 @@ def mark_at(found: Sequence[Mark], at: QPointF) -> Mark | None:
 
 
 VERBS = {
-    "say": "Said",
-    "look": "Looks",
-    "mode": "Changes",
-    "mood": "Changes",
-    "place": "Moves",
-    "blink": "Blinks",
+    "say": tr("Said"),
+    "look": tr("Looks"),
+    "mode": tr("Changes"),
+    "mood": tr("Changes"),
+    "place": tr("Moves"),
+    "blink": tr("Blinks"),
 }
 
 
@@ -266,30 +267,35 @@ def outcome(ask: AnyRequest, answer: Answer | None) -> str:
         return ""
     why = answer.why.rstrip(".")
     if answer.state == "refused":
-        return f"Does not play: {why}."
+        return tr("Does not play: {why}.", why=why)
     if answer.at is None:
         return f"{why[:1].upper()}{why[1:]}." if why else ""
-    until = f" to {answer.until:.2f}" if answer.until is not None and answer.at < answer.until < 1e5 else ""
     what = ", ".join(w for w in answer.what if w not in ("look", "speech", "mode", "mood", "place", "blink"))
-    verb = f"Plays {what}" if what else VERBS.get(str(ask.__struct_config__.tag), "Plays")
-    return f"{verb} {'from' if until else 'at'} {answer.at:.2f}{until} s{f': {why}' if why else ''}."
+    verb = tr("Plays {what}", what=what) if what else VERBS.get(str(ask.__struct_config__.tag), tr("Plays"))
+    if answer.until is not None and answer.at < answer.until < 1e5:
+        out = tr("{verb} from {at:.2f} to {until:.2f} s", verb=verb, at=answer.at, until=answer.until)
+    else:
+        out = tr("{verb} at {at:.2f} s", verb=verb, at=answer.at)
+    return f"{out}{f': {why}' if why else ''}."
 
 
 def wanted(mark: Mark) -> str:
     """Return what was asked for, and when."""
     when = (
-        f"at {mark.at:.2f} s"
+        tr("at {seconds:.2f} s", seconds=mark.at)
         if getattr(mark.ask, "stroke", None) is None
-        else f"its stroke at {mark.at:.2f} s"
+        else tr("its stroke at {seconds:.2f} s", seconds=mark.at)
     )
-    return f"{mark.words}, {when}" + (f", priority {mark.ask.priority}" if mark.ask.priority != 1 else "")
+    return f"{mark.words}, {when}" + (
+        tr(", priority {priority}", priority=mark.ask.priority) if mark.ask.priority != 1 else ""
+    )
 
 
 def told(mark: Mark, editable: bool = True) -> str:
     """Return what to say about a mark: what was asked, what came of it, or why nothing did."""
     lines = [wanted(mark), outcome(mark.ask, mark.answer)]
     if editable:
-        lines.append("Drag it in time, with Ctrl a copy; double-click changes it; Delete takes it back")
+        lines.append(tr("Drag it in time, with Ctrl a copy; double-click changes it; Delete takes it back"))
     return "\n".join(x for x in lines if x)
 
 

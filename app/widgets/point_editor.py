@@ -17,13 +17,14 @@ from PySide6.QtWidgets import (
 )
 
 from app.project.document import Document
+from app.translation import tr
 from app.widgets.quiet_fields import DoubleSpinBox
 from metagraph.graph import performance_edits
 
 AXES = (
-    ("To its left", "Metres to the character's left; to its right below 0"),
-    ("Up", "Metres above the floor"),
-    ("Ahead", "Metres in front of the character"),
+    (tr("To its left"), tr("Metres to the character's left; to its right below 0")),
+    (tr("Up"), tr("Metres above the floor")),
+    (tr("Ahead"), tr("Metres in front of the character")),
 )
 
 
@@ -36,14 +37,14 @@ class PointEditor(QDialog):
         super().__init__(parent)
         self.document, self.then = document, then
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle("A point to look at")
+        self.setWindowTitle(tr("A point to look at"))
         layout = QVBoxLayout(self)
         form = QFormLayout()
         layout.addLayout(form)
-        self.name = QLineEdit(self, placeholderText="door, screen, Anna …")
-        self.name.setAccessibleName("Name")
+        self.name = QLineEdit(self, placeholderText=tr("door, screen, Anna …"))
+        self.name.setAccessibleName(tr("Name"))
         self.name.textChanged.connect(self._named)
-        form.addRow("Name", self.name)
+        form.addRow(tr("Name"), self.name)
         self.axes: list[QDoubleSpinBox] = []
         for (words, tip), value in zip(AXES, (0.6, 1.5, 1.2), strict=True):
             box = DoubleSpinBox(
@@ -55,7 +56,7 @@ class PointEditor(QDialog):
             self.axes.append(box)
             form.addRow(words, box)
         self.words = QLabel(
-            "Agents call it by this name, and may move it while they play.", self, wordWrap=True
+            tr("Agents call it by this name, and may move it while they play."), self, wordWrap=True
         )
         self.words.setProperty("dim", True)
         layout.addWidget(self.words)
@@ -76,6 +77,6 @@ class PointEditor(QDialog):
 
     def _put(self) -> None:
         name, point = self.name.text().strip(), tuple(round(box.value(), 3) for box in self.axes)
-        self.document.edit("Put a point", lambda p: performance_edits.set_point(p, name, point))
+        self.document.edit(tr("Put a point"), lambda p: performance_edits.set_point(p, name, point))
         self.accept()
         self.then(name)

@@ -12,19 +12,22 @@ from PySide6.QtWidgets import QInputDialog, QMenu, QWidget
 from app.look.theme import KIND_MARKS
 from app.project.document import Document
 from app.stage.performance import Performance
+from app.translation import tr, tr_noop
+from app.widgets.vocabulary import titled, word
 from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, MODES, Layer, Project
 from metagraph.graph.words import FEELINGS
 
 STAGE = "stage"  # the lane of what no layer plays: speech, gaze, modes
 DIRECTIONS = {
-    "Left": (0.9, 1.6, 0.9),
-    "Right": (-0.9, 1.6, 0.9),
-    "Up": (0.0, 2.4, 1.0),
-    "Down": (0.0, 0.6, 1.0),
+    tr_noop("Left"): (0.9, 1.6, 0.9),
+    tr_noop("Right"): (-0.9, 1.6, 0.9),
+    tr_noop("Up"): (0.0, 2.4, 1.0),
+    tr_noop("Down"): (0.0, 0.6, 1.0),
 }
-MOOD_WORDS = {name: name.capitalize() for name in FEELINGS}
-MODE_WORDS = {"idle": "Idle", "listening": "Listen", "talking": "Talk"}
+MOOD_WORDS = {name: titled(name) for name in FEELINGS}
+MODE_WORDS = {"idle": tr("Idle"), "listening": tr("Listen"), "talking": tr("Talk")}
+MODE_ASKED = {"idle": tr("idle"), "listening": tr("listen"), "talking": tr("talk")}  # within a sentence
 
 
 def kind_of(ask: a.AnyRequest) -> str | None:
@@ -41,8 +44,8 @@ def request_words(ask: a.AnyRequest, project: Project) -> str:
     match ask:
         case a.Gesture() | a.Fidget():
             kind = "gesture" if isinstance(ask, a.Gesture) else "fidget"
-            limb = {"left": "left", "right": "right"}.get(ask.limb or "", "")
-            return f"{KIND_MARKS[kind]} {', '.join(x for x in (limb, *ask.tags) if x) or kind}"
+            limb = word(ask.limb) if ask.limb in ("left", "right") else ""
+            return f"{KIND_MARKS[kind]} {', '.join(x for x in (limb, *ask.tags) if x) or word(kind)}"
         case a.Play():
             found = project.action(ask.action)
             return f"{KIND_MARKS[found.kind if found else 'gesture']} {found.name if found else ask.action}"
@@ -50,31 +53,39 @@ def request_words(ask: a.AnyRequest, project: Project) -> str:
             stance = project.stance(ask.stance)
             return f"{KIND_MARKS['transition']} {stance.name if stance else ask.stance}"
         case a.Change():
-            return f"{KIND_MARKS['transition']} another stance"
+            return f"{KIND_MARKS['transition']} {tr('another stance')}"
         case a.Nod() | a.Shake():
-            return f"{KIND_MARKS['gesture']} {'nod' if isinstance(ask, a.Nod) else 'shake'}"
+            return f"{KIND_MARKS['gesture']} {tr('nod') if isinstance(ask, a.Nod) else tr('shake')}"
         case a.Look():
-            return f"look at {ask.to if isinstance(ask.to, str) else 'a point'}"
+            return tr("look at {what}", what=ask.to if isinstance(ask.to, str) else tr("a point"))
         case a.Say():
             line = project.lines.get(str(ask.line)) if ask.line is not None else None
             text = ask.text or (line.text if line else "")
-            return f"{ask.line}: {text}" if ask.line is not None and text else text or f"line {ask.line}"
+            return (
+                f"{ask.line}: {text}"
+                if ask.line is not None and text
+                else text or tr("line {name}", name=ask.line)
+            )
         case a.Behave():
-            return MODE_WORDS[ask.mode].lower() if ask.mode else "as it comes"
+            return MODE_ASKED[ask.mode] if ask.mode else tr("as it comes")
         case a.Feel():
             return mood_words(ask.mood, ask.intensity)
         case a.Place():
-            return f"{ask.name} moves"
+            return tr("{name} moves", name=ask.name)
         case a.Blink():
-            return "blink"
+            return tr("blink")
         case a.Bml():
             return "BML"
-    return "withdraw"
+    return tr("withdraw")
 
 
 def mood_words(mood: a.MoodPoint, intensity: float | None) -> str:
     """Return a mood in a few words: "sad", "sad × 1.5", "mood 0.3, -0.5"."""
-    named = mood if isinstance(mood, str) else "mood " + ", ".join(f"{x:g}" for x in mood) if mood else "mood"
+    named = tr("mood")
+    if isinstance(mood, str):
+        named = word(mood)
+    elif mood:
+        named = f"{named} {', '.join(f'{x:g}' for x in mood)}"
     return named if intensity is None else f"{named} × {intensity:g}"
 
 
@@ -95,7 +106,7 @@ def request_menu(
     for layer in LAYERS:
         if lane not in (None, layer) or not project.graphs[layer].stances:
             continue
-        inner = menu if lane == layer else menu.addMenu(layer.capitalize())
+        inner = menu if lane == layer else menu.addMenu(titled(layer))
         _layer_items(inner, project, layer, seconds, ask)
     if lane in (None, STAGE) and project.skeleton is not None:
         if lane is None:
@@ -103,26 +114,29 @@ def request_menu(
         _stage_items(menu, parent, performance.document, seconds, ask)
     if lane is None and performance.asks:
         menu.addSeparator()
-        menu.addAction("Withdraw all requests", lambda: performance.requests.withdraw())
+        menu.addAction(tr("Withdraw all requests"), lambda: performance.requests.withdraw())
     if menu.isEmpty():
-        menu.addAction("Make a stance first").setEnabled(False)
+        menu.addAction(tr("Make a stance first")).setEnabled(False)
     return menu
 
 
 def _layer_items(menu: QMenu, project: Project, layer: Layer, at: float | None, ask: Ask) -> None:
     graph = project.graphs[layer]
-    kinds: tuple[tuple[str, Any], ...] = (("gesture", a.Gesture), ("fidget", a.Fidget))
-    for kind, made in kinds:
+    kinds: tuple[tuple[str, Any, str, str], ...] = (
+        ("gesture", a.Gesture, tr("A gesture"), tr("Ask for a gesture")),
+        ("fidget", a.Fidget, tr("A fidget"), tr("Ask for a fidget")),
+    )
+    for kind, made, words, asked in kinds:
         if any(x.kind == kind for x in graph.actions.values()):
-            menu.addAction(f"A {kind}", partial(ask, made(layer=layer, at=at), f"Ask for a {kind}"))
+            menu.addAction(words, partial(ask, made(layer=layer, at=at), asked))
     tags = sorted({tag for x in graph.actions.values() if x.kind == "gesture" for tag in x.tags})
     if tags:
-        tagged = menu.addMenu("A gesture that is …")
+        tagged = menu.addMenu(tr("A gesture that is …"))
         for tag in tags:
             tagged.addAction(
-                tag, partial(ask, a.Gesture(layer=layer, at=at, tags=(tag,)), "Ask for a gesture")
+                tag, partial(ask, a.Gesture(layer=layer, at=at, tags=(tag,)), tr("Ask for a gesture"))
             )
-    certain = menu.addMenu("A certain one …")
+    certain = menu.addMenu(tr("A certain one …"))
     for stance in graph.stances.values():
         some = [*graph.of(stance.id, "gesture"), *graph.of(stance.id, "fidget")]
         if not some:
@@ -130,61 +144,65 @@ def _layer_items(menu: QMenu, project: Project, layer: Layer, at: float | None, 
         inner = certain.addMenu(stance.name)
         for x in some:
             words = f"{KIND_MARKS[x.kind]} {x.name}"
-            inner.addAction(words, partial(ask, a.Play(action=x.id, at=at), f"Ask for {x.name}"))
+            inner.addAction(
+                words, partial(ask, a.Play(action=x.id, at=at), tr("Ask for {name}", name=x.name))
+            )
     certain.menuAction().setVisible(not certain.isEmpty())
     if layer == "head":
         menu.addSeparator()
-        menu.addAction("Nod", lambda: ask(a.Nod(at=at), "Ask for a nod"))
-        menu.addAction("Shake the head", lambda: ask(a.Shake(at=at), "Ask for a shake of the head"))
+        menu.addAction(tr("Nod"), lambda: ask(a.Nod(at=at), tr("Ask for a nod")))
+        menu.addAction(tr("Shake the head"), lambda: ask(a.Shake(at=at), tr("Ask for a shake of the head")))
     menu.addSeparator()
     for stance in graph.stances.values():
         menu.addAction(
-            f"Go to {stance.name}", partial(ask, a.Go(stance=stance.id, at=at), f"Ask for {stance.name}")
+            tr("Go to {name}", name=stance.name),
+            partial(ask, a.Go(stance=stance.id, at=at), tr("Ask for {name}", name=stance.name)),
         )
     if graph.into:
         menu.addAction(
-            "Change to another stance", lambda: ask(a.Change(layer=layer, at=at), "Ask for another stance")
+            tr("Change to another stance"),
+            lambda: ask(a.Change(layer=layer, at=at), tr("Ask for another stance")),
         )
 
 
 def _stage_items(menu: QMenu, parent: QWidget, document: Document, at: float | None, ask: Ask) -> None:
     project = document.project
-    said = menu.addMenu("Say")
+    said = menu.addMenu(tr("Say"))
     for ident, line in project.lines.items():
         words = line.text if len(line.text) < 48 else line.text[:46] + "…"
-        said.addAction(f"{ident}: {words}", partial(ask, a.Say(line=ident, at=at), "Ask for a line"))
+        said.addAction(f"{ident}: {words}", partial(ask, a.Say(line=ident, at=at), tr("Ask for a line")))
     if project.lines:
         said.addSeparator()
-    said.addAction("Other words…", lambda: _say(parent, at, ask))
-    looks = menu.addMenu("Look at")
+    said.addAction(tr("Other words…"), lambda: _say(parent, at, ask))
+    looks = menu.addMenu(tr("Look at"))
     for name in dict.fromkeys(("user", *project.points)):
         looks.addAction(
-            name.capitalize() if name == "user" else name,
-            partial(ask, a.Look(to=name, at=at), "Ask for a look"),
+            titled(name) if name == "user" else name,
+            partial(ask, a.Look(to=name, at=at), tr("Ask for a look")),
         )
-    looks.addAction("Ahead", lambda: ask(a.Look(to="ahead", at=at), "Ask for a look"))
+    looks.addAction(tr("Ahead"), lambda: ask(a.Look(to="ahead", at=at), tr("Ask for a look")))
     looks.addSeparator()
-    for word, point in DIRECTIONS.items():
-        looks.addAction(word, partial(ask, a.Look(to=point, at=at, duration=2.0), "Ask for a look"))
+    for words, point in DIRECTIONS.items():
+        looks.addAction(tr(words), partial(ask, a.Look(to=point, at=at, duration=2.0), tr("Ask for a look")))
     looks.addSeparator()
-    looks.addAction("Another point…", lambda: _point(parent, document, at, ask))
-    menu.addAction("Blink", lambda: ask(a.Blink(at=at), "Ask for a blink"))
-    modes = menu.addMenu("Mode")
+    looks.addAction(tr("Another point…"), lambda: _point(parent, document, at, ask))
+    menu.addAction(tr("Blink"), lambda: ask(a.Blink(at=at), tr("Ask for a blink")))
+    modes = menu.addMenu(tr("Mode"))
     for mode in MODES:
-        modes.addAction(MODE_WORDS[mode], partial(ask, a.Behave(mode=mode, at=at), "Ask for a mode"))
-    modes.addAction("As it comes", lambda: ask(a.Behave(mode=None, at=at), "Ask for a mode"))
-    moods = menu.addMenu("Be in a mood")
+        modes.addAction(MODE_WORDS[mode], partial(ask, a.Behave(mode=mode, at=at), tr("Ask for a mode")))
+    modes.addAction(tr("As it comes"), lambda: ask(a.Behave(mode=None, at=at), tr("Ask for a mode")))
+    moods = menu.addMenu(tr("Be in a mood"))
     for feeling in FEELINGS:
-        moods.addAction(MOOD_WORDS[feeling], partial(ask, a.Feel(mood=feeling, at=at), "Ask for a mood"))
+        moods.addAction(MOOD_WORDS[feeling], partial(ask, a.Feel(mood=feeling, at=at), tr("Ask for a mood")))
 
 
 def _point(parent: QWidget, document: Document, at: float | None, ask: Ask) -> None:
     from app.widgets.point_editor import PointEditor
 
-    PointEditor(document, lambda name: ask(a.Look(to=name, at=at), "Ask for a look"), parent).open()
+    PointEditor(document, lambda name: ask(a.Look(to=name, at=at), tr("Ask for a look")), parent).open()
 
 
 def _say(parent: QWidget, at: float | None, ask: Ask) -> None:
-    text, ok = QInputDialog.getText(parent, "Say", "Words")
+    text, ok = QInputDialog.getText(parent, tr("Say"), tr("Words"))
     if ok and text.strip():
-        ask(a.Say(text=text.strip(), at=at), "Ask for words")
+        ask(a.Say(text=text.strip(), at=at), tr("Ask for words"))

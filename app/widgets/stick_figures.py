@@ -9,6 +9,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, QTimer
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
+from app.translation import tr
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_names import HELPERS, take_apart
 
@@ -30,7 +31,7 @@ class StickFigures(QWidget):
         self._timer = QTimer(self, interval=33)
         self._timer.timeout.connect(self.update)
         self.setMinimumSize(320, 260)
-        self.setAccessibleName("The clip on both skeletons")
+        self.setAccessibleName(tr("The clip on both skeletons"))
 
     def sizeHint(self) -> QSize:
         return QSize(380, 420)

@@ -14,6 +14,7 @@ from app.shell.actions import Command
 from app.shell.context import Contribution, Panel, Shell
 from app.shell.places import Places
 from app.shell.workspace_keeper import Workspaces
+from app.translation import tr
 from metagraph.graph import edits
 
 FRAME = 1 / 30  # seconds of a step
@@ -84,7 +85,7 @@ def contribute(shell: Shell) -> Contribution:
         panels=(
             Panel(
                 "character",
-                "Character",
+                tr("Character"),
                 "right",
                 make,
                 late=False,
@@ -103,32 +104,32 @@ def contribute(shell: Shell) -> Contribution:
                 "character",
                 "&File",
                 "character",
-                "Choose &character…",
+                tr("Choose &character…"),
                 lambda: choose_character(shell),
-                tip="The GLB that is drawn",
+                tip=tr("The GLB that is drawn"),
             ),
             Command(
                 "meshes",
                 "&File",
                 "character",
-                "&Meshes of the character…",
+                tr("&Meshes of the character…"),
                 show_meshes,
-                tip="Which of its meshes are drawn",
+                tip=tr("Which of its meshes are drawn"),
                 enabled=lambda: document.project.character is not None,
             ),
             Command(
                 "no_character",
                 "&File",
                 "character",
-                "Draw a stick figure",
-                lambda: document.edit("Draw a stick figure", lambda p: edits.set_character(p, None)),
+                tr("Draw a stick figure"),
+                lambda: document.edit(tr("Draw a stick figure"), lambda p: edits.set_character(p, None)),
                 enabled=lambda: document.project.character is not None,
             ),
             Command(
                 "play",
                 play,
                 "transport",
-                "Play or &pause",
+                tr("Play or &pause"),
                 lambda: session.transport.set_playing(not session.transport.playing),
                 ("Space",),
                 study=True,
@@ -137,18 +138,18 @@ def contribute(shell: Shell) -> Contribution:
                 "to_start",
                 play,
                 "transport",
-                "Back to the &start",
+                tr("Back to the &start"),
                 lambda: session.transport.seek(0.0),
                 ("Home",),
                 study=True,
             ),
-            Command("back", play, "transport", "A frame back", lambda: step(-1), (",",), study=True),
-            Command("forward", play, "transport", "A frame forward", lambda: step(1), (".",), study=True),
+            Command("back", play, "transport", tr("A frame back"), lambda: step(-1), (",",), study=True),
+            Command("forward", play, "transport", tr("A frame forward"), lambda: step(1), (".",), study=True),
             Command(
                 "mute",
                 play,
                 "live",
-                "&Mute",
+                tr("&Mute"),
                 lambda: sound.set_muted(not sound.muted),
                 ("Ctrl+M",),
                 checked=lambda: sound.muted,
@@ -158,7 +159,7 @@ def contribute(shell: Shell) -> Contribution:
                 "loop",
                 play,
                 "live",
-                "&Loop",
+                tr("&Loop"),
                 lambda: preview().toggle_loop(),
                 ("L",),
                 checked=lambda: session.transport.loop,
@@ -168,7 +169,7 @@ def contribute(shell: Shell) -> Contribution:
                 "show_plan",
                 play,
                 "show",
-                "The whole &performance",
+                tr("The whole &performance"),
                 session.transport.show_plan,
                 ("Escape",),
                 checked=lambda: session.transport.show == "plan",
@@ -178,7 +179,7 @@ def contribute(shell: Shell) -> Contribution:
                 "alone",
                 play,
                 "show",
-                "The clip &alone",
+                tr("The clip &alone"),
                 play_alone,
                 ("Ctrl+Return",),
                 enabled=some,
@@ -188,7 +189,7 @@ def contribute(shell: Shell) -> Contribution:
                 "in_context",
                 play,
                 "show",
-                "In &context",
+                tr("In &context"),
                 play_in_context,
                 ("Shift+Return",),
                 enabled=some,
@@ -198,7 +199,7 @@ def contribute(shell: Shell) -> Contribution:
                 "frame",
                 view,
                 "character",
-                "&Frame the character",
+                tr("&Frame the character"),
                 lambda: preview().frame_all(),
                 ("F",),
                 study=True,
@@ -207,7 +208,7 @@ def contribute(shell: Shell) -> Contribution:
                 "face",
                 view,
                 "character",
-                "Close-up of the &face",
+                tr("Close-up of the &face"),
                 lambda: preview().frame_face(),
                 ("Shift+F",),
                 study=True,
@@ -223,19 +224,19 @@ def contribute(shell: Shell) -> Contribution:
                     study=True,
                 )
                 for side, words, keys in (
-                    ("front", "From the f&ront", ("Num+1",)),
-                    ("left", "From its &left", ("Num+3",)),
-                    ("right", "From its ri&ght", ("Ctrl+Num+3",)),
-                    ("back", "From b&ehind", ("Ctrl+Num+1",)),
-                    ("quarter", "&Three quarters", ("Num+9",)),
-                    ("above", "From a&bove", ("Num+7",)),
+                    ("front", tr("From the f&ront"), ("Num+1",)),
+                    ("left", tr("From its &left"), ("Num+3",)),
+                    ("right", tr("From its ri&ght"), ("Ctrl+Num+3",)),
+                    ("back", tr("From b&ehind"), ("Ctrl+Num+1",)),
+                    ("quarter", tr("&Three quarters"), ("Num+9",)),
+                    ("above", tr("From a&bove"), ("Num+7",)),
                 )
             ),
             Command(
                 "see_hands",
                 view,
                 "sides",
-                "Close-up of the &hands",
+                tr("Close-up of the &hands"),
                 lambda: preview().looking.see_hands(),
                 ("Shift+H",),
                 study=True,
@@ -244,18 +245,18 @@ def contribute(shell: Shell) -> Contribution:
                 "flat",
                 view,
                 "sides",
-                "&Orthographic",
+                tr("&Orthographic"),
                 lambda: preview().looking.set_flat(not preview().looking.flat),
                 ("Num+5",),
                 checked=lambda: preview().looking.flat,
-                tip="Near and far of one size",
+                tip=tr("Near and far of one size"),
                 study=True,
             ),
             Command(
                 "turntable",
                 view,
                 "sides",
-                "T&urntable",
+                tr("T&urntable"),
                 lambda: preview().looking.set_turning(not preview().looking.turning),
                 checked=lambda: preview().looking.turning,
                 study=True,
@@ -264,11 +265,11 @@ def contribute(shell: Shell) -> Contribution:
                 "trails",
                 view,
                 "sides",
-                "Trails of hands an&d head",
+                tr("Trails of hands an&d head"),
                 lambda: preview().looking.set_trailing(not preview().looking.trailing),
                 ("Shift+T",),
                 checked=lambda: preview().looking.trailing,
-                tip="Where they were and will be; a dot for each frame",
+                tip=tr("Where they were and will be; a dot for each frame"),
                 study=True,
             ),
             *watch_commands(shell, preview),
@@ -276,16 +277,16 @@ def contribute(shell: Shell) -> Contribution:
                 "copy_picture",
                 view,
                 "character",
-                "&Copy the picture",
+                tr("&Copy the picture"),
                 lambda: preview().looking.copy(),
                 ("Ctrl+Shift+C",),
-                tip="The character as it stands, to the clipboard",
+                tip=tr("The character as it stands, to the clipboard"),
             ),
             Command(
                 "bones",
                 view,
                 "character",
-                "Show the &skeleton",
+                tr("Show the &skeleton"),
                 lambda: preview().toggle_bones(),
                 ("B",),
                 checked=lambda: preview().bones,
@@ -295,7 +296,7 @@ def contribute(shell: Shell) -> Contribution:
                 "big",
                 view,
                 "character",
-                "Only the &character",
+                tr("Only the &character"),
                 only,
                 ("F11",),
                 study=True,
@@ -310,9 +311,9 @@ def choose_character(shell: Shell) -> None:
     document = shell.document
     name, _ = QFileDialog.getOpenFileName(
         shell.widget,
-        "Choose the character to draw",
+        tr("Choose the character to draw"),
         str(document.folder or Path.home()),
-        "Characters (*.glb *.gltf *.vrm)",
+        tr("Characters (*.glb *.gltf *.vrm)"),
     )
     if not name:
         return
@@ -327,14 +328,20 @@ def choose_character(shell: Shell) -> None:
         if document.folder != folder or document.project.character != left:
             return
         if found.why_not is not None:
-            shell.tell(f"{Path(name).name} is no character to draw: its mesh {found.why_not}.")
+            shell.tell(
+                tr(
+                    "{name} is no character to draw: its mesh {why}.",
+                    name=Path(name).name,
+                    why=found.why_not,
+                )
+            )
             return
-        document.edit("Choose character", found.into)
+        document.edit(tr("Choose character"), found.into)
         for note in found.notes:
             shell.tell(note)
 
     shell.jobs.start(
-        f"Reading {Path(name).name}",
+        tr("Reading {name}", name=Path(name).name),
         lambda _: look_at(path, folder, skeleton),
         done,
         lambda error: shell.tell(str(error)),

@@ -25,18 +25,20 @@ from app.stage.playback_source import ASIDE
 from app.stage.playhead import Playhead
 from app.stage.session import Session
 from app.stage.stools import stools
+from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
 from app.widgets.one_stop import OneStop
 from app.widgets.quiet_fields import ComboBox, Scrub
 from app.widgets.sentence import OneLine
+from app.widgets.vocabulary import word
 from metagraph.graph.model import LAYERS, Project
 from preview.camera import Camera, close_up, whole_figure
 from preview.figure import Figure, SkinnedFigure
 from preview.scene import Actor, Scene
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 1.5, 2.0)
-BASE_TIP = "The pose all layers are added to. Right-click a clip in the library to take it from there."
+BASE_TIP = tr("The pose all layers are added to. Right-click a clip in the library to take it from there.")
 FRAME = 16  # milliseconds between frames
 SOFT_FRAME = 33  # where the processor draws them, which has other things to do as well
 HINT = 4000  # milliseconds for which it is told how to come back
@@ -67,7 +69,7 @@ class PreviewPanel(QWidget):
         self.view.setToolTip(MOUSE)
         self.bare = False
         self._margins: list[QMargins] = []  # of what is hidden then
-        self.hint = QLabel("F11 shows the rest again", self.view)
+        self.hint = QLabel(tr("F11 shows the rest again"), self.view)
         self.hint.setProperty("card", True)
         self.hint.setContentsMargins(8, 4, 8, 4)
         self.hint.hide()
@@ -76,7 +78,7 @@ class PreviewPanel(QWidget):
         self.no_mesh = NoMesh(self.view, choose, may_choose)
         self.mesh_button: QToolButton | None = None  # who makes the panel gives it
         self.watch_button = MoreButton(
-            session.look, "What is shown", "What is shown, and how", self.view, "eye"
+            session.look, tr("What is shown"), tr("What is shown, and how"), self.view, "eye"
         )
         self.watch_button.setProperty("over", True)
         self.overlays = Overlays(self)
@@ -94,9 +96,9 @@ class PreviewPanel(QWidget):
         self.panes.put_beside(ReferencePicture(self.reference, self.panes))
         self.reference_bar = ReferenceBar(self.reference, self)
         layout.addWidget(self.reference_bar)
-        self.scrub = Scrub(Qt.Orientation.Horizontal, self, toolTip="Scrub")
+        self.scrub = Scrub(Qt.Orientation.Horizontal, self, toolTip=tr("Scrub"))
         self.scrub.setRange(0, 10000)
-        self.scrub.setAccessibleName("Playhead")
+        self.scrub.setAccessibleName(tr("Playhead"))
         self.scrub.setSingleStep(50)
         self.scrub.setPageStep(500)
         self.scrub.actionTriggered.connect(lambda _: self._scrubbed(self.scrub.sliderPosition()))
@@ -145,15 +147,15 @@ class PreviewPanel(QWidget):
             row.addWidget(out)
             return out
 
-        self.start_button = button("Back to the start (Home)", lambda: self.session.transport.seek(0.0))
+        self.start_button = button(tr("Back to the start (Home)"), lambda: self.session.transport.seek(0.0))
         self.play_button = button(
-            "Play or pause (Space)",
+            tr("Play or pause (Space)"),
             lambda: self.session.transport.set_playing(not self.session.transport.playing),
         )
-        self.loop_button = button("Loop (L)", self._set_loop, checkable=True)
+        self.loop_button = button(tr("Loop (L)"), self._set_loop, checkable=True)
         self.loop_button.setChecked(self.session.transport.loop)
-        self.speed_box = ComboBox(self, toolTip="Speed")
-        self.speed_box.setAccessibleName("Speed")
+        self.speed_box = ComboBox(self, toolTip=tr("Speed"))
+        self.speed_box.setAccessibleName(tr("Speed"))
         self.speed_box.addItems([f"{s:g}×" for s in SPEEDS])
         self.speed_box.setCurrentIndex(SPEEDS.index(1.0))
         self.speed_box.activated.connect(lambda i: setattr(self.session.transport, "speed", SPEEDS[i]))
@@ -165,9 +167,9 @@ class PreviewPanel(QWidget):
         self.time.setAlignment(Qt.AlignmentFlag.AlignCenter)
         row.addWidget(self.time)
         row.addStretch(1)
-        self.frame_button = button("Frame the whole character (F)", self.frame_all)
-        self.face_button = button("Close-up of the face (Shift+F)", self.frame_face)
-        self.bones_button = button("Show the skeleton (B)", self._set_bones, checkable=True)
+        self.frame_button = button(tr("Frame the whole character (F)"), self.frame_all)
+        self.face_button = button(tr("Close-up of the face (Shift+F)"), self.frame_face)
+        self.bones_button = button(tr("Show the skeleton (B)"), self._set_bones, checkable=True)
         OneStop((self.start_button, self.play_button, self.loop_button), self, self.play_button)
         OneStop((self.frame_button, self.face_button, self.bones_button), self)
         return row
@@ -284,14 +286,14 @@ class PreviewPanel(QWidget):
         """Say what plays: the clip alone, or each layer's action and when the next begins."""
         shown = self.performance.shown
         if shown.clip is not None:
-            return f"{plain(shown.project.clips[shown.clip].name)}, alone"
+            return tr("{name}, alone", name=plain(shown.project.clips[shown.clip].name))
         seconds, out = self.session.transport.seconds, []
         for layer in LAYERS:
             cue = shown.plan.layers[layer].cue_at(seconds)
             if cue is not None:
-                out.append(f"{layer}: {plain(cue.action.name)}")
+                out.append(f"{word(layer)}: {plain(cue.action.name)}")
         if self.session.transport.show == "context":
-            out.append("in context")
+            out.append(tr("in context"))
         return "   ".join(out)
 
     def stop(self) -> None:
@@ -386,9 +388,9 @@ class PreviewPanel(QWidget):
         if after.skeleton is None:
             self.base.say("")
         elif entry is None:
-            self.base.say("Base pose: rest pose")
+            self.base.say(tr("Base pose: rest pose"))
         else:
-            self.base.say(f"Base pose: {plain(entry.name)}, frame {base.frame}")
+            self.base.say(tr("Base pose: {name}, frame {frame}", name=plain(entry.name), frame=base.frame))
         if after.skeleton is None:
             self._tell_mesh()
         self.view.update()

@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.features.character.over_view import lie_over
 from app.look.theme import Theme, theme
+from app.translation import tr
 from metagraph.playback.foot_slides import RATE, SLIDES, FeetSeen, FeetWatch, FootState, worst_slide
 
 if TYPE_CHECKING:
@@ -21,12 +22,13 @@ if TYPE_CHECKING:
 SPAN = 1.5  # seconds before and after now that the line tells of
 AT_ONCE = 12  # poses that are composed in one event: the window stays free
 HIGH = 42  # pixels of the line
-SIDES = ("Left foot", "Right foot")
+SIDES = (tr("Left foot"), tr("Right foot"))
 BELOW = 12.0  # pixels from a foot to its mark
 SIZE = 7.0  # pixels of half a mark
-LEGEND = (
-    "Thick: the foot is held. Thin: it steps. Dots: it is in the air. Thicker, yellow: it stands and slides, "
-    f"{SLIDES * 1000:g} mm/s or more"
+LEGEND = tr(
+    "Thick: the foot is held. Thin: it steps. Dots: it is in the air. Thicker, yellow: "
+    "it stands and slides, {speed:g} mm/s or more",
+    speed=SLIDES * 1000,
 )
 
 
@@ -129,7 +131,7 @@ class FootLine(QWidget):
         self.panel = panel
         self._known: FeetSeen | None = None
         self.setFixedHeight(HIGH)
-        self.setAccessibleName("Feet")
+        self.setAccessibleName(tr("Feet"))
         self.setToolTip(LEGEND)
         self.hide()
 
@@ -192,9 +194,15 @@ def slide_words(seen: FeetSeen) -> str:
     """Say which foot slides fastest round now and when, or that none does."""
     worst = worst_slide(seen)
     if worst is None:
-        return "No foot that stands slides" if len(seen.times) > 1 else ""
+        return tr("No foot that stands slides") if len(seen.times) > 1 else ""
     time, side, speed = worst
-    return f"⚠ {SIDES[side]} slides {speed * 1000:.0f} mm/s at {int(time // 60)}:{time % 60:05.2f}"
+    return tr(
+        "⚠ {foot} slides {speed:.0f} mm/s at {minutes}:{seconds:05.2f}",
+        foot=SIDES[side],
+        speed=speed * 1000,
+        minutes=int(time // 60),
+        seconds=time % 60,
+    )
 
 
 def watch_of(shown: Any) -> FeetWatch | None:

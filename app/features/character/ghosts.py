@@ -15,6 +15,7 @@ from PySide6.QtWidgets import QWidget
 from app.features.character.over_view import lie_over
 from app.look.theme import theme
 from app.stage.playback_source import Shown
+from app.widgets.vocabulary import word
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.player import playable
@@ -102,7 +103,7 @@ class Ghosts(QWidget):
             return []
         color = QColor(theme(self.panel.session.look.name).fill("stance"))
         actor = self._ghost(figure, shown, pose, STANCE, (color.redF(), color.greenF(), color.blueF()))
-        return [actor] if self._label("stance", actor) else []
+        return [actor] if self._label(word("stance"), actor) else []
 
     def _label(self, words: str, ghost: Actor) -> bool:
         """Name a ghost where it is farthest from now; return whether it is anywhere."""

@@ -9,6 +9,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeyEvent, QMouseEvent
 from PySide6.QtWidgets import QMenu
 
+from app.translation import tr
 from app.widgets.more_button import MoreButton
 from metagraph.graph import edits
 
@@ -45,7 +46,7 @@ class MeshButton(MoreButton):
 
     def __init__(self, panel: PreviewPanel, dialog: Callable[[], object]) -> None:
         super().__init__(
-            panel.session.look, "Meshes", "Hide and show meshes of the character", panel.view, "mesh"
+            panel.session.look, tr("Meshes"), tr("Hide and show meshes of the character"), panel.view, "mesh"
         )
         self.panel, self._dialog = panel, dialog
         self.setProperty("over", True)
@@ -77,13 +78,15 @@ class MeshButton(MoreButton):
             action.setChecked(mesh not in document.project.hidden)
             action.toggled.connect(lambda on, m=mesh: self._show(m, on))
         menu.addSeparator()
-        every = menu.addAction("Show all")
+        every = menu.addAction(tr("Show all"))
         every.setEnabled(bool(document.project.hidden))
-        every.triggered.connect(lambda: document.edit("Show all meshes", lambda p: edits.hide_meshes(p, ())))
-        menu.addAction("In a window…").triggered.connect(self._dialog)
+        every.triggered.connect(
+            lambda: document.edit(tr("Show all meshes"), lambda p: edits.hide_meshes(p, ()))
+        )
+        menu.addAction(tr("In a window…")).triggered.connect(self._dialog)
 
     def _show(self, mesh: str, on: bool) -> None:
         document = self.panel.performance.document
         hidden = [other for other in document.project.hidden if other != mesh]
-        words = f"{'Show' if on else 'Hide'} '{mesh}'"
+        words = tr("Show '{mesh}'", mesh=mesh) if on else tr("Hide '{mesh}'", mesh=mesh)
         document.edit(words, lambda p: edits.hide_meshes(p, hidden if on else [*hidden, mesh]))

@@ -16,6 +16,7 @@ from PySide6.QtWidgets import (
 
 from app.project.document import Document
 from app.stage.figures import Figures
+from app.translation import tr
 from metagraph.graph import edits
 
 TICKED, OPEN = Qt.CheckState.Checked, Qt.CheckState.Unchecked
@@ -28,7 +29,7 @@ class MeshesDialog(QDialog):
         super().__init__(parent)
         self.document, self.figures = document, figures
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle("Meshes of the character")
+        self.setWindowTitle(tr("Meshes of the character"))
         self.resize(360, 440)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(16, 14, 16, 14)
@@ -36,12 +37,12 @@ class MeshesDialog(QDialog):
         self.words = QLabel(self, wordWrap=True)
         self.words.setProperty("dim", True)
         self.list = QListWidget(self)
-        self.list.setAccessibleName("Meshes")
+        self.list.setAccessibleName(tr("Meshes"))
         self.list.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self.list.itemChanged.connect(self._ticked)
         self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
-        self.every = self.buttons.addButton("Show all", QDialogButtonBox.ButtonRole.ResetRole)
-        self.every.clicked.connect(lambda: self._hide_meshes((), "Show all meshes"))
+        self.every = self.buttons.addButton(tr("Show all"), QDialogButtonBox.ButtonRole.ResetRole)
+        self.every.clicked.connect(lambda: self._hide_meshes((), tr("Show all meshes")))
         self.buttons.rejected.connect(self.reject)
         for part in (self.words, self.list, self.buttons):
             layout.addWidget(part, 1 if part is self.list else 0)
@@ -66,10 +67,22 @@ class MeshesDialog(QDialog):
         self.list.blockSignals(False)
         count = sum(mesh in hidden for mesh in meshes)
         self.words.setText(
-            f"{count} of {len(meshes)} meshes {'is' if count == 1 else 'are'} hidden, in the preview, on "
-            "thumbnails, in pictures, videos and exports."
+            (
+                tr(
+                    "1 of {every} meshes is hidden, in the preview, on thumbnails, in pictures, videos and "
+                    "exports.",
+                    every=len(meshes),
+                )
+                if count == 1
+                else tr(
+                    "{count} of {every} meshes are hidden, in the preview, on thumbnails, in pictures, "
+                    "videos and exports.",
+                    count=count,
+                    every=len(meshes),
+                )
+            )
             if meshes
-            else "No mesh of a character is drawn."
+            else tr("No mesh of a character is drawn.")
         )
         self.every.setEnabled(count > 0)
 
@@ -79,9 +92,14 @@ class MeshesDialog(QDialog):
             names = [other.text() for other in self.list.selectedItems()]
         shown = item.checkState() == TICKED
         hidden = [mesh for mesh in self.document.project.hidden if mesh not in names]
-        verb = "Show" if shown else "Hide"
-        what = f"'{names[0]}'" if len(names) == 1 else f"{len(names)} meshes"
-        self._hide_meshes(hidden if shown else [*hidden, *names], f"{verb} {what}")
+        if len(names) == 1:
+            words = tr("Show '{mesh}'", mesh=names[0]) if shown else tr("Hide '{mesh}'", mesh=names[0])
+        else:
+            count = len(names)
+            words = (
+                tr("Show {count} meshes", count=count) if shown else tr("Hide {count} meshes", count=count)
+            )
+        self._hide_meshes(hidden if shown else [*hidden, *names], words)
 
     def _hide_meshes(self, meshes: list[str] | tuple[str, ...], words: str) -> None:
         self.document.edit(words, lambda project: edits.hide_meshes(project, meshes))

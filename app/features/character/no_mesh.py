@@ -9,6 +9,7 @@ from collections.abc import Callable
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QToolButton, QWidget
 
+from app.translation import tr
 from app.widgets.making import make_widget
 
 EDGE = 10  # pixels from the view's corner
@@ -32,9 +33,9 @@ class NoMesh(QFrame):
         self.words.setContentsMargins(6, 0, 0, 0)
         self.words.hide()
         self.button = make_widget(
-            QToolButton, self, text="Choose character…", toolTip="The GLB, glTF or VRM that is drawn"
+            QToolButton, self, text=tr("Choose character…"), toolTip=tr("The GLB, glTF or VRM that is drawn")
         )
-        self.button.setAccessibleName("Choose character")
+        self.button.setAccessibleName(tr("Choose character"))
         self.button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.button.clicked.connect(choose)
         row.addWidget(self.words, 1)

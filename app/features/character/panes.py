@@ -15,6 +15,7 @@ from PySide6.QtWidgets import QGridLayout, QMenu, QToolButton, QWidget
 from app.features.character.looking import SIDES as ANGLES
 from app.stage.gl_view import GLView, ImageView, make_beside
 from app.stage.watch import SIDES
+from app.translation import tr
 from app.widgets.making import make_widget
 from preview.camera import Camera
 from preview.scene import Scene
@@ -40,7 +41,7 @@ class Pane:
         self.view.theme = panes.panel.view.theme
         self.view.frame_wanted.connect(self.frame)
         self.view.installEventFilter(panes)
-        self.button = make_widget(QToolButton, self.view, toolTip="Which side this view shows")
+        self.button = make_widget(QToolButton, self.view, toolTip=tr("Which side this view shows"))
         self.button.setProperty("over", True)
         self.button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
@@ -57,8 +58,8 @@ class Pane:
 
     def name(self) -> None:
         """Write in the corner which side it is."""
-        self.button.setText(f"{SIDES[self.side]} ▾")
-        self.button.setAccessibleName(f"View: {SIDES[self.side]}")
+        self.button.setText(f"{tr(SIDES[self.side])} ▾")
+        self.button.setAccessibleName(tr("View: {side}", side=tr(SIDES[self.side])))
         self.button.adjustSize()
 
     def _fill(self, menu: QMenu) -> None:

@@ -16,6 +16,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QWidget
 
 from app.look import icons
 from app.look.theme import theme
+from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.errors import FileError
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 KEY = "reference"
 KEPT = 50  # projects whose videos are remembered
 DRAGGED = 0.01  # seconds of offset for each pixel a picture is dragged
-FILES = "Videos and pictures (*.mp4 *.mov *.mkv *.webm *.avi *.m4v *.png *.jpg *.jpeg)"
+FILES = tr("Videos and pictures (*.mp4 *.mov *.mkv *.webm *.avi *.m4v *.png *.jpg *.jpeg)")
 
 
 class _Reader(QObject):
@@ -140,7 +141,9 @@ class Reference(QObject):
         self.path, self.offset, self.behind = path, offset, behind
         self.picture, self.trouble = None, ""
         if path is not None and not path.is_file():
-            self.trouble = f"{path.name} is not there. Put it back, or choose it where it is now."
+            self.trouble = tr(
+                "{name} is not there. Put it back, or choose it where it is now.", name=path.name
+            )
         elif path is not None:
             self._reader = _Reader(path)
             self._reader.came.connect(self._came)
@@ -207,8 +210,8 @@ class ReferencePicture(QWidget):
         self._from: tuple[float, float] | None = None  # where a drag began, and the offset then
         self.setMinimumSize(120, 100)
         self.setCursor(Qt.CursorShape.SizeHorCursor)
-        self.setToolTip("Drag to the left or right to move the video in time against the character")
-        self.setAccessibleName("Reference video")
+        self.setToolTip(tr("Drag to the left or right to move the video in time against the character"))
+        self.setAccessibleName(tr("Reference video"))
         reference.changed.connect(self._follow)
         reference.pictured.connect(self.update)
         self._follow()
@@ -232,7 +235,7 @@ class ReferencePicture(QWidget):
             painter.drawImage(room, image)
         else:
             painter.setPen(QColor(look.text))
-            words = self.reference.trouble or "Reading…"
+            words = self.reference.trouble or tr("Reading…")
             room = QRectF(self.rect()).adjusted(12, 12, -12, -12)
             painter.drawText(room, Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, words)
         painter.end()
@@ -262,16 +265,16 @@ class ReferenceBar(QWidget):
         self.words.setMinimumWidth(20)
         self.offset = DoubleSpinBox(self, minimum=-36000, maximum=36000, decimals=2, singleStep=0.04)
         self.offset.setSuffix(" s")
-        self.offset.setPrefix("offset ")
-        self.offset.setAccessibleName("Offset of the reference video")
-        self.offset.setToolTip("How much later in the video than the playhead its picture is")
+        self.offset.setPrefix(tr("offset "))
+        self.offset.setAccessibleName(tr("Offset of the reference video"))
+        self.offset.setToolTip(tr("How much later in the video than the playhead its picture is"))
         self.offset.valueChanged.connect(reference.set_offset)
-        self.place = ComboBox(self, toolTip="Where the video is seen")
-        self.place.setAccessibleName("Place of the reference video")
-        self.place.addItems(["Beside", "Behind"])
+        self.place = ComboBox(self, toolTip=tr("Where the video is seen"))
+        self.place.setAccessibleName(tr("Place of the reference video"))
+        self.place.addItems([tr("Beside"), tr("Behind")])
         self.place.activated.connect(lambda n: reference.set_behind(n == 1))
-        self.gone = make_widget(QToolButton, self, toolTip="Close the reference video")
-        self.gone.setAccessibleName("Close the reference video")
+        self.gone = make_widget(QToolButton, self, toolTip=tr("Close the reference video"))
+        self.gone.setAccessibleName(tr("Close the reference video"))
         self.gone.clicked.connect(reference.close)
         row.addWidget(self.words, 1)
         for part in (self.offset, self.place, self.gone):

@@ -14,6 +14,7 @@ from app.project.jobs import Job
 from app.shell.actions import Command
 from app.shell.context import Shell
 from app.stage.watch import MOST_GHOSTS, SPACINGS, Watch
+from app.translation import tr
 
 if TYPE_CHECKING:
     from app.features.character.character_panel import PreviewPanel
@@ -45,107 +46,107 @@ def watch_commands(shell: Shell, preview: Callable[[], PreviewPanel]) -> tuple[C
             "feet",
             view,
             "watch",
-            "Marks of the fee&t",
+            tr("Marks of the fee&t"),
             lambda: watch.set(feet=not watch.now.feet),
             ("Shift+G",),
             checked=lambda: watch.now.feet,
-            tip="Which foot is held (square), steps (diamond), is lifted (circle), and slides (triangle)",
+            tip=tr("Which foot is held (square), steps (diamond), is lifted (circle), and slides (triangle)"),
             study=True,
         ),
         Command(
             "next_slide",
             view,
             "watch",
-            "Next foot that sl&ides",
+            tr("Next foot that sl&ides"),
             lambda: next_slide(shell),
             ("Ctrl+Shift+G",),
-            tip="Go to where a foot that stands slides next",
+            tip=tr("Go to where a foot that stands slides next"),
             study=True,
         ),
         Command(
             "stance_ghost",
             view,
             "watch",
-            "Ghost of the &stance",
+            tr("Ghost of the &stance"),
             lambda: watch.set(stance=not watch.now.stance),
             ("Shift+B",),
             checked=lambda: watch.now.stance,
-            tip="How the character would stand without what it plays",
+            tip=tr("How the character would stand without what it plays"),
             study=True,
         ),
         Command(
             "onion",
             view,
             "watch",
-            "&Onion skin",
+            tr("&Onion skin"),
             onion,
             ("Shift+O",),
             checked=lambda: bool(watch.now.before or watch.now.after),
-            tip="Ghosts of moments before now, dark, and after it, light",
+            tip=tr("Ghosts of moments before now, dark, and after it, light"),
             study=True,
         ),
         Command(
             "four_views",
             view,
             "watch",
-            "Four &views",
+            tr("Four &views"),
             lambda: watch.set(panes=1 if watch.now.panes == 4 else 4),
             ("Ctrl+Alt+Q",),
             checked=lambda: watch.now.panes == 4,
-            tip="As it was, and three sides beside it, at one time",
+            tip=tr("As it was, and three sides beside it, at one time"),
             study=True,
         ),
         Command(
             "two_views",
             view,
             "watch",
-            "T&wo views",
+            tr("T&wo views"),
             lambda: watch.set(panes=1 if watch.now.panes == 2 else 2),
             ("Ctrl+Alt+W",),
             checked=lambda: watch.now.panes == 2,
-            tip="As it was, and one side beside it, at one time",
+            tip=tr("As it was, and one side beside it, at one time"),
             study=True,
         ),
         Command(
             "reference",
             view,
             "watch",
-            "Reference vi&deo…",
+            tr("Reference vi&deo…"),
             lambda: choose_reference(shell, preview().reference),
             ("Ctrl+Alt+R",),
-            tip="A video or a picture to compare with, beside the character or behind it",
+            tip=tr("A video or a picture to compare with, beside the character or behind it"),
         ),
         Command(
             "no_reference",
             view,
             "watch",
-            "Close the reference video",
+            tr("Close the reference video"),
             lambda: preview().reference.close(),
             enabled=lambda: preview().reference.path is not None,
         ),
-        Command("light", view, "watch", "Li&ght", fill=lambda m: fill_choice(shell, m, "light")),
+        Command("light", view, "watch", tr("Li&ght"), fill=lambda m: fill_choice(shell, m, "light")),
         Command(
             "background",
             view,
             "watch",
-            "Back&ground",
+            tr("Back&ground"),
             fill=lambda m: fill_choice(shell, m, "background"),
         ),
         Command(
             "next_light",
             view,
             "watch",
-            "Ne&xt light",
+            tr("Ne&xt light"),
             lambda: next_light(watch),
             ("Shift+L",),
-            tip="Studio, day, evening, rim, flat",
+            tip=tr("Studio, day, evening, rim, flat"),
             study=True,
         ),
         Command(
             "onion_skin",
             view,
             "watch",
-            "Onion skin: ghosts and spac&ing",
+            tr("Onion skin: ghosts and spac&ing"),
             fill=lambda m: fill_onion(shell, m),
         ),
     )
@@ -156,7 +157,7 @@ def choose_reference(shell: Shell, reference: Reference) -> None:
     from app.features.character.reference import FILES
 
     folder = reference.path.parent if reference.path is not None else shell.document.folder or Path.home()
-    name, _ = QFileDialog.getOpenFileName(shell.widget, "Choose a reference video", str(folder), FILES)
+    name, _ = QFileDialog.getOpenFileName(shell.widget, tr("Choose a reference video"), str(folder), FILES)
     if name:
         reference.choose(Path(name))
 
@@ -186,7 +187,7 @@ def fill_choice(shell: Shell, menu: QMenu, name: str) -> None:
     choices: Iterable[str] = LIGHTS if name == "light" else BACKDROPS
     watch, group = shell.stage.session.watch, QActionGroup(menu)
     for choice in choices:
-        action = QAction(words_of(choice), menu, checkable=True)
+        action = QAction(tr(words_of(choice)), menu, checkable=True)
         action.setChecked(getattr(watch.now, name) == choice)
         action.triggered.connect(lambda _=False, c=choice: watch.set(**{name: c}))
         group.addAction(action)
@@ -197,9 +198,9 @@ def fill_onion(shell: Shell, menu: QMenu) -> None:
     """Fill the menu of how many ghosts there are on each side and how far apart."""
     watch = shell.stage.session.watch
     for title, name, values, words in (
-        ("Before now", "before", range(MOST_GHOSTS + 1), "{:d}"),
-        ("After now", "after", range(MOST_GHOSTS + 1), "{:d}"),
-        ("Apart", "spacing", SPACINGS, "{:g} s"),
+        (tr("Before now"), "before", range(MOST_GHOSTS + 1), "{:d}"),
+        (tr("After now"), "after", range(MOST_GHOSTS + 1), "{:d}"),
+        (tr("Apart"), "spacing", SPACINGS, "{:g} s"),
     ):
         part = menu.addMenu(title)
         group = QActionGroup(part)
@@ -219,7 +220,7 @@ def next_slide(shell: Shell) -> None:
     session, shown = shell.stage.session, shell.stage.performance.shown
     watch, now = watch_of(shown), session.transport.seconds
     if watch is None:
-        shell.tell("Nobody with two feet is shown.")
+        shell.tell(tr("Nobody with two feet is shown."))
         return
     session.transport.set_playing(False)
     end = min(shown.length, now + AHEAD)
@@ -243,9 +244,15 @@ def next_slide(shell: Shell) -> None:
         if shell.stage.performance.shown is not shown:
             return
         if found is None:
-            shell.tell(f"No foot that stands slides until {int(end // 60)}:{end % 60:04.1f}.")
+            shell.tell(
+                tr(
+                    "No foot that stands slides until {minutes}:{seconds:04.1f}.",
+                    minutes=int(end // 60),
+                    seconds=end % 60,
+                )
+            )
             return
         session.watch.set(feet=True)
         session.transport.seek(found)
 
-    shell.jobs.start("Searching feet that slide", search, done, lambda error: shell.tell(str(error)))
+    shell.jobs.start(tr("Searching feet that slide"), search, done, lambda error: shell.tell(str(error)))

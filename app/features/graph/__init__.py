@@ -14,7 +14,9 @@ from app.shell.context import Contribution, HeaderItem, Panel, Shell
 from app.shell.places import Places
 from app.shell.verbs import Verbs
 from app.stage.problem_watch import ProblemWatch
+from app.translation import tr
 from app.widgets.choice_row import ChoiceRow
+from app.widgets.vocabulary import titled, word
 from metagraph.formats.imports import Imported
 from metagraph.graph.model import KINDS, LAYERS, Kind, Layer
 
@@ -91,7 +93,7 @@ def contribute(shell: Shell) -> Contribution:
 
     def name(place: int) -> str:
         found = stances()
-        return found[place].name if place < len(found) else f"Stance {place + 1}"
+        return found[place].name if place < len(found) else tr("Stance {number}", number=place + 1)
 
     menu = "&Graph"
     labels = (
@@ -99,7 +101,7 @@ def contribute(shell: Shell) -> Contribution:
             f"label_{kind}",
             menu,
             "label",
-            f"Label as &{number} {kind}",
+            tr("Label as &{number} {kind}", number=number, kind=word(kind)),
             partial(label, kind),
             (str(number),),
             enabled=some,
@@ -114,7 +116,7 @@ def contribute(shell: Shell) -> Contribution:
             f"layer_{layer}",
             menu,
             "layers",
-            f"{layer.capitalize()} layer",
+            tr("{layer} layer", layer=titled(layer)),
             partial(session.place.set_layer, layer),
             (LAYER_KEYS[layer],),
             checked=partial(on_layer, layer),
@@ -139,24 +141,39 @@ def contribute(shell: Shell) -> Contribution:
     )
     order = (
         Command(
-            f"list_{word}",
+            f"list_{ident}",
             menu,
             "label",
-            f"List {word} in its node",
+            text,
             partial(shift, steps),
             (f"Alt+{key}",),
-            tip=f"Move the selected actions a place {word} in their node; what plays does not change",
+            tip=tip,
             enabled=lambda: bool(session.selection.actions),
             when="meta",
             menus=("action",),
         )
-        for word, key, steps in (("earlier", "Up", -1), ("later", "Down", 1))
+        for ident, key, steps, text, tip in (
+            (
+                "earlier",
+                "Up",
+                -1,
+                tr("List earlier in its node"),
+                tr("Move the selected actions a place earlier in their node; what plays does not change"),
+            ),
+            (
+                "later",
+                "Down",
+                1,
+                tr("List later in its node"),
+                tr("Move the selected actions a place later in their node; what plays does not change"),
+            ),
+        )
     )
     new = Command(
         "new_stance",
         menu,
         "author",
-        "&New stance…",
+        tr("&New stance…"),
         lambda: canvas().acts.new_stance(),
         ("Ctrl+Shift+N",),
         when="meta",
@@ -166,7 +183,7 @@ def contribute(shell: Shell) -> Contribution:
         panels=(
             Panel(
                 "graph",
-                "Graph",
+                tr("Graph"),
                 "centre",
                 make,
                 late=False,
@@ -187,7 +204,9 @@ class LayerTabs(ChoiceRow):
     """The layers, each with how many actions it has; the current one is pressed."""
 
     def __init__(self, shell: Shell, parent: QWidget) -> None:
-        tips = ((x.capitalize(), f"The {x} layer ({LAYER_KEYS[x]})") for x in LAYERS)
+        tips = (
+            (titled(x), tr("The {layer} layer ({key})", layer=word(x), key=LAYER_KEYS[x])) for x in LAYERS
+        )
         super().__init__(parent, tips, least_width=56)
         self.document, self.session = shell.document, shell.stage.session
         self.chosen.connect(lambda n: self.session.place.set_layer(LAYERS[n]))
@@ -201,5 +220,5 @@ class LayerTabs(ChoiceRow):
         """Show the layer and the counts as they are now."""
         for number, layer in enumerate(LAYERS):
             count = len(self.document.project.graphs[layer].actions)
-            self.button(number).setText(f"{layer.capitalize()}  {count}" if count else layer.capitalize())
+            self.button(number).setText(f"{titled(layer)}  {count}" if count else titled(layer))
         self.show_choice(LAYERS.index(self.session.place.layer))

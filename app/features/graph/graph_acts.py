@@ -11,9 +11,12 @@ from PySide6.QtWidgets import QInputDialog, QWidget
 
 from app.features.graph.graph_drops import Drop, drop_at, perform
 from app.features.graph.graph_layout import GraphHit
+from app.look.plural import many
 from app.project.document import Document
 from app.project.load import Load
 from app.stage.session import Session
+from app.translation import tr
+from app.widgets.vocabulary import word
 from metagraph.graph import edits
 from metagraph.graph.listing_edits import shifted
 from metagraph.graph.model import KINDS, Action, Kind
@@ -46,10 +49,16 @@ class GraphActs(QObject):
         """Perform a drop and select what it made."""
         before = {a.id for a in self.document.project.actions()}
         layer = self.session.place.layer
-        verb = "Reorder" if drop.reorder else "Move" if load.actions else "Place"
-        noun = f"{load.count} {'action' if load.actions else 'clip'}{'s' if load.count != 1 else ''}"
+        what = many(load.count, "action" if load.actions else "clip")
+        words = (
+            tr("Reorder {what}", what=what)
+            if drop.reorder
+            else tr("Move {what}", what=what)
+            if load.actions
+            else tr("Place {what}", what=what)
+        )
         try:
-            self.document.edit(f"{verb} {noun}", lambda p: perform(p, layer, drop, load))
+            self.document.edit(words, lambda p: perform(p, layer, drop, load))
         except edits.EditError as error:
             self.refused.emit(str(error))
             return
@@ -65,7 +74,7 @@ class GraphActs(QObject):
         """Label the selection, clips or actions, with a kind on the current stance: the keys 1 to 4."""
         load = Load(clips=self.session.selection.clips, actions=self.session.selection.actions)
         if not load:
-            self.refused.emit("Select clips or actions first.")
+            self.refused.emit(tr("Select clips or actions first."))
             return
         stance = self.session.place.stance()
         new = kind == "stance" and bool(load.clips)
@@ -88,13 +97,13 @@ class GraphActs(QObject):
     def shift(self, steps: int) -> None:
         """List the selected actions a place earlier (-1) or later (1) in their nodes."""
         chosen = self.session.selection.actions
-        words = f"Reorder {len(chosen)} action{'s' if len(chosen) != 1 else ''}"
+        words = tr("Reorder {what}", what=many(len(chosen), "action"))
         self.document.edit(words, lambda p: shifted(p, chosen, steps))
 
     def move_to(self, stance: str) -> None:
         chosen = self.session.selection.actions
         try:
-            self.document.edit("Move actions", lambda p: edits.to_stance(p, chosen, stance))
+            self.document.edit(tr("Move actions"), lambda p: edits.to_stance(p, chosen, stance))
         except edits.EditError as error:
             self.refused.emit(str(error))
 
@@ -104,7 +113,7 @@ class GraphActs(QObject):
     def end_in(self, actions: Sequence[str], stance: str) -> None:
         """Let transitions end in another stance, in one step."""
         try:
-            self.document.edit("Change end stance", lambda p: edits.set_ends(p, actions, stance))
+            self.document.edit(tr("Change end stance"), lambda p: edits.set_ends(p, actions, stance))
         except edits.EditError as error:
             self.refused.emit(str(error))
 
@@ -114,27 +123,29 @@ class GraphActs(QObject):
 
     def new_stance(self) -> None:
         name, accepted = QInputDialog.getText(
-            self.widget, "New stance", f"Name of the new {self.session.place.layer} stance:"
+            self.widget,
+            tr("New stance"),
+            tr("Name of the new {layer} stance:", layer=word(self.session.place.layer)),
         )
         if accepted and name.strip():
             layer = self.session.place.layer
-            self.document.edit("New stance", lambda p: edits.add_stance(p, layer, name))
+            self.document.edit(tr("New stance"), lambda p: edits.add_stance(p, layer, name))
             self.session.place.set_stance(list(self.document.project.graphs[layer].stances)[-1])
 
     def rename_stance(self, stance: str | None = None) -> None:
         found = self.document.project.stance(stance or self.session.place.stance())
         if found is None:
             return
-        name, accepted = QInputDialog.getText(self.widget, "Rename stance", "Name:", text=found.name)
+        name, accepted = QInputDialog.getText(self.widget, tr("Rename stance"), tr("Name:"), text=found.name)
         if accepted and name.strip():
-            self.document.edit("Rename stance", lambda p: edits.rename_stance(p, found.id, name))
+            self.document.edit(tr("Rename stance"), lambda p: edits.rename_stance(p, found.id, name))
 
     def remove_selection(self) -> None:
         """Take the selected actions out of the graph."""
         gone = self.session.selection.actions
         if gone:
             self.document.edit(
-                f"Remove {len(gone)} action{'s' if len(gone) > 1 else ''}",
+                tr("Remove {actions}", actions=many(len(gone), "action")),
                 lambda p: edits.remove_actions(p, gone),
             )
 
@@ -157,7 +168,7 @@ class GraphActs(QObject):
             value = round(min(3.0, max(0.1, found.likelihood + by)), 1)
             chosen = self.session.selection.actions or (action,)
             self.document.edit(
-                "Change likelihood",
+                tr("Change likelihood"),
                 lambda p: edits.update_actions(p, chosen, likelihood=value),
                 merge="likelihood keys",
             )

@@ -48,12 +48,13 @@ from app.project.document import Document
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
+from app.translation import tr
 from app.widgets.gesture import Hand
 from app.widgets.memo import Once
 from app.widgets.mime import load_of
 from metagraph.graph.model import Kind, Project
 
-KEYS = (
+KEYS = tr(
     "Actions by their nodes. Up and Down choose an action, Left and Right make it less or more likely, Enter "
     "shows it."
 )
@@ -96,7 +97,7 @@ class Canvas(QWidget):
         self.setAcceptDrops(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setMinimumSize(int(LEAST_WIDTH), int(LEAST_HEIGHT))  # its height follows its width
-        self.setAccessibleName("Meta-graph")
+        self.setAccessibleName(tr("Meta-graph"))
         self.setAccessibleDescription(KEYS)
         self._beat = Beat(self._next_beat, self)
         self._beat.run(session.transport.playing)

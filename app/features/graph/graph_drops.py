@@ -8,10 +8,26 @@ from dataclasses import dataclass
 
 from app.features.graph.graph_layout import GraphHit
 from app.look.names import node_names
+from app.look.plural import many
 from app.project.load import ANNOTATIONS, Load
+from app.translation import tr, tr_noop
+from app.widgets.vocabulary import word
 from metagraph.graph.edits import EditError, move_actions, place, refusal, to_stance
 from metagraph.graph.listing_edits import reordered
 from metagraph.graph.model import Kind, Layer, Project
+
+ONE: dict[Kind, str] = {
+    "stance": tr_noop("a stance"),
+    "gesture": tr_noop("a gesture"),
+    "fidget": tr_noop("a fidget"),
+    "transition": tr_noop("a transition"),
+}
+MORE: dict[Kind, str] = {
+    "stance": tr_noop("stances"),
+    "gesture": tr_noop("gestures"),
+    "fidget": tr_noop("fidgets"),
+    "transition": tr_noop("transitions"),
+}
 
 
 @dataclass(frozen=True)
@@ -36,9 +52,9 @@ def drop_at(
 ) -> Drop:
     """Return what dropping `load` on `hit` does; the current stance and the other stance say where."""
     if not load:
-        return Drop(False, "only clips, folders of clips and actions can be dropped here")
+        return Drop(False, tr("only clips, folders of clips and actions can be dropped here"))
     if load.files and all(f.lower().endswith(ANNOTATIONS) for f in load.files):
-        return Drop(True, "drop to learn from this annotation")
+        return Drop(True, tr("drop to learn from this annotation"))
     if load.actions and hit.area == "chip" and hit.ident is not None:
         return _move(project, hit.ident, load)
     if load.actions and _in_node(project, layer, stance, hit, load):
@@ -47,33 +63,40 @@ def drop_at(
     if hit.area in ("card", "add"):
         kind: Kind = "stance"
         target, end = None, None
-        words = f"drop {what} as a new stance"
+        words = tr("drop {what} as a new stance", what=what)
     elif hit.area in ("loop", "chip"):
         kind, target, end = "stance", hit.ident, None
+        name = _name(project, hit.ident)
         words = (
-            f"drop {what} as {'another loop' if load.count == 1 else 'more loops'} of "
-            f"*{_name(project, hit.ident)}*"
+            tr("drop {what} as another loop of *{name}*", what=what, name=name)
+            if load.count == 1
+            else tr("drop {what} as more loops of *{name}*", what=what, name=name)
         )
     elif hit.area in ("node", "row", "bar", "other") and hit.kind is not None:
         kind, target, end = hit.kind, stance, other if hit.kind == "transition" else None
-        noun = f"{kind}s" if load.count > 1 else f"a {kind}"
-        words = f"drop {what} as {noun} of *{_name(project, stance)}*"
+        noun = tr(MORE[kind]) if load.count > 1 else tr(ONE[kind])
+        words = tr("drop {what} as {noun} of *{name}*", what=what, noun=noun, name=_name(project, stance))
         if kind == "transition":
-            noun = "transitions" if load.count > 1 else "a transition"
-            words = f"drop {what} as {noun} from *{_name(project, stance)}* to *{_name(project, other)}*"
+            words = tr(
+                "drop {what} as {noun} from *{stance}* to *{other}*",
+                what=what,
+                noun=noun,
+                stance=_name(project, stance),
+                other=_name(project, other),
+            )
     else:
-        return Drop(False, "drop on one of the nodes")
+        return Drop(False, tr("drop on one of the nodes"))
     clips = [a.clip for i in load.actions if (a := project.action(i)) is not None] or list(load.clips)
     if load.files and not clips:
         # Files are imported first; only what does not depend on the clips can be refused now.
         clips = [next(iter(project.clips))] if project.clips else []
         why = refusal(project, clips, layer, kind, target, end) if clips else None
         if not clips and kind != "stance":
-            why = f"make a stance first: drop a clip on the middle of the {layer} layer"
+            why = tr("make a stance first: drop a clip on the middle of the {layer} layer", layer=word(layer))
     else:
         why = refusal(project, clips, layer, kind, target, end)
     if why is None and load.actions and target is None and kind == "stance":
-        why = "drag its clip from the library to make a new stance of it"
+        why = tr("drag its clip from the library to make a new stance of it")
     if why is not None:
         return Drop(False, why, kind, target, end)
     return Drop(True, words, kind, target, end)
@@ -95,11 +118,15 @@ def _reorder(project: Project, hit: GraphHit, load: Load) -> Drop:
     place = next((n for n, a in enumerate(node) if a.id == hit.ident), len(node)) + hit.behind
     before = next((a for a in node[place:] if a.id not in load.actions), None)
     if reordered(project, load.actions, before.id if before else None) is project:
-        return Drop(False, "already here", first.kind, first.stance, None, True)
+        return Drop(False, tr("already here"), first.kind, first.stance, None, True)
     called = node_names(project, first.layer, first.stance, first.kind)
-    words = f"list {_count(load)} before *{called[before.id]}*" if before else f"list {_count(load)} last"
+    words = (
+        tr("list {what} before *{name}*", what=_count(load), name=called[before.id])
+        if before
+        else tr("list {what} last", what=_count(load))
+    )
     if before is not None and before is rest[0]:
-        words = f"list {_count(load)} first"
+        words = tr("list {what} first", what=_count(load))
     return Drop(True, words, first.kind, first.stance, None, True, before.id if before else None)
 
 
@@ -107,12 +134,12 @@ def _move(project: Project, stance: str, load: Load) -> Drop:
     """Actions dropped on a stance's chip move there and stay what they are."""
     name = _name(project, stance)
     if all((a := project.action(i)) is None or a.stance == stance for i in load.actions):
-        return Drop(False, f"already in *{name}*", None, stance)
+        return Drop(False, tr("already in *{name}*", name=name), None, stance)
     try:
         to_stance(project, load.actions, stance)
     except EditError as error:
         return Drop(False, str(error), None, stance)
-    return Drop(True, f"move {_count(load)} to *{name}*", None, stance)
+    return Drop(True, tr("move {what} to *{name}*", what=_count(load), name=name), None, stance)
 
 
 def perform(project: Project, layer: Layer, drop: Drop, load: Load) -> Project:
@@ -129,8 +156,11 @@ def perform(project: Project, layer: Layer, drop: Drop, load: Load) -> Project:
 
 
 def _count(load: Load) -> str:
-    noun = "clip" if load.clips else "action" if load.actions else "file"
-    return f"{load.count} {noun}s" if load.count > 1 else f"this {noun}"
+    if load.count == 1:
+        return tr("this clip") if load.clips else tr("this action") if load.actions else tr("this file")
+    if load.files and not load.clips and not load.actions:
+        return many(load.count, "file")
+    return many(load.count, "clip") if load.clips else many(load.count, "action")
 
 
 def _name(project: Project, stance: str | None) -> str:

@@ -8,6 +8,8 @@ from PySide6.QtGui import QDrag
 from app.features.graph.graph_host import GraphHost
 from app.features.graph.graph_layout import likelihood_at
 from app.features.graph.repoint import NOWHERE, repoint_at
+from app.look.plural import many
+from app.translation import tr
 from app.widgets.gesture import PressDrag, Reason
 from app.widgets.mime import drag_picture, mime
 from metagraph.graph import edits
@@ -27,7 +29,7 @@ class LikelihoodDrag(PressDrag):
         if self.row is not None:
             value = likelihood_at(self.row, at.x())
             self.host.document.edit(
-                "Change likelihood",
+                tr("Change likelihood"),
                 lambda p: edits.update_actions(p, self.actions, likelihood=value),
                 merge="likelihood",
             )
@@ -59,7 +61,7 @@ class RowDrag(PressDrag):
         drag.setMimeData(mime(actions=actions))
         action = self.host.document.project.action(self.action)
         picture = self.host.thumbnails.picture(action.clip, bare=True) if action is not None else None
-        words = f"{len(actions)} actions" if len(actions) > 1 else self._name()
+        words = many(len(actions), "action") if len(actions) > 1 else self._name()
         drag.setPixmap(drag_picture(words, widget, picture))
         drag.setHotSpot(QPoint(-14, -10))
         self.host.hand.drop("taken over")

@@ -12,6 +12,7 @@ from PySide6.QtCore import QPointF, QRectF, QSizeF
 
 from app.features.graph.graph_frames import GRID, HEADER, LINE, NARROW, PAD, ROW, Frames, frames
 from app.look.names import node_names
+from app.translation import tr
 from metagraph.graph.model import Action, Kind, Layer, MetaGraph, Project
 
 LEAST_WIDTH, LEAST_HEIGHT = 240.0, 300.0  # pixels; a smaller canvas is laid out as if it was so large
@@ -134,7 +135,7 @@ class Layout:
         )
 
 
-HOLES = ("no loop", "no way out", "no gestures", "no fidgets")
+HOLES = (tr("no loop"), tr("no way out"), tr("no gestures"), tr("no fidgets"))
 
 
 def hole(project: Project, layer: Layer, stance: str) -> str:

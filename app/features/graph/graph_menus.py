@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QMenu
 
 from app.features.graph.graph_acts import GraphActs
 from app.features.graph.graph_layout import GraphHit
+from app.translation import tr
 from metagraph.graph import edits
 
 
@@ -21,35 +22,35 @@ def menu_of(acts: GraphActs, hit: GraphHit, row_actions: Sequence[QAction]) -> Q
     if hit.area in ("row", "bar", "head") and hit.ident:
         if hit.ident not in acts.session.selection.actions:
             acts.session.selection.select_actions((hit.ident,))
-        menu.addAction("Play in context", lambda: acts.session.show_context(str(hit.ident)))
+        menu.addAction(tr("Play in context"), lambda: acts.session.show_context(str(hit.ident)))
         menu.addSeparator()
-        move = menu.addMenu("Move to stance")
+        move = menu.addMenu(tr("Move to stance"))
         for stance in acts.document.project.graphs[acts.session.place.layer].stances.values():
             move.addAction(stance.name, partial(acts.move_to, stance.id))
         if hit.kind == "transition":
-            ends = menu.addMenu("End in stance")
+            ends = menu.addMenu(tr("End in stance"))
             for stance in acts.document.project.graphs[acts.session.place.layer].stances.values():
                 if stance.id != acts.session.place.stance():
                     ends.addAction(stance.name, partial(acts.end_selection_in, stance.id))
-        menu.addAction("Show clip in the library", acts.show_clip)
+        menu.addAction(tr("Show clip in the library"), acts.show_clip)
         menu.addSeparator()
         menu.addActions(row_actions)
         menu.addSeparator()
-        menu.addAction("Remove from the graph\tDel", acts.remove_selection)
+        menu.addAction(tr("Remove from the graph\tDel"), acts.remove_selection)
     elif hit.area in ("chip", "card") and hit.ident:
         stance_id = hit.ident
-        menu.addAction("Rename stance…\tF2", lambda: acts.rename_stance(stance_id))
+        menu.addAction(tr("Rename stance…\tF2"), lambda: acts.rename_stance(stance_id))
         menu.addAction(
-            "Start here",
-            lambda: acts.document.edit("Start here", lambda p: edits.set_start(p, stance_id)),
+            tr("Start here"),
+            lambda: acts.document.edit(tr("Start here"), lambda p: edits.set_start(p, stance_id)),
         )
         menu.addSeparator()
         menu.addAction(
-            "Remove stance and its actions",
-            lambda: acts.document.edit("Remove stance", lambda p: edits.remove_stance(p, stance_id)),
+            tr("Remove stance and its actions"),
+            lambda: acts.document.edit(tr("Remove stance"), lambda p: edits.remove_stance(p, stance_id)),
         )
     else:
-        menu.addAction("New stance…", acts.new_stance)
+        menu.addAction(tr("New stance…"), acts.new_stance)
     return menu
 
 
@@ -64,5 +65,5 @@ def ends_menu(acts: GraphActs) -> QMenu:
             entry.setCheckable(True)
             entry.setChecked(stance.id == other)
     if menu.isEmpty():
-        menu.addAction("Make a second stance first").setEnabled(False)
+        menu.addAction(tr("Make a second stance first")).setEnabled(False)
     return menu

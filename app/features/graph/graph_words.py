@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from app.features.graph.graph_layout import GraphHit, Layout
 from app.look.names import told_names
 from app.look.plural import many
+from app.translation import tr
 from metagraph.graph.expand import size
 from metagraph.graph.model import LAYERS, Project
 
@@ -19,36 +20,43 @@ def tip(
     """
     action = project.action(hit.ident) if hit.ident else None
     if hit.area == "bar" and action is not None:
-        return f"Likelihood {action.likelihood:g}: drag to change"
+        return tr("Likelihood {likelihood:g}: drag to change", likelihood=action.likelihood)
     if action is not None:
         row = layout.row(action.id)
         name = told_names(row.words if row is not None else action.name, action.name)
-        head = "Drag the arrow onto another stance to end there"
-        plain = head if hit.area == "head" else "Click plays it in context, drag moves it"
+        head = tr("Drag the arrow onto another stance to end there")
+        plain = head if hit.area == "head" else tr("Click plays it in context, drag moves it")
         note = project.notes.get(action.id, "")
         return "\n".join(x for x in (name, note, misfits.get(action.id) or plain) if x)
     stance = project.stance(other if hit.area == "other" else hit.ident)
-    to = "to " if hit.area == "other" else ""
-    name = f"{to}{stance.name}\n" if stance is not None else ""
+    name = "" if stance is None else stance.name
+    if name and hit.area == "other":
+        name = tr("to {name}", name=name)
     words = {
-        "chip": "Click to make this the current stance",
-        "card": "Click selects its loops, double-click renames it",
-        "add": "New stance: drop a clip here, or click",
-        "other": "The stance that dropped transitions end in",
+        "chip": tr("Click to make this the current stance"),
+        "card": tr("Click selects its loops, double-click renames it"),
+        "add": tr("New stance: drop a clip here, or click"),
+        "other": tr("The stance that dropped transitions end in"),
     }.get(hit.area, "")
-    return f"{name}{words}" if words else ""
+    return "\n".join(x for x in (name, words) if x) if words else ""
 
 
 def sentence(project: Project) -> str:
     """Count the machine that was not drawn."""
     whole = size(project)
     if not whole.clips:
-        return "Drop clips on the nodes; every connection between them is implied."
+        return tr("Drop clips on the nodes; every connection between them is implied.")
     layers = sum(1 for layer in LAYERS if project.graphs[layer].actions)
-    over = f" over {layers} layers" if layers > 1 else ""
+    over = tr(" over {layers} layers", layers=layers) if layers > 1 else ""
     clips, states, links = (
         many(whole.clips, "clip"),
         many(whole.states, "state"),
         many(whole.connections, "connection"),
     )
-    return f"You placed {clips}{over}. This is the machine you did not have to draw: {states}, {links}."
+    return tr(
+        "You placed {clips}{over}. This is the machine you did not have to draw: {states}, {links}.",
+        clips=clips,
+        over=over,
+        states=states,
+        links=links,
+    )

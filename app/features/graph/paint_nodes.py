@@ -10,12 +10,13 @@ from app.features.graph.graph_layout import GraphRow, Layout, Node, bar_part
 from app.features.graph.graph_look import GraphLook, between, bold, draw_box, draw_offer, upper
 from app.look.names import plain
 from app.look.theme import KIND_MARKS, KIND_TITLES
+from app.translation import tr
 from metagraph.graph.model import Kind
 
 TEACH = {
-    "gesture": "Drop clips that mean something\nor beat time: a shrug, a point.",
-    "fidget": "Drop small habits:\na scratch, tapping fingers.",
-    "transition": "Drop clips that lead to another stance.",
+    "gesture": tr("Drop clips that mean something\nor beat time: a shrug, a point."),
+    "fidget": tr("Drop small habits:\na scratch, tapping fingers."),
+    "transition": tr("Drop clips that lead to another stance."),
 }
 
 
@@ -37,7 +38,7 @@ def draw_node(painter: QPainter, node: Node, layout: Layout, look: GraphLook, fo
     painter.drawText(
         head.adjusted(20, 0, 0, 0),
         Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft,
-        KIND_TITLES[node.kind],
+        tr(KIND_TITLES[node.kind]),
     )
     painter.setFont(font)
     painter.setPen(QColor(t.dim))
@@ -56,7 +57,7 @@ def draw_node(painter: QPainter, node: Node, layout: Layout, look: GraphLook, fo
         painter.drawRoundedRect(QRectF(track.left(), top, 3, max(16.0, track.height() * share)), 1.5, 1.5)
     if not node.count and not target:
         painter.setPen(QColor(t.dim))
-        text = TEACH[node.kind] if layout.stance is not None else "Make a stance first."
+        text = TEACH[node.kind] if layout.stance is not None else tr("Make a stance first.")
         flags = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap
         room = node.body.adjusted(2 * GRID, 2, -GRID, 0)
         while text and painter.boundingRect(room, flags, text).height() > room.height():
@@ -101,7 +102,10 @@ def _other(painter: QPainter, node: Node, look: GraphLook, font: QFont) -> None:
     draw_box(painter, rect, QColor(t.hover if hover else t.field), QColor(t.line))
     painter.setFont(font)
     painter.setPen(QColor(t.text if found is not None else t.warning))
-    text, room = f"to {plain(found.name)}" if found is not None else "another stance?", rect.width() - 26
+    text, room = (
+        tr("to {name}", name=plain(found.name)) if found is not None else tr("another stance?"),
+        rect.width() - 26,
+    )
     if found is not None and QFontMetricsF(font).horizontalAdvance(text) > room:
         text = plain(found.name)
     painter.drawText(rect.adjusted(8, 0, -18, 0), Qt.AlignmentFlag.AlignVCenter, between(font, text, room))

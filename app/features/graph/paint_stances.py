@@ -8,6 +8,8 @@ from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 from app.features.graph.graph_layout import Chip, Layout
 from app.features.graph.graph_look import GraphLook, between, bold, draw_box, draw_offer, upper
 from app.look.names import plain
+from app.look.plural import many
+from app.translation import tr
 
 
 def draw_chip(painter: QPainter, chip: Chip, layout: Layout, look: GraphLook, font: QFont) -> None:
@@ -93,7 +95,7 @@ def draw_card(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -
         painter.setFont(font)
         painter.drawText(
             card.adjusted(14, 14, -14, -14), Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap,
-            "Drop a resting clip here to make the first stance of this layer: hands at the sides, say.",
+            tr("Drop a resting clip here to make the first stance of this layer: hands at the sides, say."),
         )  # fmt: skip
     else:
         head = _card_name(painter, card, plain(stance.name), bold(font), look)
@@ -109,11 +111,11 @@ def draw_card(painter: QPainter, layout: Layout, look: GraphLook, font: QFont) -
             painter.setFont(font)
             return _card_drop(painter, layout, look, font)
         start = look.project.graphs[stance.layer].start == stance.id
-        words = f"{len(loops)} loop{'s' if len(loops) != 1 else ''}" if loops else "no loop yet"
+        words = many(len(loops), "loop") if loops else tr("no loop yet")
         painter.setFont(font)
         painter.setPen(QColor(t.dim if loops else t.warning))
         foot = QRectF(card.left() + 12, card.bottom() - 26, card.width() - 24, 20)
-        more = f"{words}  ·  starts here"
+        more = tr("{words}  ·  starts here", words=words)
         if start and QFontMetricsF(font).horizontalAdvance(more) <= foot.width() - 1:
             words = more
         painter.drawText(foot, Qt.AlignmentFlag.AlignCenter, between(font, words, foot.width()))

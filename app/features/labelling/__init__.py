@@ -5,6 +5,7 @@ from __future__ import annotations
 from app.project.learned import Learned
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -28,10 +29,10 @@ def contribute(shell: Shell) -> Contribution:
                 "propose",
                 "&Graph",
                 "author",
-                "&Label clips…",
+                tr("&Label clips…"),
                 label,
                 ("Ctrl+P",),
-                tip="Propose what each clip is, by name and motion",
+                tip=tr("Propose what each clip is, by name and motion"),
                 enabled=lambda: any(clip not in document.project.uses for clip in document.project.clips),
                 when="meta",
                 study="labels",
@@ -40,9 +41,9 @@ def contribute(shell: Shell) -> Contribution:
                 "patterns",
                 "&Graph",
                 "author",
-                "Name &patterns…",
+                tr("Name &patterns…"),
                 patterns,
-                tip="What words in clip names mean",
+                tip=tr("What words in clip names mean"),
                 when="meta",
                 study="labels",
             ),

@@ -12,28 +12,30 @@ from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelInd
 from PySide6.QtGui import QFont
 from PySide6.QtWidgets import QComboBox, QStyledItemDelegate, QStyleOptionViewItem, QWidget
 
+from app.translation import tr
 from app.widgets.quiet_fields import ComboBox
+from app.widgets.vocabulary import word
 from metagraph.graph.words import KINDS, LAYERS, LIMBS
 from metagraph.suggest.words_defaults import DEFAULTS, Field
 from metagraph.suggest.words_languages import AFTER_FROM, AFTER_TO, MAYBE_FROM, MAYBE_TO, NOTHING
 from metagraph.suggest.words_patterns import FIELDS, Patterns, PatternsError, forget, remembered
 
 Index = QModelIndex | QPersistentModelIndex
-COLUMNS = ("Words", "About", "Means", "From")
+COLUMNS = (tr("Words"), tr("About"), tr("Means"), tr("From"))
 ABOUT = {
-    "kinds": "kind",
-    "layers": "layer",
-    "limbs": "arm",
-    "tags": "tags",
-    "postures": "stance name",
-    "joins": "transition",
-    "junk": "no word",
-    "synonyms": "same as",
-    "kind": "kind",
-    "layer": "layer",
-    "limb": "arm",
-    "stance": "begins in",
-    "end_stance": "ends in",
+    "kinds": tr("kind"),
+    "layers": tr("layer"),
+    "limbs": tr("arm"),
+    "tags": tr("tags"),
+    "postures": tr("stance name"),
+    "joins": tr("transition"),
+    "junk": tr("no word"),
+    "synonyms": tr("same as"),
+    "kind": tr("kind"),
+    "layer": tr("layer"),
+    "limb": tr("arm"),
+    "stance": tr("begins in"),
+    "end_stance": tr("ends in"),
 }
 MEANINGS: dict[str, tuple[str, ...]] = {
     "kinds": (*KINDS, "other"),
@@ -51,16 +53,23 @@ MEANINGS: dict[str, tuple[str, ...]] = {
     "end_stance": (),
 }
 SHOWN = {
-    "other": "none of the four",
-    "junk": "nothing",
-    None: "nothing any more",
-    NOTHING: "nothing",
-    MAYBE_TO: "to, between stances",
-    MAYBE_FROM: "from, between stances",
-    AFTER_TO: "to, after a stance",
-    AFTER_FROM: "from, after a stance",
+    "other": tr("none of the four"),
+    "junk": tr("nothing"),
+    None: tr("nothing any more"),
+    NOTHING: tr("nothing"),
+    MAYBE_TO: tr("to, between stances"),
+    MAYBE_FROM: tr("from, between stances"),
+    AFTER_TO: tr("to, after a stance"),
+    AFTER_FROM: tr("from, after a stance"),
 }
-NOBODY, MINE, LEARNED = "built in", "you", "corrections"
+NOBODY, MINE, LEARNED = tr("built in"), tr("you"), tr("corrections")
+
+
+def means(field: str, meaning: str | None) -> str:
+    """Return in words what a meaning about a field is; free text stays as it is."""
+    if meaning in SHOWN:
+        return SHOWN[meaning]
+    return word(meaning or "") if MEANINGS.get(field) else meaning or ""
 
 
 @dataclass(frozen=True)
@@ -82,11 +91,17 @@ class PatternRow:
 
     def texts(self) -> tuple[str, str, str, str]:
         """Return what the columns say."""
-        times = "" if not self.count else ", once" if self.count == 1 else f", {self.count} times"
+        times = (
+            ""
+            if not self.count
+            else tr(", once")
+            if self.count == 1
+            else tr(", {count} times", count=self.count)
+        )
         return (
             self.phrase,
             ABOUT[self.field],
-            SHOWN.get(self.meaning, self.meaning or ""),
+            means(self.field, self.meaning),
             self.source + times,
         )
 
@@ -295,4 +310,4 @@ def fill_meanings(box: QComboBox, field: str) -> None:
     few = MEANINGS[field]
     box.setEditable(not few)
     for meaning in few:
-        box.addItem(SHOWN.get(meaning, meaning), meaning)
+        box.addItem(means(field, meaning), meaning)

@@ -38,24 +38,27 @@ from app.features.labelling.pattern_table import (
     fill_meanings,
     without,
 )
+from app.look.plural import many
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.project.learned import Learned
 from app.project.pattern_files import read_patterns, write_patterns
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.quiet_fields import ComboBox
+from app.widgets.vocabulary import word
 from metagraph.errors import FileError
 from metagraph.suggest.name_words import NameGuess, Patterns, PatternsError, merged, read_names
 from metagraph.suggest.words_patterns import FIELDS
 
-FILTER = "Name patterns (*.json);;All files (*)"
+FILTER = tr("Name patterns (*.json);;All files (*)")
 PARTS = (
-    ("kind", "Kind"),
-    ("layer", "Layer"),
-    ("stance", "Stance"),
-    ("end_stance", "Ends in"),
-    ("limb", "Arm"),
-    ("tags", "Tags"),
+    ("kind", tr("Kind")),
+    ("layer", tr("Layer")),
+    ("stance", tr("Stance")),
+    ("end_stance", tr("Ends in")),
+    ("limb", tr("Arm")),
+    ("tags", tr("Tags")),
 )
 
 
@@ -80,13 +83,13 @@ class PatternsDialog(QDialog):
         super().__init__(parent)
         self.document, self.session, self.learned = document, session, learned
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle("Name patterns")
+        self.setWindowTitle(tr("Name patterns"))
         self.resize(760, 720)
         layout = QVBoxLayout(self)
         layout.setSpacing(10)
         layout.addWidget(
             QLabel(
-                "What words in clip names mean when labels are proposed. Kept for all your projects.",
+                tr("What words in clip names mean when labels are proposed. Kept for all your projects."),
                 self,
                 wordWrap=True,
             )
@@ -106,8 +109,8 @@ class PatternsDialog(QDialog):
     # --- building
 
     def _trial(self) -> QVBoxLayout:
-        self.name = QLineEdit(self, placeholderText="Type a clip name to try, like IdleSeated_Wave_Rt_02")
-        self.name.setAccessibleName("Try a name")
+        self.name = QLineEdit(self, placeholderText=tr("Type a clip name to try, like IdleSeated_Wave_Rt_02"))
+        self.name.setAccessibleName(tr("Try a name"))
         self.name.setClearButtonEnabled(True)
         self.name.textChanged.connect(self._try)
         self.read = QLabel(self)
@@ -120,10 +123,10 @@ class PatternsDialog(QDialog):
         return column
 
     def _finder(self) -> QHBoxLayout:
-        self.search = QLineEdit(self, placeholderText="Search words and meanings")
-        self.search.setAccessibleName("Search")
+        self.search = QLineEdit(self, placeholderText=tr("Search words and meanings"))
+        self.search.setAccessibleName(tr("Search"))
         self.search.setClearButtonEnabled(True)
-        self.every = QCheckBox("Built-in words too", self)
+        self.every = QCheckBox(tr("Built-in words too"), self)
         self.search.textChanged.connect(self._look)
         self.every.toggled.connect(self._look)
         QShortcut(QKeySequence(QKeySequence.StandardKey.Find), self, self.search.setFocus)
@@ -137,7 +140,7 @@ class PatternsDialog(QDialog):
         self.chosen = Chosen(self)
         self.chosen.setSourceModel(self.model)
         self.table = _Table(self)
-        self.table.setAccessibleName("Name patterns")
+        self.table.setAccessibleName(tr("Name patterns"))
         self.table.setModel(self.chosen)
         self.table.setItemDelegate(MeaningEditor(self.table))
         self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
@@ -160,24 +163,24 @@ class PatternsDialog(QDialog):
         return self.table
 
     def _adder(self) -> QGridLayout:
-        self.phrase = QLineEdit(self, placeholderText="words, like check watch")
-        self.phrase.setAccessibleName("Words of the new pattern")
+        self.phrase = QLineEdit(self, placeholderText=tr("words, like check watch"))
+        self.phrase.setAccessibleName(tr("Words of the new pattern"))
         self.field = ComboBox(self)
-        self.field.setAccessibleName("About")
+        self.field.setAccessibleName(tr("About"))
         for name in FIELDS:
             self.field.addItem(ABOUT[name], name)
         self.meaning = ComboBox(self)
-        self.meaning.setAccessibleName("Meaning")
+        self.meaning.setAccessibleName(tr("Meaning"))
         self.field.currentIndexChanged.connect(
             lambda _: fill_meanings(self.meaning, self.field.currentData())
         )
         fill_meanings(self.meaning, "kinds")
-        self.add = QPushButton("Add", self)
+        self.add = QPushButton(tr("Add"), self)
         self.add.clicked.connect(self._add)
         self.phrase.returnPressed.connect(self._add)
-        self.remove = QPushButton("Remove", self)
+        self.remove = QPushButton(tr("Remove"), self)
         self.remove.setToolTip(
-            "Forget the selected patterns; of built-in ones, that they mean anything (Delete)"
+            tr("Forget the selected patterns; of built-in ones, that they mean anything (Delete)")
         )
         self.remove.clicked.connect(self._remove)
         grid = QGridLayout()
@@ -189,12 +192,12 @@ class PatternsDialog(QDialog):
         return grid
 
     def _foot(self) -> QHBoxLayout:
-        self.on = QCheckBox("Learn from my corrections", self)
+        self.on = QCheckBox(tr("Learn from my corrections"), self)
         self.on.setChecked(self.learned.on)
         self.on.toggled.connect(self.learned.set_on)
-        self.forget = QPushButton("Forget all learned…", self)
+        self.forget = QPushButton(tr("Forget all learned…"), self)
         self.forget.clicked.connect(self._forget)
-        self.take, self.give = QPushButton("Import…", self), QPushButton("Export…", self)
+        self.take, self.give = QPushButton(tr("Import…"), self), QPushButton(tr("Export…"), self)
         self.take.clicked.connect(self._import)
         self.give.clicked.connect(self._export)
         close = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
@@ -239,7 +242,7 @@ class PatternsDialog(QDialog):
     def _try(self) -> None:
         name = self.name.text().strip()
         if not name:
-            self.read.setText("<i>Nothing is tried.</i>")
+            self.read.setText(tr("<i>Nothing is tried.</i>"))
             return
         names = [clip.name for clip in self.document.project.clips.values()]
         self.read.setText(self._said(read_names([*names, name], self.learned.patterns)[name]))
@@ -252,6 +255,8 @@ class PatternsDialog(QDialog):
             if belief is None:
                 continue
             text = escape(", ".join(belief.value) if part == "tags" else str(belief.value))
+            if part in ("kind", "layer", "limb"):
+                text = escape(word(str(belief.value)))
             if part == "kind":
                 text = (
                     f"<span style='color:{look.kinds[belief.value]}'>{KIND_MARKS[belief.value]} {text}</span>"
@@ -260,7 +265,7 @@ class PatternsDialog(QDialog):
             rows.append(
                 "<tr>" + "".join(f"<td style='padding-right:14px'>{cell}</td>" for cell in cells) + "</tr>"
             )
-        return f"<table>{''.join(rows)}</table>" if rows else "<i>This name says nothing.</i>"
+        return f"<table>{''.join(rows)}</table>" if rows else tr("<i>This name says nothing.</i>")
 
     def _tell(self, words: str) -> None:
         self.words.setText(words)
@@ -295,7 +300,7 @@ class PatternsDialog(QDialog):
             None,
         )
         if at is None:
-            self._tell(f"'{phrase}' means that already, built in.")
+            self._tell(tr("'{phrase}' means that already, built in.", phrase=phrase))
             return
         index = self.chosen.mapFromSource(self.model.index(at, 0))
         self.table.setCurrentIndex(index)
@@ -315,7 +320,7 @@ class PatternsDialog(QDialog):
         self.learned.edit(change)
         taken = [row for row in rows if row.source == NOBODY]
         self._tell(
-            f"'{taken[0].phrase}' means nothing any more. Remove it again to have it back."
+            tr("'{phrase}' means nothing any more. Remove it again to have it back.", phrase=taken[0].phrase)
             if len(taken) == 1
             else ""
         )
@@ -326,14 +331,15 @@ class PatternsDialog(QDialog):
 
     def _forget(self) -> None:
         count, clips = sum(map(len, self.model.patterns.learned.values())), self.learned.clips
-        known = f"{count} word{'s' if count != 1 else ''} learned from corrections"
-        words = (
-            f"{known} and {clips} labelled clip{'s' if clips != 1 else ''} of saved projects are "
-            "forgotten. Patterns you wrote stay."
+        words = tr(
+            "{words} learned from corrections and {clips} of saved projects are forgotten. Patterns you "
+            "wrote stay.",
+            words=many(count, "word"),
+            clips=many(clips, "labelled clip"),
         )
         buttons = QMessageBox.StandardButton
-        box = QMessageBox(QMessageBox.Icon.Question, "Forget all learned?", words, buttons.Cancel, self)
-        go = box.addButton("Forget", QMessageBox.ButtonRole.DestructiveRole)
+        box = QMessageBox(QMessageBox.Icon.Question, tr("Forget all learned?"), words, buttons.Cancel, self)
+        go = box.addButton(tr("Forget"), QMessageBox.ButtonRole.DestructiveRole)
         box.setDefaultButton(buttons.Cancel)
         box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         go.clicked.connect(self.learned.forget)
@@ -343,7 +349,7 @@ class PatternsDialog(QDialog):
 
     def _import(self) -> None:
         name, _ = QFileDialog.getOpenFileName(
-            self, "Import name patterns", str(self.document.folder or Path.home()), FILTER
+            self, tr("Import name patterns"), str(self.document.folder or Path.home()), FILTER
         )
         if name:
             try:
@@ -355,13 +361,17 @@ class PatternsDialog(QDialog):
             own = sum(map(len, theirs.changes.values()))
             learned = sum(map(len, theirs.learned.values()))
             self._tell(
-                f"{own} pattern{'s' if own != 1 else ''} and {learned} learned were taken from "
-                f"{Path(name).name}."
+                tr(
+                    "{patterns} and {learned} learned were taken from {name}.",
+                    patterns=many(own, "pattern"),
+                    learned=learned,
+                    name=Path(name).name,
+                )
             )
 
     def _export(self) -> None:
         start = (self.document.folder or Path.home()) / "name-patterns.json"
-        name, _ = QFileDialog.getSaveFileName(self, "Export name patterns", str(start), FILTER)
+        name, _ = QFileDialog.getSaveFileName(self, tr("Export name patterns"), str(start), FILTER)
         if name:
             path = Path(name) if Path(name).suffix else Path(name + ".json")
             try:
@@ -369,4 +379,9 @@ class PatternsDialog(QDialog):
             except FileError as error:
                 self._tell(str(error))
                 return
-            self._tell(f"Written to {path.name}, for others to import, or for metagraph label --patterns.")
+            self._tell(
+                tr(
+                    "Written to {name}, for others to import, or for metagraph label --patterns.",
+                    name=path.name,
+                )
+            )

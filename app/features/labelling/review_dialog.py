@@ -40,20 +40,27 @@ from app.project.learned import Learned
 from app.stage.figures import Figures
 from app.stage.playback_source import Shown, alone
 from app.stage.session import Session
+from app.translation import tr
+from app.widgets.vocabulary import word
 from metagraph.graph.model import KINDS, Kind
 from metagraph.suggest.proposal import Proposal
 from metagraph.suggest.review import DECIDING, Field, Review
 
 TITLES: dict[str, str] = {
-    "kind": "Is a",
-    "layer": "Layer",
-    "stance": "Stance",
-    "end_stance": "Ends in",
-    "limb": "Arm",
+    "kind": tr("Is a"),
+    "layer": tr("Layer"),
+    "stance": tr("Stance"),
+    "end_stance": tr("Ends in"),
+    "limb": tr("Arm"),
 }
 LARGEST = QSize(1380, 850)  # pixels, where the window is that large
 FRAME = 1 / 30  # seconds a step goes
 LEAST = 2 / 30  # seconds a clip keeps at least
+
+
+def shown(name: Field, choices: list[tuple[Any, str]]) -> list[tuple[Any, str]]:
+    """Return choices in the window's words; stances are called as the user calls them."""
+    return [(v, word(w)) for v, w in choices] if name in ("kind", "layer", "limb") else choices
 
 
 _Tried = tuple[int, Proposal | None, Shown, Span | None]  # the trial's number, the times found, what plays
@@ -83,7 +90,7 @@ class ReviewDialog(QDialog):
             session.transport.set_playing(False)  # one character at a time
             self.finished.connect(lambda _: session.transport.set_playing(True))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle("Label clips")
+        self.setWindowTitle(tr("Label clips"))
         self.resize(LARGEST if parent is None else LARGEST.boundedTo(parent.window().size()))
         self.queue = ReviewQueue(session, self)
         self.stage = ReviewStage(session, figures, self)
@@ -139,11 +146,11 @@ class ReviewDialog(QDialog):
     def _side(self) -> QWidget:
         """The right side: the fields, and what is done with them."""
         self.tags = QLineEdit(self)
-        self.tags.setAccessibleName("Tags")
-        self.tags.setPlaceholderText("none")
-        self.tags.setToolTip("Words it may be asked for by, with commas between them (T)")
+        self.tags.setAccessibleName(tr("Tags"))
+        self.tags.setPlaceholderText(tr("none"))
+        self.tags.setToolTip(tr("Words it may be asked for by, with commas between them (T)"))
         self.tags.editingFinished.connect(self._tag)
-        label = QLabel("Tags", self)
+        label = QLabel(tr("Tags"), self)
         label.setProperty("dim", True)
         label.setFixedWidth(72)
         line = QHBoxLayout()
@@ -169,9 +176,9 @@ class ReviewDialog(QDialog):
         scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         scroll.setWidget(inner)
         self.back, self.shut, self.go = (
-            QPushButton("Undo", self),
-            QPushButton("Close", self),
-            QPushButton("Accept", self),
+            QPushButton(tr("Undo"), self),
+            QPushButton(tr("Close"), self),
+            QPushButton(tr("Accept"), self),
         )
         for button, run in ((self.back, self.undo), (self.shut, self.close), (self.go, self.accept_current)):
             button.setAutoDefault(False)
@@ -232,7 +239,7 @@ class ReviewDialog(QDialog):
         clips = self.watching.stop()
         self.context = True
         if clips:
-            self._place(clips, f"Label {len(clips)} clips", None)
+            self._place(clips, tr("Label {clips} clips", clips=len(clips)), None)
         else:
             self.go_to(self.work.after(None))
 
@@ -342,7 +349,9 @@ class ReviewDialog(QDialog):
             return
         ends = self.row == "end_stance"
         words, ok = QInputDialog.getText(
-            self, "New stance", "Name of the stance it ends in:" if ends else "Name of the stance:"
+            self,
+            tr("New stance"),
+            tr("Name of the stance it ends in:") if ends else tr("Name of the stance:"),
         )
         if ok and words.strip():
             self._choose("end_stance" if ends else "stance", " ".join(words.split()))
@@ -371,26 +380,36 @@ class ReviewDialog(QDialog):
             self._later()
         else:
             self._place(
-                [self.current], f"Label {self.document.project.clips[self.current].name}", self.current
+                [self.current],
+                tr("Label {name}", name=self.document.project.clips[self.current].name),
+                self.current,
             )
 
     def accept_sure(self) -> None:
         """Place all that wait, are as sure as wanted, and are not disputed, as one step."""
         if clips := self.work.sure_ones(self.queue.least):
-            self._place(clips, f"Label {len(clips)} clips", None)
+            self._place(clips, tr("Label {clips} clips", clips=len(clips)), None)
 
     def _place(self, clips: list[str], words: str, step: str | None) -> None:
         taken = self.work.place(clips, words, step)
         why = next(iter(taken.left.items()), None)
         if not taken.placed:
             self.stage.tell(
-                f"<b>Not placed:</b> {escape(why[1] if why is not None else 'it is no longer there')}."
+                tr(
+                    "<b>Not placed:</b> {why}.",
+                    why=escape(why[1] if why is not None else tr("it is no longer there")),
+                )
             )
             return
         self.go_to(self.work.after(self.current))
         if why is not None:
             self.queue.words.setText(
-                f"{len(taken.placed)} placed; not {self.document.project.clips[why[0]].name}: {why[1]}."
+                tr(
+                    "{placed} placed; not {name}: {why}.",
+                    placed=len(taken.placed),
+                    name=self.document.project.clips[why[0]].name,
+                    why=why[1],
+                )
             )
 
     def bridge(self) -> None:
@@ -427,23 +446,27 @@ class ReviewDialog(QDialog):
         """Show what the current clip is taken for."""
         clip, project = self.current, self.document.project
         p = self._proposed
-        self.go.setText("Done" if clip is None else "Accept" if p is not None else "Leave aside")
+        self.go.setText(tr("Done") if clip is None else tr("Accept") if p is not None else tr("Leave aside"))
         self.tags.setEnabled(p is not None)
         if clip is None or clip not in project.clips:
             self.fields.show_rows((), "")
             self.timing.setText("")
             self.tags.setText("")
             done = (
-                "<b>Every clip is placed.</b>" if not self.work.aside else review_words.rest(self.work.aside)
+                tr("<b>Every clip is placed.</b>")
+                if not self.work.aside
+                else review_words.rest(self.work.aside)
             )
             done = self.watching.words(None) if self.watching.on else done
-            self.stage.tell(done if self.work.looked else "Looking at names and motion…")
+            self.stage.tell(done if self.work.looked else tr("Looking at names and motion…"))
             return
         if p is None:
             why = self.review.found.aside.get(clip, "")
             kinds = self._choices("kind")
             self.row = "kind"
-            self.fields.show_rows([ReviewRow("kind", TITLES["kind"], kinds, None, 0.0, why)], self.row)
+            self.fields.show_rows(
+                [ReviewRow("kind", TITLES["kind"], shown("kind", kinds), None, 0.0, why)], self.row
+            )
             self.timing.setText(review_words.ANYWAY)
             self.tags.setText("")
             self.stage.tell(review_words.headline(self.review, project, clip, theme(self.session.look.name)))
@@ -453,11 +476,19 @@ class ReviewDialog(QDialog):
             if choices := self.review.choices(clip, name):
                 belief = getattr(p, name)
                 sure, reason = (
-                    (belief.confidence, belief.reason) if belief is not None else (0.0, "nothing says which")
+                    (belief.confidence, belief.reason)
+                    if belief is not None
+                    else (0.0, tr("nothing says which"))
                 )
                 rows.append(
                     ReviewRow(
-                        name, TITLES[name], choices, self.review.value(clip, name), sure, reason, p.kind.value
+                        name,
+                        TITLES[name],
+                        shown(name, choices),
+                        self.review.value(clip, name),
+                        sure,
+                        reason,
+                        p.kind.value,
                     )
                 )
         if self.row not in {row.name for row in rows}:

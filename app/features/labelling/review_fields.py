@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.look.theme import KIND_MARKS, Theme, theme
 from app.stage.session import Session
+from app.translation import tr
 from metagraph.suggest.review import Field
 
 TITLE, PAD, CHIP, GAP = (
@@ -62,21 +63,24 @@ class ReviewFields(QWidget):
         self._placed: list[_Placed] = []
         self._high = 0.0
         self.setMouseTracking(True)
-        self.setAccessibleName("What the clip is taken for")
+        self.setAccessibleName(tr("What the clip is taken for"))
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         session.look.changed.connect(self.update)
 
     def show_rows(self, rows: Sequence[ReviewRow], current: str) -> None:
         self.rows, self.current = tuple(rows), current
         self.setAccessibleDescription(
-            "; ".join(f"{r.title}: {self._words(r)}, {r.sure:.0%} sure" for r in rows)
+            "; ".join(
+                tr("{title}: {words}, {sure:.0%} sure", title=r.title, words=self._words(r), sure=r.sure)
+                for r in rows
+            )
         )
         self._arrange()
         self.update()
 
     @staticmethod
     def _words(row: ReviewRow) -> str:
-        return next((words for value, words in row.choices if value == row.value), "not known")
+        return next((words for value, words in row.choices if value == row.value), tr("not known"))
 
     def chip(self, name: str, value: Any) -> QPointF:
         """Return the middle of a chip, in pixels of this widget. Raises KeyError when there is none."""

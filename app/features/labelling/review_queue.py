@@ -22,6 +22,7 @@ from app.features.labelling.review_words import about
 from app.look.plural import many
 from app.look.theme import KIND_MARKS, theme
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.quiet_fields import SpinBox
 from metagraph.graph.model import Project
 from metagraph.suggest.propose import waiting
@@ -48,7 +49,7 @@ class ReviewQueue(QWidget):
         self.aside: tuple[str, ...] = ()
         self._items: dict[str, QTreeWidgetItem] = {}
         self.bar = QProgressBar(self, textVisible=False)
-        self.words = QLabel("Looking at names and motion…", self, wordWrap=True)
+        self.words = QLabel(tr("Looking at names and motion…"), self, wordWrap=True)
         self.words.setProperty("dim", True)
         self.list = QTreeWidget(self)
         self.list.setRootIsDecorated(False)
@@ -56,7 +57,7 @@ class ReviewQueue(QWidget):
         self.list.setHeaderHidden(True)
         self.list.setTextElideMode(Qt.TextElideMode.ElideMiddle)  # names of one set differ at their ends
         self.list.setColumnCount(2)
-        self.list.setAccessibleName("Clips to look at")
+        self.list.setAccessibleName(tr("Clips to look at"))
         header = self.list.header()
         header.setStretchLastSection(False)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
@@ -64,9 +65,11 @@ class ReviewQueue(QWidget):
         self.list.currentItemChanged.connect(
             lambda item, _: self.picked.emit(item.data(0, CLIP)) if item is not None else None
         )
-        self.sure = QPushButton("Accept the sure", self)
+        self.sure = QPushButton(tr("Accept the sure"), self)
         self.sure.setAutoDefault(False)
-        self.sure.setToolTip("Places all that are at least so sure, and about which nothing is disputed (A)")
+        self.sure.setToolTip(
+            tr("Places all that are at least so sure, and about which nothing is disputed (A)")
+        )
         self.sure.clicked.connect(self.sure_wanted)
         self.limit = SpinBox(self)
         self.limit.setRange(0, 100)
@@ -74,13 +77,13 @@ class ReviewQueue(QWidget):
         self.limit.setSuffix(" %")
         self.limit.setFixedWidth(78)
         self.limit.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self.limit.setAccessibleName("At least so sure")
-        self.limit.setToolTip("How sure a proposal must be to be accepted with the others")
+        self.limit.setAccessibleName(tr("At least so sure"))
+        self.limit.setToolTip(tr("How sure a proposal must be to be accepted with the others"))
         self.limit.valueChanged.connect(self.limit_changed)
         self.parted = QLabel(self, wordWrap=True)
-        self.bridge = QPushButton("Bridge by blending", self)
+        self.bridge = QPushButton(tr("Bridge by blending"), self)
         self.bridge.setAutoDefault(False)
-        self.bridge.setToolTip("Makes transitions that are blends from pose to pose, as one step (B)")
+        self.bridge.setToolTip(tr("Makes transitions that are blends from pose to pose, as one step (B)"))
         self.bridge.clicked.connect(self.bridge_wanted)
         for widget in (self.list, self.sure, self.bridge):
             widget.setFocusPolicy(
@@ -111,9 +114,9 @@ class ReviewQueue(QWidget):
         self.clips, self.aside, self._items = tuple(clips), tuple(aside), {}
         for clip in (*clips, *aside):
             if aside and clip == aside[0]:
-                head = QTreeWidgetItem(self.list, [f"Left aside ({len(aside)})", ""])
+                head = QTreeWidgetItem(self.list, [tr("Left aside ({count})", count=len(aside)), ""])
                 head.setFlags(Qt.ItemFlag.NoItemFlags)
-                head.setToolTip(0, "None of the four kinds; choose a kind to label one all the same")
+                head.setToolTip(0, tr("None of the four kinds; choose a kind to label one all the same"))
             item = self._items[clip] = QTreeWidgetItem(self.list, ["", ""])
             item.setData(0, CLIP, clip)
             item.setTextAlignment(1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
@@ -123,12 +126,18 @@ class ReviewQueue(QWidget):
         """Tell of stances, by name, that no clip leads to or from, or else what was made of blends."""
         names = ", ".join(stances[:4]) + (" …" if len(stances) > 4 else "")
         if stances:
-            them = "it" if len(stances) == 1 else "them"
+            found = many(len(stances), "stance")
             self.parted.setText(
-                f"No clip leads to {many(len(stances), 'stance')}, or back from {them}: {names}."
+                tr("No clip leads to {stances}, or back from it: {names}.", stances=found, names=names)
+                if len(stances) == 1
+                else tr("No clip leads to {stances}, or back from them: {names}.", stances=found, names=names)
             )
         else:
-            self.parted.setText(f"{many(len(made), 'transition')} made by blending." if made else "")
+            self.parted.setText(
+                tr("{transitions} made by blending.", transitions=many(len(made), "transition"))
+                if made
+                else ""
+            )
         self.parted.setToolTip("\n".join(stances if stances else made))
         self.parted.setVisible(bool(stances or made))
         self.bridge.setVisible(bool(stances))
@@ -149,7 +158,9 @@ class ReviewQueue(QWidget):
                 continue
             if p is None:
                 item.setText(0, f"–  {entry.name}")
-                item.setToolTip(0, f"{entry.name}: left aside, {review.found.aside.get(clip, '')}")
+                item.setToolTip(
+                    0, tr("{name}: left aside, {why}", name=entry.name, why=review.found.aside.get(clip, ""))
+                )
                 for column in (0, 1):
                     item.setForeground(column, QColor(look.dim))
                 continue
@@ -169,12 +180,20 @@ class ReviewQueue(QWidget):
         self.bar.setMaximum(max(1, total))
         self.bar.setValue(total - left)
         if not total:
-            what = "All that is left was left aside." if self.aside else "Every clip is placed."
+            what = tr("All that is left was left aside.") if self.aside else tr("Every clip is placed.")
             self.words.setText(what)
         elif not left:
-            self.words.setText(f"All {total} clips are placed.")
+            self.words.setText(tr("All {total} clips are placed.", total=total))
         else:
-            how = "at your pace" if pace.known else "at the usual pace"
-            self.words.setText(f"{total - left} of {total} placed, {about(pace.left(left))} left {how}")
-        self.sure.setText(f"Accept {sure} sure" if sure else "None is so sure")
+            how = tr("at your pace") if pace.known else tr("at the usual pace")
+            self.words.setText(
+                tr(
+                    "{placed} of {total} placed, {time} left {how}",
+                    placed=total - left,
+                    total=total,
+                    time=about(pace.left(left)),
+                    how=how,
+                )
+            )
+        self.sure.setText(tr("Accept {sure} sure", sure=sure) if sure else tr("None is so sure"))
         self.sure.setEnabled(sure > 0)

@@ -11,6 +11,7 @@ from PySide6.QtCore import QElapsedTimer, QObject, QTimer, Signal
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.project.learned import Learned
+from app.translation import tr
 from metagraph.graph.model import Kind, Project
 from metagraph.suggest.accept import Taken
 from metagraph.suggest.bridges import bridged, missing, told
@@ -53,7 +54,7 @@ class Reviewing(QObject):
         """Propose what the clips are that are not placed yet, on a thread."""
         project = self.document.project
         self.jobs.start(
-            "Proposing labels", lambda job: self._proposals(project, None, job), self._first, self._failed
+            tr("Proposing labels"), lambda job: self._proposals(project, None, job), self._first, self._failed
         )
 
     def _first(self, found: Proposals) -> None:
@@ -191,7 +192,7 @@ class Reviewing(QObject):
         after, made = bridged(self.document.project)
         if made:
             self._steps.append(None)
-            self.document.edit("Bridge by blending", lambda p: bridged(p)[0])
+            self.document.edit(tr("Bridge by blending"), lambda p: bridged(p)[0])
         return tuple(told(after, made))
 
     def _learn(self, clips: list[str]) -> None:

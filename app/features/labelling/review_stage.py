@@ -26,6 +26,7 @@ from app.stage.figures import Figures
 from app.stage.gl_view import make_view
 from app.stage.playback_source import Shown
 from app.stage.session import Session
+from app.translation import tr
 from preview.camera import whole_figure
 from preview.figure import Figure
 from preview.scene import THEMES, Actor, Scene
@@ -45,7 +46,7 @@ class Strip(QWidget):
         self.session = session
         self.length, self.seconds = 1.0, 0.0
         self.span: Span | None = None
-        self.setAccessibleName("Playhead")
+        self.setAccessibleName(tr("Playhead"))
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
     def sizeHint(self) -> QSize:

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from html import escape
 
+from app.translation import tr
 from metagraph.graph.model import KINDS, LAYERS
 from metagraph.suggest.review import Review
 
@@ -67,13 +68,22 @@ class Watching:
         """Say as rich text how far it is, and what the keys do."""
         done, every = len(self.watched), len(self._order)
         if clip is None:
-            return f"<b>{done} of {every} watched.</b> Enter accepts them as they are shown."
+            return tr(
+                "<b>{done} of {every} watched.</b> Enter accepts them as they are shown.",
+                done=done,
+                every=every,
+            )
         state = (
-            "Held: correct it, Enter goes on"
+            tr("Held: correct it, Enter goes on")
             if self.held
-            else "Any correction holds, Tab leaves it out, W ends and accepts"
+            else tr("Any correction holds, Tab leaves it out, W ends and accepts")
         )
-        return f"<b>Watching {min(done + 1, every)} of {every}</b> &nbsp; {escape(state)}"
+        return tr(
+            "<b>Watching {number} of {every}</b> &nbsp; {state}",
+            number=min(done + 1, every),
+            every=every,
+            state=escape(state),
+        )
 
 
 def ordered(review: Review, waiting: Sequence[str]) -> list[str]:

@@ -9,28 +9,30 @@ from html import escape
 
 from app.look.plural import many
 from app.look.theme import KIND_MARKS, KIND_TITLES, Theme
+from app.translation import tr
+from app.widgets.vocabulary import titled
 from metagraph.graph.model import Project
 from metagraph.suggest.proposal import Proposal
 from metagraph.suggest.review import Review
 
 KEYS = (
-    ("Enter", "accept"),
-    ("↑ ↓", "field"),
-    ("← → 1–9", "change"),
-    ("Tab", "next"),
-    ("⇧Tab", "back"),
-    ("Backspace", "undo"),
-    ("Space", "pause"),
-    (", .", "frame"),
-    ("[ ]", "start, end here"),
-    ("C", "alone"),
-    ("N", "new stance"),
-    ("T", "tags"),
-    ("A", "accept the sure"),
-    ("W", "watch all"),
-    ("B", "bridge stances"),
+    (tr("Enter"), tr("accept")),
+    ("↑ ↓", tr("field")),
+    ("← → 1–9", tr("change")),
+    ("Tab", tr("next")),
+    ("⇧Tab", tr("back")),
+    (tr("Backspace"), tr("undo")),
+    (tr("Space"), tr("pause")),
+    (", .", tr("frame")),
+    ("[ ]", tr("start, end here")),
+    ("C", tr("alone")),
+    ("N", tr("new stance")),
+    ("T", tr("tags")),
+    ("A", tr("accept the sure")),
+    ("W", tr("watch all")),
+    ("B", tr("bridge stances")),
 )
-ANYWAY = "Left aside; choose what it is to label it all the same."
+ANYWAY = tr("Left aside; choose what it is to label it all the same.")
 
 
 def legend(look: Theme) -> str:
@@ -46,20 +48,20 @@ def headline(review: Review, project: Project, clip: str, look: Theme) -> str:
     """Return what a clip is taken for as rich text, and what speaks against it."""
     if clip not in review.found.proposals:
         return (
-            f'<span style="font-size:17px; font-weight:600">Left aside</span><br>'
+            f'<span style="font-size:17px; font-weight:600">{tr("Left aside")}</span><br>'
             f'<span style="color:{look.dim}">{escape(project.clips[clip].name)}</span><br>'
             f"{escape(review.found.aside.get(clip, ''))}"
         )
     p, places = review.found.proposals[clip], review.found.places
     kind = p.kind.value
-    where = [p.layer.value.capitalize()]
+    where = [titled(p.layer.value)]
     if p.stance is not None:
         where.append(places[p.stance.value].name)
     if p.end_stance is not None:
         where[-1] += f" ➜ {places[p.end_stance.value].name}"
     lines = [
         f'<span style="font-size:17px; font-weight:600; color:{look.kinds[kind]}">{KIND_MARKS[kind]} '
-        f"{KIND_TITLES[kind]}</span>"
+        f"{tr(KIND_TITLES[kind])}</span>"
         f'<span style="font-size:15px"> &nbsp;{escape("  ·  ".join(where))}</span>',
         f'<span style="color:{look.dim}">{escape(project.clips[clip].name)}</span>',
     ]
@@ -70,22 +72,34 @@ def headline(review: Review, project: Project, clip: str, look: Theme) -> str:
 
 def rest(aside: Sequence[str]) -> str:
     """Return what is said when nothing is left but clips that were left aside."""
-    were = "was" if len(aside) == 1 else "were"
-    return f"<b>Every clip is placed</b> but {many(len(aside), 'clip')} that {were} left aside."
+    if len(aside) == 1:
+        return tr("<b>Every clip is placed</b> but one that was left aside.")
+    return tr("<b>Every clip is placed</b> but {clips} that were left aside.", clips=many(len(aside), "clip"))
 
 
 def timing(p: Proposal, duration: float) -> str:
     """Return a proposal's times as rich text. duration: of the clip, in seconds."""
     t, end = p.timing, p.timing.get("end")
     parts = [
-        f"From {t.get('start') or 0.0:.2f} to {duration if end is None else end:.2f} s of {duration:.2f}"
+        tr(
+            "From {start:.2f} to {end:.2f} s of {duration:.2f}",
+            start=t.get("start") or 0.0,
+            end=duration if end is None else end,
+            duration=duration,
+        )
     ]
     if t.get("blend_in") or t.get("blend_out"):
-        parts.append(f"blends {t.get('blend_in') or 0.0:.2f} s in, {t.get('blend_out') or 0.0:.2f} s out")
+        parts.append(
+            tr(
+                "blends {begin:.2f} s in, {end:.2f} s out",
+                begin=t.get("blend_in") or 0.0,
+                end=t.get("blend_out") or 0.0,
+            )
+        )
     if t.get("earliest_exit") is not None:
-        parts.append(f"may be left from {t['earliest_exit']:.2f} s")
+        parts.append(tr("may be left from {seconds:.2f} s", seconds=t["earliest_exit"]))
     if t.get("loop"):
-        parts.append("loops")
+        parts.append(tr("loops"))
     words = [", ".join(parts)]
     if p.timing_reason and p.good is not False:
         words[0] += f": {p.timing_reason}"
@@ -96,14 +110,16 @@ def timing(p: Proposal, duration: float) -> str:
                 if name == "likelihood"
                 else f"{belief.value:.2f} s"
                 if name == "stroke"
-                else "some joints"
+                else tr("some joints")
             )
-            words.append(f"{name.capitalize()} {value}: {belief.reason}")
+            words.append(f"{titled(name)} {value}: {belief.reason}")
     return "<br>".join(map(escape, words))
 
 
 def about(seconds: float) -> str:
     """Return a length of time in words a person can grasp."""
     return (
-        f"about {round(seconds / 60)} min" if seconds >= 90 else f"about {max(5, round(seconds / 5) * 5)} s"
+        tr("about {minutes} min", minutes=round(seconds / 60))
+        if seconds >= 90
+        else tr("about {seconds} s", seconds=max(5, round(seconds / 5) * 5))
     )

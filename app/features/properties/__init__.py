@@ -10,6 +10,7 @@ from app.shell.places import Places
 from app.shell.verbs import Verbs
 from app.stage.compatibility_state import Compatibility
 from app.stage.problem_watch import ProblemWatch
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -44,7 +45,7 @@ def contribute(shell: Shell) -> Contribution:
         panels=(
             Panel(
                 "properties",
-                "Properties",
+                tr("Properties"),
                 "right below",
                 make,
                 where={"time": "list", "graph": "below", "label": "below"},
@@ -56,9 +57,9 @@ def contribute(shell: Shell) -> Contribution:
                 "use_times",
                 "&Graph",
                 "author",
-                "Use proposed &times",
+                tr("Use proposed &times"),
                 lambda: compatibility.use_proposed(session.selection.actions),
-                tip="Begin and end where no jump shows",
+                tip=tr("Begin and end where no jump shows"),
                 enabled=lambda: bool(session.selection.actions) and compatibility.judged is not None,
                 when="meta",
                 study="labels",

@@ -19,13 +19,16 @@ from PySide6.QtWidgets import (
 from app.features.properties.page_form import Edit, form_in
 from app.features.properties.timing_plot import TimingPlot
 from app.features.properties.variation_rows import ActionRows
+from app.look.plural import many
 from app.look.theme import KIND_MARKS, KIND_TITLES, theme
 from app.project.document import Document
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.choice_row import LimbRow
 from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, common
 from app.widgets.halves import Halves
 from app.widgets.making import make_widget
+from app.widgets.vocabulary import titled
 from metagraph.graph import edits
 from metagraph.graph.model import LIMBS, Action
 from metagraph.playback.timing import retimed
@@ -49,18 +52,20 @@ class ActionPage(Halves):
         upper.setContentsMargins(0, 0, 0, 0)
         upper.setSpacing(8)
         head = QHBoxLayout()
-        self.name = Field(page, "Name of the action", "Name")
+        self.name = Field(page, tr("Name of the action"), tr("Name"))
         self.name.editingFinished.connect(self._rename)
         self.kind = QLabel(page)
         head.addWidget(self.name, 1)
         head.addWidget(self.kind)
-        self.timing = make_widget(QToolButton, page, text="Timing", toolTip="Show its timing whole")
+        self.timing = make_widget(QToolButton, page, text=tr("Timing"), toolTip=tr("Show its timing whole"))
         self.timing.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.timing.clicked.connect(self.time_wanted)
         head.addWidget(self.timing)
         upper.addLayout(head)
         self.plot = TimingPlot(document, session, page)
-        self.plot.changed.connect(lambda fields: self._set("Change timing", merge="timing", timing=fields))
+        self.plot.changed.connect(
+            lambda fields: self._set(tr("Change timing"), merge="timing", timing=fields)
+        )
         self.plot.finished.connect(document.finish_merging)
         upper.addWidget(self.plot)
         form = form_in(box)
@@ -74,45 +79,47 @@ class ActionPage(Halves):
             form.addRow(title, row)
             return row
 
-        self.start, self.end = Seconds(page, "Start in the clip"), Seconds(page, "End in the clip")
-        self.blend_in, self.blend_out = Seconds(page, "Blend in"), Seconds(page, "Blend out")
-        pair("Start, end", self.start, self.end)
-        self.blend_row = pair("Blend in, out", self.blend_in, self.blend_out)
+        self.start, self.end = Seconds(page, tr("Start in the clip")), Seconds(page, tr("End in the clip"))
+        self.blend_in, self.blend_out = Seconds(page, tr("Blend in")), Seconds(page, tr("Blend out"))
+        pair(tr("Start, end"), self.start, self.end)
+        self.blend_row = pair(tr("Blend in, out"), self.blend_in, self.blend_out)
         self.start.valueChanged.connect(lambda v: self._timing("start", v))
         self.end.valueChanged.connect(lambda v: self._timing("end", v))
         self.blend_in.valueChanged.connect(lambda v: self._timing("blend_in", v))
         self.blend_out.valueChanged.connect(lambda v: self._timing("blend_out", v))
-        self.leave = QCheckBox("early, from", page)
-        self.leave.setAccessibleName("May be left early")
-        self.leave.setToolTip("Whether what comes next may begin before its end")
+        self.leave = QCheckBox(tr("early, from"), page)
+        self.leave.setAccessibleName(tr("May be left early"))
+        self.leave.setToolTip(tr("Whether what comes next may begin before its end"))
         self.leave.clicked.connect(self._leave)
-        self.earliest = Seconds(page, "Earliest exit: from here on the action may be left")
+        self.earliest = Seconds(page, tr("Earliest exit: from here on the action may be left"))
         self.earliest.valueChanged.connect(lambda v: self._timing("earliest_exit", v))
-        self.leave_row = pair("Exit", self.leave, self.earliest)
+        self.leave_row = pair(tr("Exit"), self.leave, self.earliest)
         self.limb = LimbRow(page, "stance")
-        self.limb.chosen.connect(lambda n: self._set("Change limb", limb=LIMBS[n]))
-        form.addRow("Limb", self.limb)
+        self.limb.chosen.connect(lambda n: self._set(tr("Change limb"), limb=LIMBS[n]))
+        form.addRow(tr("Limb"), self.limb)
         self.tags = Field(
-            page, "Words apart by commas; requests can ask for them: positive, negative, ...", "Tags"
+            page, tr("Words apart by commas; requests can ask for them: positive, negative, ..."), tr("Tags")
         )
         self.tags.editingFinished.connect(self._retag)
-        form.addRow("Tags", self.tags)
-        self.likelihood = Seconds(page, "Likelihood against the others of its node; 1 is usual", 100, "", 0.1)
+        form.addRow(tr("Tags"), self.tags)
+        self.likelihood = Seconds(
+            page, tr("Likelihood against the others of its node; 1 is usual"), 100, "", 0.1
+        )
         self.likelihood.valueChanged.connect(self._likely)
-        form.addRow("Likelihood", self.likelihood)
+        form.addRow(tr("Likelihood"), self.likelihood)
         self.variation = ActionRows(form, page)
         self.variation.changed.connect(lambda text, fields: self._set(text, **fields))
-        self.stance = Chooser(page, toolTip="The stance it starts from")
+        self.stance = Chooser(page, toolTip=tr("The stance it starts from"))
         self.stance.activated.connect(self._restance)
-        form.addRow("Stance", self.stance)
-        self.ends = Chooser(page, toolTip="The stance it ends in")
+        form.addRow(tr("Stance"), self.stance)
+        self.ends = Chooser(page, toolTip=tr("The stance it ends in"))
         self.ends.activated.connect(self._reend)
-        form.addRow("Ends in", self.ends)
+        form.addRow(tr("Ends in"), self.ends)
         self.form = form
-        self.joints = make_widget(QPushButton, page, toolTip="Let it move only some joints")
+        self.joints = make_widget(QPushButton, page, toolTip=tr("Let it move only some joints"))
         self.joints.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # after a click the space bar still plays
         self.joints.clicked.connect(self._mask)
-        form.addRow("Joints", self.joints)
+        form.addRow(tr("Joints"), self.joints)
         self.trouble = QLabel(page, wordWrap=True)
         box.addWidget(self.trouble)
         box.addStretch(1)
@@ -127,9 +134,9 @@ class ActionPage(Halves):
         kind, layer = common([a.kind for a in actions]), common([a.layer for a in actions])
         self.name.setReadOnly(not one)
         of = tuple(a.id for a in actions)
-        self.name.show_text(actions[0].name if one else f"{len(actions)} actions", of)
-        title = f"{KIND_MARKS[kind]} {KIND_TITLES[kind]}" if kind is not Mixed else "Mixed kinds"
-        self.kind.setText(f"{title} · {layer.capitalize() if layer is not Mixed else 'layers'}")
+        self.name.show_text(actions[0].name if one else many(len(actions), "action"), of)
+        title = f"{KIND_MARKS[kind]} {tr(KIND_TITLES[kind])}" if kind is not Mixed else tr("Mixed kinds")
+        self.kind.setText(f"{title} · {titled(layer) if layer is not Mixed else tr('layers')}")
         self.kind.setStyleSheet(f"color: {t.kinds[kind]}" if kind is not Mixed else "")
         self.plot.setVisible(one)
         self.plot.set_curves(not self.low)
@@ -144,7 +151,7 @@ class ActionPage(Halves):
         stance = kind == "stance"
         blend_title = self.form.labelForField(self.blend_row)
         if isinstance(blend_title, QLabel):
-            blend_title.setText("Blend at seam" if stance else "Blend in, out")
+            blend_title.setText(tr("Blend at seam") if stance else tr("Blend in, out"))
         self.blend_out.setVisible(not stance)
         self.form.setRowVisible(self.leave_row, not stance)
         exits = common([a.timing.earliest_exit for a in actions])
@@ -163,13 +170,17 @@ class ActionPage(Halves):
         self.limb.show_limb(common([a.limb for a in actions]))
         tags = common([a.tags for a in actions])
         self.tags.show_text("" if tags is Mixed else ", ".join(tags), of)
-        self.tags.setPlaceholderText(MIXED if tags is Mixed else "positive, greeting, …")
+        self.tags.setPlaceholderText(MIXED if tags is Mixed else tr("positive, greeting, …"))
         self.likelihood.show_value(common([a.likelihood for a in actions]))
         self.variation.show_actions(project, actions)
         self._fill_stances(actions, kind)
         masks = common([a.joints for a in actions])
         self.joints.setText(
-            MIXED if masks is Mixed else f"{len(masks)} joints only" if masks else "all its layer reaches"
+            MIXED
+            if masks is Mixed
+            else tr("{count} joints only", count=len(masks))
+            if masks
+            else tr("all its layer reaches")
         )
         self.joints.setEnabled(project.skeleton is not None)
         self._show_trouble()
@@ -196,7 +207,7 @@ class ActionPage(Halves):
         ):
             shared = common(values)
             box.show_entries(
-                [(s.name, s.id) for s in stances], shared, MIXED if shared is Mixed else "choose one"
+                [(s.name, s.id) for s in stances], shared, MIXED if shared is Mixed else tr("choose one")
             )
             box.setEnabled(bool(stances))
         self.form.setRowVisible(self.ends, kind == "transition")
@@ -210,7 +221,7 @@ class ActionPage(Halves):
             self.show_actions(self.session.selection.selected_actions())
             return
         chosen = self.session.selection.actions
-        self.edit("Change timing", lambda p: retimed(p, chosen, field, value))
+        self.edit(tr("Change timing"), lambda p: retimed(p, chosen, field, value))
         self.show_actions(self.session.selection.selected_actions())  # what was out of the clip was clamped
 
     def _leave(self) -> None:
@@ -228,35 +239,35 @@ class ActionPage(Halves):
                     else at
                 }
             }
-        self.edit("Change earliest exit", lambda p: edits.update_each(p, exits))
+        self.edit(tr("Change earliest exit"), lambda p: edits.update_each(p, exits))
 
     def _rename(self) -> None:
         actions = self.session.selection.selected_actions()
         name = " ".join(self.name.text().split())
         if len(actions) == 1 and name and name != actions[0].name:
-            self._set("Rename action", name=name)
+            self._set(tr("Rename action"), name=name)
 
     def _retag(self) -> None:
         actions = self.session.selection.selected_actions()
         tags = tuple(dict.fromkeys(w.strip().lower() for w in self.tags.text().split(",") if w.strip()))
         mixed = actions and common([a.tags for a in actions]) is Mixed
         if actions and not (mixed and not tags) and any(a.tags != tags for a in actions):
-            self._set("Change tags", tags=tags)
+            self._set(tr("Change tags"), tags=tags)
 
     def _likely(self, value: float) -> None:
         if value > 0:
-            self._set("Change likelihood", likelihood=round(value, 3))
+            self._set(tr("Change likelihood"), likelihood=round(value, 3))
         else:
             self.show_actions(self.session.selection.selected_actions())
 
     def _restance(self, place: int) -> None:
         stance, chosen = self.stance.itemData(place), self.session.selection.actions
-        if self.edit("Move to another stance", lambda p: edits.to_stance(p, chosen, stance)):
+        if self.edit(tr("Move to another stance"), lambda p: edits.to_stance(p, chosen, stance)):
             self.session.place.set_stance(stance)
 
     def _reend(self, place: int) -> None:
         stance, chosen = self.ends.itemData(place), self.session.selection.actions
-        self.edit("Change end stance", lambda p: edits.set_ends(p, chosen, stance))
+        self.edit(tr("Change end stance"), lambda p: edits.set_ends(p, chosen, stance))
 
     def _mask(self) -> None:
         from app.widgets.joint_mask import MaskDialog

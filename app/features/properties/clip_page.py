@@ -9,9 +9,12 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QLabel, QWidget
 
 from app.features.properties.page_form import page_box
+from app.look.plural import many
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import Session
+from app.translation import tr
+from app.widgets.vocabulary import word
 
 
 class ClipPage(QWidget):
@@ -42,22 +45,38 @@ class ClipPage(QWidget):
             self.title.setText(e.name)
             notes = "".join(
                 f"\n\n{note}"
-                for note in (e.motion.notes if e.motion is not None else ("The file is missing.",))
+                for note in (e.motion.notes if e.motion is not None else (tr("The file is missing."),))
             )
-            self.words.setText(f"{e.duration:.2f} s, {e.frames} frames at {e.fps:g} fps\n{e.path}{notes}")
+            self.words.setText(
+                tr(
+                    "{duration:.2f} s, {frames} frames at {fps:g} fps\n{path}{notes}",
+                    duration=e.duration,
+                    frames=e.frames,
+                    fps=e.fps,
+                    path=e.path,
+                    notes=notes,
+                )
+            )
         else:
-            self.title.setText(f"{len(entries)} clips")
-            self.words.setText(f"{total:.1f} s together")
+            self.title.setText(many(len(entries), "clip"))
+            self.words.setText(tr("{total:.1f} s together", total=total))
         lines = []
         for action in [a for c in clips for a in project.uses.get(c, ())][:20]:
             stance = project.stance(action.stance)
             color = t.kinds[action.kind]
-            where = escape(f"{action.kind} of {stance.name if stance else '?'}, {action.layer}")
+            where = escape(
+                tr(
+                    "{kind} of {stance}, {layer}",
+                    kind=word(action.kind),
+                    stance=stance.name if stance else "?",
+                    layer=word(action.layer),
+                )
+            )
             lines.append(
                 f"<p style='margin:2px'><span style='color:{color}'>{KIND_MARKS[action.kind]}</span> "
                 f"<a style='color:{t.text}' href='{action.id}'>{where}</a></p>"
             )
-        keys = (
+        keys = tr(
             "<p>Drag onto a node, or press <b>1</b> stance, <b>2</b> gesture, <b>3</b> fidget, <b>4</b> "
             "transition.</p>"
         )

@@ -10,7 +10,9 @@ from app.features.properties.page_form import Edit, form_in, page_box
 from app.features.properties.variation_rows import PlannerRows
 from app.project.document import Document
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.form_fields import Chooser, Seconds
+from app.widgets.vocabulary import titled, word
 from metagraph.graph import edits
 from metagraph.graph.model import PARTS, REACH
 from metagraph.graph.words import Part
@@ -25,7 +27,10 @@ class LayerPage(QWidget):
         self.title.setProperty("title", True)
         box.addWidget(self.title)
         words = QLabel(
-            "Select an action to see its timing. The layer moves these body parts, added to the base pose:",
+            tr(
+                "Select an action to see its timing. The layer moves these body parts, added to "
+                "the base pose:"
+            ),
             self,
             wordWrap=True,
         )
@@ -35,32 +40,36 @@ class LayerPage(QWidget):
         self.weights: dict[str, Seconds] = {}
         for part in PARTS:
             field = Seconds(
-                self, f"Weight on the {part}: 0 not at all, 1 as in the clip, 2 twice as much", 2, "", 0.1
+                self,
+                tr("Weight on the {part}: 0 not at all, 1 as in the clip, 2 twice as much", part=word(part)),
+                2,
+                "",
+                0.1,
             )
             field.valueChanged.connect(lambda v, p=part: self._weigh(p, v))
             self.weights[part] = field
-            form.addRow(part.capitalize(), field)
+            form.addRow(titled(part), field)
         line = QFrame(self, frameShape=QFrame.Shape.HLine)
         line.setStyleSheet("color: palette(mid)")
         box.addWidget(line)
         form = form_in(box)
         self.gap = Seconds(
-            self, "Mean seconds of rest between two actions when nobody asks for any", 60, " s", 0.2
+            self, tr("Mean seconds of rest between two actions when nobody asks for any"), 60, " s", 0.2
         )
         self.gap.valueChanged.connect(self._set_gap)
-        form.addRow("Rest between", self.gap)
+        form.addRow(tr("Rest between"), self.gap)
         self.base = Chooser(
-            self, toolTip="The pose all layers are added to; a neutral one, hands at the sides"
+            self, toolTip=tr("The pose all layers are added to; a neutral one, hands at the sides")
         )
         self.base.activated.connect(self._set_base)
-        form.addRow("Base pose", self.base)
-        self.base_frame = Seconds(self, "Frame of that clip", 1e6, "", 1, 0)
+        form.addRow(tr("Base pose"), self.base)
+        self.base_frame = Seconds(self, tr("Frame of that clip"), 1e6, "", 1, 0)
         self.base_frame.valueChanged.connect(self._set_base_frame)
-        form.addRow("At frame", self.base_frame)
+        form.addRow(tr("At frame"), self.base_frame)
         line = QFrame(self, frameShape=QFrame.Shape.HLine)
         line.setStyleSheet("color: palette(mid)")
         box.addWidget(line)
-        words = QLabel("All layers, when something is chosen:", self, wordWrap=True)
+        words = QLabel(tr("All layers, when something is chosen:"), self, wordWrap=True)
         words.setProperty("dim", True)
         box.addWidget(words)
         self.planner = PlannerRows(form_in(box), self, edit)
@@ -70,14 +79,14 @@ class LayerPage(QWidget):
         """Show the current layer's."""
         project, layer = self.document.project, self.session.place.layer
         graph = project.graphs[layer]
-        self.title.setText(f"{layer.capitalize()} layer")
+        self.title.setText(tr("{layer} layer", layer=titled(layer)))
         for part in PARTS:
             self.weights[part].show_value(graph.weights.get(part, REACH[layer][part]))
         from metagraph.playback.markov import model
 
         self.gap.show_value(model(project, layer).gap)
-        clips = [("Rest pose of the skeleton", None), *((e.name, e.id) for e in project.clips.values())]
-        self.base.show_entries(clips, project.base.clip, "a clip that is gone")
+        clips = [(tr("Rest pose of the skeleton"), None), *((e.name, e.id) for e in project.clips.values())]
+        self.base.show_entries(clips, project.base.clip, tr("a clip that is gone"))
         self.base.setEnabled(bool(project.clips))
         self.base_frame.setEnabled(project.base.clip is not None)
         self.base_frame.show_value(project.base.frame)
@@ -88,7 +97,7 @@ class LayerPage(QWidget):
             self.show_layer()
         else:
             layer = self.session.place.layer
-            self.edit("Change layer weight", lambda p: edits.set_weight(p, layer, part, round(value, 2)))
+            self.edit(tr("Change layer weight"), lambda p: edits.set_weight(p, layer, part, round(value, 2)))
 
     def _set_gap(self, value: float) -> None:
         from metagraph.playback.markov import model
@@ -98,15 +107,15 @@ class LayerPage(QWidget):
             self.show_layer()
         else:
             self.edit(
-                "Change rest between actions",
+                tr("Change rest between actions"),
                 lambda p: edits.set_markov(p, replace(model(p, layer), gap=round(value, 2))),
             )
 
     def _set_base(self, place: int) -> None:
         clip = self.base.itemData(place)
-        self.edit("Set base pose", lambda p: edits.set_base(p, clip, 0))
+        self.edit(tr("Set base pose"), lambda p: edits.set_base(p, clip, 0))
 
     def _set_base_frame(self, value: float) -> None:
         clip = self.document.project.base.clip
         if clip is not None and value >= 0:
-            self.edit("Set base pose", lambda p: edits.set_base(p, clip, int(value)))
+            self.edit(tr("Set base pose"), lambda p: edits.set_base(p, clip, int(value)))

@@ -24,18 +24,19 @@ from app.look.theme import Theme, theme
 from app.project.document import Document
 from app.stage.compatibility_state import Compatibility, proposed_fields
 from app.stage.session import Session
+from app.translation import tr
 from metagraph.graph.model import Action, Project
 from metagraph.motion.clip import Clip
 from metagraph.playback.speed_curves import speed_of
 from metagraph.playback.timing import BANDS, HANDLES, PHASES, moved, times_of
 
 WORDS = {
-    "start": "start",
-    "end": "end",
-    "in": "blend in",
-    "out": "blend out",
-    "exit": "earliest exit",
-    "stroke": "stroke",
+    "start": tr("start"),
+    "end": tr("end"),
+    "in": tr("blend in"),
+    "out": tr("blend out"),
+    "exit": tr("earliest exit"),
+    "stroke": tr("stroke"),
 }
 SNAP = 7  # pixels within which a handle comes to rest at a moment that does not jump
 
@@ -95,7 +96,7 @@ class TimingPlot(QWidget):
         self.strip = JumpStrip(self, self.plot)
         layout.addWidget(self.strip)
         self.verdict = QLabel(self, wordWrap=True)
-        self.use = QPushButton("Use proposed times", self)
+        self.use = QPushButton(tr("Use proposed times"), self)
         self.use.setFocusPolicy(Qt.FocusPolicy.TabFocus)  # after a click the space bar still plays
         self.use.clicked.connect(self.use_proposed)
         row = QHBoxLayout()
@@ -153,7 +154,7 @@ class TimingPlot(QWidget):
         self.verdict.setText(verdict(costs, far))
         fine = max(costs.values()) <= 1 and not far
         self.verdict.setStyleSheet(f"color: {t.dim if fine else t.warning}")
-        self.use.setToolTip(f"{times_words(seen)}: it {seen.proposed.reason}")
+        self.use.setToolTip(tr("{times}: it {reason}", times=times_words(seen), reason=seen.proposed.reason))
 
     def _proposed(self) -> dict[str, Any]:
         """Return the Timing fields that the proposed times would change."""
@@ -201,7 +202,7 @@ class TimingPlot(QWidget):
             self.curve.setData(np.arange(len(speeds)) / entry.fps, speeds)
             self.plot.setXRange(-0.02 * entry.duration, max(entry.duration, 0.1) * 1.02, padding=0)
             self.plot.setYRange(0, max(0.2, float(speeds.max()) * 1.15 if len(speeds) else 1.0), padding=0)
-            self.plot.setToolTip(f"{words}, m/s. Drag the lines; a click moves the playhead.")
+            self.plot.setToolTip(tr("{words}, m/s. Drag the lines; a click moves the playhead.", words=words))
             self.strip.show_seen(project, action, None)
             self.verdict.setText("")
         self.curve.setPen(pg.mkPen(color, width=2))

@@ -11,6 +11,7 @@ from typing import Any
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QCheckBox, QFormLayout, QHBoxLayout, QToolButton, QWidget
 
+from app.translation import tr
 from app.widgets.form_fields import MIXED, Mixed, Seconds, common
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import SpinBox
@@ -20,9 +21,9 @@ from metagraph.playback.phases import phases
 
 PHASE_FIELDS = ("ready", "stroke_end", "relax")
 PHASE_WORDS = {
-    "ready": "The preparation ends",
-    "stroke_end": "The hold begins",
-    "relax": "The hold ends, the retraction begins",
+    "ready": tr("The preparation ends"),
+    "stroke_end": tr("The hold begins"),
+    "relax": tr("The hold ends, the retraction begins"),
 }
 AS_THE_GRAPH = -1
 
@@ -38,30 +39,30 @@ class ActionRows(QWidget):
         self.form = form
         self.ready, self.stroke_end, self.relax = (Seconds(parent, PHASE_WORDS[f]) for f in PHASE_FIELDS)
         self.found = make_widget(
-            QToolButton, parent, text="As found", toolTip="Take the phases from the motion again"
+            QToolButton, parent, text=tr("As found"), toolTip=tr("Take the phases from the motion again")
         )
-        self.found.setAccessibleName("Phases as found")
+        self.found.setAccessibleName(tr("Phases as found"))
         self.phase_rows = (
-            self._row("Ready", self.ready, self.found),
-            self._row("Hold", self.stroke_end, self.relax),
+            self._row(tr("Ready"), self.ready, self.found),
+            self._row(tr("Hold"), self.stroke_end, self.relax),
         )
         for field, box in zip(PHASE_FIELDS, (self.ready, self.stroke_end, self.relax), strict=True):
             box.valueChanged.connect(partial(self._phase, field))
         self.found.clicked.connect(
-            lambda: self.changed.emit("Take phases as found", {"timing": dict.fromkeys(PHASE_FIELDS)})
+            lambda: self.changed.emit(tr("Take phases as found"), {"timing": dict.fromkeys(PHASE_FIELDS)})
         )
         self.cooldown = Seconds(
-            parent, "Seconds after it has ended in which it is not drawn again", 3600, " s", 0.5, 1
+            parent, tr("Seconds after it has ended in which it is not drawn again"), 3600, " s", 0.5, 1
         )
         self.cooldown.valueChanged.connect(self._cooled)
         self.spacing = SpinBox(
-            parent, toolTip="How many others of its kind and stance play before it may be drawn again"
+            parent, toolTip=tr("How many others of its kind and stance play before it may be drawn again")
         )
-        self.spacing.setAccessibleName("Others between")
+        self.spacing.setAccessibleName(tr("Others between"))
         self.spacing.setRange(-2, 31)
         self.spacing.setKeyboardTracking(False)
         self.spacing.valueChanged.connect(self._spaced)
-        self.rest_row = self._row("Cooldown", self.cooldown, self.spacing)
+        self.rest_row = self._row(tr("Cooldown"), self.cooldown, self.spacing)
 
     def _row(self, title: str, *fields: QWidget) -> QWidget:
         row = QWidget(self.parentWidget())
@@ -90,21 +91,21 @@ class ActionRows(QWidget):
         spacing = common([a.spacing for a in actions])
         self.spacing.blockSignals(True)
         self.spacing.setMinimum(-2 if spacing is Mixed else AS_THE_GRAPH)
-        self.spacing.setSpecialValueText(MIXED if spacing is Mixed else "as usual")
+        self.spacing.setSpecialValueText(MIXED if spacing is Mixed else tr("as usual"))
         self.spacing.setValue(-2 if spacing is Mixed else AS_THE_GRAPH if spacing is None else spacing)
         self.spacing.blockSignals(False)
 
     def _phase(self, field: str, seconds: float) -> None:
         if seconds >= 0:
-            self.changed.emit("Change phases", {"timing": {field: round(seconds, 3)}})
+            self.changed.emit(tr("Change phases"), {"timing": {field: round(seconds, 3)}})
 
     def _cooled(self, seconds: float) -> None:
         if seconds >= 0:
-            self.changed.emit("Change cooldown", {"cooldown": round(seconds, 2)})
+            self.changed.emit(tr("Change cooldown"), {"cooldown": round(seconds, 2)})
 
     def _spaced(self, value: int) -> None:
         if value >= AS_THE_GRAPH:
-            self.changed.emit("Change spacing", {"spacing": None if value == AS_THE_GRAPH else value})
+            self.changed.emit(tr("Change spacing"), {"spacing": None if value == AS_THE_GRAPH else value})
 
 
 class PlannerRows(QWidget):
@@ -116,34 +117,62 @@ class PlannerRows(QWidget):
         super().__init__(parent)
         self.hide()
         self._edit = edit
-        self.never_twice = QCheckBox("never twice in a row", parent)
-        self.never_twice.setToolTip("Where there is another; an action's own number of others between wins")
-        self.never_twice.clicked.connect(lambda on: self._set("Change repetition", never_twice=on))
-        form.addRow("Repetition", self.never_twice)
+        self.never_twice = QCheckBox(tr("never twice in a row"), parent)
+        self.never_twice.setToolTip(
+            tr("Where there is another; an action's own number of others between wins")
+        )
+        self.never_twice.clicked.connect(lambda on: self._set(tr("Change repetition"), never_twice=on))
+        form.addRow(tr("Repetition"), self.never_twice)
         self.fields: dict[str, Seconds] = {}
-        for name, title, tip, most, suffix, step in (
+        for name, title, edit_words, tip, most, suffix, step in (
             (
                 "alpha",
-                "Avoid repeats",
-                "How quickly what was used becomes unlikely; the paper has 4",
+                tr("Avoid repeats"),
+                tr("Change avoid repeats"),
+                tr("How quickly what was used becomes unlikely; the paper has 4"),
                 100,
                 "",
                 0.5,
             ),
-            ("memory", "Remembered for", "How long a use counts against an action; 0 for ever", 600, " s", 5),
-            ("rest", "Least rest", "Seconds in the stance between two actions, at the least", 60, " s", 0.1),
-            ("wait", "Waits at most", "How late something asked for may begin", 60, " s", 0.5),
+            (
+                "memory",
+                tr("Remembered for"),
+                tr("Change remembered for"),
+                tr("How long a use counts against an action; 0 for ever"),
+                600,
+                " s",
+                5,
+            ),
+            (
+                "rest",
+                tr("Least rest"),
+                tr("Change least rest"),
+                tr("Seconds in the stance between two actions, at the least"),
+                60,
+                " s",
+                0.1,
+            ),
+            (
+                "wait",
+                tr("Waits at most"),
+                tr("Change waits at most"),
+                tr("How late something asked for may begin"),
+                60,
+                " s",
+                0.5,
+            ),
             (
                 "lookahead",
-                "Looks ahead",
-                "What begins this soon is not changed any more while performing live",
+                tr("Looks ahead"),
+                tr("Change looks ahead"),
+                tr("What begins this soon is not changed any more while performing live"),
                 10,
                 " s",
                 0.05,
             ),
         ):
             field = Seconds(parent, tip, most, suffix, step)
-            field.valueChanged.connect(partial(self._number, name, f"Change {title.lower()}"))
+            field.valueChanged.connect(partial(self._number, name, edit_words))
             self.fields[name] = field
             form.addRow(title, field)
 

@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.shell.context import Contribution, Panel, Shell
 from app.stage.compatibility_state import Compatibility
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -33,7 +34,7 @@ def contribute(shell: Shell) -> Contribution:
         panels=(
             Panel(
                 "timing",
-                "Timing",
+                tr("Timing"),
                 "bottom",
                 make,
                 where={"time": "below"},

@@ -12,6 +12,7 @@ from app.features.timing_editor.axis import Axis
 from app.features.timing_editor.track import Facts, Kept, Stay
 from app.project.document import Document
 from app.stage.transport import Transport
+from app.translation import tr
 from app.widgets.gesture import PressDrag, Reason
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -130,14 +131,16 @@ class StayDrag(PressDrag):
             return
         longer = (at.x() - self.origin.x()) / self.host.axis.each
         self.seconds = round(min(max(0.0, self.stay.hold.seconds + longer), LONGEST), 2)
-        self.host.held = f"held {self.seconds:.2f} s" if self.seconds >= SHORTEST else "no hold"
+        self.host.held = (
+            tr("held {seconds:.2f} s", seconds=self.seconds) if self.seconds >= SHORTEST else tr("no hold")
+        )
         self.host.update()
 
     def finish(self, at: QPointF) -> None:
         self.host.held = ""
         if self.begun and self.seconds != self.stay.hold.seconds:
             clip, moment, seconds = self.facts.action.clip, self.stay.hold.at, self.seconds
-            self.host.document.edit("Change hold", lambda p: set_hold(p, clip, moment, seconds))
+            self.host.document.edit(tr("Change hold"), lambda p: set_hold(p, clip, moment, seconds))
         self.host.update()
 
     def cancel(self, reason: Reason) -> None:
@@ -190,7 +193,7 @@ class TimingDrag(PressDrag):
             for ident, fields in self.change(was, by).items()
             if (action := was.action(ident)) is not None
         }
-        self.host.document.edit("Change timing", lambda p: edits.update_each(p, changes), MERGE)
+        self.host.document.edit(tr("Change timing"), lambda p: edits.update_each(p, changes), MERGE)
 
     def finish(self, at: QPointF) -> None:
         if self.begun:

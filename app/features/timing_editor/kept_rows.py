@@ -15,7 +15,9 @@ from app.features.timing_editor.hits import Hit
 from app.features.timing_editor.paint import MIDDLE, Look
 from app.features.timing_editor.rows import TrackRows
 from app.features.timing_editor.track import Facts, Kept
+from app.translation import tr
 from app.widgets.gesture import PressDrag, Reason
+from app.widgets.vocabulary import word
 from metagraph.graph.clip_source import course_of
 from metagraph.graph.retiming import set_kept
 from metagraph.playback.timing import WORDS
@@ -86,7 +88,7 @@ def paint_kept(
                 painter.drawText(place, MIDDLE, words)
                 yield Part(kept.place, end).name, place
         middle = inner.adjusted(wide[0] + 8, 0, -wide[1] - 8, 0) if within else inner
-        words = look.elided(f"at {kept.to}", middle.width(), True)
+        words = look.elided(tr("at {place}", place=kept.to), middle.width(), True)
         if len(words) > 3:
             painter.setPen(QColor(t.dim))
             painter.drawText(middle, Qt.AlignmentFlag.AlignCenter, words)
@@ -126,9 +128,13 @@ def tip(facts: Facts, hit: Hit) -> str:
     kept = next((k for k in facts.kept if part is not None and k.place == part.place), None)
     if kept is None:
         return ""
-    return (
-        f"The {kept.hand} stays at {kept.to}, {kept.first:.2f} to {kept.last:.2f} s.\nDrag it or its ends; "
-        "double-click a number to type. To nothing lets the hand go."
+    return tr(
+        "The {hand} stays at {to}, {first:.2f} to {last:.2f} s.\nDrag it or its ends; "
+        "double-click a number to type. To nothing lets the hand go.",
+        hand=kept.hand,
+        to=kept.to,
+        first=kept.first,
+        last=kept.last,
     )
 
 
@@ -162,8 +168,8 @@ class KeptDrag(PressDrag):
             by = min(max(by, -self.kept.first), last - self.kept.last)
             self.now = replace(self.kept, first=self.kept.first + by, last=self.kept.last + by)
             moment = self.now.first
-        kept = f"kept {self.now.first:.2f} to {self.now.last:.2f} s"
-        host.held = f"{self.kept.hand} {kept if self.now.last > self.now.first else 'let go'}"
+        kept = tr("kept {first:.2f} to {last:.2f} s", first=self.now.first, last=self.now.last)
+        host.held = f"{self.kept.hand} {kept if self.now.last > self.now.first else tr('let go')}"
         host.snapped, host.snaps, host.stretched = snap, self.snaps, (self.facts.action.id, self.now)
         host.transport.scrub(self.facts.action.clip, moment)
         host.update()
@@ -193,7 +199,7 @@ def change(host: Host, facts: Facts, kept: Kept) -> None:
     # An end that was not moved stays to the bit: within a hold many seconds are one moment of the file.
     first = old.first if kept.first == was.first else first
     last = old.last if kept.last == was.last else last
-    host.document.edit("Keep hand", lambda p: set_kept(p, clip, kept.place, first, last))
+    host.document.edit(tr("Keep hand"), lambda p: set_kept(p, clip, kept.place, first, last))
 
 
 def set_number(host: Host, facts: Facts, name: str, seconds: float) -> None:
@@ -207,9 +213,9 @@ def set_number(host: Host, facts: Facts, name: str, seconds: float) -> None:
 def _snaps(facts: Facts, playhead: float | None) -> Iterator[Snap]:
     for handle in facts.handles:
         if handle.name not in ("in", "out"):
-            yield Snap(handle.at, f"the action's {WORDS[handle.name]}")
+            yield Snap(handle.at, tr("the action's {handle}", handle=word(WORDS[handle.name])))
     for stay in facts.stays:
-        yield Snap(stay.first, "the clip is held from here on")
-        yield Snap(stay.last, "the clip goes on here")
+        yield Snap(stay.first, tr("the clip is held from here on"))
+        yield Snap(stay.last, tr("the clip goes on here"))
     if playhead is not None:
-        yield Snap(playhead, "the playhead")
+        yield Snap(playhead, tr("the playhead"))

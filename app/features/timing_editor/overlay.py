@@ -13,19 +13,21 @@ from app.features.timing_editor.hits import Hit
 from app.features.timing_editor.paint import Look, ruler_words
 from app.features.timing_editor.rows import RULER, TrackRows
 from app.features.timing_editor.track import Facts, Kept
+from app.translation import tr
+from app.widgets.vocabulary import word
 from metagraph.playback.timing import WORDS
 from metagraph.suggest.snapping import Snap
 
 HINTS = {
-    "start": "where it begins in the clip",
-    "end": "where it ends in the clip",
-    "in": "until here it blends in from its stance",
-    "out": "from here on it blends out to its stance",
-    "exit": "from here on it may be left",
-    "stroke": "its most telling moment, which a stressed word is put on",
-    "ready": "its preparation ends",
-    "hold": "its hold begins",
-    "relax": "its retraction begins",
+    "start": tr("where it begins in the clip"),
+    "end": tr("where it ends in the clip"),
+    "in": tr("until here it blends in from its stance"),
+    "out": tr("from here on it blends out to its stance"),
+    "exit": tr("from here on it may be left"),
+    "stroke": tr("its most telling moment, which a stressed word is put on"),
+    "ready": tr("its preparation ends"),
+    "hold": tr("its hold begins"),
+    "relax": tr("its retraction begins"),
 }
 
 
@@ -159,18 +161,24 @@ def tip(facts: Facts, hit: Hit, seconds: float) -> str:
         return kept_rows.tip(facts, hit)
     if hit.what == "handle":
         found = facts.handle(hit.name)
-        own = "" if found is None or found.own else ", as found from the motion"
+        own = "" if found is None or found.own else tr(", as found from the motion")
         number = f" {found.number:.3f} s" if found is not None else ""
-        return (
-            f"{WORDS[hit.name]}{number}{own}: {HINTS[hit.name]}.\nDrag it, with Alt without coming to rest; "
-            "double-click its number to type."
+        return tr(
+            "{handle}{number}{own}: {hint}.\nDrag it, with Alt without coming to rest; "
+            "double-click its number to type.",
+            handle=word(WORDS[hit.name]),
+            number=number,
+            own=own,
+            hint=HINTS[hit.name],
         )
     if hit.what == "block":
-        return f"{hit.name}: drag it; with Shift all of it plays another part of the clip."
+        return tr(
+            "{name}: drag it; with Shift all of it plays another part of the clip.", name=word(hit.name)
+        )
     if hit.what == "stay":
-        return "The clip is held here. Drag to hold it longer or shorter; to nothing takes the hold away."
+        return tr("The clip is held here. Drag to hold it longer or shorter; to nothing takes the hold away.")
     if hit.what == "ruler":
-        return (
+        return tr(
             "Drag to scrub, with Shift to mark a part that is played again and again; a double click takes "
             "that back."
         )

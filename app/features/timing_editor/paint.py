@@ -13,8 +13,10 @@ from PySide6.QtGui import QBrush, QColor, QFont, QFontMetricsF, QPainter, QPen, 
 from app.features.timing_editor.axis import Axis
 from app.features.timing_editor.numbers import placed
 from app.features.timing_editor.rows import GUTTER, RIGHT, RULER, TITLES, TrackRows
-from app.features.timing_editor.track import Facts
+from app.features.timing_editor.track import Facts, handle_words
 from app.look.theme import KIND_MARKS, Theme
+from app.translation import tr
+from app.widgets.vocabulary import word
 from app.widgets.waveforms import joined, painted
 
 Array = NDArray[Any]
@@ -93,7 +95,9 @@ def names(painter: QPainter, look: Look, rows: TrackRows, facts: Facts) -> None:
         painter.setPen(QPen(t.kind(facts.action.kind), 1.6, LINES[n % 2]))
         painter.drawLine(QPointF(10, y + line / 2), QPointF(24, y + line / 2))
         painter.setPen(QColor(t.dim))
-        painter.drawText(QRectF(29, y, GUTTER - 31, line), MIDDLE, look.elided(curve.name, GUTTER - 31, True))
+        painter.drawText(
+            QRectF(29, y, GUTTER - 31, line), MIDDLE, look.elided(word(curve.name), GUTTER - 31, True)
+        )
         y += line
 
 
@@ -164,7 +168,7 @@ def stays(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Fac
         painter.fillRect(box, QBrush(hatched, Qt.BrushStyle.BDiagPattern))
         painter.setPen(QPen(QColor(look.t.text), 1.2))
         painter.drawLine(box.topRight(), box.bottomRight())
-        words = f"held +{stay.hold.seconds:.2f} s"
+        words = tr("held +{seconds:.2f} s", seconds=stay.hold.seconds)
         if look.wide(words) + 8 <= box.width():
             label = QRectF(box.center().x() - look.wide(words) / 2 - 4, box.center().y() - 8, 0, 16)
             label.setWidth(look.wide(words) + 8)
@@ -188,8 +192,8 @@ def blocks(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: Fa
         painter.drawRoundedRect(box, 3, 3)
         inner = QRectF(max(left, axis.left) + 6, rect.top(), 0, rect.height())
         inner.setRight(min(right, axis.left + axis.width) - 4)
-        full = f"{name} {last - first:.2f} s"
-        words = next((w for w in (full, name) if look.wide(w) <= inner.width()), "")
+        full = f"{word(name)} {last - first:.2f} s"
+        words = next((w for w in (full, word(name)) if look.wide(w) <= inner.width()), "")
         painter.setPen(QColor(INK))
         painter.drawText(inner, MIDDLE, words)
 
@@ -266,7 +270,7 @@ def _numbers(painter: QPainter, look: Look, axis: Axis, rows: TrackRows, facts: 
     rect, t = rows.rows["numbers"], look.t
     painter.setFont(look.small)
     chosen = [h for n in ORDER if (h := facts.handle(n)) is not None]
-    shown = [(h, _words(h.words, h.name, facts, h.at)) for h in chosen if _in_sight(axis, h.at)]
+    shown = [(h, _words(handle_words(h), h.name, facts, h.at)) for h in chosen if _in_sight(axis, h.at)]
     widths = [look.wide(words) + 10 for _, words in shown]
     places = placed(
         [(axis.x(h.at), w) for (h, _), w in zip(shown, widths, strict=True)],

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 
 from PySide6.QtCore import QRectF
 
+from app.translation import tr
+
 RULER, TITLE = 22.0, 20.0
 GUTTER = 78.0  # pixels at the left in which rows are named
 RIGHT = 12.0  # pixels at the right that stay free
@@ -25,7 +27,13 @@ SIZES: dict[str, tuple[float, float, float]] = {
 }
 MOST = {"poses": 150.0, "line": 60.0, "stance": 64.0}
 JOINT = 13.0  # pixels of a joint in the dope sheet
-TITLES = {"poses": "poses", "line": "line", "phases": "phases", "speed": "speed", "stance": "to stance"}
+TITLES = {
+    "poses": tr("poses"),
+    "line": tr("line"),
+    "phases": tr("phases"),
+    "speed": tr("speed"),
+    "stance": tr("to stance"),
+}
 
 
 def size(row: str) -> tuple[float, float, float]:

@@ -21,6 +21,7 @@ from app.stage.onion import Skin
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
+from app.translation import tr
 from app.widgets.memo import Once
 from metagraph.graph import anatomy, edits
 from metagraph.graph.clip_source import course_of
@@ -242,7 +243,7 @@ class Subject(QObject):
             for ident, seconds in at.items()
             if (action := project.action(ident)) is not None and action.clip in project.clips
         }
-        self.document.edit("Change timing", lambda p: edits.update_each(p, changes))
+        self.document.edit(tr("Change timing"), lambda p: edits.update_each(p, changes))
 
     def set_speed(self, speed: float) -> None:
         """Play the clips of all the actions at a speed, in one step. Raises EditError."""
@@ -253,7 +254,7 @@ class Subject(QObject):
                 project = set_speed(project, clip, speed)
             return project
 
-        self.document.edit("Change speed", all_of)
+        self.document.edit(tr("Change speed"), all_of)
 
     def hold_here(self, seconds: float = HELD) -> None:
         """Hold the first action's clip at the playhead for a while longer. Raises EditError."""
@@ -264,7 +265,7 @@ class Subject(QObject):
         clip = facts.action.clip
         at = round(float(course.moments(np.array(facts.span[0] if now is None else now))), 3)
         had = next((h.seconds for h in facts.entry.retime.holds if h.at == at), 0.0)
-        self.document.edit("Hold clip", lambda p: set_hold(p, clip, at, had + seconds))
+        self.document.edit(tr("Hold clip"), lambda p: set_hold(p, clip, at, had + seconds))
 
     def keep_hand(self, side: str) -> None:
         """Keep a hand where it is on the body: during the part that is looped, where one is, else from the
@@ -281,14 +282,14 @@ class Subject(QObject):
         if part is not None and part[0] == clip:
             first, last = part[1:]
         a, b = course.moments(np.array([first, last])).tolist()
-        self.document.edit("Keep hand", lambda p: keep_hand(p, clip, side, round(a, 3), round(b, 3)))
+        self.document.edit(tr("Keep hand"), lambda p: keep_hand(p, clip, side, round(a, 3), round(b, 3)))
 
     def let_go(self) -> None:
         """Let all hands of the first action's clip go where they went in the file."""
         facts = next(iter(self.facts().values()), None)
         if facts is not None:
             clip, plain = facts.action.clip, replace(facts.entry.retime, contacts=())
-            self.document.edit("Let go of hands", lambda p: set_retime(p, clip, plain))
+            self.document.edit(tr("Let go of hands"), lambda p: set_retime(p, clip, plain))
 
     def compare(self, on: bool) -> None:
         """Show the actions as they were when they were selected, or marked, or as they are."""

@@ -21,9 +21,11 @@ from app.features.timing_editor.kept_rows import seconds_of, set_number
 from app.features.timing_editor.subject import Subject
 from app.features.timing_editor.view import TimingView
 from app.look.names import told_names
+from app.look.plural import many
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.form_fields import Chooser, Seconds, common
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
@@ -44,23 +46,25 @@ class TimingPanel(QWidget):
         self.document, self.session, self.subject = document, session, subject
         self.name = QLabel(self)
         self.verdict = Sentence(self)
-        self.use = make_widget(QPushButton, "Use proposed", self, toolTip="Begin and end where no jump shows")
+        self.use = make_widget(
+            QPushButton, tr("Use proposed"), self, toolTip=tr("Begin and end where no jump shows")
+        )
         self.use.clicked.connect(self._use)
-        self.joint = Chooser(self, toolTip="Whose speed is drawn")
+        self.joint = Chooser(self, toolTip=tr("Whose speed is drawn"))
         self.joint.setMinimumContentsLength(12)
         self.joint.activated.connect(lambda n: subject.show(joint=self.joint.itemData(n)))
-        tip = "Speed of the clip, 1 as it was read; what uses it follows. The file stays as it is"
+        tip = tr("Speed of the clip, 1 as it was read; what uses it follows. The file stays as it is")
         self.speed = Seconds(self, tip, SPEEDS[1], " ×", 0.05)
         self.speed.valueChanged.connect(self._pace)
-        self.hold = self._button("Hold", "Hold the clip at the playhead for a while longer")
+        self.hold = self._button(tr("Hold"), tr("Hold the clip at the playhead for a while longer"))
         self.hold.clicked.connect(lambda: self._try(subject.hold_here))
-        self.onion = self._button("Onion", "See start, stroke and end beside the character", True)
+        self.onion = self._button(tr("Onion"), tr("See start, stroke and end beside the character"), True)
         self.onion.clicked.connect(lambda on: subject.show(onion=on))
-        self.compare = self._button("A/B", "Show it as it was when it was selected, or marked", True)
+        self.compare = self._button("A/B", tr("Show it as it was when it was selected, or marked"), True)
         self.compare.clicked.connect(subject.compare)
-        self.loop = self._button("Loop", "Play only what the action plays, again and again", True)
+        self.loop = self._button(tr("Loop"), tr("Play only what the action plays, again and again"), True)
         self.loop.clicked.connect(subject.loop_action)
-        self.more = MoreButton(session.look, "What is shown", "What is shown", self)
+        self.more = MoreButton(session.look, tr("What is shown"), tr("What is shown"), self)
         self.menu = self.more.menu_of
         self.menu.aboutToShow.connect(self._fill)
         OneStop((self.hold, self.onion, self.compare, self.loop, self.more), self)
@@ -72,7 +76,7 @@ class TimingPanel(QWidget):
         self.area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.area.setWidget(self.view)
-        self.number = Seconds(self.view, "New number of the handle")
+        self.number = Seconds(self.view, tr("New number of the handle"))
         self.number.hide()
         self.number.valueChanged.connect(self._typed)
         self.number.editingFinished.connect(self._done)
@@ -116,7 +120,7 @@ class TimingPanel(QWidget):
         for widget in (self.use, self.joint, self.speed, self.hold, self.onion, self.compare, self.loop):
             widget.setEnabled(first is not None)
         joints = joints_offered(self.document.project)
-        offered = [("what it moves", ""), *((words, name) for name, words in joints)]
+        offered = [(tr("what it moves"), ""), *((words, name) for name, words in joints)]
         self.joint.show_entries(offered, self.subject.shows.joint)
         self.speed.show_value(common([f.entry.retime.speed for f in shown.values()]) if shown else 1.0)
         if first is None:
@@ -130,7 +134,7 @@ class TimingPanel(QWidget):
             for button in (self.onion, self.compare, self.loop):
                 button.setChecked(False)
             return
-        name = first.name if len(shown) == 1 else f"{len(shown)} actions"
+        name = first.name if len(shown) == 1 else many(len(shown), "action")
         cut = name if len(name) <= LONGEST else f"{name[: LONGEST // 2]}…{name[-LONGEST // 2 + 1 :]}"
         self.name.setText(f"{KIND_MARKS[first.action.kind]} {cut}")
         self.name.setToolTip(told_names(name, first.action.name) if len(shown) == 1 else name)
@@ -150,19 +154,19 @@ class TimingPanel(QWidget):
         menu, subject = self.menu, self.subject
         menu.clear()
         for words, field in (
-            ("Poses", "poses"),
-            ("Line", "line"),
-            ("What moves when", "dope"),
-            ("… of each joint", "whole"),
+            (tr("Poses"), "poses"),
+            (tr("Line"), "line"),
+            (tr("What moves when"), "dope"),
+            (tr("… of each joint"), "whole"),
         ):
             action = menu.addAction(words)
             action.setCheckable(True)
             action.setChecked(getattr(subject.shows, field))
             action.setEnabled(field != "whole" or subject.shows.dope)
             action.triggered.connect(lambda on, f=field: subject.show(**{f: on}))
-        lines = menu.addMenu("Line to hear")
+        lines = menu.addMenu(tr("Line to hear"))
         for words, ident in (
-            ("The one that is spoken over it", ""),
+            (tr("The one that is spoken over it"), ""),
             *((line.text or i, i) for i, line in list(self.document.project.lines.items())[:30]),
         ):
             action = lines.addAction(words[:60])
@@ -170,17 +174,22 @@ class TimingPanel(QWidget):
             action.setChecked(subject.shows.heard == ident)
             action.triggered.connect(lambda _, i=ident: subject.show(heard=i))
         menu.addSeparator()
-        for side in ("left", "right"):
-            action = menu.addAction(f"Keep the {side} hand where it is")
-            action.setToolTip("During the part that is looped, or from the playhead to the end of its hold")
+        for side, words in (
+            ("left", tr("Keep the left hand where it is")),
+            ("right", tr("Keep the right hand where it is")),
+        ):
+            action = menu.addAction(words)
+            action.setToolTip(
+                tr("During the part that is looped, or from the playhead to the end of its hold")
+            )
             action.triggered.connect(lambda _, s=side: self._try(lambda: subject.keep_hand(s)))
         first = next(iter(subject.facts().values()), None)
-        action = menu.addAction("Let go of the hands")
+        action = menu.addAction(tr("Let go of the hands"))
         action.setEnabled(first is not None and bool(first.kept))
         action.triggered.connect(lambda _: self._try(subject.let_go))
         menu.addSeparator()
-        menu.addAction("Compare with what it is now", subject.mark)
-        menu.addAction("Show the whole clip", self.view.show_all)
+        menu.addAction(tr("Compare with what it is now"), subject.mark)
+        menu.addAction(tr("Show the whole clip"), self.view.show_all)
 
     # --- editing
 

@@ -11,13 +11,15 @@ from typing import Any
 from numpy.typing import NDArray
 
 from app.look.names import plain
+from app.translation import tr
 from app.widgets.memo import Once
+from app.widgets.vocabulary import word
 from metagraph.graph import anatomy, end_gaps
 from metagraph.graph.clip_source import course_of
 from metagraph.graph.model import Action, ClipEntry, Project, Timing
 from metagraph.motion.retime import Hold
 from metagraph.playback.speed_curves import SpeedCurve, curves_of, speed_of
-from metagraph.playback.timing import Block, Handle, blocks_of, handles_of
+from metagraph.playback.timing import WORDS, Block, Handle, blocks_of, handles_of
 from metagraph.suggest.jumps import Curves
 from metagraph.suggest.seen_jumps import Seen, far_ends, verdict
 from metagraph.suggest.stance_distance import StanceDistance, distance_of, measured
@@ -164,7 +166,8 @@ def kept_of(project: Project, entry: ClipEntry) -> tuple[Kept, ...]:
     if course is None:
         return ()
     roles, names = anatomy.roles(project), project.skeleton.names if project.skeleton is not None else ()
-    sides = {names[roles[f"{s}_hand"]]: f"{s} hand" for s in ("left", "right") if f"{s}_hand" in roles}
+    words = (("left_hand", tr("left hand")), ("right_hand", tr("right hand")))
+    sides = {names[roles[role]]: said for role, said in words if role in roles}
     return tuple(
         Kept(n, sides.get(c.hand, c.hand), c.to, course.time(c.first), course.time(c.last, late=True))
         for n, c in enumerate(entry.retime.contacts)
@@ -177,6 +180,11 @@ def stays_of(entry: ClipEntry) -> tuple[Stay, ...]:
     if course is None:
         return ()
     return tuple(Stay(hold, *ends) for hold, ends in zip(entry.retime.holds, course.stays, strict=True))
+
+
+def handle_words(handle: Handle) -> str:
+    """Return a handle's name and number: "blend in 0.20"."""
+    return f"{word(WORDS[handle.name])} {handle.number:.2f}"
 
 
 def _verdict(project: Project, action: Action, seen: Seen | None) -> tuple[str, bool]:

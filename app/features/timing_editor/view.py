@@ -31,17 +31,19 @@ from app.features.timing_editor.rows import (
     least_height,
 )
 from app.features.timing_editor.subject import Subject
-from app.features.timing_editor.track import Facts, Kept
+from app.features.timing_editor.track import Facts, Kept, handle_words
 from app.look.theme import theme
 from app.project.document import Document
 from app.stage.session import Session
 from app.stage.transport import Transport
+from app.translation import tr
 from app.widgets.gesture import Hand
 from app.widgets.memo import Once
+from app.widgets.vocabulary import word
 from metagraph.suggest.snapping import Snap, snaps_of
 
 ZOOM = 1.2
-TEXT = (
+TEXT = tr(
     "Timing of the selected actions. Left and Right move the playhead by a frame, I and O begin and end the "
     "action there, plus and minus zoom, 0 shows everything."
 )
@@ -67,7 +69,7 @@ class TimingView(QWidget):
         self._still: Once[tuple[QPixmap, dict[str, dict[str, QRectF]]]] = Once()
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setAccessibleName("Timing")
+        self.setAccessibleName(tr("Timing"))
         self.setAccessibleDescription(TEXT)
         subject.changed.connect(self.refresh)
         session.look.changed.connect(self.refresh)
@@ -179,7 +181,7 @@ class TimingView(QWidget):
             painter.drawText(
                 QRectF(self.rect()).adjusted(20, 0, -20, 0),
                 Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap,
-                "Select an action to see its timing.",
+                tr("Select an action to see its timing."),
             )
             painter.end()
             return picture, {}
@@ -260,7 +262,7 @@ class TimingView(QWidget):
         def words(_: float) -> str:
             shown = self.subject.facts().get(facts.action.id, facts)
             handle = shown.handle(name)
-            return f"{handle.words} s" if handle is not None else name
+            return f"{handle_words(handle)} s" if handle is not None else name
 
         return drags.TimingDrag(self, facts, grip, snaps, drags.handle_change(self.idents(), name), words)
 
@@ -270,7 +272,12 @@ class TimingView(QWidget):
         def words(_: float) -> str:
             shown = self.subject.facts().get(facts.action.id, facts)
             ends = next(((b.first, b.last) for b in shown.blocks if b.name == name), shown.span)
-            return f"{name or 'plays'} {ends[0]:.2f} to {ends[1]:.2f} s"
+            return tr(
+                "{what} {start:.2f} to {end:.2f} s",
+                what=word(name) if name else tr("plays"),
+                start=ends[0],
+                end=ends[1],
+            )
 
         snaps = snaps_of(self.document.project, facts.action, "ready", None, facts.speeds) if name else ()
         return drags.TimingDrag(self, facts, first, snaps, drags.block_change(self.idents(), name), words)
