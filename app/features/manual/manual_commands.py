@@ -184,7 +184,8 @@ def fill(out: QMenu, canvas: ManualHost, hit: ManualHit) -> None:
     s = canvas.session
 
     def add(text: str, run: Run, keys: str = "", enabled: bool = True) -> None:
-        action = out.addAction(f"{text}\t{keys}" if keys else text, run)
+        told = QKeySequence(keys).toString(QKeySequence.SequenceFormat.NativeText)
+        action = out.addAction(f"{text}\t{told}" if keys else text, run)
         action.setEnabled(enabled)
 
     node = hit.area in ("node", "edge")

@@ -20,7 +20,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QLineEdit, QWidget
 
-from app.features.models.state_names import a_state
+from app.features.models.state_names import a_state, tag_words
 from app.look.theme import KIND_MARKS, Theme, theme
 from app.translation import tr
 from metagraph.graph.model import Layer, Markov
@@ -248,10 +248,10 @@ class HeatMap(QWidget):
         """What tells a state from others of its kind: the limb, or the kind itself where there are no
         sides.
         """
-        return state[0] if self.layer == "arms" else state[1]
+        return tr(state[0] if self.layer == "arms" else state[1])
 
     def _row_words(self, state: State, high: float) -> str:
-        tags = state[2] if high >= _TWO_LINES else _SHORT.get(state[2], state[2])
+        tags = tag_words(state) if high >= _TWO_LINES or state[2] not in _SHORT else _SHORT[state[2]]
         return (
             f"{self._name(state)} {tags}".strip()
             if high < _TWO_LINES
@@ -277,12 +277,12 @@ class HeatMap(QWidget):
         )
         if two:
             below = QRectF(box.left() + _GAP, box.center().y() - 3, box.width() - _GAP, box.height() / 2)
-            self._tags(painter, t, below, state[2], n, Qt.AlignmentFlag.AlignLeft)
+            self._tags(painter, t, below, state, n, Qt.AlignmentFlag.AlignLeft)
 
     def _column_head(self, painter: QPainter, t: Theme, box: QRectF, state: State, n: int, lit: bool) -> None:
         metrics, name = QFontMetricsF(self.font()), self._name(state)
         if metrics.horizontalAdvance(name) > box.width() - _GAP - 2:
-            name = SIDES.get(name) or metrics.elidedText(
+            name = (SIDES[state[0]] if self.layer == "arms" else "") or metrics.elidedText(
                 name, Qt.TextElideMode.ElideRight, box.width() - _GAP - 2
             )
         width = _GAP + metrics.horizontalAdvance(name)
@@ -293,7 +293,7 @@ class HeatMap(QWidget):
                 painter,
                 t,
                 QRectF(box.left() + 1, line.bottom() - 3, box.width() - 2, 18),
-                state[2],
+                state,
                 n,
                 Qt.AlignmentFlag.AlignHCenter,
             )
@@ -310,16 +310,14 @@ class HeatMap(QWidget):
         painter.setOpacity(1.0)
 
     def _tags(
-        self, painter: QPainter, t: Theme, line: QRectF, tags: str, n: int, side: Qt.AlignmentFlag
+        self, painter: QPainter, t: Theme, line: QRectF, state: State, n: int, side: Qt.AlignmentFlag
     ) -> None:
         small = QFont(self.font())
         small.setPixelSize(11)
         painter.setOpacity(0.45 if n in self.closed else 1.0)
         painter.setFont(small)
         painter.setPen(QColor(t.dim))
-        told = QFontMetricsF(small).elidedText(
-            tags.replace(" ", ", "), Qt.TextElideMode.ElideRight, line.width()
-        )
+        told = QFontMetricsF(small).elidedText(tag_words(state), Qt.TextElideMode.ElideRight, line.width())
         painter.drawText(line, side | Qt.AlignmentFlag.AlignVCenter, told)
         painter.setOpacity(1.0)
 

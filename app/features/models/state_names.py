@@ -22,11 +22,16 @@ STATES = (
 )  # of the arms, which have sides
 
 
+def tag_words(state: State) -> str:
+    """Return a state's tags: "positive, big"."""
+    return ", ".join(tr(tag) for tag in state[2].split())
+
+
 def state_name(state: State, layer: Layer) -> str:
     """Return a state for people, as `learn.state_words` has it in English."""
-    limb, kind, tags = state
+    limb, kind, _ = state
     words = tr(f"{limb} {kind}") if layer == "arms" else tr(kind)
-    return ", ".join((words, *(tr(tag) for tag in tags.split())))
+    return ", ".join(filter(None, (words, tag_words(state))))
 
 
 def a_state(state: State, layer: Layer) -> str:
