@@ -51,13 +51,17 @@ def staged(project: Project, options: Namespace) -> Plan:
     """Return the performance that is asked for, or an improvised one; its length goes into the options."""
     kept = _kept(project, options.performance) if options.performance is not None else None
     if options.seconds is None:
-        options.seconds = kept.length if kept is not None else options.usual_seconds
+        length = kept.length if kept is not None else options.usual_seconds
+        options.seconds = max(0.0, length - options.start)
     if not 0 < options.seconds <= LONGEST:
         raise ValueError(f"a performance lasts more than 0 and at most {LONGEST} seconds")
+    length = options.start + options.seconds
+    if options.start and kept is not None:  # a part is the same as in the whole
+        length = max(length, kept.length)
     if kept is None:
-        return make_plan(project, options.seconds, seed=options.seed)
+        return make_plan(project, length, seed=options.seed)
     seed = kept.seed if options.seed is None else options.seed
-    return perform(project, asks_of(kept), options.seconds, seed, dict(kept.stances), kept.idle)
+    return perform(project, asks_of(kept), length, seed, dict(kept.stances), kept.idle)
 
 
 def _kept(project: Project, name: str) -> Performance:
@@ -89,7 +93,7 @@ def performance_arguments(parser: ArgumentParser, seconds: float) -> None:
     parser.add_argument(
         "-s", "--seconds", type=float, help=f"length of the performance (default: its own, else {seconds:g})"
     )
-    parser.set_defaults(usual_seconds=seconds)
+    parser.set_defaults(usual_seconds=seconds, start=0.0)
     parser.add_argument(
         "--performance", metavar="NAME", help="a performance that is kept in the project (default: improvise)"
     )

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import sys
-from argparse import ArgumentParser, Namespace
-from collections.abc import Iterator, Sequence
+from argparse import ArgumentParser, BooleanOptionalAction, Namespace
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +17,8 @@ from metagraph.motion.clip import Clip
 from metagraph.playback.bake import bake
 
 if TYPE_CHECKING:
+    from metagraph.graph.timeline import Cut
+    from metagraph.speech.captions import Caption
     from preview.scene import Theme
 
 Seen = tuple[Any, Shown]  # a figure, and what it plays
@@ -33,9 +35,22 @@ def arguments(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--progress", action="store_true", help="tell after each picture of a video how many there are"
     )
+    parser.add_argument(
+        "--start", type=float, default=0.0, help="second of the performance to begin at (default: 0)"
+    )
     parser.add_argument("--clip", help="draw this clip of the project alone")
     parser.add_argument(
         "--conversation", metavar="NAME", help="draw all who talk in this conversation, with their sound"
+    )
+    parser.add_argument(
+        "--captions",
+        action=BooleanOptionalAction,
+        help="show the words of who speaks (default: as the timeline says)",
+    )
+    parser.add_argument(
+        "--cuts",
+        action=BooleanOptionalAction,
+        help="cut a conversation as its camera lane says, or hold still (default: where there are cuts)",
     )
     parser.add_argument("--size", default="960x540", help="width x height in pixels (default: 960x540)")
     parser.add_argument("--fps", type=float, default=30.0, help="pictures a second of a video (default: 30)")
@@ -87,8 +102,8 @@ def pictures(
     camera: Any = None,
     into: np.ndarray | None = None,
 ) -> Iterator[np.ndarray]:
-    """Yield one picture `[H, W, 4]` for each time. The camera holds still; by default it sees all. into: an
-    array that all come in, for who is done with one before asking for the next.
+    """Yield one picture `[H, W, 4]` for each time. camera: holds still, or, called with seconds, says one; by
+    default it sees all. into: an array that all come in, for who is done with one before asking for the next.
     """
     from app.stage.stools import stools
     from preview.camera import whole_figure
@@ -104,8 +119,43 @@ def pictures(
     with Offscreen(*size) as offscreen:
         for first in range(0, len(times), TOGETHER):
             some = times[first : first + TOGETHER]
-            for actors in zip(*(_actors(figure, shown, some) for figure, shown in seen), strict=True):
-                yield offscreen.render(Scene((*actors, *seats)), camera, theme, into=into)
+            acted = zip(*(_actors(figure, shown, some) for figure, shown in seen), strict=True)
+            for at, actors in zip(some, acted, strict=True):
+                seen_from = camera(float(at)) if callable(camera) else camera
+                yield offscreen.render(Scene((*actors, *seats)), seen_from, theme, into=into)
+
+
+def directed(
+    seen: Sequence[Seen],
+    times: np.ndarray,
+    size: tuple[int, int],
+    look: Theme | str,
+    direction: Direction = ((), ()),
+    into: np.ndarray | None = None,
+) -> Iterator[np.ndarray]:
+    """Yield pictures as `pictures` does, cut and with captions."""
+    cuts, captions = direction
+    camera: Callable[[float], Any] | None = None
+    if cuts:
+        from app.stage.cutting import Cutting
+        from preview.camera import whole_figure
+
+        aspect, cutting = size[0] / size[1], Cutting()
+        whole = whole_figure(bounds_of(seen, times), aspect, ASIDE)
+        camera = lambda at: cutting.camera(seen, cuts, at, aspect) or whole  # noqa: E731
+    if not captions:
+        yield from pictures(seen, times, size, look, camera, into)
+        return
+    from PySide6.QtGui import QGuiApplication
+
+    from app.stage.caption_paint import captioned
+    from metagraph.speech.captions import captions_at
+
+    # Text needs the fonts of an application, which a program without a window has not.
+    application = QGuiApplication.instance() or QGuiApplication(["metagraph", "-platform", "offscreen"])
+    for at, picture in zip(times, pictures(seen, times, size, look, camera, into), strict=True):
+        yield captioned(picture, captions_at(captions, float(at)))
+    del application
 
 
 def _actors(figure: Any, shown: Shown, times: np.ndarray) -> list[Any]:
@@ -147,6 +197,8 @@ def run(options: Namespace) -> int:
         raise ValueError("a video has 1 to 240 pictures a second")
     if not 2 <= options.frames <= 1000:
         raise ValueError("a contact sheet has 2 to 1000 pictures")
+    if not 0 <= options.start <= 36000:
+        raise ValueError("a performance is written from 0 to 36000 seconds on")
     if options.out.suffix not in (".png", ".mp4", *MOTION):
         name = options.out.suffix or options.out.name
         raise ValueError(
@@ -158,23 +210,24 @@ def run(options: Namespace) -> int:
         clip = next((e.id for e in project.clips.values() if options.clip in (e.name, e.id)), None)
         if clip is None or project.clips[clip].motion is None:
             raise ValueError(f"there is no clip '{options.clip}' in the project")
-        options.seconds = project.clips[clip].duration
+        options.start, options.seconds = 0.0, project.clips[clip].duration
     if options.conversation is not None:
         shown = _talking(project, options, folder)
     else:
         shown = (
             alone(project, clip)
             if clip is not None
-            else Shown(project, staged(project, options), options.seconds)
+            else Shown(project, staged(project, options), options.start + options.seconds)
         )
     if options.out.suffix in MOTION:
         for one, out in zip(shown.everyone, _outs(options.out, shown), strict=True):
-            bake_to(out, one, options.seconds, options.fps, one.folder or folder)
+            bake_to(out, one, options.seconds, options.fps, one.folder or folder, options.start)
     else:
         from preview.looks import look_of
 
         seen = [(figure_of(one.project, one.folder or folder), one) for one in shown.everyone]
-        sound = sound_of(shown, folder, options.seconds) if options.out.suffix == ".mp4" else None
+        heard = options.out.suffix == ".mp4"
+        sound = sound_of(shown, folder, options.seconds, options.start) if heard else None
         draw_to(
             options.out,
             seen,
@@ -185,9 +238,35 @@ def run(options: Namespace) -> int:
             look_of(options.theme, options.light, options.background),
             sound,
             options.progress,
+            options.start,
+            _direction(project, options, shown, folder, seen),
         )
     say(options, f"{options.out}", {"written": str(options.out)})
     return 0
+
+
+Direction = tuple["tuple[Cut, ...]", "tuple[Caption, ...]"]  # where the camera cuts to, what is to be read
+
+
+def _direction(
+    project: Project, options: Namespace, shown: Shown, folder: Path, seen: Sequence[Seen]
+) -> Direction:
+    """Return the cuts and captions of what is written, as the options or else the timeline's notes say."""
+    from app.stage.cutting import captions_shown
+    from metagraph.graph.timeline import timeline_of
+
+    some = project.performances if options.conversation is None else project.conversations
+    name = options.performance if options.conversation is None else options.conversation
+    key = next((i for i, of in some.items() if name in (i, of.name)), "")
+    noted = timeline_of(project, key)
+    captions = noted.captions if options.captions is None else options.captions
+    cuts = noted.cuts if options.cuts is not False and len(seen) > 1 else ()
+    if options.cuts and not cuts and len(seen) > 1:
+        from metagraph.speech.automatic_cuts import automatic_cuts
+
+        cuts = automatic_cuts(project.conversations[key])
+    talk = project.conversations.get(key) if options.conversation is not None else None
+    return cuts, captions_shown(shown, talk, folder) if captions else ()
 
 
 def _talking(project: Project, options: Namespace, folder: Path) -> Shown:
@@ -203,7 +282,8 @@ def _talking(project: Project, options: Namespace, folder: Path) -> Shown:
     shown = ConversationPlans().show(project, found, folder)
     for note in shown.notes:
         print(f"note: {note}", file=sys.stderr)
-    options.seconds = shown.length if options.seconds is None else options.seconds
+    if options.seconds is None:
+        options.seconds = max(0.1, shown.length - options.start)
     return shown
 
 
@@ -247,26 +327,31 @@ def draw_to(
     look: Theme | str,
     sound: tuple[np.ndarray, int] | None = None,
     progress: bool = False,
+    start: float = 0.0,
+    direction: Direction = ((), ()),
 ) -> None:
-    """Write a contact sheet (.png) or a video (.mp4), with its sound."""
+    """Write a contact sheet (.png) or a video (.mp4), with its sound, from a second on. direction: its cuts
+    and captions.
+    """
     out.parent.mkdir(parents=True, exist_ok=True)
     if out.suffix == ".mp4":
         from preview.video import write_video
 
-        times = np.arange(max(1, round(seconds * fps))) / fps
+        times = start + np.arange(max(1, round(seconds * fps))) / fps
 
         def told(count: int) -> None:
             if progress:
                 print(f"{count}/{len(times)}", file=sys.stderr, flush=True)
 
         into = np.empty((size[1], size[0], 4), np.uint8)
-        write_video(out, pictures(seen, times, size, look, into=into), fps, size, told, sound=sound)
+        drawn = directed(seen, times, size, look, direction, into)
+        write_video(out, drawn, fps, size, told, sound=sound)
     elif out.suffix == ".png":
         from preview.sheet import contact_sheet, write_png
 
-        times = np.linspace(0, seconds, max(2, frames))
+        times = start + np.linspace(0, seconds, max(2, frames))
         small = (max(16, size[0] * 2 * min(len(seen), 2) // 9), max(16, size[1] * 5 // 9))
-        images = list(pictures(seen, times, small, look))
+        images = list(directed(seen, times, small, look, direction))
         labels = [
             f"{t:.2f} s  {', '.join(filter(None, (_doing(shown, t) for _, shown in seen)))}".rstrip()
             for t in times
@@ -276,7 +361,7 @@ def draw_to(
         raise ValueError(f"pictures are written as .png, videos as .mp4, not '{out.suffix}'")
 
 
-def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path) -> None:
+def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path, start: float = 0.0) -> None:
     """Write a performance, or a clip, as plain motion: what an engine or an animation program plays without a
     planner.
 
@@ -289,7 +374,7 @@ def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path) -
     project = shown.project
     whole = shown.clip or shown.motion
     if whole is None or (shown.clip is None and project.clips[whole].made_by):
-        motion: Clip | None = bake(shown.plan, project, seconds, fps, shown.pose)
+        motion: Clip | None = bake(shown.plan, project, seconds, fps, shown.pose, start)
     else:
         motion = project.clips[whole].motion
     assert motion is not None

@@ -1,18 +1,47 @@
-"""What the domain tells apart by a word, marked for translation: whoever shows one says `tr(word)`."""
+"""The domain's own names - layers, kinds, colours - as the window says them."""
 
 from __future__ import annotations
 
-from app.translation import tr_noop
+from app.translation import tr, tr_noop
 
-LAYERS = (
+KIND_TITLES = {
+    "stance": tr("Stance"),
+    "gesture": tr("Gesture"),
+    "fidget": tr("Fidget"),
+    "transition": tr("Transition"),
+}
+MANY_OF_KIND = {
+    "stance": tr("Stances"),
+    "gesture": tr("Gestures"),
+    "fidget": tr("Fidgets"),
+    "transition": tr("Transitions"),
+}
+LAYER_TITLES = {"body": tr("Body"), "arms": tr("Arms"), "head": tr("Head")}
+LAYER_LONG_TITLES = {"body": tr("Body layer"), "arms": tr("Arms layer"), "head": tr("Head layer")}
+COLOR_TITLES = {
+    "": "",
+    "red": tr("Red"),
+    "orange": tr("Orange"),
+    "yellow": tr("Yellow"),
+    "green": tr("Green"),
+    "blue": tr("Blue"),
+    "purple": tr("Purple"),
+}
+COLOR_LABELS = {
+    "red": tr("Red label"),
+    "orange": tr("Orange label"),
+    "yellow": tr("Yellow label"),
+    "green": tr("Green label"),
+    "blue": tr("Blue label"),
+    "purple": tr("Purple label"),
+}
+
+# What stands in sentences and lists as the domain writes it: whoever shows one says `tr(word)`.
+WORDS = (
     *(tr_noop("body"), tr_noop("arms"), tr_noop("head")),
-    *(tr_noop("Body"), tr_noop("Arms"), tr_noop("Head")),
-)
-KINDS = (
     *(tr_noop("stance"), tr_noop("gesture"), tr_noop("fidget"), tr_noop("transition")),
-    *(tr_noop("Stance"), tr_noop("Gesture"), tr_noop("Fidget"), tr_noop("Transition")),
+    *(tr_noop("left"), tr_noop("right"), tr_noop("both")),
+    *(tr_noop("preparation"), tr_noop("stroke"), tr_noop("hold"), tr_noop("retraction")),
+    *(tr_noop("positive"), tr_noop("negative"), tr_noop("Positive"), tr_noop("Negative")),
+    *(tr_noop("idle"), tr_noop("listening"), tr_noop("talking")),
 )
-LIMBS = (tr_noop("left"), tr_noop("right"), tr_noop("both"))
-PHASES = (tr_noop("preparation"), tr_noop("stroke"), tr_noop("hold"), tr_noop("retraction"))
-TAGS = (tr_noop("positive"), tr_noop("negative"), tr_noop("Positive"), tr_noop("Negative"))
-MODES = (tr_noop("idle"), tr_noop("listening"), tr_noop("talking"))

@@ -11,6 +11,7 @@ from pathlib import Path
 from PySide6.QtGui import QColor, QFont, QPalette
 from PySide6.QtWidgets import QApplication, QPushButton
 
+from app.look.domain_words import KIND_TITLES as KIND_TITLES
 from metagraph.graph.model import Kind
 
 
@@ -87,7 +88,6 @@ LIGHT = Theme(
 THEMES = {"dark": DARK, "light": LIGHT}
 KIND_MARKS = {"stance": "●", "gesture": "▲", "fidget": "◆", "transition": "➜"}  # never colour alone
 SOUND_MARKS = {"clause": "■", "response": "✓", "hesitation": "…"}
-KIND_TITLES = {"stance": "Stance", "gesture": "Gesture", "fidget": "Fidget", "transition": "Transition"}
 
 
 def theme(name: str) -> Theme:

@@ -32,8 +32,8 @@ Retarget = Callable[[Sequence[Strangers], Callable[[Imported], None]], None]
 
 @dataclass(frozen=True)
 class FileDrop:
-    """Files that are no clips, and who takes them when they are dropped or imported. suffixes: what they may
-    end in, lower case. claim: those that are really its own. take: what it does with them.
+    """Files that are no clips, and who takes them when they are dropped or imported. suffixes: what their
+    names may end in, lower case. claim: those that are really its own. take: what it does with them.
     """
 
     suffixes: tuple[str, ...]
@@ -72,7 +72,7 @@ class Importing(QObject):
     def takes(self, paths: Sequence[Path]) -> bool:
         """Return whether there may be anything among files that is of use, by their names."""
         ends = (*SUFFIXES, *(suffix for drop in self.drops for suffix in drop.suffixes))
-        return any(not path.suffix or path.suffix.lower() in ends for path in paths)
+        return any(not path.suffix or path.name.lower().endswith(ends) for path in paths)
 
     def ask_import_folder(self) -> None:
         if self.files.refuse():

@@ -55,7 +55,7 @@ class LabelFiles:
     ) -> None:
         self._document, self._jobs, self._files = document, jobs, files
         self._importing, self._widget = importing, widget
-        self.drop = FileDrop((".json",), self._claimed, self.take)
+        self.drop = FileDrop((ENDING,), self._claimed, self.take)
 
     def ask(self) -> None:
         """Ask for a file of labels and take it."""

@@ -25,7 +25,7 @@ MENUS: dict[str, tuple[str, ...]] = {
     tr_noop("&Graph"): ("author", "label", "layers", "stances", "skeleton"),
     tr_noop("C&lips"): ("rating", "labels", "favourites", "files", "view", "groups"),
     tr_noop("&Motion"): ("make",),
-    tr_noop("&Play"): ("transport", "live", "show"),
+    tr_noop("&Play"): ("transport", "range", "markers", "timeline", "live", "show"),
     tr_noop("&Conversation"): ("read", "settings", "stage", "write", "remove"),
     tr_noop("&View"): ("workspaces", "workspace", "character", "sides", "watch", "graph", "look"),
     tr_noop("&Study"): (),

@@ -19,8 +19,10 @@ from app.stage.live_control import LiveControl
 from app.stage.playback_source import Shown, alone, by_hand, in_context
 from app.stage.request_edits import SOON, RequestEdits
 from app.stage.session import Session
+from app.stage.timeline_edits import TimelineEdits
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
+from metagraph.graph.timeline import only_noted
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.extend_performance import Answer, answers
 from metagraph.playback.manual_playback import Fire
@@ -33,8 +35,9 @@ AHEAD = 15.0  # seconds before the end at which more is planned
 
 
 class Performance(QObject):
-    """changed: something else plays, or the same was planned anew. requests: edits what is asked for. live:
-    begins and ends live play. muted: layers that rest while one looks. before: the state of the project that
+    """changed: something else plays, or the same was planned anew. requests: edits what is asked for.
+    timeline: edits what is noted beside it. live: begins and ends live play. muted: layers that rest while
+    one looks. before: the state of the project that
     clips and actions are shown of instead.
     staged: the whole performance as it was last shown, None before; a clip or an action may be shown now.
     """
@@ -66,7 +69,10 @@ class Performance(QObject):
         self.live = LiveControl(document, session, self)
         self.live.changed.connect(self.replan)
         self.live.ticked.connect(self._ticked)
-        self.requests = RequestEdits(document, session, self.live, lambda: self.length)
+        self.requests = RequestEdits(
+            document, session, self.live, lambda: self.length, lambda: self.timeline.now.locked
+        )
+        self.timeline = TimelineEdits(document, session, lambda: self.shown.length, self)
         self.before: Project | None = None
         self._answered: Shown | None = None
         self._answers: dict[str, Answer] = {}
@@ -169,6 +175,8 @@ class Performance(QObject):
         self.replan()
 
     def _edited(self, before: Project, after: Project) -> None:
+        if only_noted(before, after):
+            return
         if self._own_length is not None:
             self.length = self._own_length
         if before.skeleton is not after.skeleton or after.skeleton is None:

@@ -26,6 +26,11 @@ class Playhead:
         if part is not None and (transport.show, transport.shown) == ("clip", part[0]) and seconds >= part[2]:
             transport.seek(part[1] + (seconds - part[1]) % max(part[2] - part[1], 1e-3))
             return
+        again = self.performance.timeline.range if transport.show == "plan" and transport.loop else None
+        if again is not None and transport.seconds < min(again[1], length) <= seconds and again[0] < length:
+            start, end = again[0], min(again[1], length)
+            transport.seek(start + (seconds - end) % max(end - start, 1e-3))
+            return
         endless = not self.performance.ends and transport.show == "plan" and not transport.loop
         if endless:
             self.performance.plan_beyond(seconds)

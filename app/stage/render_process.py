@@ -27,7 +27,8 @@ SUFFIXES = {
 @dataclass(frozen=True)
 class RenderOrder:
     """What to write. performance: id of a kept one, None to improvise. conversation: id of one, then of both.
-    size: width and height in pixels. light, background: by the names of `preview.looks`.
+    size: width and height in pixels. light, background: by the names of `preview.looks`. start: second it
+    begins at. captions, cuts: whether words are shown, and a conversation's camera cuts as its lane says.
     """
 
     out: Path
@@ -39,6 +40,9 @@ class RenderOrder:
     conversation: str | None = None
     light: str = "studio"
     background: str = "stage"
+    start: float = 0.0
+    captions: bool = False
+    cuts: bool = True
 
 
 def write(project: Project, folder: Path, wanted: RenderOrder, job: Job) -> Path:
@@ -69,7 +73,12 @@ def write(project: Project, folder: Path, wanted: RenderOrder, job: Job) -> Path
             "--background",
             wanted.background,
             "--progress",
+            "--start",
+            f"{wanted.start:.6f}",
+            "--captions" if wanted.captions else "--no-captions",
         ]
+        if not wanted.cuts:
+            words.append("--no-cuts")
         if wanted.performance is not None:
             words += ["--performance", wanted.performance]
         if wanted.conversation is not None:

@@ -2,30 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
+from typing import cast
 
 import msgspec
+from PySide6.QtGui import QGuiApplication
 
+from app.look.plural import listed
 from app.project.document import Document
 from app.stage.live_control import LiveControl
 from app.stage.session import Session
 from metagraph.graph import performance_edits
+from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
+from metagraph.graph.request_text import Pasted, holds_requests, paste_requests, request_text
 from metagraph.graph.requests import AnyRequest
 from metagraph.graph.requests import Performance as KeptPerformance
+from metagraph.graph.timeline import lane_of
+from metagraph.playback.plan import Plan
 
 SOON = 0.15  # seconds from now at which "now" is: the plan needs a moment
 
 
 class RequestEdits:
     """Edits the requests of what is on stage; each is one step to undo. length: seconds that are planned,
-    which a new performance gets.
+    which a new performance gets. locked: lanes whose requests are left alone. ripple: whether all that
+    follows goes along with what is moved or taken back.
     """
 
     def __init__(
-        self, document: Document, session: Session, live: LiveControl, length: Callable[[], float]
+        self,
+        document: Document,
+        session: Session,
+        live: LiveControl,
+        length: Callable[[], float],
+        locked: Callable[[], Collection[str]] = tuple,
     ) -> None:
         self.document, self.session, self.live, self._length = document, session, live, length
+        self._locked = locked
+        self.ripple = False
 
     @property
     def kept(self) -> KeptPerformance | None:
@@ -37,6 +52,26 @@ class RequestEdits:
     def editable(self) -> bool:
         """Whether the asks that are shown can be moved and changed."""
         return self.live.stage is None and self.kept is not None and self.session.transport.show == "plan"
+
+    def still(self) -> frozenset[str]:
+        """Return the ids of requests on locked lanes."""
+        locked, project = self._locked(), self.document.project
+        asks = self.kept.asks if self.kept is not None and locked else ()
+        return frozenset(x.id for x in asks if lane_of(x, project) in locked)
+
+    def free(self, idents: tuple[str, ...]) -> tuple[str, ...]:
+        """Return those of some requests that are on no locked lane; say so where there are others."""
+        still = self.still()
+        out = tuple(i for i in idents if i not in still)
+        if len(out) < len(idents):
+            self.document.failed.emit("Their layer is locked: the padlock beside its name opens it.")
+        return out
+
+    def with_following(self, idents: tuple[str, ...]) -> tuple[str, ...]:
+        """Return what moves with some requests: where all that follows goes along, that, too."""
+        if not self.ripple or self.kept is None:
+            return idents
+        return performance_edits.following(self.kept, idents, self.still())
 
     def ask(self, ask: AnyRequest, text: str = "Ask for something") -> None:
         """Ask for one thing more, in the performance on stage or a new one; without a time it is wanted as
@@ -68,7 +103,7 @@ class RequestEdits:
     def change(self, ident: str, merge: str | None = None, **changes: object) -> None:
         """Set fields of an ask of the performance on stage. Raises EditError."""
         stage = self.session.onstage.performance
-        if stage is not None:
+        if stage is not None and self.free((ident,)):
             self.document.edit(
                 "Change request",
                 lambda p: performance_edits.change_request(p, stage, ident, **changes),
@@ -76,9 +111,9 @@ class RequestEdits:
             )
 
     def move(self, idents: tuple[str, ...], by: float, merge: str | None = None) -> None:
-        """Move asks in time."""
-        stage = self.session.onstage.performance
-        if stage is not None:
+        """Move asks in time, with all that follows them where it goes along."""
+        stage, idents = self.session.onstage.performance, self.with_following(self.free(idents))
+        if stage is not None and idents:
             self.document.edit(
                 "Move request", lambda p: performance_edits.move_requests(p, stage, idents, by), merge
             )
@@ -104,8 +139,73 @@ class RequestEdits:
 
     def withdraw(self, *idents: str) -> None:
         """Take asks of the performance on stage back; all when none is named."""
-        stage = self.session.onstage.performance
-        if stage is not None:
+        stage, kept = self.session.onstage.performance, self.kept
+        if stage is None or kept is None:
+            return
+        gone = self.free(idents or tuple(x.id for x in kept.asks))
+        if gone:
             self.document.edit(
-                "Withdraw request", lambda p: performance_edits.remove_requests(p, stage, idents or None)
+                "Withdraw request", lambda p: performance_edits.remove_requests(p, stage, gone)
             )
+
+    def to_clipboard(self, idents: tuple[str, ...], cut: bool = False) -> None:
+        """Put requests on the clipboard, as a text any window can paste; cut: take them back here."""
+        stage = self.session.onstage.performance
+        chosen = self.free(idents) if cut else idents
+        if stage is None or self.kept is None or not chosen:
+            return
+        QGuiApplication.clipboard().setText(request_text(self.document.project, stage, chosen))
+        if cut:
+            self.document.edit("Cut requests", lambda p: performance_edits.remove_requests(p, stage, chosen))
+
+    def paste(self) -> None:
+        """Add the requests on the clipboard, the first of them at the playhead, in the performance on stage
+        or a new one; tell what this project does not have.
+        """
+        text = QGuiApplication.clipboard().text()
+        at, done = round(self.session.transport.seconds, 3), cast("Pasted | None", None)
+        if self.live.stage is not None or not holds_requests(text):
+            self.document.failed.emit("There are no requests on the clipboard.")
+            return
+        stage = self.session.onstage.performance
+
+        def edit(project: Project) -> Project:
+            nonlocal done, stage
+            if stage is None or stage not in project.performances:
+                kept = KeptPerformance(name="Performance", length=self._length())
+                project, stage = performance_edits.add_performance(project, kept)
+            done = paste_requests(project, stage, text, at)
+            return done.project
+
+        try:
+            self.document.edit("Paste requests", edit)
+        except EditError as error:
+            self.document.failed.emit(f"{str(error)[:1].upper()}{str(error)[1:]}.")
+            return
+        self.session.onstage.set_performance(stage)
+        self.session.transport.show_plan()
+        if done is not None:
+            self.session.onstage.select_requests(done.idents)
+            if done.left_out:
+                self.document.failed.emit(f"This project does not have {listed(done.left_out)}.")
+
+    def close_up(self, idents: tuple[str, ...], plan: Plan) -> None:
+        """Take asks back and let all that follows move up by the time they took in a plan, in one step."""
+        stage, kept = self.session.onstage.performance, self.kept
+        gone = self.free(idents)
+        if stage is None or kept is None or not gone:
+            return
+        times = {x.id: performance_edits.asked_at(x) for x in kept.asks if x.id in gone}
+        played = [(c.meta.partition("+")[0], c.start, c.end) for of in plan.layers.values() for c in of.cues]
+        played += [(s.id, s.start, s.end) for s in plan.track.speeches]
+        # What waits for its stroke is asked for at the stroke; all it plays is gone with it.
+        spans = [
+            (min(times[i], start), min(end, kept.length))
+            for i, start, end in played
+            if i in times and min(times[i], start) < min(end, kept.length)
+        ]
+        still = self.still()
+        self.document.edit(
+            "Withdraw request and close up",
+            lambda p: performance_edits.close_up_after(p, stage, gone, spans, still),
+        )

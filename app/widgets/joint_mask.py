@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 
 from app.project.document import Document
 from app.stage.session import Session
+from app.widgets.joint_figure import JointFigure
 from app.widgets.tree_items import items_below
 from metagraph.graph import edits
 from metagraph.graph.model import Project
@@ -50,10 +51,11 @@ class MaskDialog(QDialog):
         self.document, self.session = document, session
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle("Joints the action moves")
-        self.resize(440, 620)
+        self.resize(720, 620)
         layout = QVBoxLayout(self)
         words = QLabel(
-            "Only ticked joints move; the others keep to the stance. Ticking a joint ticks what hangs on it.",
+            "Only ticked joints move; the others keep to the stance. Ticking a joint ticks what hangs on it; "
+            "a drag across the figure ticks the joints within, with Alt or the right button it unticks them.",
             self,
             wordWrap=True,
         )
@@ -61,7 +63,15 @@ class MaskDialog(QDialog):
         self.tree = QTreeWidget(self)
         self.tree.setAccessibleName("Joints that move")
         self.tree.setHeaderHidden(True)
-        layout.addWidget(self.tree, 1)
+        both = QHBoxLayout()
+        both.addWidget(self.tree, 1)
+        layout.addLayout(both, 1)
+        self.figure: JointFigure | None = None
+        if document.project.skeleton is not None:
+            self.figure = JointFigure(document.project.skeleton, session.look.name, self)
+            self.figure.clicked.connect(self._clicked)
+            self.figure.circled.connect(self._circled)
+            both.addWidget(self.figure, 1)
         self.items = joint_tree(self.tree, document.project)
         actions = session.selection.selected_actions()
         masked = set(actions[0].joints) if actions else set()
@@ -70,6 +80,7 @@ class MaskDialog(QDialog):
                 0, Qt.CheckState.Checked if not masked or name in masked else Qt.CheckState.Unchecked
             )
         self.tree.itemChanged.connect(self._ticked)
+        self._show()
         row = QHBoxLayout()
         for text, on in (("All", True), ("None", False)):
             button = QPushButton(text, self)
@@ -92,12 +103,38 @@ class MaskDialog(QDialog):
             one.setCheckState(0, item.checkState(0))
             below += items_below(one)
         self.tree.blockSignals(False)
+        self._show()
+
+    def _show(self) -> None:
+        """Show in the figure what is ticked."""
+        if self.figure is not None:
+            self.figure.show_moving(
+                [n for n, i in self.items.items() if i.checkState(0) == Qt.CheckState.Checked]
+            )
+
+    def _clicked(self, joint: str) -> None:
+        """Tick a joint of the figure, or untick it, with what hangs on it; the list shows it."""
+        item = self.items[joint]
+        on = item.checkState(0) != Qt.CheckState.Checked
+        item.setCheckState(0, Qt.CheckState.Checked if on else Qt.CheckState.Unchecked)
+        self.tree.setCurrentItem(item)
+
+    def _circled(self, joints: tuple[str, ...], on: bool) -> None:
+        """Tick or untick just these joints."""
+        self.tree.blockSignals(True)
+        for joint in joints:
+            self.items[joint].setCheckState(0, Qt.CheckState.Checked if on else Qt.CheckState.Unchecked)
+        self.tree.blockSignals(False)
+        self.tree.viewport().update()
+        self._show()
 
     def _all(self, on: bool) -> None:
         self.tree.blockSignals(True)
         for item in self.items.values():
             item.setCheckState(0, Qt.CheckState.Checked if on else Qt.CheckState.Unchecked)
         self.tree.blockSignals(False)
+        self.tree.viewport().update()
+        self._show()
 
     def joints(self) -> tuple[str, ...]:
         """Return the ticked joints; () for all."""

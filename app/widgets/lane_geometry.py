@@ -15,18 +15,30 @@ from PySide6.QtGui import QFont
 
 from app.look.shortening import measured
 from app.stage.playback_source import Shown
-from app.widgets.request_menu import STAGE, kind_of, lane_of, request_words
+from app.widgets.request_menu import STAGE, kind_of, request_words
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import AnyRequest
+from metagraph.graph.timeline import lane_of
 from metagraph.playback.extend_performance import Answer
 from metagraph.playback.plan import Cue
 
-LEFT, RULER, LANE = 84, 22, 104
+LEFT, RULER, LANE = 84, 28, 104
+NUMBERS = 16  # pixels of the ruler that are its numbers'; the strip below is the range's and the markers'
 PLAYS = 34.0  # pixels at most for what plays in a lane; the rest is for what was asked
 ROW, TALLEST = 19.0, 22.0  # pixels of a row of requests, at least and at most
 STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 300.0)
 NAMES = (STAGE, *LAYERS)
-TITLES = {STAGE: "Speech", "body": "Body", "arms": "Arms", "head": "Head"}
+TITLES = {
+    "cameras": "Cameras",
+    STAGE: "Speech",
+    "words": "Words",
+    "body": "Body",
+    "arms": "Arms",
+    "head": "Head",
+}
+FIXED = {"cameras": 18.0, "words": 40.0}  # pixels of lanes that have no requests
+GHOST = 20.0  # the same of another seed's
+TALLEST_SHARE, LEAST_SHARE = 4.0, 0.45  # by which a lane can be made taller or lower
 NARROWEST = 6.0  # pixels of a mark that others leave no room
 
 
@@ -48,31 +60,97 @@ class Scale:
         return next((s for s in STEPS if s * self.each >= 64), STEPS[-1])
 
 
-def lanes(height: float) -> dict[str, QRectF]:
-    """Return where each lane is, from the top: the stage, then the layers."""
-    each = min(LANE, max(32.0, (height - RULER) / len(NAMES)))
-    return {name: QRectF(0, RULER + n * each, 1e6, each) for n, name in enumerate(NAMES)}
+@dataclass(frozen=True)
+class Sizes:
+    """Which lanes there are besides stage and layers, and how tall each is. extra: "cameras", "words", and
+    the seeds of ghosts as "ghost 7". tall: lane -> how many times its usual height it has.
+    """
+
+    extra: tuple[str, ...] = ()
+    tall: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Return all lanes, from the top."""
+        out = [n for n in ("cameras", STAGE, "words", *LAYERS) if n in NAMES or n in self.extra]
+        return (*out, *(n for n in self.extra if n.startswith("ghost ")))
+
+    def factor(self, name: str) -> float:
+        return dict(self.tall).get(name, 1.0)
+
+    def fixed(self, name: str) -> float | None:
+        """Return how many pixels a lane has that has no requests; None for one that has."""
+        usual = GHOST if name.startswith("ghost ") else FIXED.get(name)
+        return usual * self.factor(name) if usual is not None else None
+
+    def least(self, layer: float) -> float:
+        """Return the height in which each layer has so many pixels."""
+        return RULER + layer * len(NAMES) + sum(self.fixed(n) or 0.0 for n in self.extra)
+
+    def resized(self, name: str, bottom: float, whole: float) -> Sizes:
+        """Return the sizes with which a lane ends at `bottom`, in a widget `whole` pixels high."""
+        fixed = self.fixed(name)
+        if fixed is not None:
+            top = lanes(whole, self)[name].top()
+            return self.with_factor(name, (bottom - top) * self.factor(name) / fixed)
+        names = self.names
+        before, room = names[: names.index(name)], whole - RULER - sum(self.fixed(n) or 0.0 for n in names)
+        above = sum(self.factor(n) for n in before if n in NAMES)
+        below = sum(self.factor(n) for n in NAMES if n not in before and n != name)
+        down = bottom - RULER - sum(self.fixed(n) or 0.0 for n in before)
+        part = min(0.98, max(0.0, down / max(1.0, room)))
+        if room >= LANE * (above + self.factor(name) + below):
+            return self.with_factor(name, down / LANE - above)
+        if not below:  # the last one ends where all end: the higher the mouse, the lower it is
+            return self.with_factor(name, self.factor(name) * part)
+        return self.with_factor(name, (part * (above + below) - above) / (1 - part))
+
+    def with_factor(self, name: str, factor: float) -> Sizes:
+        """Return the sizes with which a lane is so many times its usual height."""
+        held = round(min(TALLEST_SHARE, max(LEAST_SHARE, factor)), 3)
+        tall = {k: v for k, v in self.tall if k != name}
+        return replace(self, tall=tuple(sorted(({**tall, name: held} if held != 1.0 else tall).items())))
+
+
+EVEN = Sizes()
+
+
+def lanes(height: float, sizes: Sizes = EVEN) -> dict[str, QRectF]:
+    """Return where each lane is, from the top: the stage, then the layers, with what is shown besides."""
+    names, whole = sizes.names, sum(sizes.factor(n) for n in NAMES)
+    room = height - RULER - sum(sizes.fixed(n) or 0.0 for n in names)
+    each = min(float(LANE), max(32.0 * len(NAMES) / whole, room / whole))
+    out, top = {}, float(RULER)
+    for name in names:
+        tall = sizes.fixed(name)
+        tall = each * sizes.factor(name) if tall is None else tall
+        out[name] = QRectF(0, top, 1e6, tall)
+        top += tall
+    return out
 
 
 def rows(lane: QRectF) -> tuple[QRectF, QRectF]:
     """Return a lane's upper row, what was asked, and its lower, what plays."""
-    lower = min(PLAYS, lane.height() * 0.55)
+    lower = min(PLAYS, lane.height() * 0.5)
     upper = lane.height() - lower
     return QRectF(lane.left(), lane.top() + 2, lane.width(), upper - 3), QRectF(
         lane.left(), lane.top() + upper, lane.width(), lower - 3
     )
 
 
-def lane_at(height: float, at: QPointF) -> str | None:
+def lane_at(height: float, at: QPointF, sizes: Sizes = EVEN) -> str | None:
     """Return the lane under a point."""
-    return next((name for name, lane in lanes(height).items() if at.x() >= LEFT and lane.contains(at)), None)
+    places = lanes(height, sizes)
+    return next((name for name, lane in places.items() if at.x() >= LEFT and lane.contains(at)), None)
 
 
-def cue_at(shown: Shown, scale: Scale, height: float, at: QPointF) -> tuple[Layer, Cue] | None:
+def cue_at(
+    shown: Shown, scale: Scale, height: float, at: QPointF, sizes: Sizes = EVEN
+) -> tuple[Layer, Cue] | None:
     """Return the cue under a point."""
     seconds = scale.seconds(at.x())
     for layer in LAYERS:
-        if at.x() >= LEFT and rows(lanes(height)[layer])[1].contains(at):
+        if at.x() >= LEFT and rows(lanes(height, sizes)[layer])[1].contains(at):
             cue = shown.plan.layers[layer].cue_at(seconds)
             return (layer, cue) if cue is not None else None
     return None
@@ -127,13 +205,14 @@ def marks(
     height: float,
     font: QFont,
     shift: Mapping[str, float] | None = None,
+    sizes: Sizes = EVEN,
 ) -> list[Mark]:
     """Return what stands in the upper rows, the later on top. shift: seconds by which some are being
     dragged.
     """
-    places, key = lanes(height), font.toString()
-    areas = {name: rows(lane)[0] for name, lane in places.items()}
-    count = max(1, int((next(iter(areas.values())).height() + 1) // ROW))
+    places, key = lanes(height, sizes), font.toString()
+    areas = {name: rows(places[name])[0] for name in NAMES}
+    counts = {name: max(1, int((area.height() + 1) // ROW)) for name, area in areas.items()}
     lasts: dict[tuple[str, int], int] = {}  # of each row its last mark, by its place in `out`
     out: list[Mark] = []
     timed = sorted(
@@ -142,7 +221,7 @@ def marks(
     )
     for at, _, ask in timed:
         lane, words, left = lane_of(ask, project), request_words(ask, project), scale.x(at)
-        area = areas[lane]
+        area, count = areas[lane], counts[lane]
         tall = min(TALLEST, (area.height() + 1) / count - 1)
         ends = [out[lasts[lane, n]].rect.right() if (lane, n) in lasts else -1e9 for n in range(count)]
         row = next((n for n, end in enumerate(ends) if end + 3 <= left), None)

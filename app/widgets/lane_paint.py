@@ -15,7 +15,19 @@ from app.look.names import node_names, plain
 from app.look.shortening import chipped, fitted
 from app.look.theme import KIND_MARKS, Theme
 from app.stage.playback_source import Shown
-from app.widgets.lane_geometry import LEFT, RULER, TITLES, Mark, Scale, elided, lanes, rows
+from app.widgets.lane_geometry import (
+    EVEN,
+    LEFT,
+    NUMBERS,
+    RULER,
+    TITLES,
+    Mark,
+    Scale,
+    Sizes,
+    elided,
+    lanes,
+    rows,
+)
 from app.widgets.request_menu import STAGE
 from metagraph.graph.model import LAYERS, Action, Layer, Project
 
@@ -29,7 +41,7 @@ MIDDLE = Qt.AlignmentFlag.AlignVCenter
 @dataclass(frozen=True)
 class LaneScene:
     """All that is painted. ends: seconds at which a kept performance ends. actions, asks: ids of what is
-    selected.
+    selected. locked: lanes whose requests are not to be moved.
     """
 
     shown: Shown
@@ -41,6 +53,11 @@ class LaneScene:
     ends: float | None
     actions: Collection[str]
     asks: Collection[str]
+    sizes: Sizes = EVEN
+    locked: Collection[str] = ()
+
+    def lanes(self) -> dict[str, QRectF]:
+        return lanes(self.height, self.sizes)
 
 
 def paint(painter: QPainter, t: Theme, scene: LaneScene) -> None:
@@ -48,7 +65,7 @@ def paint(painter: QPainter, t: Theme, scene: LaneScene) -> None:
     painter.fillRect(QRectF(0, 0, scene.width, scene.height), QColor(t.panel))
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     _ruler(painter, t, scene)
-    for name, lane in lanes(scene.height).items():
+    for name, lane in scene.lanes().items():
         painter.setPen(QColor(t.line))
         painter.drawLine(QPointF(0, lane.bottom()), QPointF(scene.width, lane.bottom()))
         muted = name in scene.shown.muted
@@ -56,7 +73,11 @@ def paint(painter: QPainter, t: Theme, scene: LaneScene) -> None:
         font = painter.font()
         font.setStrikeOut(muted)
         painter.setFont(font)
-        painter.drawText(QRectF(14, lane.top(), LEFT - 16, lane.height()), MIDDLE, TITLES[name])
+        painter.drawText(
+            QRectF(14, lane.top(), LEFT - 16, lane.height()),
+            MIDDLE,
+            TITLES.get(name, name.replace("ghost", "Seed")),
+        )
         font.setStrikeOut(False)
         painter.setFont(font)
     painter.setClipRect(QRectF(LEFT, 0, scene.width - LEFT, scene.height))
@@ -72,7 +93,7 @@ def paint(painter: QPainter, t: Theme, scene: LaneScene) -> None:
                 _mark(painter, t, mark, mark.ask.id in scene.asks, scene.width)
     else:
         entry = scene.shown.project.clips[scene.shown.clip]
-        area = rows(lanes(scene.height)["body"])[1]
+        area = rows(scene.lanes()["body"])[1]
         rect = QRectF(
             scene.scale.x(0), area.top(), max(2.0, entry.duration * scene.scale.each), area.height()
         )
@@ -98,7 +119,7 @@ def badge(painter: QPainter, t: Theme, at: QPointF, words: str, width: float) ->
     """Paint words at the ruler while something is dragged, its middle at `at`, always in sight."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     wide = painter.fontMetrics().horizontalAdvance(words) + 14
-    rect = QRectF(min(max(LEFT, at.x() - wide / 2), width - wide - 2), 1, wide, RULER - 2)
+    rect = QRectF(min(max(LEFT, at.x() - wide / 2), width - wide - 2), 1, wide, NUMBERS)
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(QColor(t.strong))
     painter.drawRoundedRect(rect, 4, 4)
@@ -115,14 +136,14 @@ def _ruler(painter: QPainter, t: Theme, scene: LaneScene) -> None:
         x = scale.x(mark)
         words = f"{mark:g} s" if step < 60 else f"{mark / 60:g} min"
         if x >= LEFT - 1 and x + painter.fontMetrics().horizontalAdvance(words) / 2 + 1 <= scene.width:
-            painter.drawText(QRectF(x - 40, 0, 80, RULER), Qt.AlignmentFlag.AlignCenter, words)
+            painter.drawText(QRectF(x - 40, 0, 80, NUMBERS), Qt.AlignmentFlag.AlignCenter, words)
         mark = round(mark + step, 3)
 
 
 def _stage(painter: QPainter, t: Theme, scene: LaneScene) -> None:
     """Speech as bars with its words, looks as lines under them."""
     scale, shown = scene.scale, scene.shown
-    area, track = rows(lanes(scene.height)[STAGE])[1], shown.plan.track
+    area, track = rows(scene.lanes()[STAGE])[1], shown.plan.track
     for look, following in zip(track.looks, (*track.looks[1:], None), strict=False):
         until = min(look.end, following.start if following else look.end, max(shown.length, look.start))
         left, right = scale.x(look.start), scale.x(until)
@@ -144,7 +165,7 @@ def _stage(painter: QPainter, t: Theme, scene: LaneScene) -> None:
 def _layer(painter: QPainter, t: Theme, scene: LaneScene, layer: Layer) -> None:
     """Stances as a quiet band, cues on it in their kind's colour."""
     scale, shown = scene.scale, scene.shown
-    plan, area = shown.plan.layers[layer], rows(lanes(scene.height)[layer])[1]
+    plan, area = shown.plan.layers[layer], rows(scene.lanes()[layer])[1]
     begin, end = scale.first, scale.seconds(scene.width)
     edges = [
         plan.past.free,
@@ -260,7 +281,7 @@ def _fitting(painter: QPainter, words: str, width: float) -> str:
 def _ties(painter: QPainter, t: Theme, scene: LaneScene) -> None:
     """Lead from each request down to what plays for it."""
     painter.setPen(QPen(QColor(t.dim), 1.2))
-    places = lanes(scene.height)
+    places = scene.lanes()
     for mark in scene.marks:
         if mark.answer is None or mark.answer.at is None or mark.kind is None or mark.late <= 0.02:
             continue

@@ -27,24 +27,6 @@ MOOD_WORDS = {name: name.capitalize() for name in FEELINGS}
 MODE_WORDS = {"idle": "Idle", "listening": "Listen", "talking": "Talk"}
 
 
-def lane_of(ask: a.AnyRequest, project: Project) -> str:
-    """Return the lane an ask stands in: its layer, or the stage."""
-    match ask:
-        case a.Gesture() | a.Fidget() | a.Change():
-            return ask.layer
-        case a.Nod() | a.Shake():
-            return "head"
-        case a.Play():
-            found = project.action(ask.action) or next(
-                (x for x in project.actions() if x.name == ask.action), None
-            )
-            return ask.layer or (found.layer if found else "arms")
-        case a.Go():
-            stances = ((layer, s) for layer in LAYERS for s in project.graphs[layer].stances.values())
-            return ask.layer or next((layer for layer, s in stances if ask.stance in (s.id, s.name)), "arms")
-    return STAGE
-
-
 def kind_of(ask: a.AnyRequest) -> str | None:
     """Return the kind an ask is coloured as, None for what no layer plays."""
     if isinstance(ask, a.Go | a.Change):

@@ -57,6 +57,7 @@ from metagraph.graph.model import (
     Timing,
 )
 from metagraph.graph.requests import words_of
+from metagraph.graph.timeline import Timeline
 from metagraph.graph.touch import Touch
 from metagraph.graph.words import MODES
 from metagraph.motion.contact_hold import Contact
@@ -178,6 +179,7 @@ STRUCTS: dict[str, Any] = {
     "lines": dict[str, Line],
     "performances": dict[str, Performance],
     "conversations": dict[str, Conversation],
+    "timelines": dict[str, Timeline],
     "tiers": dict[str, str],
     "labels": dict[str, str],
     "notes": dict[str, str],

@@ -18,11 +18,12 @@ from metagraph.graph.model import Project, Timing
 _GONE: Any = object()
 _MADE = re.compile(r"[a-z]+\d+")  # ids that the program makes
 # What is one thing however many fields it has: its parts would not fit those of another.
-_WHOLE = ("skeleton", "markov", "joint_maps", "performances", "conversations", "points")
+_WHOLE = ("skeleton", "markov", "joint_maps", "performances", "conversations", "points", "timelines")
 _THINGS = (
     "lines",
     "performances",
     "conversations",
+    "timelines",
     "points",
     "notes",
     "marks",

@@ -113,6 +113,7 @@ def to_text(data: Data) -> str:
                     "markov",
                     "performances",
                     "conversations",
+                    "timelines",
                     "joint_maps",
                     "manual",
                 ):

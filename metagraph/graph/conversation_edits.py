@@ -29,6 +29,7 @@ from metagraph.graph.conversation import (
 )
 from metagraph.graph.edits import EditError, free_name
 from metagraph.graph.model import Project
+from metagraph.graph.timeline import without_timeline
 from metagraph.graph.vocabulary import joined, kinds_of_words, tokens
 
 _DIGITS = 3  # of seconds: what is dragged lands on milliseconds
@@ -53,6 +54,7 @@ def add_conversation(project: Project, conversation: Conversation) -> tuple[Proj
 
 def remove_conversation(project: Project, ident: str) -> Project:
     _conversation(project, ident)
+    project = without_timeline(project, ident)
     return replace(project, conversations={i: c for i, c in project.conversations.items() if i != ident})
 
 

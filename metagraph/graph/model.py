@@ -16,6 +16,7 @@ from metagraph.graph.conversation import AUTO, Conversation
 from metagraph.graph.life import Face, Life
 from metagraph.graph.manual import Alias, Link, Manual, State
 from metagraph.graph.requests import Line, Performance, Point
+from metagraph.graph.timeline import Timeline
 from metagraph.graph.touch import Touch
 from metagraph.graph.words import KINDS, LAYERS, LIMBS, MODES, PARTS, Kind, Layer, Limb, Mode, Part
 from metagraph.motion.clip import Clip
@@ -363,9 +364,9 @@ class Project:
     character: path of the GLB to draw, relative to the project file, or None for a stick figure. hidden:
     names of its meshes that are not drawn. points:
     named places to look at, metres. lines: the dialogue an agent calls by id. performances, conversations:
-    those kept, by id. tiers: annotation tier -> what it was last read as. notes: to read, by the id of the
-    action they are on, "" for the project's own. marks: what clips are found again by, by their ids.
-    joint_maps: how clips of other
+    those kept, by id. timelines: what is noted on theirs, by their id. tiers: annotation tier -> what it was
+    last read as. notes: to read, by the id of the action they are on, "" for the project's own. marks: what
+    clips are found again by, by their ids. joint_maps: how clips of other
     skeletons are retargeted, by `joint_map.fingerprint` of theirs. language: what conversations are read in,
     a code ("de"), or "auto" for what their words tell. manual: state machines drawn by hand, of
     the layers that have one. voices: line -> its analysed sound (`playback.life.voice.Voice`), as far as
@@ -393,6 +394,7 @@ class Project:
     lines: Mapping[str, Line] = field(default_factory=dict)
     performances: Mapping[str, Performance] = field(default_factory=dict)
     conversations: Mapping[str, Conversation] = field(default_factory=dict)
+    timelines: Mapping[str, Timeline] = field(default_factory=dict)
     language: str = AUTO
     tiers: Mapping[str, str] = field(default_factory=dict)
     labels: Mapping[str, str] = field(default_factory=dict)

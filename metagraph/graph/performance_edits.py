@@ -13,6 +13,7 @@ import msgspec
 from metagraph.graph.edits import EditError, free_name
 from metagraph.graph.model import Project
 from metagraph.graph.requests import LONGEST_NAME, AnyRequest, Line, Performance, Point, RequestError
+from metagraph.graph.timeline import without_timeline
 
 
 def add_performance(project: Project, performance: Performance) -> tuple[Project, str]:
@@ -73,6 +74,7 @@ def change_performance(project: Project, ident: str, **changes: Any) -> Project:
 
 def remove_performance(project: Project, ident: str) -> Project:
     _performance(project, ident)
+    project = without_timeline(project, ident)
     return replace(project, performances={i: p for i, p in project.performances.items() if i != ident})
 
 
@@ -129,6 +131,52 @@ def remove_requests(project: Project, performance: str, asks: Collection[str] | 
     of = _performance(project, performance)
     return change_performance(
         project, performance, asks=() if asks is None else tuple(x for x in of.asks if x.id not in asks)
+    )
+
+
+def asked_at(ask: AnyRequest) -> float:
+    """Return when an ask is wanted, seconds: its stroke, else its start; 0 for as soon as can be."""
+    stroke = getattr(ask, "stroke", None)
+    return float(stroke if stroke is not None else ask.at if ask.at is not None else 0.0)
+
+
+def close_up_after(
+    project: Project,
+    performance: str,
+    asks: Collection[str],
+    spans: Collection[tuple[float, float]],
+    still: Collection[str] = (),
+) -> Project:
+    """Take asks back and let all that follow move up, by the time that is gone before them.
+
+    spans: first and last second that is gone, of each; they may overlap. still: ids of asks that stay where
+    they are.
+    """
+    gone: list[list[float]] = []
+    for start, end in sorted(spans):
+        if gone and start <= gone[-1][1]:
+            gone[-1][1] = max(gone[-1][1], end)
+        else:
+            gone.append([start, end])
+    project = remove_requests(project, performance, asks)
+    shifts: dict[float, list[str]] = {}
+    for ask in _performance(project, performance).asks:
+        at = asked_at(ask)
+        by = sum(max(0.0, min(end, at) - start) for start, end in gone)
+        if by > 0 and ask.id not in still:
+            shifts.setdefault(round(by, 3), []).append(ask.id)
+    for by, idents in shifts.items():
+        project = move_requests(project, performance, idents, -by)
+    return project
+
+
+def following(
+    performance: Performance, asks: Collection[str], still: Collection[str] = ()
+) -> tuple[str, ...]:
+    """Return some asks and all that are wanted from the first of them on, but for those that stay `still`."""
+    first = min((asked_at(x) for x in performance.asks if x.id in asks), default=0.0)
+    return tuple(
+        x.id for x in performance.asks if x.id in asks or (asked_at(x) >= first and x.id not in still)
     )
 
 

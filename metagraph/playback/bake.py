@@ -27,15 +27,16 @@ def bake(
     seconds: float,
     fps: float = 30.0,
     poses: Callable[[Array], Pose | None] | None = None,
+    start: float = 0.0,
 ) -> Clip:
     """Return `seconds` of a plan as a clip on the project's skeleton, with the life layers and morph targets
-    that move. poses: of times `[N]`, where they are not the plan's alone.
+    that move. poses: of times `[N]`, where they are not the plan's alone. start: second it begins at.
 
     Raises ValueError when the project has no skeleton.
     """
     if project.skeleton is None:
         raise ValueError("a project without clips cannot be posed")
-    times = np.arange(max(1, round(seconds * fps) + 1)) / fps
+    times = start + np.arange(max(1, round(seconds * fps) + 1)) / fps
     pose = (poses(times) if poses is not None else None) or pose_at(plan, project, times)
     away = np.abs(pose.translations - project.skeleton.rest_translations).max(axis=(0, 2))
     moved = (0, *(int(j) for j in np.flatnonzero(away > STILL) if j > 0))

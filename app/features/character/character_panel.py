@@ -9,6 +9,7 @@ from PySide6.QtCore import QElapsedTimer, QMargins, Qt, QTimer
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
+from app.features.character.directing import Directing
 from app.features.character.looking import Looking, mask_marks
 from app.features.character.no_mesh import NoMesh
 from app.features.character.over_view import Overlays
@@ -80,6 +81,7 @@ class PreviewPanel(QWidget):
         self.watch_button.setProperty("over", True)
         self.overlays = Overlays(self)
         self.looking = Looking(self)
+        self.directing = Directing(self)
         self.frames = 0
         self.view.painted.connect(self._painted)
         layout = QVBoxLayout(self)
@@ -241,6 +243,7 @@ class PreviewPanel(QWidget):
             self.view.camera = whole_figure(
                 solid.bounds(), self.view.width() / max(1, self.view.height()), aside
             )
+        self.directing.follow(shown, seconds)
         return scene
 
     def _run_or_rest(self) -> None:
@@ -267,6 +270,7 @@ class PreviewPanel(QWidget):
             self.scrub.setValue(round(10000 * min(1.0, seconds / length)))
         self.caption.say(self._words())
         self.watch_button.move(self.view.width() - self.watch_button.width() - 8, 8)
+        self.directing.tell(seconds)
         self._tell_mesh()
 
     def _tell_mesh(self) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
 from app.stage.compatibility_state import Compatibility
+from app.translation import tr
 from app.widgets.beside import stand_beside
 from app.widgets.one_dialog import show_one
 
@@ -32,10 +33,10 @@ def contribute(shell: Shell) -> Contribution:
                 "compatibility",
                 "&View",
                 "graph",
-                "&Compatibility…",
+                tr("&Compatibility…"),
                 show,
                 ("Ctrl+K",),
-                tip="Which clip enters and leaves which stance without a jump",
+                tip=tr("Which clip enters and leaves which stance without a jump"),
                 enabled=lambda: bool(shell.document.project.clips),
                 when="meta",
                 study="labels",

@@ -37,12 +37,14 @@ from app.features.compatibility.matrix_table import (
     Rows,
     told,
 )
+from app.look.domain_words import LAYER_LONG_TITLES
 from app.look.plural import many
 from app.look.theme import KIND_MARKS, KIND_TITLES, strengthen
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.compatibility_state import Compatibility, proposed_fields
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph import edits
 from metagraph.graph.model import KINDS, Action, Project
@@ -64,18 +66,18 @@ class MatrixDialog(QDialog):
         super().__init__(parent)
         self.document, self.session, self.compatibility, self.jobs = document, session, compatibility, jobs
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle("Compatibility")
+        self.setWindowTitle(tr("Compatibility"))
         self.resize(1000, 680)
         self.title = QLabel(self)
         self.title.setProperty("heading", True)
-        self.search = QLineEdit(self, placeholderText="Search clips", clearButtonEnabled=True)
-        self.search.setAccessibleName("Search clips")
+        self.search = QLineEdit(self, placeholderText=tr("Search clips"), clearButtonEnabled=True)
+        self.search.setAccessibleName(tr("Search clips"))
         self.search.textChanged.connect(self._narrow)
         self.which = ComboBox(self)
         for text, key in (
-            ("All clips", "all"),
-            ("Placed on this layer", "placed"),
-            ("Not placed on it", "free"),
+            (tr("All clips"), "all"),
+            (tr("Placed on this layer"), "placed"),
+            (tr("Not placed on it"), "free"),
         ):
             self.which.addItem(text, key)
         self.which.activated.connect(self._narrow)
@@ -83,7 +85,7 @@ class MatrixDialog(QDialog):
         self.table = QTableView(self)
         self.table.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
         self.table.setModel(self.model)
-        self.table.setAccessibleName("Clips against stances")
+        self.table.setAccessibleName(tr("Clips against stances"))
         header = self.table.horizontalHeader()
         header.setSectionsClickable(True)
         header.setSortIndicatorShown(True)
@@ -111,7 +113,7 @@ class MatrixDialog(QDialog):
         self.words.setMinimumHeight(56)
         self.words.setAlignment(Qt.AlignmentFlag.AlignTop)
         self.kind = ComboBox(self)
-        self.kind.setAccessibleName("Place as")
+        self.kind.setAccessibleName(tr("Place as"))
         for kind in KINDS:
             self.kind.addItem(f"{KIND_MARKS[kind]} {KIND_TITLES[kind]}", kind)
         self.kind.setCurrentIndex(KINDS.index("gesture"))
@@ -119,7 +121,7 @@ class MatrixDialog(QDialog):
         self.go = QPushButton(self)
         self.go.clicked.connect(self.place)
         strengthen(self.go)
-        close = QPushButton("Close", self)
+        close = QPushButton(tr("Close"), self)
         close.clicked.connect(self.close)
         self.go.setAutoDefault(False)
         close.setAutoDefault(False)
@@ -145,7 +147,7 @@ class MatrixDialog(QDialog):
         box.addWidget(self.table, 1)
         box.addWidget(self.words)
         row = QHBoxLayout()
-        row.addWidget(QLabel("Place as", self))
+        row.addWidget(QLabel(tr("Place as"), self))
         row.addWidget(self.kind)
         row.addWidget(self.go)
         row.addStretch(1)
@@ -170,17 +172,23 @@ class MatrixDialog(QDialog):
         if matrix is None or matrix.layer != layer or matrix.stances != stances:
             self.model.show_rows(None)
             waits = (
-                "Comparing clips with stances…"
+                tr("Comparing clips with stances…")
                 if stances and project.clips
-                else "Make a stance first: drop a resting clip."
+                else tr("Make a stance first: drop a resting clip.")
             )
-            self.title.setText(f"{layer.capitalize()} layer")
+            self.title.setText(LAYER_LONG_TITLES[layer])
             self.words.setText(waits)
             return
         fresh = self.model.rows is None or self.model.rows.matrix.stances != stances
         with self._same_cell():
             self.model.show_rows(Rows.of(project, matrix))
-        self.title.setText(f"{layer.capitalize()} layer, {many(len(matrix.clips), 'clip')}")
+        self.title.setText(
+            tr(
+                "{layer}, {clips}",
+                layer=LAYER_LONG_TITLES[layer],
+                clips=many(len(matrix.clips), "clip"),
+            )
+        )
         if fresh:
             self._arrange()
         self._show_current()
@@ -229,22 +237,24 @@ class MatrixDialog(QDialog):
         stance = project.stance(found[1]) if found is not None else None
         entry = project.clips.get(found[0]) if found is not None else None
         self.go.setEnabled(stance is not None and entry is not None)
-        self.go.setText("Place here" if stance is None else f"Place on '{stance.name}'")
+        self.go.setText(tr("Place here") if stance is None else tr("Place on '{name}'", name=stance.name))
         if self.model.rows is None:
             return
         if found is None or found[2] is None or stance is None or entry is None:
             self.words.setText(
-                "Click a mark to see the clip go from that stance and back to it; double-click to place it "
-                "there."
+                tr(
+                    "Click a mark to see the clip go from that stance and back to it; double-click to place "
+                    "it there."
+                )
             )
             return
         words = told(found[2], entry.name, stance.name)
         if self.kind.currentData() == "transition":
             end = project.stance(self._end(found[0], stance.id))
             words += (
-                f"\nas a transition it would end in '{end.name}'"
+                tr("\nas a transition it would end in '{name}'", name=end.name)
                 if end is not None
-                else "\na transition needs a second stance"
+                else tr("\na transition needs a second stance")
             )
         self.words.setText(words)
 
@@ -313,7 +323,7 @@ class MatrixDialog(QDialog):
 
             before = self.document.project
             try:
-                self.document.edit("Place 1 clip", placed)
+                self.document.edit(tr("Place 1 clip"), placed)
             except edits.EditError as error:
                 self.words.setText(str(error))
                 return

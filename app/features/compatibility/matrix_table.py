@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QStyle, QStyledItemDelegate, QStyleOptionViewItem,
 
 from app.look.theme import KIND_MARKS, Theme, theme
 from app.stage.session import Session
+from app.translation import tr
 from metagraph.graph.model import KINDS, Kind, Project
 
 if TYPE_CHECKING:
@@ -48,10 +49,17 @@ def grade(cost: float) -> int:
 def words_of(cost: float, seconds: float, what: str) -> str:
     """Say a half: "leaves at 1.24 s: 0.6 of what shows as a jump"."""
     if not isfinite(cost):
-        return f"{what}: nothing to compare"
-    of = "of" if cost <= 1 else "times"
-    more = {0: "", 1: "; a usual blend hides it"}.get(grade(cost), "; a usual blend does not hide it")
-    return f"{what} at {seconds:.2f} s: {cost:.1f} {of} what shows as a jump{more}"
+        return tr("{what}: nothing to compare", what=what)
+    of = tr("of") if cost <= 1 else tr("times")
+    more = {0: "", 1: tr("; a usual blend hides it")}.get(grade(cost), tr("; a usual blend does not hide it"))
+    return tr(
+        "{what} at {seconds:.2f} s: {cost:.1f} {of} what shows as a jump{more}",
+        what=what,
+        seconds=seconds,
+        cost=cost,
+        of=of,
+        more=more,
+    )
 
 
 def told(cell: Cell, clip: str, stance: str) -> str:
@@ -62,7 +70,7 @@ def told(cell: Cell, clip: str, stance: str) -> str:
         words_of(cell.leave, cell.leave_at, "leaves"),
     ]
     if cell.here:
-        lines.append(f"placed here as {' and '.join(cell.here)}")
+        lines.append(tr("placed here as {here}", here=" and ".join(cell.here)))
     return "\n".join(lines)
 
 
@@ -199,7 +207,7 @@ class MatrixModel(QAbstractTableModel):
             if role == CELL:
                 return kinds
             if role in (Qt.ItemDataRole.ToolTipRole, Qt.ItemDataRole.AccessibleTextRole):
-                return ", ".join(kinds) or "not placed on this layer"
+                return ", ".join(kinds) or tr("not placed on this layer")
             return None
         cell = self.cell(row, column)
         if cell is None:
@@ -220,13 +228,13 @@ class MatrixModel(QAbstractTableModel):
         if orientation != Qt.Orientation.Horizontal:
             return None
         if role == Qt.ItemDataRole.DisplayRole:
-            return {CLIP: "Clip", USES: "Is"}.get(section) or self._name(section)
+            return {CLIP: tr("Clip"), USES: "Is"}.get(section) or self._name(section)
         if role == Qt.ItemDataRole.TextAlignmentRole and section < FIRST:
             return Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
         if role == Qt.ItemDataRole.ToolTipRole:
             if section >= FIRST:
-                return f"Click to sort by how well clips fit '{self._name(section)}'"
-            return "Click to sort" if section == CLIP else "What it is placed as on this layer"
+                return tr("Click to sort by how well clips fit '{name}'", name=self._name(section))
+            return tr("Click to sort") if section == CLIP else tr("What it is placed as on this layer")
         return None
 
 
@@ -301,13 +309,13 @@ class Marks(QStyledItemDelegate):
 class Legend(QWidget):
     """What the marks mean."""
 
-    PARTS = ((0.5, "no jump"), (2.0, "a blend hides it"), (9.0, "jumps"))
+    PARTS = ((0.5, tr("no jump")), (2.0, tr("a blend hides it")), (9.0, "jumps"))
 
     def __init__(self, session: Session, parent: QWidget) -> None:
         super().__init__(parent)
         self.session = session
         self.setFixedHeight(24)
-        self.setAccessibleName("Left half: entered from the stance. Right half: left to it.")
+        self.setAccessibleName(tr("Left half: entered from the stance. Right half: left to it."))
         session.look.changed.connect(self.update)
 
     def paintEvent(self, event: object) -> None:
@@ -324,7 +332,7 @@ class Legend(QWidget):
             painter.drawText(QRectF(x, 0, wide + 4, self.height()), Qt.AlignmentFlag.AlignVCenter, words)
             x += wide + gap
 
-        for side, words in (("in", "enters from the stance"), ("out", "leaves to it")):
+        for side, words in (("in", tr("enters from the stance")), ("out", tr("leaves to it"))):
             draw_half(painter, t, QRectF(x, y - MARK / 2, MARK, MARK), side, 0.0)
             x += MARK + 5
             say(words, 16)

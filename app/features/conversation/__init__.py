@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from PySide6.QtWidgets import QWidget
+from PySide6.QtWidgets import QMenu, QWidget
 
 from app.project.files import Files
 from app.project.importing import FileDrop
@@ -46,10 +46,19 @@ def contribute(shell: Shell) -> Contribution:
 
         panel = ConversationPanel(shell.document, session, shell.jobs, shell.stage.performance, shell.widget)
         panel.files_dropped.connect(converse)
+        panel.view.more = run("side_sounds")
         panel.add.clicked.connect(lambda: converse())
         panel.more_menu.addActions(shell.actions.of_menu("conversation"))
         panel.more_menu.aboutToShow.connect(shell.actions.refresh)
         return panel
+
+    def partners(menu: QMenu) -> None:
+        """Fill the menu of who is drawn, moved and heard how."""
+        from app.features.conversation.partner_menu import fill_all
+
+        ident = session.onstage.conversation
+        if ident in shell.document.project.conversations:
+            fill_all(menu, shell.document, str(ident), run("side_sounds"))
 
     def replaced() -> bool:
         """Whether somebody on stage moves with new motion instead of a graph."""
@@ -124,6 +133,15 @@ def contribute(shell: Shell) -> Contribution:
                 enabled=staged,
                 tip="Who talks, which sound is whose, and where each stands",
                 menus=mine,
+            ),
+            Command(
+                "partners",
+                menu,
+                "settings",
+                "C&haracters and voices",
+                enabled=staged,
+                tip="Another character, body or voice for each who talks",
+                fill=partners,
             ),
             Command(
                 "other_side",

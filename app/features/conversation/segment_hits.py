@@ -21,6 +21,7 @@ EDGE, DOT = 5.0, 7.0  # pixels either side of an edge, and round a dot, that tak
 NARROW = (
     14.0  # pixels up to which a segment's edges are taken hold of from outside only, so that its body can be
 )
+ARROW = 22.0  # pixels of the arrow behind a name
 SNAP = 6.0  # pixels within which a dragged time is caught
 
 
@@ -34,6 +35,14 @@ class SegmentHit:
 
 
 NOTHING = SegmentHit("nothing")
+
+
+def on_arrow(point: QPointF, size: tuple[float, float], conversation: Conversation | None, side: int) -> bool:
+    """Return whether a point of a side's title is on the arrow behind its name, which opens its menu."""
+    if conversation is None:
+        return False
+    lane = lanes(*size, len(conversation.sides))[side]
+    return point.x() >= LEFT - ARROW and point.y() <= lane.wave.top() + ARROW
 
 
 def hit_at(conversation: Conversation, scale: Scale, size: tuple[float, float], point: QPointF) -> SegmentHit:

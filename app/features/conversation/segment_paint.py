@@ -97,13 +97,16 @@ def _titles(painter: QPainter, t: Theme, scene: SegmentScene, side: int, lane: S
         painter.fillRect(QRectF(0, lane.whole.top(), LEFT - 1, lane.whole.height()), QColor(t.hover))
     if side == scene.side:
         painter.fillRect(QRectF(3, lane.wave.top() + 3, 3, lane.whole.height() - 6), QColor(t.text))
-    if advance(name, bold.toString()) > LEFT - 16:
+    if advance(name, bold.toString()) > LEFT - 32:
         bold.setPixelSize(SMALL)
     painter.setFont(bold)
     painter.setPen(QColor(t.text if over or side == scene.side else t.dim))
     painter.drawText(
-        QRectF(12, lane.wave.top() + 2, LEFT - 14, 18), MIDDLE, elided(name, bold.toString(), LEFT - 16)
+        QRectF(12, lane.wave.top() + 2, LEFT - 30, 18), MIDDLE, elided(name, bold.toString(), LEFT - 32)
     )
+    x, y = LEFT - 11.0, lane.wave.top() + 11.0  # what opens the menu of who it is
+    painter.setPen(QPen(QColor(t.text if over else t.dim), 1.5))
+    painter.drawPolyline([QPointF(x - 3.5, y - 2), QPointF(x, y + 2), QPointF(x + 3.5, y - 2)])
     painter.setFont(small)
     painter.setPen(QColor(t.dim))
     right = Qt.AlignmentFlag.AlignRight | MIDDLE

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
-from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
+from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, Qt
 from PySide6.QtGui import (
     QColor,
     QContextMenuEvent,
@@ -24,7 +25,7 @@ from PySide6.QtWidgets import QMenu, QToolTip, QWidget
 from app.features.conversation.addressees import addressee_words, offer_addressees
 from app.features.conversation.segment_editing import Editing
 from app.features.conversation.segment_gestures import SegmentDrag, SegmentPan, gesture_for
-from app.features.conversation.segment_hits import NOTHING, SegmentHit, hit_at
+from app.features.conversation.segment_hits import NOTHING, SegmentHit, hit_at, on_arrow
 from app.features.conversation.segment_keys import DEEDS, deed_of
 from app.features.conversation.segment_lanes import (
     NEAREST,
@@ -239,6 +240,8 @@ class SegmentView(QWidget):
             self.hand.take(SegmentPan(self), at)
         elif event.button() == Qt.MouseButton.LeftButton and hit.part == "title":
             self.session.onstage.set_side(hit.side)
+            if on_arrow(at, (self.width(), self.height()), self.editing.conversation, hit.side):
+                self._partner(hit.side, event.globalPosition().toPoint())
         elif event.button() == Qt.MouseButton.LeftButton:
             if hit.at >= 0:
                 self._select(hit, event.modifiers())
@@ -327,8 +330,22 @@ class SegmentView(QWidget):
         hit = self._hit(QPointF(event.pos()))
         if hit.at >= 0 and (hit.side, hit.at) not in self.editing.chosen:
             self.editing.select({(hit.side, hit.at)})
-        if hit.part not in ("nothing", "title"):
+        if hit.part == "title":
+            self._partner(hit.side, event.globalPos())
+        elif hit.part != "nothing":
             self.menu(self.scale().seconds(event.pos().x())).popup(event.globalPos())
+
+    def _partner(self, side: int, at: QPoint) -> None:
+        """Offer another character, body or voice for one who talks."""
+        from app.features.conversation.partner_menu import partner_menu
+
+        ident = self.session.onstage.conversation
+        if ident is not None and ident in self.editing.document.project.conversations:
+            menu = partner_menu(self, self.editing.document, ident, side, self.more)
+            menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+            menu.popup(at)
+
+    more: Callable[[], object] | None = None  # opens the dialog of all sounds and names
 
     def menu(self, seconds: float) -> QMenu:
         """Return what can be done with the selected segments, at a time."""
@@ -428,5 +445,6 @@ class SegmentView(QWidget):
                 if whose
                 else "Click to see this one's plan in Performance"
             )
-            return "\n".join((side_name(of, hit.side), *sound, *mover, shown))
+            other = "The arrow: another character, body or voice"
+            return "\n".join((side_name(of, hit.side), *sound, *mover, shown, other))
         return "Drag to make a segment" if hit.part == "gap" else ""

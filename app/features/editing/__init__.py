@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QFrame, QUndoView, QWidget
 from app.shell.actions import Command, Standard
 from app.shell.context import Contribution, Panel, Shell
 from app.shell.verbs import Verbs
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -53,15 +54,15 @@ def contribute(shell: Shell) -> Contribution:
         view = QUndoView(document.undo_stack, shell.widget)
         view.setSpacing(3)
         view.setFrameShape(QFrame.Shape.NoFrame)
-        view.setEmptyLabel("As it was opened")
-        view.setAccessibleName("What was done; a click goes back to it")
+        view.setEmptyLabel(tr("As it was opened"))
+        view.setAccessibleName(tr("What was done; a click goes back to it"))
         return view
 
     return Contribution(
         panels=(
             Panel(
                 "history",
-                "History",
+                tr("History"),
                 "right below",
                 history,
                 study=False,
@@ -74,15 +75,15 @@ def contribute(shell: Shell) -> Contribution:
                 "history",
                 "&Edit",
                 "history",
-                "&History",
+                tr("&History"),
                 lambda: shell.show("history"),
-                tip="What was done, step by step; a click goes back to it",
+                tip=tr("What was done, step by step; a click goes back to it"),
             ),
             Command(
                 "delete",
                 "&Edit",
                 "selection",
-                "&Remove",
+                tr("&Remove"),
                 lambda: verbs.do("remove"),
                 (Standard.Delete,),
                 enabled=lambda: verbs.can("remove"),
@@ -92,7 +93,7 @@ def contribute(shell: Shell) -> Contribution:
                 "rename",
                 "&Edit",
                 "selection",
-                "Re&name…",
+                tr("Re&name…"),
                 lambda: verbs.do("rename"),
                 ("F2",),
                 study=True,
@@ -102,7 +103,7 @@ def contribute(shell: Shell) -> Contribution:
                 "copy",
                 "&Edit",
                 "properties",
-                "&Copy properties",
+                tr("&Copy properties"),
                 do_copy,
                 (Standard.Copy,),
                 enabled=lambda: verbs.can("copy"),
@@ -113,10 +114,10 @@ def contribute(shell: Shell) -> Contribution:
                 "paste",
                 "&Edit",
                 "properties",
-                "&Paste properties…",
+                tr("&Paste properties…"),
                 lambda: verbs.do("paste"),
                 (Standard.Paste,),
-                tip="Give the selected actions what another one has",
+                tip=tr("Give the selected actions what another one has"),
                 enabled=lambda: verbs.can("paste"),
                 study=True,
                 menus=("action",),
@@ -125,9 +126,9 @@ def contribute(shell: Shell) -> Contribution:
                 "replace_clip",
                 "&Edit",
                 "properties",
-                "Replace c&lip…",
+                tr("Replace c&lip…"),
                 replace,
-                tip="Another clip, the same settings",
+                tip=tr("Another clip, the same settings"),
                 enabled=lambda: bool(session.selection.actions),
                 when="meta",
                 study=True,
@@ -137,7 +138,7 @@ def contribute(shell: Shell) -> Contribution:
                 "select_all",
                 "&Edit",
                 "find",
-                "Select &all",
+                tr("Select &all"),
                 lambda: verbs.do("select_all"),
                 (Standard.SelectAll,),
                 study=True,

@@ -23,23 +23,25 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.document import Document
+from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph import batch
 from metagraph.graph.edits import EditError
 
 TITLES = {
-    "blends": "Blend in and out",
-    "part": "Start and end",
-    "exit": "Earliest exit",
-    "phases": "Ready, stroke, hold",
-    "limb": "Limb",
-    "joints": "Joints it moves",
-    "tags": "Tags",
-    "likelihood": "Likelihood",
-    "variation": "Cooldown and spacing",
+    "blends": tr("Blend in and out"),
+    "part": tr("Start and end"),
+    "exit": tr("Earliest exit"),
+    "phases": tr("Ready, stroke, hold"),
+    "limb": tr("Limb"),
+    "joints": tr("Joints it moves"),
+    "tags": tr("Tags"),
+    "likelihood": tr("Likelihood"),
+    "variation": tr("Cooldown and spacing"),
 }
 
 
@@ -75,28 +77,37 @@ class RenameDialog(BatchDialog):
     """New names for many actions, seen before they are given."""
 
     def __init__(self, document: Document, actions: Sequence[str], parent: QWidget | None = None) -> None:
-        super().__init__(document, actions, f"Rename {len(actions)} actions", "Rename", parent)
+        super().__init__(
+            document, actions, tr("Rename {actions} actions", actions=len(actions)), tr("Rename"), parent
+        )
         self.names: dict[str, str] = {}
         self.tabs = QTabWidget(self)
-        self.tabs.setAccessibleName("Ways to rename")
+        self.tabs.setAccessibleName(tr("Ways to rename"))
         self.pattern = QLineEdit("{stance} {name}", self)
-        self.pattern.setAccessibleName("Pattern")
+        self.pattern.setAccessibleName(tr("Pattern"))
         words = QLabel(
-            f"In braces: {', '.join(batch.FIELDS)}. {{n:02}} counts 01, 02, ...", self, wordWrap=True
+            tr("In braces: {fields}. {{n:02}} counts 01, 02, ...", fields=", ".join(batch.FIELDS)),
+            self,
+            wordWrap=True,
         )
         words.setProperty("dim", True)
-        self._page("By pattern", ("Pattern", self.pattern), ("", words))
+        self._page(tr("By pattern"), (tr("Pattern"), self.pattern), ("", words))
         self.sought, self.put, self.regex = (
             QLineEdit(self),
             QLineEdit(self),
-            QCheckBox("regular expression", self),
+            QCheckBox(tr("regular expression"), self),
         )
-        self.sought.setAccessibleName("Find")
-        self.put.setAccessibleName("Replace with")
-        self._page("Find and replace", ("Find", self.sought), ("Replace with", self.put), ("", self.regex))
+        self.sought.setAccessibleName(tr("Find"))
+        self.put.setAccessibleName(tr("Replace with"))
+        self._page(
+            tr("Find and replace"),
+            (tr("Find"), self.sought),
+            (tr("Replace with"), self.put),
+            ("", self.regex),
+        )
         self.preview = make_widget(QTreeWidget, self, rootIsDecorated=False)
-        self.preview.setHeaderLabels(["Now", "Then"])
-        self.preview.setAccessibleName("Names now and then")
+        self.preview.setHeaderLabels([tr("Now"), tr("Then")])
+        self.preview.setAccessibleName(tr("Names now and then"))
         self.preview.setColumnWidth(0, 240)
         self.body.addWidget(self.tabs)
         self.body.addWidget(self.preview, 1)
@@ -135,7 +146,7 @@ class RenameDialog(BatchDialog):
 
     def finish(self) -> None:
         names = self.names
-        self.document.edit(f"Rename {len(names)} actions", lambda p: batch.rename(p, names))
+        self.document.edit(tr("Rename {names} actions", names=len(names)), lambda p: batch.rename(p, names))
         self.accept()
 
 
@@ -145,12 +156,23 @@ class PasteDialog(BatchDialog):
     def __init__(
         self, document: Document, source: str, actions: Sequence[str], parent: QWidget | None = None
     ) -> None:
-        super().__init__(document, [a for a in actions if a != source], "Paste properties", "Paste", parent)
+        super().__init__(
+            document, [a for a in actions if a != source], tr("Paste properties"), tr("Paste"), parent
+        )
         self.source = source
         copied = document.project.action(source)
         count = len(self.edited)
         name = copied.name if copied is not None else ""
-        self.body.addWidget(QLabel(f"From '{name}' to {count} action{'s' if count != 1 else ''}:", self))
+        self.body.addWidget(
+            QLabel(
+                tr(
+                    "From '{name}' to {actions}:",
+                    name=name,
+                    actions=many(count, "action"),
+                ),
+                self,
+            )
+        )
         self.boxes = {group: QCheckBox(TITLES[group], self) for group in batch.PROPERTIES}
         for group, box in self.boxes.items():
             box.setChecked(group in ("blends", "tags"))
@@ -169,7 +191,7 @@ class PasteDialog(BatchDialog):
         except EditError as error:
             self.trouble.setText(str(error))
             return
-        self.document.edit("Paste properties", lambda p: after)
+        self.document.edit(tr("Paste properties"), lambda p: after)
         self.accept()
 
 
@@ -177,10 +199,10 @@ class ReplaceDialog(BatchDialog):
     """Another clip for actions, which keep their settings."""
 
     def __init__(self, document: Document, actions: Sequence[str], parent: QWidget | None = None) -> None:
-        super().__init__(document, actions, "Replace the clip", "Replace", parent)
+        super().__init__(document, actions, tr("Replace the clip"), tr("Replace"), parent)
         self.clips = ComboBox(self, editable=True)
         self.clips.setInsertPolicy(QComboBox.InsertPolicy.NoInsert)
-        self.clips.setAccessibleName("Clip")
+        self.clips.setAccessibleName(tr("Clip"))
         for clip in document.project.clips.values():
             self.clips.addItem(clip.name, clip.id)
         finder = self.clips.completer()
@@ -188,9 +210,9 @@ class ReplaceDialog(BatchDialog):
             finder.setFilterMode(Qt.MatchFlag.MatchContains)
             finder.setCompletionMode(QCompleter.CompletionMode.PopupCompletion)
         form = QFormLayout()
-        form.addRow("Clip", self.clips)
+        form.addRow(tr("Clip"), self.clips)
         words = QLabel(
-            "Timing, limb, tags and all else stay; times beyond the clip's end are cut to it.",
+            tr("Timing, limb, tags and all else stay; times beyond the clip's end are cut to it."),
             self,
             wordWrap=True,
         )
@@ -205,8 +227,10 @@ class ReplaceDialog(BatchDialog):
     def finish(self) -> None:
         place = self.clips.findText(self.clips.currentText(), Qt.MatchFlag.MatchFixedString)
         if place < 0:
-            self.trouble.setText(f"there is no clip '{self.clips.currentText()}' in the library")
+            self.trouble.setText(
+                tr("there is no clip '{name}' in the library", name=self.clips.currentText())
+            )
             return
         clip = str(self.clips.itemData(place))
-        self.document.edit("Replace the clip", lambda p: batch.replace_clip(p, self.edited, clip))
+        self.document.edit(tr("Replace the clip"), lambda p: batch.replace_clip(p, self.edited, clip))
         self.accept()

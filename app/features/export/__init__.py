@@ -7,6 +7,7 @@ from PySide6.QtWidgets import QPushButton, QWidget
 
 from app.shell.actions import Command
 from app.shell.context import Contribution, HeaderItem, Shell
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -28,11 +29,11 @@ def contribute(shell: Shell) -> Contribution:
                 "export",
                 "&File",
                 "write",
-                "&Export…",
+                tr("&Export…"),
                 export,
                 ("Ctrl+E",),
                 icon="export",
-                tip="JSON and GLB for engines",
+                tip=tr("JSON and GLB for engines"),
                 enabled=something,
             ),
         ),
@@ -44,7 +45,7 @@ class ExportButton(QPushButton):
     """The way out, always in sight."""
 
     def __init__(self, shell: Shell, parent: QWidget) -> None:
-        super().__init__("Export", parent)
+        super().__init__(tr("Export"), parent)
         action = shell.actions["export"]
         self.setToolTip(action.toolTip())
         self.setProperty("strong", True)

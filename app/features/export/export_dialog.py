@@ -36,6 +36,7 @@ from app.look.theme import strengthen
 from app.project.chosen import was_chosen
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
+from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.tree_items import items_below, top_items
 from metagraph.engines.targets import registry
@@ -91,7 +92,7 @@ class ExportDialog(QDialog):
         self.setAttribute(
             Qt.WidgetAttribute.WA_DeleteOnClose
         )  # a running export goes on; the status bar shows it
-        self.setWindowTitle("Export for engines")
+        self.setWindowTitle(tr("Export for engines"))
         self.resize(860, 620)
         self.results: dict[str, Result] = {}  # of what was written, by target
         chosen = self.chosen = self._remembered()
@@ -127,13 +128,15 @@ class ExportDialog(QDialog):
         errors = [p for p in check(self.project) if p.severity == "error"]
         if errors:
             self.go.setEnabled(False)
-            self.trouble.setText(f"First: {errors[0].message}. {errors[0].remedy}")
+            self.trouble.setText(
+                tr("First: {message}. {remedy}", message=errors[0].message, remedy=errors[0].remedy)
+            )
 
     # --- parts
 
     def _list(self) -> QTreeWidget:
         out = make_widget(QTreeWidget, self, headerHidden=True, rootIsDecorated=False)
-        out.setAccessibleName("Target")
+        out.setAccessibleName(tr("Target"))
         out.setFixedWidth(260)
         groups: dict[str, QTreeWidgetItem] = {}
         for target in registry.targets().values():
@@ -153,32 +156,32 @@ class ExportDialog(QDialog):
         row = QHBoxLayout()
         self.folder = QLineEdit(self)
         self.folder.textEdited.connect(self._name_folder)
-        self.folder.setAccessibleName("Folder")
-        browse = QPushButton("Choose…", self)
+        self.folder.setAccessibleName(tr("Folder"))
+        browse = QPushButton(tr("Choose…"), self)
         browse.clicked.connect(self._browse)
         row.addWidget(self.folder, 1)
         row.addWidget(browse)
-        form.addRow("Folder", row)
-        self.mesh = QCheckBox("the character's mesh in the GLB", self)
+        form.addRow(tr("Folder"), row)
+        self.mesh = QCheckBox(tr("the character's mesh in the GLB"), self)
         self.mesh.setChecked(chosen.mesh and project.character is not None)
         self.mesh.setEnabled(project.character is not None)
-        self.expanded = QCheckBox("the expanded state machine in the JSON", self)
+        self.expanded = QCheckBox(tr("the expanded state machine in the JSON"), self)
         self.expanded.setChecked(chosen.expanded)
-        self.vectors = QCheckBox("conformance vectors, which prove that a runtime plays the same", self)
+        self.vectors = QCheckBox(tr("conformance vectors, which prove that a runtime plays the same"), self)
         self.vectors.setChecked(chosen.vectors)
-        self.tools = QCheckBox("what may be asked, as tools for a language model", self)
+        self.tools = QCheckBox(tr("what may be asked, as tools for a language model"), self)
         self.tools.setChecked(chosen.tools)
         boxes = (self.mesh, self.expanded, self.vectors, self.tools)
-        for words, box in zip(("Include", "", "", ""), boxes, strict=True):
+        for words, box in zip((tr("Include"), "", "", ""), boxes, strict=True):
             form.addRow(words, box)
         return form
 
     def _buttons(self) -> QDialogButtonBox:
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
-        self.open_button = buttons.addButton("Open folder", QDialogButtonBox.ButtonRole.ActionRole)
+        self.open_button = buttons.addButton(tr("Open folder"), QDialogButtonBox.ButtonRole.ActionRole)
         self.open_button.setEnabled(False)
         self.open_button.clicked.connect(self._open)
-        self.go = buttons.addButton("Export", QDialogButtonBox.ButtonRole.AcceptRole)
+        self.go = buttons.addButton(tr("Export"), QDialogButtonBox.ButtonRole.AcceptRole)
         strengthen(self.go)
         buttons.accepted.connect(self._export)
         buttons.rejected.connect(self.reject)
@@ -234,13 +237,19 @@ class ExportDialog(QDialog):
         self.title.setText(target.title)
         joints = len(project.skeleton) if project.skeleton else 0
         self.words.setText(
-            f"Writes {target.files}. {whole.states} actions, {whole.clips} clips on {joints} joints."
+            tr(
+                "Writes {files}. {states} actions, {clips} clips on {joints} joints.",
+                files=target.files,
+                states=whole.states,
+                clips=whole.clips,
+                joints=joints,
+            )
         )
         for box in (self.expanded, self.vectors, self.tools):
             box.setVisible(played)
         rows = [f"<li>{escape(words)}</li>" for words in registry.losses(project, target.name)]
-        note = f"<p><b>Experimental</b>: {escape(target.untried)}.</p>" if target.untried else ""
-        nothing = "<p>Nothing else is lost.</p>" if self.differences else "<p>Nothing is lost.</p>"
+        note = tr("<p><b>Experimental</b>: {why}.</p>", why=escape(target.untried)) if target.untried else ""
+        nothing = tr("<p>Nothing else is lost.</p>") if self.differences else tr("<p>Nothing is lost.</p>")
         lost = (
             f"<p><b>What it loses</b></p><ul style='margin-left:-20px'>{''.join(rows)}</ul>"
             if rows
@@ -258,7 +267,7 @@ class ExportDialog(QDialog):
     def _show_result(self) -> None:
         """Say what was written for the target that is chosen; of another it would be wrong here."""
         name = self.target.name
-        self.open_button.setText("Open in browser" if name == "web" else "Open folder")
+        self.open_button.setText(tr("Open in browser") if name == "web" else tr("Open folder"))
         result = self.results.get(name)
         self.open_button.setEnabled(result is not None)
         if result is not None:
@@ -267,7 +276,7 @@ class ExportDialog(QDialog):
             self.trouble.setText(result.trouble if result is not None else "")
 
     def _browse(self) -> None:
-        name = QFileDialog.getExistingDirectory(self, "Export into", self.folder.text())
+        name = QFileDialog.getExistingDirectory(self, tr("Export into"), self.folder.text())
         if name:
             self.folder.setText(name)
             self._name_folder(name)
@@ -310,7 +319,7 @@ class ExportDialog(QDialog):
         def failed(error: Exception) -> None:
             self._failed(name, error)
 
-        job = self.jobs.start("Exporting", work, lambda made: self._done(made, folder), failed)
+        job = self.jobs.start(tr("Exporting"), work, lambda made: self._done(made, folder), failed)
         job.progress.connect(self._tell)
 
     def _tell(self, done: int, total: int, words: str) -> None:
@@ -321,9 +330,15 @@ class ExportDialog(QDialog):
         self.progress.hide()
         self.go.setEnabled(True)
         main = [path.name for path in sorted(made.files, key=lambda path: -path.stat().st_size)[:3]]
-        more = f" and {len(made.files) - 3} more files" if len(made.files) > 3 else ""
+        more = tr(" and {count} more files", count=len(made.files) - 3) if len(made.files) > 3 else ""
         size = sum(path.stat().st_size for path in made.files) / 1e6
-        words = f"Written: {', '.join(main)}{more}, {size:.1f} MB with {made.clips} clips."
+        words = tr(
+            "Written: {main}{more}, {size:.1f} MB with {clips} clips.",
+            main=", ".join(main),
+            more=more,
+            size=size,
+            clips=made.clips,
+        )
         self.results[made.target] = Result(str(folder), words, "\n".join(made.warnings[:5]))
         if self.target.name == made.target:
             self._show_result()
@@ -340,16 +355,18 @@ class ExportDialog(QDialog):
         """Ask before anything that is not of this export is overwritten."""
         box = QMessageBox(
             QMessageBox.Icon.Question,
-            "Overwrite?",
-            f"{error.folder} already has files of another origin.",
+            tr("Overwrite?"),
+            tr("{folder} already has files of another origin.", folder=error.folder),
             parent=self,
         )
         box.setInformativeText(
-            "Written over would be:\n" + "\n".join(error.files[:8]) + ("\n…" if len(error.files) > 8 else "")
+            tr("Written over would be:\n")
+            + "\n".join(error.files[:8])
+            + ("\n…" if len(error.files) > 8 else "")
         )
         box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        overwrite = box.addButton("Overwrite", QMessageBox.ButtonRole.DestructiveRole)
-        box.addButton("Choose another folder…", QMessageBox.ButtonRole.RejectRole)
+        overwrite = box.addButton(tr("Overwrite"), QMessageBox.ButtonRole.DestructiveRole)
+        box.addButton(tr("Choose another folder…"), QMessageBox.ButtonRole.RejectRole)
         box.buttonClicked.connect(
             lambda button: self._export(overwrite=True) if button is overwrite else self._browse()
         )

@@ -15,6 +15,7 @@ from app.project.label_files import LabelFiles
 from app.project.watching import Watcher
 from app.shell.actions import Command, Standard
 from app.shell.context import Contribution, HeaderItem, Shell
+from app.translation import tr
 from metagraph.formats.imports import Imported
 
 LINES = 6  # of a report that are shown at once
@@ -34,7 +35,7 @@ def contribute(shell: Shell) -> Contribution:
         for path in files.recent():
             menu.addAction(f"{path.name.split('.')[0]}   {path.parent}", partial(files.open, path))
         if menu.isEmpty():
-            menu.addAction("None yet").setEnabled(False)
+            menu.addAction(tr("None yet")).setEnabled(False)
 
     def imported(result: Imported, place: object) -> None:
         load = importing.load_for(result)
@@ -58,47 +59,47 @@ def contribute(shell: Shell) -> Contribution:
     menu = "&File"
     return Contribution(
         commands=(
-            Command("new", menu, "project", "&New project", files.new, (Standard.New,)),
-            Command("open", menu, "project", "&Open…", files.ask_open, (Standard.Open,)),
-            Command("recent", menu, "project", "Open &recent", fill=fill_recent),
+            Command("new", menu, "project", tr("&New project"), files.new, (Standard.New,)),
+            Command("open", menu, "project", tr("&Open…"), files.ask_open, (Standard.Open,)),
+            Command("recent", menu, "project", tr("Open &recent"), fill=fill_recent),
             Command(
                 "sample",
                 menu,
                 "project",
-                "Open the &sample project",
+                tr("Open the &sample project"),
                 lambda: files.open(SAMPLE, template=True),
             ),
             Command(
                 "seated",
                 menu,
                 "project",
-                "Open the seate&d project",
+                tr("Open the seate&d project"),
                 lambda: files.open(SEATED, template=True),
-                tip="Somebody who sits on a stool, and gets up when asked",
+                tip=tr("Somebody who sits on a stool, and gets up when asked"),
             ),
             Command(
                 "practice",
                 menu,
                 "project",
-                "Open the &practice project",
+                tr("Open the &practice project"),
                 lambda: files.open(PRACTICE, template=True),
-                tip="152 clips to label",
+                tip=tr("152 clips to label"),
             ),
             Command(
                 "recover",
                 menu,
                 "project",
-                "Recover &unsaved work…",
+                tr("Recover &unsaved work…"),
                 files.recover_untitled,
-                tip="Projects that were never saved, of windows that were not closed properly",
+                tip=tr("Projects that were never saved, of windows that were not closed properly"),
             ),
-            Command("save", menu, "save", "&Save", files.save, (Standard.Save,)),
-            Command("save_as", menu, "save", "Save &as…", files.save_as, (Standard.SaveAs,)),
+            Command("save", menu, "save", tr("&Save"), files.save, (Standard.Save,)),
+            Command("save_as", menu, "save", tr("Save &as…"), files.save_as, (Standard.SaveAs,)),
             Command(
                 "import",
                 menu,
                 "import",
-                "&Import folder…",
+                tr("&Import folder…"),
                 importing.ask_import_folder,
                 ("Ctrl+I",),
                 icon="folder",
@@ -107,7 +108,7 @@ def contribute(shell: Shell) -> Contribution:
                 "import_files",
                 menu,
                 "import",
-                "Import &files…",
+                tr("Import &files…"),
                 importing.ask_import_files,
                 ("Ctrl+Shift+I",),
             ),
@@ -115,28 +116,28 @@ def contribute(shell: Shell) -> Contribution:
                 "import_labels",
                 menu,
                 "import",
-                "Import &labels…",
+                tr("Import &labels…"),
                 labels.ask,
-                tip="A file of labels, as Blender's add-on writes it, with the clips beside it",
+                tip=tr("A file of labels, as Blender's add-on writes it, with the clips beside it"),
             ),
             Command(
                 "watch",
                 menu,
                 "import",
-                "Follow changed &files",
+                tr("Follow changed &files"),
                 watch,
                 checked=lambda: watcher.on,
-                tip="Clips that are exported again are read again, in place",
+                tip=tr("Clips that are exported again are read again, in place"),
             ),
-            Command("find_missing", menu, "import", "Find missing files…", importing.find_missing),
+            Command("find_missing", menu, "import", tr("Find missing files…"), importing.find_missing),
             Command(
                 "undo",
                 "&Edit",
                 "history",
-                lambda: f"&Undo {stack.undoText()}".strip(),
+                lambda: tr("&Undo {what}", what=stack.undoText()).strip(),
                 shell.document.undo,
                 (Standard.Undo,),
-                tip="Undo",
+                tip=tr("Undo"),
                 icon="undo",
                 enabled=stack.canUndo,
                 study=True,
@@ -145,10 +146,10 @@ def contribute(shell: Shell) -> Contribution:
                 "redo",
                 "&Edit",
                 "history",
-                lambda: f"&Redo {stack.redoText()}".strip(),
+                lambda: tr("&Redo {what}", what=stack.redoText()).strip(),
                 shell.document.redo,
                 (Standard.Redo, "Ctrl+Y"),
-                tip="Redo",
+                tip=tr("Redo"),
                 icon="redo",
                 enabled=stack.canRedo,
                 study=True,
@@ -163,7 +164,7 @@ def _report(shell: Shell, title: str, lines: Sequence[str]) -> None:
     box = QMessageBox(
         QMessageBox.Icon.Information, "Metagraph", title, QMessageBox.StandardButton.Ok, shell.widget
     )
-    more = f"\n… and {len(lines) - LINES} more" if len(lines) > LINES else ""
+    more = tr("\n… and {count} more", count=len(lines) - LINES) if len(lines) > LINES else ""
     box.setInformativeText("\n".join(lines[:LINES]) + more)
     if more:
         box.setDetailedText("\n".join(lines))

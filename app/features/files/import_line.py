@@ -13,12 +13,13 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSizePolicy, QTo
 from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.importing import Importing
+from app.translation import tr
 from app.widgets.making import make_widget
 from metagraph.formats.import_words import Remedy, counted, head, remedies, said
 from metagraph.formats.imports import Imported
 from metagraph.graph.model import Project
 
-NEXT = "Next: let them be labelled, or drag them onto the nodes of the graph."
+NEXT = tr("Next: let them be labelled, or drag them onto the nodes of the graph.")
 
 
 class ImportLine(QToolBar):
@@ -35,7 +36,7 @@ class ImportLine(QToolBar):
         show: Callable[[str, list[str]], object],
         parent: QWidget,
     ) -> None:
-        super().__init__("Import", parent)
+        super().__init__(tr("Import"), parent)
         self.importing, self._do, self._show = importing, do, show
         self.setObjectName("import line")
         self.setMovable(False)
@@ -53,10 +54,12 @@ class ImportLine(QToolBar):
         self.buttons = QHBoxLayout()
         self.buttons.setSpacing(6)
         row.addLayout(self.buttons)
-        self.why = make_widget(QToolButton, held, text="Details…", toolTip="What was left out, and why")
+        self.why = make_widget(
+            QToolButton, held, text=tr("Details…"), toolTip=tr("What was left out, and why")
+        )
         self.why.clicked.connect(self._details)
-        self.close_button = make_widget(QToolButton, held, text="✕", toolTip="Close this line")
-        self.close_button.setAccessibleName("Close")
+        self.close_button = make_widget(QToolButton, held, text="✕", toolTip=tr("Close this line"))
+        self.close_button.setAccessibleName(tr("Close"))
         self.close_button.clicked.connect(self.forget)
         row.addWidget(self.why)
         row.addWidget(self.close_button)
@@ -76,7 +79,7 @@ class ImportLine(QToolBar):
             return
         if fresh:
             words = f"{words}. {NEXT}"
-            self._offer("Label clips…", lambda: self._do("propose"))
+            self._offer(tr("Label clips…"), lambda: self._do("propose"))
         self.result, self._fresh = result, fresh
         self.words.setText(words)
         self.words.setToolTip(words)

@@ -13,14 +13,27 @@ from app.look.theme import KIND_MARKS
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
 from app.shell.places import Places
+from app.translation import tr
 from metagraph.graph.model import KINDS
 
+TIMELINE = (  # and what the timeline does
+    ("Add a marker", "M"),
+    ("Move requests or a marker", "arrows, with Shift by a second"),
+    ("Take requests back and close up", "Shift+Del"),
+    ("Cut, copy, paste requests", "Ctrl+X, Ctrl+C, Ctrl+V"),
+    ("Copy requests a second later", "Ctrl+D"),
+    ("Ask for something", "Insert"),
+    ("Cut to all, over a shoulder, close", "1 to 9"),
+    ("Take the cut away", "0"),
+    ("Zoom in and out", "+, −"),
+    ("Drag without snapping", "Shift"),
+)
 LANES = (  # what the lanes take for themselves
-    ("Label as clause, response, hesitation", "1, 2, 3"),
-    ("Split a segment", "S"),
-    ("Merge segments", "M"),
-    ("Set the stress", "P"),
-    ("Go from segment to segment", "Tab, arrows"),
+    (tr("Label as clause, response, hesitation"), "1, 2, 3"),
+    (tr("Split a segment"), "S"),
+    (tr("Merge segments"), "M"),
+    (tr("Set the stress"), "P"),
+    (tr("Go from segment to segment"), tr("Tab, arrows")),
 )
 
 
@@ -38,34 +51,42 @@ def contribute(shell: Shell) -> Contribution:
                 command.menu.replace("&", ""), command.plain, keys, tip, action.trigger, action.isEnabled()
             )
         if keyed:
-            yield from (Entry("In a conversation", words, keys) for words, keys in LANES)
+            yield from (Entry(tr("On the timeline"), words, keys) for words, keys in TIMELINE)
+            yield from (Entry(tr("In a conversation"), words, keys) for words, keys in LANES)
             return
         places = shell.services[Places]
         for ident, dock in places.docks.items():
-            yield Entry("Panels", dock.windowTitle(), also="panel", run=partial(places.show, ident))
+            yield Entry(tr("Panels"), dock.windowTitle(), also="panel", run=partial(places.show, ident))
 
     def keys() -> None:
-        CommandFinder("Keyboard shortcuts", entries(True), shell.widget).open()
+        CommandFinder(tr("Keyboard shortcuts"), entries(True), shell.widget).open()
 
     def palette() -> None:
-        CommandFinder("Commands", entries(False), shell.widget).open()
+        CommandFinder(tr("Commands"), entries(False), shell.widget).open()
 
     def about() -> None:
         from metagraph import __version__
 
         kinds = " &nbsp; ".join(f"{KIND_MARKS[k]} {k}" for k in KINDS)
-        text = (
-            f"<h3>Metagraph {__version__}</h3><p>Drop clips; the state machine draws "
-            f"itself.</p><p>{kinds}</p>"
+        text = tr(
+            "<h3>Metagraph {version}</h3><p>Drop clips; the state machine draws itself.</p><p>{kinds}</p>",
+            version=__version__,
+            kinds=kinds,
         )
-        QMessageBox.about(shell.widget, "About Metagraph", text)
+        QMessageBox.about(shell.widget, tr("About Metagraph"), text)
 
     return Contribution(
         commands=(
-            Command("keys", "&Help", "", "&Keyboard shortcuts", keys, ("F1",), study=True),
+            Command("keys", "&Help", "", tr("&Keyboard shortcuts"), keys, ("F1",), study=True),
             Command(
-                "palette", "&Help", "", "&Commands…", palette, ("Ctrl+Shift+P",), tip="Find what can be done"
+                "palette",
+                "&Help",
+                "",
+                tr("&Commands…"),
+                palette,
+                ("Ctrl+Shift+P",),
+                tip=tr("Find what can be done"),
             ),
-            Command("about", "&Help", "", "&About Metagraph", about, study=True),
+            Command("about", "&Help", "", tr("&About Metagraph"), about, study=True),
         ),
     )

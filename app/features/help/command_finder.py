@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.translation import tr
 from app.widgets.tree_items import items_below, top_items
 
 ROLE = Qt.ItemDataRole.UserRole
@@ -52,8 +53,8 @@ class CommandFinder(QDialog):
         self.setWindowTitle(title)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.entries = tuple(entries)
-        self.search = QLineEdit(self, placeholderText="Type what to do", clearButtonEnabled=True)
-        self.search.setAccessibleName("Search commands")
+        self.search = QLineEdit(self, placeholderText=tr("Type what to do"), clearButtonEnabled=True)
+        self.search.setAccessibleName(tr("Search commands"))
         self.search.textChanged.connect(self._narrow)
         self.search.installEventFilter(self)
         self.tree = QTreeWidget(self)
@@ -62,7 +63,7 @@ class CommandFinder(QDialog):
         self.tree.setRootIsDecorated(False)
         self.tree.setIndentation(14)
         self.tree.setUniformRowHeights(True)
-        self.tree.setAccessibleName("Commands")
+        self.tree.setAccessibleName(tr("Commands"))
         self.tree.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.tree.setHorizontalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
         header = self.tree.header()
@@ -70,7 +71,7 @@ class CommandFinder(QDialog):
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
         header.setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
         self.tree.itemActivated.connect(self._do)
-        self.none = QLabel("No command has these words.", self)
+        self.none = QLabel(tr("No command has these words."), self)
         self.none.setProperty("dim", True)
         layout = QVBoxLayout(self)
         layout.addWidget(self.search)

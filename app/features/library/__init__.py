@@ -11,6 +11,7 @@ from app.shell.actions import Command, Standard
 from app.shell.context import Contribution, Panel, Shell
 from app.shell.verbs import Verbs
 from app.stage.problem_watch import ProblemWatch
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -54,7 +55,7 @@ def contribute(shell: Shell) -> Contribution:
         panels=(
             Panel(
                 "library",
-                "Clips",
+                tr("Clips"),
                 "left",
                 make,
                 late=False,
@@ -68,7 +69,7 @@ def contribute(shell: Shell) -> Contribution:
                 "find",
                 "&Edit",
                 "find",
-                "&Find clip",
+                tr("&Find clip"),
                 lambda: library().search.setFocus(),
                 (Standard.Find,),
                 study=True,

@@ -13,9 +13,11 @@ from PySide6.QtWidgets import QInputDialog, QMenu, QWidget
 from app.features.library.clip_badges import HEART, label_icon
 from app.features.library.clip_columns import stars
 from app.features.library.reveal import reveal
+from app.look.domain_words import COLOR_LABELS
 from app.look.plural import many
 from app.project.document import Document
 from app.stage.session import Session
+from app.translation import tr
 from metagraph.graph import edits
 from metagraph.graph.clip_mark import COLORS, STARS
 from metagraph.graph.listing_edits import duplicate_clips
@@ -38,29 +40,32 @@ class ClipActs:
         out = QMenu(self.widget)
         out.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         chosen = self.session.selection.clips if entry.id in self.session.selection.clips else (entry.id,)
-        out.addAction("Play alone", lambda: self.session.transport.show_clip(entry.id))
-        out.addAction("Play in context", lambda: self.session.show_context(entry.id))
+        out.addAction(tr("Play alone"), lambda: self.session.transport.show_clip(entry.id))
+        out.addAction(tr("Play in context"), lambda: self.session.show_context(entry.id))
         out.addSeparator()
         if self.label_actions:
-            out.addMenu("&Label as").addActions(self.label_actions)
-        self._fill_marks(out.addMenu("&Mark"), chosen)
+            out.addMenu(tr("&Label as")).addActions(self.label_actions)
+        self._fill_marks(out.addMenu(tr("&Mark")), chosen)
         out.addSeparator()
-        out.addAction("Use its first frame as base pose", lambda: self.use_as_base(entry.id, 0))
+        out.addAction(tr("Use its first frame as base pose"), lambda: self.use_as_base(entry.id, 0))
         if self.session.transport.show == "clip" and self.session.transport.shown == entry.id:
             frame = round(self.session.transport.seconds * entry.fps)
-            out.addAction(f"Use this frame ({frame}) as base pose", lambda: self.use_as_base(entry.id, frame))
+            out.addAction(
+                tr("Use this frame ({frame}) as base pose", frame=frame),
+                lambda: self.use_as_base(entry.id, frame),
+            )
         out.addAction(
-            "Use the rest pose as base pose",
-            lambda: self.document.edit("Set base pose", lambda p: edits.set_base(p, None)),
+            tr("Use the rest pose as base pose"),
+            lambda: self.document.edit(tr("Set base pose"), lambda p: edits.set_base(p, None)),
         )
         out.addSeparator()
-        out.addAction("Rename…\tF2", lambda: self.rename(entry.id))
-        out.addAction("Duplicate\tCtrl+Shift+D", lambda: self.duplicate(chosen))
-        out.addAction("Reveal in folder", lambda: self.reveal(entry.id))
+        out.addAction(tr("Rename…\tF2"), lambda: self.rename(entry.id))
+        out.addAction(tr("Duplicate\tCtrl+Shift+D"), lambda: self.duplicate(chosen))
+        out.addAction(tr("Reveal in folder"), lambda: self.reveal(entry.id))
         out.addActions(self.row_actions)
         out.addSeparator()
-        noun = f"{len(chosen)} clips" if len(chosen) > 1 else "clip"
-        out.addAction(f"Remove {noun} from the project\tDel", lambda: self.remove(chosen))
+        noun = tr("{chosen} clips", chosen=len(chosen)) if len(chosen) > 1 else "clip"
+        out.addAction(tr("Remove {noun} from the project\tDel", noun=noun), lambda: self.remove(chosen))
         return out
 
     def _fill_marks(self, menu: QMenu, clips: Iterable[str]) -> None:
@@ -76,14 +81,16 @@ class ClipActs:
             return action
 
         for color in COLORS:
-            entry(f"{color.capitalize()} label", "color", color).setIcon(label_icon(color))
-        entry("No label", "color", "")
+            entry(COLOR_LABELS[color], "color", color).setIcon(label_icon(color))
+        entry(tr("No label"), "color", "")
         menu.addSeparator()
         for rating in range(STARS, -1, -1):
-            entry(stars(rating) or "No stars", "rating", rating, f"Ctrl+Shift+{rating}")
+            entry(stars(rating) or tr("No stars"), "rating", rating, f"Ctrl+Shift+{rating}")
         menu.addSeparator()
         loved = all(m.favourite for m in marks)
-        action = menu.addAction(f"{HEART}  Favourite", lambda: self.mark(some, "favourite", not loved))
+        action = menu.addAction(
+            tr("{heart}  Favourite", heart=HEART), lambda: self.mark(some, "favourite", not loved)
+        )
         action.setCheckable(True)
         action.setChecked(loved)
 
@@ -103,7 +110,9 @@ class ClipActs:
         """List clips once more, and select what was made."""
         some, before = tuple(clips), self.document.project.clips
         if some:
-            self.document.edit(f"Duplicate {many(len(some), 'clip')}", lambda p: duplicate_clips(p, some))
+            self.document.edit(
+                tr("Duplicate {clips}", clips=many(len(some), "clip")), lambda p: duplicate_clips(p, some)
+            )
             made = tuple(i for i in self.document.project.clips if i not in before)
             self.session.selection.select_clips(made)
 
@@ -113,18 +122,18 @@ class ClipActs:
         reveal((self.document.folder or Path()) / entry.path)
 
     def use_as_base(self, clip: str, frame: int) -> None:
-        self.document.edit("Set base pose", lambda p: edits.set_base(p, clip, frame))
+        self.document.edit(tr("Set base pose"), lambda p: edits.set_base(p, clip, frame))
 
     def rename(self, clip: str) -> None:
         entry = self.document.project.clips[clip]
-        name, accepted = QInputDialog.getText(self.widget, "Rename clip", "Name:", text=entry.name)
+        name, accepted = QInputDialog.getText(self.widget, tr("Rename clip"), tr("Name:"), text=entry.name)
         if accepted and name.strip():
-            self.document.edit("Rename clip", lambda p: edits.rename_clip(p, clip, name))
+            self.document.edit(tr("Rename clip"), lambda p: edits.rename_clip(p, clip, name))
 
     def remove(self, clips: Iterable[str]) -> None:
         gone = tuple(clips)
         if gone:
             self.document.edit(
-                f"Remove {len(gone)} clip{'s' if len(gone) > 1 else ''}",
+                tr("Remove {clips}", clips=many(len(gone), "clip")),
                 lambda p: edits.remove_clips(p, gone),
             )

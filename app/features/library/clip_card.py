@@ -16,6 +16,7 @@ from app.features.library.clip_pictures import ClipPictures
 from app.features.library.clip_sizes import picture_of
 from app.look.shortening import fitted, fitting
 from app.look.theme import KIND_MARKS, Theme
+from app.translation import tr
 from metagraph.graph.model import ClipEntry, Kind
 
 
@@ -55,7 +56,7 @@ def draw_picture(
     """Draw a clip's picture, or say that its file is missing."""
     if not pictures.draw(painter, entry.id, box, QColor(look.text)) and entry.motion is None:
         painter.setPen(QColor(look.warning))
-        words = "?" if small else "file\nmissing"
+        words = "?" if small else tr("file\nmissing")
         painter.drawText(box, Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap, words)
 
 

@@ -10,11 +10,25 @@ from app.features.library.clip_groups import GROUPS
 from app.features.library.clip_sizes import Style
 from app.features.library.library_bar import BUTTONS
 from app.features.library.library_panel import LibraryPanel
+from app.look.domain_words import COLOR_LABELS
+from app.look.plural import many
 from app.shell.actions import Command
 from app.shell.context import Shell
+from app.translation import tr
 from metagraph.graph.clip_mark import COLORS, STARS
 
 MENU = "C&lips"
+
+
+SHOW_AS = {"cards": tr("Show as cards"), "columns": tr("Show as columns")}
+GROUP_BY = {
+    "none": tr("No groups"),
+    "folder": tr("Group by folder"),
+    "stance": tr("Group by stance"),
+    "tag": tr("Group by tag"),
+    "layer": tr("Group by layer"),
+    "kind": tr("Group by kind"),
+}
 
 
 def commands(shell: Shell, library: Callable[[], LibraryPanel]) -> tuple[Command, ...]:
@@ -42,10 +56,10 @@ def commands(shell: Shell, library: Callable[[], LibraryPanel]) -> tuple[Command
             f"rate_{n}",
             MENU,
             "rating",
-            f"&{n}  {stars(n)}" if n else "&0  No stars",
+            f"&{n}  {stars(n)}" if n else tr("&0  No stars"),
             partial(act, "mark", "rating", n),
             (f"Ctrl+Shift+{n}",),
-            tip=f"Give the selected clips {n} star{'s' * (n != 1)}",
+            tip=tr("Give the selected clips {stars}", stars=many(n, "star")),
             enabled=some,
         )
         for n in range(STARS + 1)
@@ -55,9 +69,11 @@ def commands(shell: Shell, library: Callable[[], LibraryPanel]) -> tuple[Command
             f"color_{color or 'none'}",
             MENU,
             "labels",
-            f"{color.capitalize()} label" if color else "No label",
+            COLOR_LABELS[color] if color else tr("No label"),
             partial(act, "mark", "color", color),
-            tip=f"Put {f'a {color}' if color else 'no'} label on the selected clips",
+            tip=tr("Put this label on the selected clips")
+            if color
+            else tr("Take labels off the selected clips"),
             enabled=some,
         )
         for color in (*COLORS, "")
@@ -67,23 +83,23 @@ def commands(shell: Shell, library: Callable[[], LibraryPanel]) -> tuple[Command
             f"clips_as_{style}",
             MENU,
             "view",
-            f"Show as {words.lower()}",
+            SHOW_AS[style],
             partial(show_as, style),
             tip=tip,
             checked=partial(shown_as, style),
         )
-        for style, (_, words, tip) in BUTTONS.items()
+        for style, (_, _, tip) in BUTTONS.items()
     )
     groups = (
         Command(
             f"group_{key}",
             MENU,
             "groups",
-            "No groups" if key == "none" else f"Group by {words.lower()}",
+            GROUP_BY[key],
             partial(group_by, key),
             checked=partial(grouped_by, key),
         )
-        for key, (words, _) in GROUPS.items()
+        for key in GROUPS
     )
     return (
         *rating,
@@ -92,29 +108,29 @@ def commands(shell: Shell, library: Callable[[], LibraryPanel]) -> tuple[Command
             "favourite",
             MENU,
             "favourites",
-            "&Favourite",
+            tr("&Favourite"),
             partial(act, "favour"),
             ("Ctrl+Shift+6",),
-            tip="Put a heart on the selected clips, or take it away",
+            tip=tr("Put a heart on the selected clips, or take it away"),
             enabled=some,
         ),
         Command(
             "duplicate_clips",
             MENU,
             "files",
-            "&Duplicate",
+            tr("&Duplicate"),
             partial(act, "duplicate"),
             ("Ctrl+Shift+D",),
-            tip="List the selected clips once more, each to be timed for itself",
+            tip=tr("List the selected clips once more, each to be timed for itself"),
             enabled=some,
         ),
         Command(
             "reveal_clip",
             MENU,
             "files",
-            "&Reveal in folder",
+            tr("&Reveal in folder"),
             lambda: library().acts.reveal(selection.clips[0]),
-            tip="Show the file of the first selected clip where it lies",
+            tip=tr("Show the file of the first selected clip where it lies"),
             enabled=some,
         ),
         *views,

@@ -6,6 +6,8 @@ import json
 from dataclasses import asdict, dataclass, fields
 
 from app.features.library.clip_facts import ClipFacts
+from app.look.domain_words import COLOR_TITLES, KIND_TITLES, LAYER_TITLES
+from app.translation import tr
 from metagraph.graph.clip_mark import COLORS, STARS
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry, Project
 from metagraph.graph.name_search import fits
@@ -59,9 +61,9 @@ class Filter:
 
     def words(self) -> str:
         """Return in a few words what is asked for besides the text and whether clips are placed."""
-        some = [(self.layer or "").capitalize(), (self.kind or "").capitalize()]
-        some += [(self.color or "").capitalize(), f"★{self.stars}" if self.stars else ""]
-        some += ["♥" * self.favourite, "Noted" * self.noted, "Problems" * self.broken]
+        some = [LAYER_TITLES[self.layer] if self.layer else "", KIND_TITLES[self.kind] if self.kind else ""]
+        some += [COLOR_TITLES[self.color or ""], f"★{self.stars}" if self.stars else ""]
+        some += ["♥" * self.favourite, tr("Noted") * self.noted, tr("Problems") * self.broken]
         return " ".join(filter(None, some))
 
     def as_text(self) -> str:

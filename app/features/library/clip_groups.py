@@ -8,16 +8,18 @@ from typing import Any
 
 from app.features.library.clip_facts import ClipFacts
 from app.features.library.clip_order import first_use, natural, stances
+from app.look.domain_words import LAYER_LONG_TITLES, MANY_OF_KIND
+from app.translation import tr
 from metagraph.graph.model import KINDS, LAYERS, ClipEntry
 
 NONE = "none"
 Group = tuple[Any, str]  # what it is sorted by, and its title
-UNUSED: Group = ((1,), "Not placed yet")
+UNUSED: Group = ((1,), tr("Not placed yet"))
 
 
 def _folder(facts: ClipFacts, entry: ClipEntry) -> Group:
     path = PurePosixPath(entry.path).parent.as_posix()
-    return natural(path), "Beside the project" if path == "." else path
+    return natural(path), tr("Beside the project") if path == "." else path
 
 
 def _stance(facts: ClipFacts, entry: ClipEntry) -> Group:
@@ -29,24 +31,24 @@ def _tag(facts: ClipFacts, entry: ClipEntry) -> Group:
     tags = sorted({tag for a in facts.uses(entry) for tag in a.tags}, key=natural)
     if tags:
         return (0, natural(tags[0])), tags[0]
-    return ((1,), "No tag") if facts.uses(entry) else ((2,), UNUSED[1])
+    return ((1,), tr("No tag")) if facts.uses(entry) else ((2,), UNUSED[1])
 
 
 def _layer(facts: ClipFacts, entry: ClipEntry) -> Group:
     layer, _ = first_use(facts, entry)
-    return ((0, layer), f"{LAYERS[layer].capitalize()} layer") if layer < len(LAYERS) else UNUSED
+    return ((0, layer), LAYER_LONG_TITLES[LAYERS[layer]]) if layer < len(LAYERS) else UNUSED
 
 
 def _kind(facts: ClipFacts, entry: ClipEntry) -> Group:
     kinds = [KINDS.index(a.kind) for a in facts.uses(entry)]
-    return ((0, min(kinds)), f"{KINDS[min(kinds)].capitalize()}s") if kinds else UNUSED
+    return ((0, min(kinds)), MANY_OF_KIND[KINDS[min(kinds)]]) if kinds else UNUSED
 
 
 GROUPS: dict[str, tuple[str, Callable[[ClipFacts, ClipEntry], Group] | None]] = {
-    NONE: ("No groups", None),
-    "folder": ("Folder", _folder),
-    "stance": ("Stance", _stance),
-    "tag": ("Tag", _tag),
-    "layer": ("Layer", _layer),
-    "kind": ("Kind", _kind),
+    NONE: (tr("No groups"), None),
+    "folder": (tr("Folder"), _folder),
+    "stance": (tr("Stance"), _stance),
+    "tag": (tr("Tag"), _tag),
+    "layer": (tr("Layer"), _layer),
+    "kind": (tr("Kind"), _kind),
 }

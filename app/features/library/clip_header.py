@@ -6,6 +6,7 @@ from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelInd
 from PySide6.QtWidgets import QHeaderView, QMenu, QWidget
 
 from app.features.library.clip_columns import COLUMNS
+from app.translation import tr
 
 PLACES = {column.id: n for n, column in enumerate(COLUMNS)}
 
@@ -27,7 +28,9 @@ class _Titles(QAbstractTableModel):
             side = Qt.AlignmentFlag.AlignRight if COLUMNS[section].right else Qt.AlignmentFlag.AlignLeft
             return side | Qt.AlignmentFlag.AlignVCenter
         if role == Qt.ItemDataRole.ToolTipRole:
-            return f"{COLUMNS[section].tip}; a click sorts by it, the menu shows and hides columns"
+            return tr(
+                "{tip}; a click sorts by it, the menu shows and hides columns", tip=COLUMNS[section].tip
+            )
         return None
 
 
@@ -48,7 +51,7 @@ class ClipHeader(QHeaderView):
         self.setSortIndicatorShown(False)
         self.setMinimumSectionSize(30)
         self.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
-        self.setAccessibleName("Columns")
+        self.setAccessibleName(tr("Columns"))
         self.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
         self.customContextMenuRequested.connect(self._ask)
         self.sectionClicked.connect(lambda n: self.sort_wanted.emit(COLUMNS[n].order))
@@ -74,13 +77,13 @@ class ClipHeader(QHeaderView):
     def fill(self, menu: QMenu) -> None:
         """Put the columns into a menu, each to be shown or hidden; the name stays."""
         for n, column in enumerate(COLUMNS):
-            action = menu.addAction("Favourites" if column.id == "favourite" else column.title)
+            action = menu.addAction(tr("Favourites") if column.id == "favourite" else column.title)
             action.setCheckable(True)
             action.setChecked(not self.isSectionHidden(n))
             action.setEnabled(column.id != "name")
             action.toggled.connect(lambda on, n=n: self.set_shown(n, on))
         menu.addSeparator()
-        menu.addAction("As at first", self.as_usual)
+        menu.addAction(tr("As at first"), self.as_usual)
 
     def set_shown(self, place: int, on: bool) -> None:
         """Show a column, or hide it."""

@@ -29,6 +29,7 @@ from app.features.library.clip_scrub import ClipScrub
 from app.features.library.clip_sizes import SIZES, Style, cell_of
 from app.look.plural import many
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.mime import drag_picture, load_of, mime
 
 Move = QAbstractItemView.CursorAction
@@ -68,7 +69,7 @@ class ClipList(QListView):
         self.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
         self.setHorizontalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
         self.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOn)
-        self.setAccessibleName("Clips")
+        self.setAccessibleName(tr("Clips"))
         self.setModel(rows)
         self.setItemDelegate(delegate)
         rows.layoutChanged.connect(self.relayout)

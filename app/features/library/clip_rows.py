@@ -15,6 +15,7 @@ from app.features.library.clip_filter import Filter
 from app.features.library.clip_groups import GROUPS, NONE
 from app.features.library.clip_layout import Section
 from app.features.library.clip_order import GIVEN, ORDERS
+from app.translation import tr
 from app.widgets.mime import mime
 from metagraph.graph.generated import origin
 from metagraph.graph.model import ClipEntry, Project
@@ -143,29 +144,44 @@ class ClipRows(QAbstractListModel):
         if role == Qt.ItemDataRole.ToolTipRole:
             return self._tip(entry)
         if role == Qt.ItemDataRole.AccessibleTextRole:
-            return f"{entry.name}, {entry.duration:.1f} seconds{self._marks(entry)}"
+            return tr(
+                "{name}, {duration:.1f} seconds{marks}",
+                name=entry.name,
+                duration=entry.duration,
+                marks=self._marks(entry),
+            )
         return None
 
     def _tip(self, entry: ClipEntry) -> str:
         motion = entry.motion
-        notes = "".join(f"\n{n}" for n in (motion.notes if motion else ("The file is missing.",)))
+        notes = "".join(f"\n{n}" for n in (motion.notes if motion else (tr("The file is missing."),)))
         uses = ", ".join(f"{a.kind} ({a.layer})" for a in self.facts.uses(entry))
         drawn = entry.id in self.document.project.drawn
-        uses = uses or ("drawn as a state" if drawn else "not placed yet")
+        uses = uses or (tr("drawn as a state") if drawn else tr("not placed yet"))
         made = f"\n{origin(entry)}" if entry.made_by else ""
         moves = ", ".join(self.facts.moved(entry))
         mark = self.facts.mark(entry)
-        return (
-            f"{entry.name}\n{entry.duration:.2f} s, {entry.frames} frames at {entry.fps:g} fps"
-            f"{f', moves {moves}' if moves else ''}\n{entry.path}{made}\n{uses}"
-            f"{self._marks(entry).replace(', ', chr(10), 1)}{chr(10) + mark.note if mark.note else ''}{notes}"
+        return tr(
+            "{name}\n{duration:.2f} s, {frames} frames at {fps:g} fps{moves}\n{path}{made}\n"
+            "{uses}{marks}{note}{notes}",
+            name=entry.name,
+            duration=entry.duration,
+            frames=entry.frames,
+            fps=entry.fps,
+            moves=tr(", moves {moves}", moves=moves) if moves else "",
+            path=entry.path,
+            made=made,
+            uses=uses,
+            marks=self._marks(entry).replace(", ", chr(10), 1),
+            note=chr(10) + mark.note if mark.note else "",
+            notes=notes,
         )
 
     def _marks(self, entry: ClipEntry) -> str:
         """Return a clip's label, rating and heart in words, after a comma each."""
         mark = self.facts.mark(entry)
-        some = (f"{mark.color} label" if mark.color else "", stars(mark.rating))
-        return "".join(f", {w}" for w in (*some, "a favourite" if mark.favourite else "") if w)
+        some = (tr("{color} label", color=mark.color) if mark.color else "", stars(mark.rating))
+        return "".join(f", {w}" for w in (*some, tr("a favourite") if mark.favourite else "") if w)
 
     def flags(self, index: Index) -> Qt.ItemFlag:
         return super().flags(index) | Qt.ItemFlag.ItemIsDragEnabled

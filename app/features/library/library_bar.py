@@ -9,13 +9,18 @@ from app.features.library.clip_sizes import Style, steps
 from app.look import icons
 from app.look.theme import theme
 from app.look.theme_choice import ThemeChoice
+from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.one_stop import OneStop
 from app.widgets.quiet_fields import Scrub
 
 BUTTONS: dict[Style, tuple[str, str, str]] = {
-    "cards": ("grid", "Cards", "Pictures, as large as the slider says; small ones are lines"),
-    "columns": ("list", "Columns", "A list with columns; a click on a title sorts, its menu shows and hides"),
+    "cards": ("grid", tr("Cards"), tr("Pictures, as large as the slider says; small ones are lines")),
+    "columns": (
+        "list",
+        tr("Columns"),
+        tr("A list with columns; a click on a title sorts, its menu shows and hides"),
+    ),
 }
 
 
@@ -45,8 +50,10 @@ class LibraryBar(QWidget):
         self.told.setProperty("dim", True)
         row.addWidget(self.told, 1)
         self.slider = Scrub(Qt.Orientation.Horizontal, self)
-        self.slider.setAccessibleName("Size of the clips")
-        self.slider.setToolTip("How large clips are shown (Ctrl and the wheel; Ctrl+ and Ctrl- in the list)")
+        self.slider.setAccessibleName(tr("Size of the clips"))
+        self.slider.setToolTip(
+            tr("How large clips are shown (Ctrl and the wheel; Ctrl+ and Ctrl- in the list)")
+        )
         self.slider.setMinimumWidth(60)
         self.slider.setMaximumWidth(130)
         self.slider.setPageStep(1)

@@ -16,7 +16,9 @@ from app.features.library.clip_columns import stars
 from app.features.library.clip_filter import Filter
 from app.features.library.clip_groups import GROUPS
 from app.features.library.clip_order import GIVEN, ORDERS
+from app.look.domain_words import COLOR_LABELS, KIND_TITLES, LAYER_LONG_TITLES
 from app.look.theme import KIND_MARKS
+from app.translation import tr
 from metagraph.graph.clip_mark import COLORS, STARS
 from metagraph.graph.model import KINDS, LAYERS
 
@@ -31,32 +33,32 @@ class LibraryMenu:
 
     def __init__(self, panel: LibraryPanel, menu: QMenu) -> None:
         self.panel = panel
-        menu.addAction("Any kind, any layer", lambda: panel.narrow())
+        menu.addAction(tr("Any kind, any layer"), lambda: panel.narrow())
         menu.addSeparator()
         for kind in KINDS:
-            menu.addAction(f"{KIND_MARKS[kind]}  {kind.capitalize()}", partial(panel.narrow, kind=kind))
+            menu.addAction(f"{KIND_MARKS[kind]}  {KIND_TITLES[kind]}", partial(panel.narrow, kind=kind))
         menu.addSeparator()
         for layer in LAYERS:
-            menu.addAction(f"{layer.capitalize()} layer", partial(panel.narrow, layer=layer))
+            menu.addAction(LAYER_LONG_TITLES[layer], partial(panel.narrow, layer=layer))
         menu.addSeparator()
-        self.marks = menu.addMenu("&What is on them")
+        self.marks = menu.addMenu(tr("&What is on them"))
         self.marks.aboutToShow.connect(self.fill_marks)
-        self.kept = menu.addMenu("Sa&ved filters")
+        self.kept = menu.addMenu(tr("Sa&ved filters"))
         self.kept.aboutToShow.connect(self.fill_kept)
         menu.addSeparator()
-        self.orders = menu.addMenu("&Sort by")
+        self.orders = menu.addMenu(tr("&Sort by"))
         self._choices(self.orders, {k: words for k, (words, _) in ORDERS.items()}, GIVEN, panel.sort)
         self.orders.addSeparator()
         again = lambda: panel.sort(panel.rows.listing.order)  # noqa: E731
-        self.backwards = self.orders.addAction("The other way &round", again)
+        self.backwards = self.orders.addAction(tr("The other way &round"), again)
         self.backwards.setCheckable(True)
-        self.groups = menu.addMenu("&Group by")
+        self.groups = menu.addMenu(tr("&Group by"))
         titles = {k: words for k, (words, _) in GROUPS.items()}
         self._choices(self.groups, titles, panel.rows.listing.group, panel.group_by)
         self.groups.addSeparator()
-        self.groups.addAction("Close all\t-", panel.close_all)
-        self.groups.addAction("Open all\t*", lambda: panel.rows.close_groups(frozenset()))
-        self.columns = menu.addMenu("&Columns")
+        self.groups.addAction(tr("Close all\t-"), panel.close_all)
+        self.groups.addAction(tr("Open all\t*"), lambda: panel.rows.close_groups(frozenset()))
+        self.columns = menu.addMenu(tr("&Columns"))
         self.columns.aboutToShow.connect(self.fill_columns)
 
     def _choices(
@@ -87,32 +89,32 @@ class LibraryMenu:
             action.setCheckable(True)
             action.setChecked(on)
 
-        entry(f"{HEART}  Favourites", rule.favourite, favourite=not rule.favourite)
-        entry(f"{PENCIL}  With a note", rule.noted, noted=not rule.noted)
-        entry("!  In problems", rule.broken, broken=not rule.broken)
+        entry(tr("{heart}  Favourites", heart=HEART), rule.favourite, favourite=not rule.favourite)
+        entry(tr("{pencil}  With a note", pencil=PENCIL), rule.noted, noted=not rule.noted)
+        entry(tr("!  In problems"), rule.broken, broken=not rule.broken)
         menu.addSeparator()
         for color in COLORS:
             on = rule.color == color
-            entry(f"{color.capitalize()} label", on, color=None if on else color)
+            entry(COLOR_LABELS[color], on, color=None if on else color)
             menu.actions()[-1].setIcon(label_icon(color))
         menu.addSeparator()
         for rating in range(1, STARS + 1):
             on = rule.stars == rating
-            more = " or more" if rating < STARS else ""
+            more = tr(" or more") if rating < STARS else ""
             entry(f"{stars(rating)}{more}", on, stars=0 if on else rating)
 
     def fill_kept(self) -> None:
         """Offer the filters that have a name."""
         menu, kept = self.kept, self.panel.settings.filters()
         menu.clear()
-        menu.addAction("&Save this one as…", self.save).setEnabled(self.panel.rows.filter != Filter())
+        menu.addAction(tr("&Save this one as…"), self.save).setEnabled(self.panel.rows.filter != Filter())
         if kept:
             menu.addSeparator()
         for name, rule in kept.items():
             menu.addAction(name.replace("&", "&&"), partial(self.panel.show_filter, rule))
         if kept:
             menu.addSeparator()
-            gone = menu.addMenu("&Delete")
+            gone = menu.addMenu(tr("&Delete"))
             for name in kept:
                 gone.addAction(name.replace("&", "&&"), partial(self.forget, name))
 
@@ -120,7 +122,7 @@ class LibraryMenu:
         """Ask for a name, and keep what is shown now under it."""
         rule = self.panel.rows.filter
         usual = " ".join(filter(None, (rule.text.strip(), rule.words())))
-        name, accepted = QInputDialog.getText(self.panel, "Save filter", "Name:", text=usual)
+        name, accepted = QInputDialog.getText(self.panel, tr("Save filter"), tr("Name:"), text=usual)
         if accepted and name.strip():
             self.panel.settings.keep_filters({**self.panel.settings.filters(), name.strip(): rule})
 
@@ -135,4 +137,4 @@ class LibraryMenu:
         if self.panel.list.style_of == "columns":
             self.panel.list.header.fill(self.columns)
         else:
-            self.columns.addAction("List in columns", lambda: self.panel.show_as("columns"))
+            self.columns.addAction(tr("List in columns"), lambda: self.panel.show_as("columns"))

@@ -35,10 +35,12 @@ from app.features.library.library_bar import LibraryBar
 from app.features.library.library_menu import LibraryMenu
 from app.features.library.library_settings import LibrarySettings
 from app.features.library.search_field import Search
+from app.look.plural import many
 from app.project.document import Document
 from app.project.load import readable
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
+from app.translation import tr
 from app.widgets.flow import Flow
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
@@ -46,7 +48,7 @@ from app.widgets.one_stop import OneStop
 from metagraph.graph.model import ClipEntry, Project
 from metagraph.graph.problem import Problem
 
-EMPTY = "Drop a folder of clips here\n\n{}"
+EMPTY = tr("Drop a folder of clips here\n\n{}")
 PLACED = {"all": None, "unlabelled": False, "labelled": True}  # what the chips ask for
 MENU_ASKS = ("layer", "kind", "color", "stars", "favourite", "noted", "broken")
 AHEAD = 20  # clips looked at in one go for what they move
@@ -129,11 +131,11 @@ class LibraryPanel(QWidget):
             self.chips[key] = button
             row.addWidget(button)
 
-        chip("all", "All", "All clips")
-        chip("unlabelled", "Unlabelled", "Clips that were not placed yet")
-        chip("labelled", "Placed", "Clips that are in the graph")
-        tip = "Show some of the clips only; sort and group them"
-        self.more = MoreButton(self.session.look, "Layer or kind", tip, self)
+        chip("all", tr("All"), tr("All clips"))
+        chip("unlabelled", tr("Unlabelled"), tr("Clips that were not placed yet"))
+        chip("labelled", tr("Placed"), tr("Clips that are in the graph"))
+        tip = tr("Show some of the clips only; sort and group them")
+        self.more = MoreButton(self.session.look, tr("Layer or kind"), tip, self)
         self.menu = LibraryMenu(self, self.more.menu_of)
         self.orders, self.backwards = self.menu.orders, self.menu.backwards
         OneStop(tuple(self.chips.values()), self)
@@ -220,7 +222,7 @@ class LibraryPanel(QWidget):
         self.empty.setProperty("dim", True)
         self.empty.setWordWrap(True)
         box.addWidget(self.empty)
-        button = QPushButton("Import a folder…", page)
+        button = QPushButton(tr("Import a folder…"), page)
         button.clicked.connect(self.import_wanted)
         self.empty_button = button
         row = QHBoxLayout()
@@ -289,17 +291,17 @@ class LibraryPanel(QWidget):
         project = self.document.project
         total = len(project.clips)
         loose = sum(1 for c in project.clips if c not in project.uses and c not in project.drawn)
-        self.chips["unlabelled"].setText(f"Unlabelled {loose}" if total else "Unlabelled")
+        self.chips["unlabelled"].setText(tr("Unlabelled {loose}", loose=loose) if total else tr("Unlabelled"))
         self.search.setPlaceholderText(
-            f"Search {total} clip{'s' if total != 1 else ''}" if total else "Search"
+            tr("Search {clips}", clips=many(total, "clip")) if total else tr("Search")
         )
         nothing = not total
         found = len(self.rows.entries)
         hidden = bool(total) and found == 0
-        self.bar.told.setText(f"{found} of {total}" if 0 < found < total else "")
+        self.bar.told.setText(tr("{found} of {total}", found=found, total=total) if 0 < found < total else "")
         self.empty_button.setVisible(nothing)
         if hidden:
-            self.empty.setText("No clip matches.\nClear the search or the filters.")
+            self.empty.setText(tr("No clip matches.\nClear the search or the filters."))
         else:
             self.empty.setText(EMPTY.format(readable()))
         self.stack.setCurrentIndex(1 if nothing or hidden else 0)

@@ -6,6 +6,8 @@ from PySide6.QtCore import QEvent, Qt, Signal
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QLineEdit, QWidget
 
+from app.translation import tr
+
 
 class Search(QLineEdit):
     """left: the keyboard should go to what was found: Down or Enter. Esc clears it."""
@@ -15,9 +17,12 @@ class Search(QLineEdit):
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent, clearButtonEnabled=True)
         self.setToolTip(
-            "Words of a clip's name or path (Ctrl+F): sit wave, sit -wave, sit | bow; Down goes to the clips"
+            tr(
+                "Words of a clip's name or path (Ctrl+F): sit wave, sit -wave, sit | bow; Down goes to the "
+                "clips"
+            )
         )
-        self.setAccessibleName("Search clips")
+        self.setAccessibleName(tr("Search clips"))
 
     def event(self, event: QEvent) -> bool:
         if (

@@ -7,6 +7,7 @@ from PySide6.QtWidgets import QToolButton, QWidget
 from app.shell.actions import Command
 from app.shell.context import Contribution, HeaderItem, Panel, Shell
 from app.shell.places import Places
+from app.translation import tr
 from app.widgets.making import make_widget
 
 
@@ -21,23 +22,23 @@ def contribute(shell: Shell) -> Contribution:
 
     def button(parent: QWidget) -> QWidget:
         action = shell.actions["machine"]
-        out = make_widget(QToolButton, parent, text="Machine", toolTip=action.toolTip(), checkable=True)
+        out = make_widget(QToolButton, parent, text=tr("Machine"), toolTip=action.toolTip(), checkable=True)
         out.clicked.connect(lambda _: action.trigger())
         action.toggled.connect(out.setChecked)
         action.enabledChanged.connect(out.setEnabled)
         return out
 
     return Contribution(
-        panels=(Panel("machine", "Machine", "beside", make, when="meta"),),
+        panels=(Panel("machine", tr("Machine"), "beside", make, when="meta"),),
         commands=(
             Command(
                 "machine",
                 "&View",
                 "graph",
-                "The &machine beside the graph",
+                tr("The &machine beside the graph"),
                 lambda: shell.show("machine", not wanted()),
                 ("M",),
-                tip="The state machine you did not have to draw",
+                tip=tr("The state machine you did not have to draw"),
                 checked=wanted,
                 when="meta",
                 study=True,

@@ -21,6 +21,7 @@ from PySide6.QtWidgets import QToolTip, QWidget
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import Session
+from app.translation import tr
 from metagraph.graph.expand import connections, ends_in, size
 from metagraph.graph.model import Action, MetaGraph, Project
 
@@ -74,7 +75,7 @@ class MachinePanel(QWidget):
         self._places: dict[str, QPointF] = {}
         self.setMinimumSize(280, 240)
         self.setMouseTracking(True)
-        self.setAccessibleName("Expanded state machine")
+        self.setAccessibleName(tr("Expanded state machine"))
         document.changed.connect(self._edited)
         for signal in (session.place.layer_changed, session.look.changed, session.selection.changed):
             signal.connect(self._stale)
@@ -166,12 +167,20 @@ class MachinePanel(QWidget):
         """Say how large the machine is; return where that stands."""
         t = theme(self.session.look.name)
         lines = [
-            (22, t.text, f"{links:,} connections"),
-            (13, t.dim, f"among {states} states, in the {self.session.place.layer} layer alone."),
-            (13, t.dim, f"You placed {clips} clips."),
+            (22, t.text, tr("{links:,} connections", links=links)),
+            (
+                13,
+                t.dim,
+                tr(
+                    "among {states} states, in the {layer} layer alone.",
+                    states=states,
+                    layer=self.session.place.layer,
+                ),
+            ),
+            (13, t.dim, tr("You placed {clips} clips.", clips=clips)),
         ]
         if links > MOST:
-            lines.append((13, t.dim, f"The first {MOST:,} are drawn."))
+            lines.append((13, t.dim, tr("The first {most:,} are drawn.", most=MOST)))
         out: list[QRectF] = []
         left, top = 20.0, 14.0
         for size_, color, words in lines:
@@ -205,7 +214,12 @@ class MachinePanel(QWidget):
             words = ""
             if action is not None:
                 end = self.document.project.stance(ends_in(action))
-                words = f"{KIND_MARKS[action.kind]} {action.name}\nleads to {end.name if end else '?'}"
+                words = tr(
+                    "{mark} {name}\nleads to {stance}",
+                    mark=KIND_MARKS[action.kind],
+                    name=action.name,
+                    stance=end.name if end else "?",
+                )
             QToolTip.showText(event.globalPos(), words, self)
             return True
         return super().event(event)

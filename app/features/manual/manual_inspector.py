@@ -27,6 +27,7 @@ from app.features.manual.alias_page import AliasPage
 from app.features.manual.exit_row import ExitRow
 from app.features.manual.manual_canvas import ManualCanvas
 from app.features.manual.manual_mask import StateMask
+from app.look.domain_words import LAYER_LONG_TITLES
 from app.look.plural import many
 from app.look.theme import theme
 from app.stage.performance import Performance
@@ -249,7 +250,7 @@ class Inspector(QScrollArea):
 
     def _show_machine(self) -> None:
         manual = self.canvas.scene().manual
-        self.title.setText(tr("{layer} layer", layer=tr(self.session.place.layer.capitalize())))
+        self.title.setText(LAYER_LONG_TITLES[self.session.place.layer])
         self.words.setText(
             tr(
                 "{states}, {links} for {ways}. Select one to change it, or many to change all.",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from app.features.notes.notes_panel import NotesPanel
 from app.shell.actions import Command
 from app.shell.context import Contribution, Panel, Shell
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -16,7 +17,7 @@ def contribute(shell: Shell) -> Contribution:
         panels=(
             Panel(
                 "notes",
-                "Notes",
+                tr("Notes"),
                 "right below",
                 lambda: NotesPanel(shell.document, shell.stage.session, shell.widget),
                 study=False,
@@ -35,10 +36,10 @@ def contribute(shell: Shell) -> Contribution:
                 "note",
                 "&Edit",
                 "properties",
-                "N&ote…",
+                tr("N&ote…"),
                 write,
                 ("Ctrl+Shift+O",),
-                tip="A note on the selected action or clip, or on the project",
+                tip=tr("A note on the selected action or clip, or on the project"),
                 menus=("action", "clip"),
             ),
         ),

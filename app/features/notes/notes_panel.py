@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QPlainTextEdit, QVBoxLayout, QWidget
 from app.look.names import plain
 from app.project.document import Document
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.sentence import OneLine
 from metagraph.graph.marks import mark, mark_of
 from metagraph.graph.model import Project
@@ -20,7 +21,7 @@ class _Text(QPlainTextEdit):
     def __init__(self, parent: NotesPanel) -> None:
         super().__init__(parent)
         self._panel = parent
-        self.setAccessibleName("Note")
+        self.setAccessibleName(tr("Note"))
         self.setTabChangesFocus(True)
 
     def focusOutEvent(self, event: QFocusEvent) -> None:
@@ -60,11 +61,13 @@ class NotesPanel(QWidget):
         if about != self.about:
             self.finish()
             self.about = about
-        self.title.say(f"On {plain(found.name)}" if found is not None else "On the project")
+        self.title.say(tr("On {name}", name=plain(found.name)) if found is not None else tr("On the project"))
         self.text.setPlaceholderText(
-            f"What is to be done, or to be known, about this {'clip' if about in project.clips else 'action'}"
-            if found is not None
-            else "What is to be done, or to be known, about this character"
+            tr("What is to be done, or to be known, about this character")
+            if found is None
+            else tr("What is to be done, or to be known, about this clip")
+            if about in project.clips
+            else tr("What is to be done, or to be known, about this action")
         )
         note = mark_of(project, about).note if about in project.clips else project.notes.get(about, "")
         if note != self.text.toPlainText().rstrip():
@@ -85,7 +88,7 @@ class NotesPanel(QWidget):
                     return mark(project, (about,), note=words.rstrip())
                 return set_note(project, about, words)
 
-            self.document.edit("Write a note", write, merge=f"note {about}")
+            self.document.edit(tr("Write a note"), write, merge=tr("note {about}", about=about))
 
     def _edited(self, before: Project, after: Project) -> None:
         same = before.notes is after.notes and before.graphs is after.graphs

@@ -11,6 +11,7 @@ from app.look.theme import theme
 from app.shell.context import Contribution, HeaderItem, Panel, Shell
 from app.stage.compatibility_state import Compatibility
 from app.stage.problem_watch import ProblemWatch
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -29,7 +30,7 @@ def contribute(shell: Shell) -> Contribution:
         panels=(
             Panel(
                 "problems",
-                "Problems",
+                tr("Problems"),
                 "bottom",
                 make,
                 opens={"graph": "below", "label": "below", "time": "below"},
@@ -48,7 +49,7 @@ class ProblemButton(QToolButton):
     def __init__(self, shell: Shell, watch: ProblemWatch, parent: QWidget) -> None:
         super().__init__(parent)
         self.watch, self.session = watch, shell.stage.session
-        self.setToolTip("Problems of the project")
+        self.setToolTip(tr("Problems of the project"))
         self.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
         self.clicked.connect(lambda: shell.show("problems"))
         watch.changed.connect(self.refresh)
@@ -64,7 +65,7 @@ class ProblemButton(QToolButton):
             look.error if any(p.severity == "error" for p in grave) else look.warning if grave else look.dim
         )
         self.setText(
-            many(len(grave), "problem") if grave else many(hints, "hint") if hints else "No problems"
+            many(len(grave), "problem") if grave else many(hints, "hint") if hints else tr("No problems")
         )
         self.setIcon(icons.icon("warning", color))
         self.setStyleSheet(f"color: {color}")

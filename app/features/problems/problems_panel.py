@@ -42,6 +42,7 @@ from app.look.plural import many
 from app.look.theme import theme
 from app.stage.fixes import Fix
 from app.stage.session import Session
+from app.translation import tr
 from metagraph.graph.problem import Problem
 
 MOST = 500  # rows; a project with more has one cause, seen long before
@@ -146,10 +147,10 @@ class ProblemsPanel(QWidget):
         self._shown: object = None
         self.tree = QTreeWidget(self)
         self.tree.setColumnCount(4)
-        self.tree.setHeaderLabels(["Problem", "Where", "What to do", ""])
+        self.tree.setHeaderLabels([tr("Problem"), tr("Where"), tr("What to do"), ""])
         self.tree.setRootIsDecorated(False)
         self.tree.setWordWrap(True)  # what to do is read whole, in as many lines as it takes
-        self.tree.setAccessibleName("Problems")
+        self.tree.setAccessibleName(tr("Problems"))
         self.tree.header().setSectionResizeMode(QHeaderView.ResizeMode.Interactive)
         self.tree.header().setStretchLastSection(False)
         self.tree.header().sectionResized.connect(lambda *_: self.tree.scheduleDelayedItemsLayout())
@@ -165,7 +166,7 @@ class ProblemsPanel(QWidget):
         self.none.setProperty("dim", True)
         self.none.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.all = QPushButton(self)
-        self.all.setToolTip("In one step that can be undone")
+        self.all.setToolTip(tr("In one step that can be undone"))
         self.all.clicked.connect(lambda: self.mend_wanted.emit(self.fixable()))
         self.foot = QWidget(self)
         foot = QHBoxLayout(self.foot)
@@ -220,15 +221,15 @@ class ProblemsPanel(QWidget):
             self.tree.addTopLevelItem(item)
         self._share_out()
         each = (
-            "state can be reached and left"
+            tr("state can be reached and left")
             if self.session.onstage.mode == "manual"
-            else "stance rests, leads somewhere and comes back"
+            else tr("stance rests, leads somewhere and comes back")
         )
-        self.none.setText(f"No problems. Every {each}.")
+        self.none.setText(tr("No problems. Every {each}.", each=each))
         self.stack.setCurrentIndex(1 if self.problems else 0)
         count = len(self.fixable())
         self.foot.setVisible(count > 1)
-        self.all.setText(f"Mend {many(count, 'problem')}")
+        self.all.setText(tr("Mend {problems}", problems=many(count, "problem")))
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() == QEvent.Type.Resize and watched is self.tree.viewport():
@@ -264,7 +265,7 @@ class ProblemsPanel(QWidget):
         """Return what can be done about a row."""
         menu = QMenu(self)
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        menu.addAction("Go there", lambda: self._go(item))
+        menu.addAction(tr("Go there"), lambda: self._go(item))
         problem = item.data(0, ROLE)
         fix = self.fixes.get(problem) if isinstance(problem, Problem) else None
         if fix is not None:

@@ -7,6 +7,7 @@ from pathlib import Path
 from PySide6.QtCore import QSettings, Qt, QUrl, Signal
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import (
+    QCheckBox,
     QDialog,
     QDialogButtonBox,
     QFileDialog,
@@ -69,6 +70,14 @@ class RenderDialog(QDialog):
         form.addRow("File", row)
         self.seconds = DoubleSpinBox(self, minimum=0.1, maximum=3600, decimals=1, suffix=" s")
         self.seconds.setValue(kept.length if kept is not None else min(30.0, performance.length))
+        self.part = ComboBox(self, toolTip="All of it, or what is between in and out on the timeline")
+        self.part.addItem("All, from the beginning", None)
+        self.range = performance.timeline.range
+        if self.range is not None:
+            self.part.addItem(f"The range, {self.range[0]:.2f} to {self.range[1]:.2f} s", self.range)
+            self.part.setCurrentIndex(1)
+        self.part.activated.connect(lambda _: self._suffixed())
+        form.addRow("What", self.part)
         form.addRow("Length", self.seconds)
         self.size_box = ComboBox(self)
         for width, height in SIZES:
@@ -90,6 +99,12 @@ class RenderDialog(QDialog):
             box.setCurrentIndex(box.findData(now))
         form.addRow("Light", self.light)
         form.addRow("Background", self.background)
+        self.captions = QCheckBox("Words of who speaks, at the bottom", self)
+        self.captions.setChecked(performance.timeline.now.captions)
+        form.addRow("Captions", self.captions)
+        self.cuts = QCheckBox("Cut as the camera lane says", self)
+        self.cuts.setChecked(True)
+        form.addRow("Camera", self.cuts)
         self.form = form
         self.words = QLabel(self, wordWrap=True)
         self.words.setProperty("dim", True)
@@ -117,7 +132,11 @@ class RenderDialog(QDialog):
         drawn = suffix in (".mp4", ".png")
         for row in (self.size_box, self.light, self.background):
             self.form.setRowVisible(row, drawn)
+        self.form.setRowVisible(self.part, self.range is not None)
+        self.form.setRowVisible(self.seconds, self.part.currentData() is None)
         self.form.setRowVisible(self.fps, suffix != ".png")
+        self.form.setRowVisible(self.captions, drawn)
+        self.form.setRowVisible(self.cuts, drawn and bool(self.performance.timeline.now.cuts))
         self.words.setText({
             ".mp4": "H.264, with the sound of what is said.",
             ".png": "24 pictures over the performance, on one sheet.",
@@ -135,16 +154,20 @@ class RenderDialog(QDialog):
 
     def _write(self) -> None:
         document = self.performance.document
+        start, end = self.part.currentData() or (0.0, self.seconds.value())
         wanted = RenderOrder(
             Path(self.file.text()),
             self.session.onstage.performance,
-            self.seconds.value(),
+            end - start,
             self.size_box.currentData(),
             self.fps.currentData(),
             self.session.look.name,
             self.performance.conversation,
             self.light.currentData(),
             self.background.currentData(),
+            start,
+            self.captions.isChecked(),
+            self.cuts.isChecked(),
         )
         QSettings().setValue("render/size", self.size_box.currentIndex())
         project, folder = document.project, document.folder or Path()

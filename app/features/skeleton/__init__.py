@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -18,9 +19,9 @@ def contribute(shell: Shell) -> Contribution:
                 "skeleton",
                 "&Graph",
                 "skeleton",
-                "S&keleton…",
+                tr("S&keleton…"),
                 show,
-                tip="Roles and body parts of the joints",
+                tip=tr("Roles and body parts of the joints"),
                 enabled=lambda: shell.document.project.skeleton is not None,
             ),
         ),

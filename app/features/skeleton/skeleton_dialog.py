@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
 
 from app.project.document import Document
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.joint_mask import JOINT, joint_tree
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph import anatomy, edits
@@ -36,14 +37,14 @@ class SkeletonDialog(QDialog):
         super().__init__(parent)
         self.document, self.session = document, session
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle("Skeleton")
+        self.setWindowTitle(tr("Skeleton"))
         self.resize(720, 680)
         layout = QVBoxLayout(self)
         self.words = QLabel(self, wordWrap=True)
         layout.addWidget(self.words)
         self.tree = QTreeWidget(self)
-        self.tree.setAccessibleName("Joints of the skeleton")
-        self.tree.setHeaderLabels(["Joint", "Role", "Body part"])
+        self.tree.setAccessibleName(tr("Joints of the skeleton"))
+        self.tree.setHeaderLabels([tr("Joint"), tr("Role"), tr("Body part")])
         self.tree.header().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
         self.tree.header().setStretchLastSection(False)
         self.tree.setSelectionMode(QTreeWidget.SelectionMode.ExtendedSelection)
@@ -52,12 +53,12 @@ class SkeletonDialog(QDialog):
         self.roles: dict[str, QComboBox] = {}
         self.parts: dict[str, QComboBox] = {}
         for name, item in self.items.items():
-            role = ComboBox(self.tree, toolTip="What this joint is in a human body")
+            role = ComboBox(self.tree, toolTip=tr("What this joint is in a human body"))
             role.addItem("-", None)
             for r in ROLES:
                 role.addItem(r.replace("_", " "), r)
             role.activated.connect(lambda _, j=name, box=role: self._set_role(j, box.currentData()))
-            part = ComboBox(self.tree, toolTip="Which layers move it follows from its body part")
+            part = ComboBox(self.tree, toolTip=tr("Which layers move it follows from its body part"))
             part.addItems(PARTS)
             part.activated.connect(lambda _, j=name, box=part: self._set_part(j, box.currentText()))
             self.tree.setItemWidget(item, 1, role)
@@ -70,7 +71,7 @@ class SkeletonDialog(QDialog):
             wide = max((box.sizeHint().width() for box in boxes.values()), default=100)
             self.tree.setColumnWidth(column, wide + 12)
         row = QHBoxLayout()
-        back = QPushButton("Back to what was found", self)
+        back = QPushButton(tr("Back to what was found"), self)
         back.clicked.connect(self._reset)
         row.addWidget(back)
         row.addStretch(1)
@@ -98,11 +99,12 @@ class SkeletonDialog(QDialog):
             font.setBold(name in project.parts or name in project.roles.values())
             self.items[name].setFont(0, font)
         missing = missing_roles(found)
-        words = (
-            f"{len(found)} roles were found from the names and the hierarchy. Corrections are shown in bold."
+        words = tr(
+            "{found} roles were found from the names and the hierarchy. Corrections are shown in bold.",
+            found=len(found),
         )
         if missing:
-            words += f" Not found: {', '.join(m.replace('_', ' ') for m in missing)}."
+            words += tr(" Not found: {roles}.", roles=", ".join(m.replace("_", " ") for m in missing))
         self.words.setText(words)
 
     def _chosen(self, joint: str) -> tuple[str, ...]:
@@ -117,13 +119,13 @@ class SkeletonDialog(QDialog):
                     project = edits.set_role(project, old, None)
             return edits.set_role(project, role, joint) if role else project
 
-        self.document.edit("Change role", change)
+        self.document.edit(tr("Change role"), change)
         self._show()
 
     def _set_part(self, joint: str, part: str) -> None:
         chosen = self._chosen(joint)
         wanted: Part = next(p for p in PARTS if p == part)
-        self.document.edit("Change body part", lambda p: edits.set_part(p, chosen, wanted))
+        self.document.edit(tr("Change body part"), lambda p: edits.set_part(p, chosen, wanted))
 
     def _reset(self) -> None:
         def change(project: Project) -> Project:
@@ -131,4 +133,4 @@ class SkeletonDialog(QDialog):
                 project = edits.set_role(project, role, None)
             return edits.set_part(project, tuple(project.parts), None)
 
-        self.document.edit("Reset roles and parts", change)
+        self.document.edit(tr("Reset roles and parts"), change)

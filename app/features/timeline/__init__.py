@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtWidgets import QWidget
 
+from app.features.timeline.timeline_commands import commands
 from app.project.importing import Importing
 from app.shell.actions import Command
 from app.shell.context import Contribution, Panel, Shell
@@ -18,7 +19,7 @@ def contribute(shell: Shell) -> Contribution:
         from app.features.timeline.lane_drops import LaneDrops
         from app.features.timeline.timeline_panel import TimelinePanel
 
-        panel = TimelinePanel(document, session, performance, shell.widget)
+        panel = TimelinePanel(document, session, performance, shell.jobs, shell.widget)
         LaneDrops(panel.lanes, shell.services[Importing])
         return panel
 
@@ -32,6 +33,21 @@ def contribute(shell: Shell) -> Contribution:
         lambda: performance.requests.withdraw(*session.onstage.requests),
         rank=1,
     )
+    noted = performance.timeline
+    shell.services[Verbs].offer(
+        "remove",
+        lambda: session.onstage.mode == "meta" and noted.selected is not None,
+        lambda: noted.remove_marker(str(noted.marker)),
+        rank=1,
+    )
+    shell.services[Verbs].offer(
+        "rename",
+        lambda: session.onstage.mode == "meta" and noted.selected is not None,
+        lambda: shell.panel("timeline").lanes.ruler.rename(str(noted.marker)),
+        rank=1,
+    )
+    # Whether there is something to remove is asked when something else is selected.
+    noted.changed.connect(lambda: shell.actions["delete"].setEnabled(shell.services[Verbs].can("remove")))
     return Contribution(
         panels=(
             Panel(
@@ -39,12 +55,13 @@ def contribute(shell: Shell) -> Contribution:
                 "Performance",
                 "bottom",
                 make,
-                least=(400, 222),
+                least=(400, 236),
                 where={"perform": "below"},
                 opens={"talk": "below"},
             ),
         ),
         commands=(
+            *commands(shell),
             Command(
                 "live",
                 "&Play",

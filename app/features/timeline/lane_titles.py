@@ -1,27 +1,105 @@
-"""The titles of the timeline's layers: a click mutes a layer, with Alt it leaves it alone."""
+"""The titles of the timeline's lanes: a click mutes a layer, with Alt it leaves it alone; the padlock locks a
+lane's requests; the border below makes a lane taller or lower.
+"""
 
 from __future__ import annotations
 
-from PySide6.QtCore import QPointF, Qt
-from PySide6.QtWidgets import QMenu, QWidget
+import json
+from dataclasses import replace
+from functools import partial
+from typing import Any, cast
 
+from PySide6.QtCore import QPointF, QRectF, QSettings, Qt
+from PySide6.QtGui import QColor, QPainter, QPen
+from PySide6.QtWidgets import QMenu
+
+from app.look.theme import Theme
 from app.stage.performance import Performance
-from app.widgets.lane_geometry import LEFT, lanes
+from app.widgets.gesture import PressDrag, Reason
+from app.widgets.lane_geometry import LEFT, NAMES, RULER, TITLES, Sizes, lanes
 from metagraph.graph.model import LAYERS, Layer
+from metagraph.graph.timeline import Lane
+
+SETTING = "timeline/heights"
+HEIGHTS = {"Compact": 0.6, "Normal": 1.0, "Tall": 1.8}  # of a lane's usual height
+GRIP = 4.0  # pixels on either side of a border that take hold of it
+LOCK = 20.0  # pixels at the right of a title that are its padlock's
+
+
+def kept_heights() -> tuple[tuple[str, float], ...]:
+    """Return how tall lanes were made, as this person keeps it."""
+    try:
+        found = json.loads(str(QSettings().value(SETTING, "{}")))
+        held = Sizes()
+        for name, factor in found.items():
+            held = held.with_factor(str(name), float(factor))
+    except (ValueError, AttributeError, TypeError):
+        return ()
+    return held.tall
+
+
+class BorderDrag(PressDrag):
+    """The border below a lane being dragged."""
+
+    catch = 2.0
+
+    def __init__(self, titles: LaneTitles, lane: str) -> None:
+        super().__init__()
+        self.titles, self.lane, self._was = titles, lane, titles.view.sizes
+
+    def update(self, at: QPointF, free: bool = False) -> None:
+        if self.caught(QPointF(self.origin.x(), at.y())):
+            self.titles.view.set_sizes(self._was.resized(self.lane, at.y(), self.titles.view.height()))
+
+    def finish(self, at: QPointF) -> None:
+        if self.begun:
+            self.titles.keep()
+
+    def cancel(self, reason: Reason) -> None:
+        self.titles.view.set_sizes(self._was)
 
 
 class LaneTitles:
     """What the titles left of the lanes do. view: the widget of the lanes."""
 
-    def __init__(self, view: QWidget, performance: Performance) -> None:
+    def __init__(self, view: Any, performance: Performance) -> None:
         self.view, self.performance = view, performance
 
-    def at(self, place: QPointF) -> Layer | None:
-        """Return the layer whose title a point is on."""
+    def places(self) -> dict[str, QRectF]:
+        return lanes(self.view.height(), self.view.sizes)
+
+    def lane_at(self, place: QPointF) -> str | None:
+        """Return the lane whose title a point is on."""
         if place.x() >= LEFT:
             return None
         beside = QPointF(LEFT, place.y())
-        return next((n for n in LAYERS if lanes(self.view.height())[n].contains(beside)), None)
+        return next((n for n, lane in self.places().items() if lane.contains(beside)), None)
+
+    def at(self, place: QPointF) -> Layer | None:
+        """Return the layer whose title a point is on."""
+        lane = self.lane_at(place)
+        return lane if lane in LAYERS else None
+
+    def border_at(self, place: QPointF) -> str | None:
+        """Return the lane whose lower border a point beside the lanes is on."""
+        if place.x() >= LEFT or place.y() <= RULER + GRIP:
+            return None
+        return next((n for n, lane in self.places().items() if abs(lane.bottom() - place.y()) <= GRIP), None)
+
+    def lock_at(self, place: QPointF) -> Lane | None:
+        """Return the lane whose padlock a point is on."""
+        lane = self.lane_at(place)
+        on = lane in NAMES and place.x() >= LEFT - LOCK
+        return cast(Lane, lane) if on else None
+
+    def press(self, place: QPointF, alone: bool) -> None:
+        border, locked = self.border_at(place), self.lock_at(place)
+        if border is not None:
+            self.view.hand.take(BorderDrag(self, border), place)
+        elif locked is not None:
+            self.performance.timeline.lock(locked, locked not in self.performance.timeline.now.locked)
+        elif (layer := self.at(place)) is not None:
+            self.click(layer, alone)
 
     def click(self, layer: Layer, alone: bool) -> None:
         """Mute a layer or let it be seen; alone: it and no other."""
@@ -32,20 +110,77 @@ class LaneTitles:
         others = set(LAYERS) - {layer}
         return set() if self.performance.muted == others else others
 
-    def menu(self, layer: Layer) -> QMenu:
+    def size(self, lane: str | None, factor: float = 1.0) -> None:
+        """Make a lane so many times its usual height; None for all as usual."""
+        sizes = self.view.sizes
+        if lane is None:
+            sizes = replace(sizes, tall=())
+        sizes = sizes.with_factor(lane, factor) if lane is not None else sizes
+        self.view.set_sizes(sizes)
+        self.keep()
+
+    def keep(self) -> None:
+        QSettings().setValue(SETTING, json.dumps(dict(self.view.sizes.tall)))
+
+    def menu(self, lane: str) -> QMenu:
         menu, muted = QMenu(self.view), self.performance.muted
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        mute = menu.addAction("Mute\tclick", lambda: self.click(layer, False))
-        mute.setCheckable(True)
-        mute.setChecked(layer in muted)
-        alone = menu.addAction("Solo\tAlt+click", lambda: self.click(layer, True))
-        alone.setCheckable(True)
-        alone.setChecked(muted == set(LAYERS) - {layer})
+        if lane in LAYERS:
+            layer = lane
+            mute = menu.addAction("Mute\tclick", lambda: self.click(layer, False))
+            mute.setCheckable(True)
+            mute.setChecked(layer in muted)
+            alone = menu.addAction("Solo\tAlt+click", lambda: self.click(layer, True))
+            alone.setCheckable(True)
+            alone.setChecked(muted == set(LAYERS) - {layer})
+        if lane in NAMES:
+            of, timeline = cast(Lane, lane), self.performance.timeline
+            lock = menu.addAction("Lock", lambda: timeline.lock(of, of not in timeline.now.locked))
+            lock.setCheckable(True)
+            lock.setChecked(of in timeline.now.locked)
+        menu.addSeparator()
+        now = dict(self.view.sizes.tall).get(lane, 1.0)
+        for words, factor in HEIGHTS.items():
+            size = menu.addAction(words, partial(self.size, lane, factor))
+            size.setCheckable(True)
+            size.setChecked(now == factor)
+        menu.addAction("All lanes as usual", lambda: self.size(None)).setEnabled(bool(self.view.sizes.tall))
         menu.addSeparator()
         menu.addAction("Let all be seen", lambda: self.performance.mute(())).setEnabled(bool(muted))
         return menu
 
-    def tip(self, layer: Layer) -> str:
-        state = "rests while you look" if layer in self.performance.muted else "is seen"
+    def tip(self, place: QPointF) -> str:
+        lane = self.lane_at(place)
+        if self.border_at(place) is not None:
+            return "Drag to make the lane taller or lower"
+        locked = self.lock_at(place)
+        if locked is not None:
+            name = TITLES[locked]
+            on = locked in self.performance.timeline.now.locked
+            state = "is locked: its requests cannot be moved or taken back" if on else "is not locked"
+            return f"{name} {state}\nClick {'unlocks' if on else 'locks'} it"
+        if lane not in LAYERS:
+            return ""
+        state = "rests while you look" if lane in self.performance.muted else "is seen"
         how = "Click mutes it, Alt+click leaves it alone; exports do not change"
-        return f"The {layer} layer {state}\n{how}"
+        return f"The {lane} layer {state}\n{how}"
+
+
+def padlock(painter: QPainter, t: Theme, at: QPointF, locked: bool) -> None:
+    """Paint a padlock with its middle at `at`: shut, or open and faint."""
+    painter.save()
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    color = QColor(t.text if locked else t.dim)
+    color.setAlphaF(1.0 if locked else 0.45)
+    body = QRectF(at.x() - 4.5, at.y() - 0.5, 9, 6.5)
+    painter.setPen(QPen(color, 1.5))
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    shift = 0.0 if locked else 4.5  # an open one has its bow beside
+    bow = QRectF(at.x() - 3 + shift, at.y() - 6, 6, 8)
+    painter.drawArc(bow, 0, 180 * 16)
+    painter.drawLine(QPointF(bow.left(), bow.center().y()), QPointF(bow.left(), body.top()))
+    if locked:
+        painter.drawLine(QPointF(bow.right(), bow.center().y()), QPointF(bow.right(), body.top()))
+        painter.setBrush(color)
+    painter.drawRoundedRect(body, 1.5, 1.5)
+    painter.restore()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import (
     QColor,
@@ -15,62 +17,89 @@ from PySide6.QtGui import (
     QPaintEvent,
     QPen,
     QPixmap,
-    QWheelEvent,
+    QResizeEvent,
 )
-from PySide6.QtWidgets import QApplication, QMenu, QToolTip, QWidget
+from PySide6.QtWidgets import QToolTip, QWidget
 
-from app.features.timeline.lane_titles import LaneTitles
+from app.features.timeline.camera_lane import CameraLane
+from app.features.timeline.lane_keys import LaneKeys
+from app.features.timeline.lane_menu import request_marks_menu
+from app.features.timeline.lane_picture import paint_lanes
+from app.features.timeline.lane_span import LaneSpan
+from app.features.timeline.lane_tips import tip_at
+from app.features.timeline.lane_titles import BorderDrag, LaneTitles, kept_heights
 from app.features.timeline.request_drag import RequestDrag
-from app.look.names import told_names
+from app.features.timeline.ruler import Ruler
+from app.features.timeline.snapping import Magnet, SnapLine, snap_lines
+from app.features.timeline.voices import Voices
+from app.features.timeline.what_if import WhatIf, seed_of
 from app.look.theme import theme
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.widgets.gesture import Hand
-from app.widgets.lane_geometry import LEFT, RULER, Mark, Scale, cue_at, lane_at, mark_at, marks, told
-from app.widgets.lane_paint import LaneScene, badge, cue_words, paint, playhead
+from app.widgets.lane_geometry import (
+    LEFT,
+    NUMBERS,
+    RULER,
+    Mark,
+    Sizes,
+    cue_at,
+    lane_at,
+    lanes,
+    mark_at,
+    marks,
+)
+from app.widgets.lane_paint import badge, playhead
 from app.widgets.memo import Once
-from app.widgets.request_menu import request_menu
+from app.widgets.request_menu import STAGE, request_menu
+from metagraph.graph.model import LAYERS
 
-NUDGE, FAR = 0.1, 1.0  # seconds an arrow key moves what is selected, and with Shift
 CATCH = 3  # pixels the mouse must move for a press to become a drag
-ZOOM = 1.2
+LEAST = 38  # pixels of a layer in which its two rows are read
 COPIES = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier
 TEXT = (
     "Requests, and what plays. Up and Down choose a request, Left and Right move it, Enter changes it, "
-    "Insert asks for something."
+    "Insert asks for something. M adds a marker, I and O begin and end the loop range."
 )
 
 
-class Lanes(QWidget):
+class Lanes(LaneSpan):
     """A press on a request selects it and a drag moves it, a double click changes it or, in an empty place,
     asks for something.
 
     A press on a cue selects its action; anywhere else it moves the playhead. The wheel zooms.
     """
 
-    def __init__(self, session: Session, performance: Performance, parent: QWidget) -> None:
+    def __init__(
+        self, session: Session, performance: Performance, voices: Voices, what_if: WhatIf, parent: QWidget
+    ) -> None:
         super().__init__(parent)
-        self.session, self.performance = session, performance
-        self.each = 44.0
-        self.first = 0.0
+        self.session, self.performance, self.voices = session, performance, voices
+        self.what_if = what_if
         self.follow = True
         self.hand = Hand()
-        self.titles = LaneTitles(self, performance)
+        self.sizes = Sizes(tall=kept_heights())
+        self.titles, self.ruler = LaneTitles(self, performance), Ruler(self)
+        self.cameras = CameraLane(self)
+        self.keys, self.magnet = LaneKeys(self), Magnet()
         self._marks: Once[list[Mark]] = Once()
         self._still: Once[QPixmap] = Once()  # all but what moves while it plays
         self.painted = 0  # how often that was made
-        self.setMinimumHeight(RULER + 4 * 40)
+        self.setMinimumHeight(RULER + 4 * LEAST)
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName("Timeline")
         self.setAccessibleDescription(TEXT)
         performance.changed.connect(self.update)
+        performance.timeline.changed.connect(self.update)
+        performance.changed.connect(self.show_lanes)
+        voices.changed.connect(self.show_lanes)
+        what_if.changed.connect(self.show_lanes)
+        for signal in (voices.changed, what_if.changed):
+            signal.connect(self.update)
         session.transport.moved.connect(self._playhead)
         for signal in (session.look.changed, session.selection.changed, session.onstage.performance_changed):
             signal.connect(self.update)
-
-    def scale(self) -> Scale:
-        return Scale(self.first, self.each)
 
     def marks(self) -> list[Mark]:
         """Return the requests as they are drawn now."""
@@ -81,15 +110,17 @@ class Lanes(QWidget):
 
         def make() -> list[Mark]:
             shift = dict.fromkeys(drag.idents, drag.by) if drag is not None else None
-            found = marks(asks, answers, project, scale, self.height(), self.font(), shift)
+            found = marks(asks, answers, project, scale, self.height(), self.font(), shift, self.sizes)
             if drag is None or not drag.copy:
                 return found
             # What is copied stays where it is, under its copies.
-            still = marks(asks, answers, project, scale, self.height(), self.font())
+            still = marks(asks, answers, project, scale, self.height(), self.font(), None, self.sizes)
             return still + [m for m in found if m.ask.id in drag.idents]
 
-        values = (scale, self.height(), self.font().toString(), drag and (drag.by, drag.copy))
-        return self._marks.of(values, (asks, answers, project), make)
+        values = (scale, self.height(), self.font().toString(), self.sizes, drag and (drag.by, drag.copy))
+        # What is noted beside the requests changes none of them.
+        of = (asks, answers, project.graphs, project.lines, project.points)
+        return self._marks.of(values, of, make)
 
     def _playhead(self, seconds: float) -> None:
         width = self.width() - LEFT
@@ -114,6 +145,11 @@ class Lanes(QWidget):
     def paintEvent(self, event: QPaintEvent) -> None:
         t, painter = theme(self.session.look.name), QPainter(self)
         painter.drawPixmap(0, 0, self._picture())
+        painter.setFont(self.font())
+        self.ruler.paint(painter, t, self.width(), self.height())
+        place = lanes(self.height(), self.sizes).get("cameras")
+        if place is not None:
+            self.cameras.paint(painter, t, place, self.width(), self.performance.shown.length)
         playhead(painter, t, self.scale().x(self.session.transport.seconds), self.height())
         drag = self.drag
         if drag is not None:
@@ -122,7 +158,10 @@ class Lanes(QWidget):
                 font = QFont(self.font())
                 font.setFeature(QFont.Tag("tnum"), 1)
                 painter.setFont(font)
+                line = self.magnet.line
                 words = f"{max(0.0, held.at):.2f} s  ({drag.by:+.2f}){'  copy' if drag.copy else ''}"
+                if line is not None and not line.weak:
+                    words += f"  at {line.what}"
                 badge(painter, t, QPointF(held.rect.left(), 0), words, self.width())
         if self.hasFocus() and self._by_keys:
             painter.setPen(QPen(QColor(t.dim), 1))
@@ -138,7 +177,7 @@ class Lanes(QWidget):
         """
         s, p, ratio = self.session, self.performance, self.devicePixelRatioF()
         ends = p.shown.length if p.ends else None
-        found = self.marks()
+        found, locked = self.marks(), p.timeline.now.locked
         font = self.font()
 
         def make() -> QPixmap:
@@ -146,18 +185,7 @@ class Lanes(QWidget):
             picture.setDevicePixelRatio(ratio)
             painter = QPainter(picture)
             painter.setFont(font)
-            scene = LaneScene(
-                p.shown,
-                found,
-                self.scale(),
-                self.width(),
-                self.height(),
-                s.place.layer,
-                ends,
-                set(s.selection.actions),
-                set(s.onstage.requests),
-            )
-            paint(painter, theme(s.look.name), scene)
+            paint_lanes(self, painter, found, ends, locked)
             painter.end()
             self.painted += 1
             return picture
@@ -172,8 +200,11 @@ class Lanes(QWidget):
             s.selection.actions,
             s.onstage.requests,
             font.toString(),
+            self.sizes,
+            locked,
+            self.voices.version,
         )
-        return self._still.of(values, (p.shown, found), make)
+        return self._still.of(values, (p.shown, found, self.what_if.plans), make)
 
     def focusInEvent(self, event: QFocusEvent) -> None:
         self._by_keys = event.reason() in (Qt.FocusReason.TabFocusReason, Qt.FocusReason.BacktabFocusReason)
@@ -191,16 +222,25 @@ class Lanes(QWidget):
         if event.button() != Qt.MouseButton.LeftButton:
             return
         if event.position().x() < LEFT:
-            layer = self.titles.at(event.position())
-            if layer is not None:
-                self.titles.click(layer, bool(event.modifiers() & Qt.KeyboardModifier.AltModifier))
+            self.titles.press(event.position(), bool(event.modifiers() & Qt.KeyboardModifier.AltModifier))
+            return
+        self._hold_off(event.modifiers())
+        if event.position().y() >= NUMBERS and self.ruler.press(event.position()):
+            self.update()
+            return
+        if self.cameras.press(event.position()):
             return
         mark = mark_at(self.marks(), event.position())
         if mark is not None:
             self._press(mark, event)
             return
+        seed = seed_of(lane_at(self.height(), event.position(), self.sizes))
+        if seed is not None:
+            self.what_if.take(seed)
+            return
         self.session.onstage.select_requests(())
-        found = cue_at(self.performance.shown, self.scale(), self.height(), event.position())
+        self.performance.timeline.select(None)
+        found = cue_at(self.performance.shown, self.scale(), self.height(), event.position(), self.sizes)
         if found is not None:
             self.session.jump(action=found[1].action.id)
         else:
@@ -212,16 +252,21 @@ class Lanes(QWidget):
         lone = more and ident in chosen
         if ident not in chosen:
             self.session.onstage.select_requests((*chosen, ident) if more else (ident,))
-        if self.performance.requests.editable:
-            self.hand.take(RequestDrag(self, self.session.onstage.requests, ident, lone), event.position())
+        requests = self.performance.requests
+        still = requests.still() if requests.editable else frozenset()
+        if requests.editable and ident not in still:
+            held = tuple(i for i in self.session.onstage.requests if i not in still)
+            moved = requests.with_following(held)
+            self.magnet.begin(self.snap_lines(moved))
+            self.hand.take(RequestDrag(self, held, ident, lone, moved), event.position())
         elif lone:
             self.session.onstage.select_requests(tuple(i for i in chosen if i != ident))
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         x = event.position().x()
+        self._hold_off(event.modifiers())
         if self.hand.move(event.position(), bool(event.modifiers() & COPIES)):
-            copying = self.drag is not None and self.drag.copy
-            self.setCursor(Qt.CursorShape.DragCopyCursor if copying else Qt.CursorShape.SizeHorCursor)
+            self.setCursor(self._held_cursor())
             self.update()
         elif event.buttons() & Qt.MouseButton.LeftButton:
             self._scrub(x)
@@ -230,8 +275,22 @@ class Lanes(QWidget):
             self.update()
         else:
             over = mark_at(self.marks(), event.position()) is not None and self.performance.requests.editable
-            self.setCursor(Qt.CursorShape.SizeHorCursor if over else Qt.CursorShape.ArrowCursor)
+            shape = self.ruler.cursor(event.position())
+            if self.cameras.edge_at(event.position()) is not None:
+                shape = Qt.CursorShape.SizeHorCursor
+            if self.titles.border_at(event.position()) is not None:
+                shape = Qt.CursorShape.SizeVerCursor
+            elif shape is None:
+                shape = Qt.CursorShape.SizeHorCursor if over else Qt.CursorShape.ArrowCursor
+            self.setCursor(shape)
         self._grip = x
+
+    def _held_cursor(self) -> Qt.CursorShape:
+        """Return the mouse's shape while something is dragged."""
+        if isinstance(self.hand.gesture, BorderDrag):
+            return Qt.CursorShape.SizeVerCursor
+        copying = self.drag is not None and self.drag.copy
+        return Qt.CursorShape.DragCopyCursor if copying else Qt.CursorShape.SizeHorCursor
 
     _grip = 0.0
 
@@ -243,6 +302,8 @@ class Lanes(QWidget):
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         self.hand.let_go(event.position())
+        self.magnet.end()
+        self.magnet.held_off = False
         self.update()
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
@@ -250,7 +311,12 @@ class Lanes(QWidget):
         if mark is not None:
             self.edit(mark.ask.id)
             return
-        found = cue_at(self.performance.shown, self.scale(), self.height(), event.position())
+        marker = self.ruler.marker_at(event.position())
+        if marker is not None:
+            self.ruler.rename(marker.id)
+        if event.position().y() < RULER:
+            return
+        found = cue_at(self.performance.shown, self.scale(), self.height(), event.position(), self.sizes)
         if found is not None:
             self.session.show_context(found[1].action.id)
         elif event.position().x() >= LEFT:
@@ -258,45 +324,35 @@ class Lanes(QWidget):
 
     def _menu(self, at: QPointF, on_screen: QPointF) -> None:
         seconds = round(max(0.0, self.scale().seconds(at.x())), 2)
-        mark = mark_at(self.marks(), at)
+        if self.cameras.on(at):
+            self.cameras.menu(at).popup(on_screen.toPoint())
+            return
+        mark, lane = mark_at(self.marks(), at), lane_at(self.height(), at, self.sizes)
         if mark is not None and self.performance.requests.editable:
-            self._mark_menu(mark).popup(on_screen.toPoint())
+            request_marks_menu(self, mark).popup(on_screen.toPoint())
         else:
-            request_menu(self, self.performance, seconds, lane_at(self.height(), at)).popup(
+            request_menu(self, self.performance, seconds, lane if lane in LAYERS else STAGE).popup(
                 on_screen.toPoint()
             )
-
-    def _mark_menu(self, mark: Mark) -> QMenu:
-        """Return what can be done with a request, or with all that are selected with it."""
-        ident = mark.ask.id
-        if ident not in self.session.onstage.requests:
-            self.session.onstage.select_requests((ident,))
-        menu, chosen = QMenu(self), self.session.onstage.requests
-        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        menu.addAction("Change…\tReturn", lambda: self.edit(ident))
-        menu.addAction("Copy\tCtrl+D", lambda: self.performance.requests.copy(chosen, FAR))
-        menu.addAction(
-            "Take it back\tDel" if len(chosen) == 1 else "Take them back\tDel",
-            lambda: self.performance.requests.withdraw(*chosen),
-        )
-        return menu
 
     def edit(self, ident: str) -> None:
         """Show the fields of a request."""
         from app.features.timeline.request_editor import RequestEditor
 
-        if self.performance.requests.editable:
+        if self.performance.requests.editable and self.performance.requests.free((ident,)):
             RequestEditor(self.performance, ident, self).open()
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         if event.reason() == QContextMenuEvent.Reason.Keyboard:
-            self._ask_here()
-        elif (layer := self.titles.at(QPointF(event.pos()))) is not None:
-            self.titles.menu(layer).popup(event.globalPos())
+            self.ask_here()
+        elif (lane := self.titles.lane_at(QPointF(event.pos()))) is not None:
+            self.titles.menu(lane).popup(event.globalPos())
+        elif event.pos().y() < RULER and event.pos().x() >= LEFT:
+            self.ruler.menu(QPointF(event.pos())).popup(event.globalPos())
         elif event.pos().x() >= LEFT:
             self._menu(QPointF(event.pos()), QPointF(event.globalPos()))
 
-    def _ask_here(self) -> None:
+    def ask_here(self) -> None:
         """Ask for something at the playhead."""
         x = min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width())
         seconds = round(self.session.transport.seconds, 2) if self.performance.live.stage is None else None
@@ -306,115 +362,66 @@ class Lanes(QWidget):
         self.session.transport.set_playing(False)
         self.session.transport.seek(max(0.0, self.scale().seconds(max(x, LEFT))))
 
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        delta = event.angleDelta()
-        if event.modifiers() & Qt.KeyboardModifier.ShiftModifier or abs(delta.x()) > abs(delta.y()):
-            self.first = max(0.0, self.first - (delta.x() or delta.y()) / 2 / self.each)
+    def set_sizes(self, sizes: Sizes) -> None:
+        """Show other lanes, or lanes of other heights."""
+        if sizes != self.sizes:
+            self.sizes = sizes
             self.update()
-        else:
-            self._zoom(ZOOM ** (delta.y() / 120), event.position().x())
-        event.accept()
 
-    def _zoom(self, by: float, x: float) -> None:
-        """Zoom about a place on the screen."""
-        at = self.scale().seconds(x)
-        self.each = min(400.0, max(2.0, self.each * by))
-        self.first = max(0.0, at - (x - LEFT) / self.each)
-        self.update()
+    def show_lanes(self) -> None:
+        """Have a lane for everything that there is to show, of words where there is room for one."""
+        cameras = ("cameras",) if self.performance.conversation is not None else ()
+        spoken = replace(self.sizes, extra=(*cameras, "words", *self.what_if.lanes))
+        words = ("words",) if self.voices.wanted and self.height() >= spoken.least(LEAST) else ()
+        self.set_sizes(replace(self.sizes, extra=(*cameras, *words, *self.what_if.lanes)))
+        needed = replace(self.sizes, extra=(*cameras, *self.what_if.lanes))
+        self.setMinimumHeight(round(needed.least(LEAST)))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.show_lanes()
+
+    def snap_lines(self, but: tuple[str, ...]) -> list[SnapLine]:
+        """Return what a drag of some requests or of a marker holds to."""
+        return snap_lines(self.performance, self.marks(), self.words(), self.scale(), self.width(), but)
+
+    def words(self) -> list[tuple[float, float, str]]:
+        """Return the words that are said, by time."""
+        return self.voices.words()
 
     # --- keys and tips
 
-    def _nudge(self, key: Qt.Key, modifiers: Qt.KeyboardModifier) -> None:
-        by = FAR if modifiers & Qt.KeyboardModifier.ShiftModifier else NUDGE
-        self.performance.requests.move(
-            self.session.onstage.requests, by if key == Qt.Key.Key_Right else -by, merge="nudge"
-        )
-
-    def _choose(self, step: int) -> None:
-        """Select the request before or after the selected one, in time; without one, the first from the
-        playhead on.
-        """
-        order = sorted(self.marks(), key=lambda m: m.at)
-        if not order:
-            return
-        chosen = self.session.onstage.requests
-        place = next((n for n, m in enumerate(order) if chosen and m.ask.id == chosen[-1]), None)
-        if place is None:
-            place = next(
-                (n for n, m in enumerate(order) if m.at >= self.session.transport.seconds), len(order) - 1
-            )
-        else:
-            place = min(max(0, place + step), len(order) - 1)
-        self.reveal(order[place].ask.id)
-
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        chosen, key, can = self.session.onstage.requests, event.key(), self.performance.requests.editable
-        if key == Qt.Key.Key_Escape and self.hand.drop("escape"):
+        self._hold_off(event.modifiers())
+        if not self.keys.press(event):
+            super().keyPressEvent(event)
+
+    def keyReleaseEvent(self, event: QKeyEvent) -> None:
+        self._hold_off(event.modifiers())
+        super().keyReleaseEvent(event)
+
+    def _hold_off(self, held: Qt.KeyboardModifier) -> None:
+        """Nothing snaps while Shift is held."""
+        self.magnet.held_off = bool(held & Qt.KeyboardModifier.ShiftModifier)
+
+    def break_off(self) -> bool:
+        """Break a drag off; return whether there was one."""
+        dropped = self.hand.drop("escape")
+        self.magnet.end()
+        if dropped:
             self.setCursor(Qt.CursorShape.ArrowCursor)
             self.update()
-        elif key == Qt.Key.Key_Escape and chosen:
-            self.session.onstage.select_requests(())
-        elif self.hand.gesture is not None:
-            return  # what is held is not edited by keys as well
-        elif chosen and can and key in (Qt.Key.Key_Left, Qt.Key.Key_Right):
-            self._nudge(Qt.Key(key), event.modifiers())
-        elif (
-            chosen and can and key == Qt.Key.Key_D and event.modifiers() & Qt.KeyboardModifier.ControlModifier
-        ):
-            self.performance.requests.copy(chosen, FAR)
-        elif chosen and key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
-            self.edit(chosen[0])
-        elif key in (Qt.Key.Key_Up, Qt.Key.Key_Down):
-            self._choose(1 if key == Qt.Key.Key_Down else -1)
-        elif key == Qt.Key.Key_Insert:
-            self._ask_here()
-        elif key in (Qt.Key.Key_Plus, Qt.Key.Key_Equal, Qt.Key.Key_Minus):
-            self._zoom(
-                1 / ZOOM if key == Qt.Key.Key_Minus else ZOOM,
-                min(max(LEFT, self.scale().x(self.session.transport.seconds)), self.width()),
-            )
-        elif key in (Qt.Key.Key_PageUp, Qt.Key.Key_PageDown):
-            page = 0.8 * (self.width() - LEFT) / self.each
-            self.first = max(0.0, self.first + (page if key == Qt.Key.Key_PageDown else -page))
-            self.update()
-        else:
-            super().keyPressEvent(event)
+        return dropped
 
     def event(self, event: QEvent) -> bool:
         if isinstance(event, QHelpEvent):
             QToolTip.showText(event.globalPos(), self._tip(QPointF(event.pos())), self)
             return True
-        if isinstance(event, QKeyEvent) and event.type() == QKeyEvent.Type.ShortcutOverride:
-            mine = (Qt.Key.Key_Left, Qt.Key.Key_Right, Qt.Key.Key_Return, Qt.Key.Key_Escape)
-            if (self.hand.gesture is not None and event.key() == Qt.Key.Key_Escape) or (
-                self.session.onstage.requests and event.key() in mine
-            ):
-                event.accept()
-                return True
+        asked = event.type() == QKeyEvent.Type.ShortcutOverride
+        if asked and isinstance(event, QKeyEvent) and self.keys.wants(event):
+            event.accept()
+            return True
         return super().event(event)
 
     def _tip(self, at: QPointF) -> str:
-        titled = self.titles.at(at)
-        if titled is not None:
-            return self.titles.tip(titled)
-        mark = mark_at(self.marks(), at)
-        if mark is not None:
-            return told(mark, self.performance.requests.editable)
-        found = cue_at(self.performance.shown, self.scale(), self.height(), at)
-        if found is not None:
-            cue = found[1]
-            name = told_names(cue_words(self.performance.shown.project, cue.action), cue.action.name)
-            words = f"{name}\n{cue.action.kind}, {cue.start:.2f} to {cue.end:.2f} s"
-            if cue.hold > 0:
-                words += f", held {cue.hold:.2f} s"
-            return words + "\nClick selects it, double-click plays it in context"
-        lane = lane_at(self.height(), at)
-        if lane is None:
-            return ""
-        shown, here = self.performance.shown, ""
-        plan = next((p for layer, p in shown.plan.layers.items() if layer == lane), None)
-        if plan is not None:
-            stance = shown.project.stance(plan.stance_at(self.scale().seconds(at.x())))
-            here = stance.name if stance is not None else ""
-        more = "" if QApplication.mouseButtons() else "Double-click to ask for something here"
-        return "\n".join(x for x in (here, more) if x)
+        return tip_at(self, at)

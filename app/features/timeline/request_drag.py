@@ -6,6 +6,7 @@ from typing import Protocol
 
 from PySide6.QtCore import QPointF
 
+from app.features.timeline.snapping import Magnet
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.widgets.gesture import PressDrag
@@ -17,44 +18,59 @@ class LanesHost(Protocol):
 
     session: Session
     performance: Performance
+    magnet: Magnet
     each: float
 
 
 class RequestDrag(PressDrag):
-    """idents: what is moved; ident: the one that is held. by: seconds. copy: copies of them go there. lone:
-    let go without being moved, the held one is selected no longer.
+    """chosen: what is moved; following: with what goes along; ident: the one that is held. by: seconds. copy:
+    copies of what is chosen go there. lone: let go without being moved, the held one is selected no longer.
     """
 
     catch = 3.0
 
-    def __init__(self, host: LanesHost, idents: tuple[str, ...], ident: str, lone: bool) -> None:
+    def __init__(
+        self,
+        host: LanesHost,
+        chosen: tuple[str, ...],
+        ident: str,
+        lone: bool,
+        following: tuple[str, ...] = (),
+    ) -> None:
         super().__init__()
-        self.host, self.idents, self.ident, self.lone = host, idents, ident, lone
+        self.host, self.chosen, self.ident, self.lone = host, chosen, ident, lone
+        self.following = following or chosen
         self.by = 0.0
         self.copy = False
+
+    @property
+    def idents(self) -> tuple[str, ...]:
+        """Return all that is shown elsewhere while it is dragged."""
+        return self.chosen if self.copy else self.following
 
     def update(self, at: QPointF, free: bool = False) -> None:
         """free: they are copied."""
         if self.caught(QPointF(at.x(), self.origin.y())):
             self.copy = free
-            self.by = self._within(round((at.x() - self.origin.x()) / self.host.each, 2))
+            by = round((at.x() - self.origin.x()) / self.host.each, 2)
+            held = self._times().get(self.ident, 0.0)
+            self.by = self._within(round(self.host.magnet.snap(held + by, self.host.each) - held, 3))
 
     def _within(self, by: float) -> float:
         """Return by how much they can be moved: none to before the beginning."""
+        return max(by, -min(self._times().values(), default=0.0))
+
+    def _times(self) -> dict[str, float]:
+        """Return when each that is moved stands."""
         performance = self.host.performance
         answers = performance.answers()
-        return max(
-            by,
-            -min(
-                (time_of(x, answers.get(x.id)) for x in performance.asks if x.id in self.idents), default=0.0
-            ),
-        )
+        return {x.id: time_of(x, answers.get(x.id)) for x in performance.asks if x.id in self.idents}
 
     def finish(self, at: QPointF) -> None:
         requests, onstage = self.host.performance.requests, self.host.session.onstage
         if self.begun and self.by and self.copy:
-            requests.copy(self.idents, self.by)
+            requests.copy(self.chosen, self.by)
         elif self.begun and self.by:
-            requests.move(self.idents, self.by)
+            requests.move(self.chosen, self.by)
         elif self.lone and not self.begun:
             onstage.select_requests(tuple(i for i in onstage.requests if i != self.ident))

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from PySide6.QtCore import QTimer
+from PySide6.QtCore import Qt, QTimer
 from PySide6.QtWidgets import (
     QHBoxLayout,
     QInputDialog,
@@ -19,8 +19,13 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.timeline.lane_view import Lanes
+from app.features.timeline.voices import Voices
+from app.features.timeline.what_if import WhatIf
+from app.look import icons
 from app.look.plural import many
+from app.look.theme import theme
 from app.project.document import Document
+from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.widgets.lane_geometry import outcome, wanted
@@ -38,17 +43,29 @@ from metagraph.graph.requests import Performance as KeptPerformance
 from metagraph.graph.words import FEELINGS
 
 IMPROVISED = "Improvised"
+MAGNET = (
+    "Snap what is dragged to markers, words, strokes, beginnings, ends and seconds (S; hold Shift for not)"
+)
+GHOSTS = "What other seeds would play, as rows under the lanes; a click takes one over (Shift+W)"
+RIPPLE = "Ripple: what follows goes along with what is moved (Shift+R)"
 
 
 class TimelinePanel(QWidget):
     """The lanes, with what can be asked for, the seed and the zoom above them."""
 
     def __init__(
-        self, document: Document, session: Session, performance: Performance, parent: QWidget | None = None
+        self,
+        document: Document,
+        session: Session,
+        performance: Performance,
+        jobs: Jobs,
+        parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
         self.document, self.session, self.performance = document, session, performance
-        self.lanes = Lanes(session, performance, self)
+        self.voices = Voices(document, jobs, performance, self)
+        self.what_if = WhatIf(document, jobs, performance, self)
+        self.lanes = Lanes(session, performance, self.voices, self.what_if, self)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 4, 0, 0)
         layout.setSpacing(0)
@@ -69,6 +86,10 @@ class TimelinePanel(QWidget):
         self.title = Sentence(self)
         self.title.setMinimumHeight(2 * self.title.fontMetrics().height())
         row.addWidget(self.title, 1)
+        self.magnet = self._switch(MAGNET, "Snap", self.lanes.magnet.on)
+        self.ripple = self._switch(RIPPLE, "Ripple", performance.requests.ripple)
+        for switch in (self.magnet, self.ripple):
+            row.addWidget(switch)
         self.lost = make_widget(
             QToolButton, self, toolTip="Select the next of them; its reason then stands beside"
         )
@@ -99,8 +120,17 @@ class TimelinePanel(QWidget):
         self.seed.setAccessibleName("Seed")
         self.seed.valueChanged.connect(self._seeded)
         row.addWidget(self.seed)
+        self.ghosts = self._switch(GHOSTS, "What if", False)
+        self.ghosts.toggled.connect(self.what_if.set_on)
+        self.what_if.changed.connect(lambda: self.ghosts.setChecked(self.what_if.on))
+        row.addWidget(self.ghosts)
         layout.addLayout(row)
         layout.addWidget(self.lanes, 1)
+        self.lanes.magnet.on = self.magnet.isChecked()
+        self.magnet.toggled.connect(self.lanes.magnet.set_on)
+        self.ripple.toggled.connect(lambda on: setattr(performance.requests, "ripple", on))
+        session.look.changed.connect(self._restyle)
+        self._restyle()
         performance.changed.connect(self._words)
         session.transport.show_changed.connect(self._words)
         performance.live.changed.connect(self._live)
@@ -116,6 +146,20 @@ class TimelinePanel(QWidget):
         document.changed.connect(lambda before, after: self._restage())
         self._restage()
         self._switched()
+
+    def _switch(self, tip: str, name: str, on: bool) -> QToolButton:
+        """Return a button that stays pressed while something is on."""
+        out = make_widget(QToolButton, self, toolTip=tip, checkable=True, checked=on)
+        out.setAccessibleName(name)
+        out.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        out.setProperty("tight", True)
+        return out
+
+    def _restyle(self) -> None:
+        color = theme(self.session.look.name).text
+        self.magnet.setIcon(icons.icon("magnet", color))
+        self.ghosts.setIcon(icons.icon("ghosts", color))
+        self.ripple.setIcon(icons.icon("ripple", color))
 
     def _switched(self) -> None:
         """Requests and kept performances are the meta-graph's."""

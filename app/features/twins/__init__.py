@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -20,9 +21,9 @@ def contribute(shell: Shell) -> Contribution:
                 "twins",
                 "&Edit",
                 "properties",
-                "Make &mirrored twin",
+                tr("Make &mirrored twin"),
                 make,
-                tip="The same to the other side, as new clips and actions",
+                tip=tr("The same to the other side, as new clips and actions"),
                 enabled=lambda: bool(session.selection.clips or session.selection.actions),
                 when="meta",
                 menus=("action", "clip"),

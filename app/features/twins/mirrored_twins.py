@@ -8,8 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.look.plural import clips_words
+from app.look.plural import clips_words, many
 from app.project.jobs import Job
+from app.translation import tr
 from metagraph.file_names import file_stem
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.gltf_writer import write_glb
@@ -33,7 +34,12 @@ def make_twins(shell: Shell) -> None:
     actions, clips, folder = session.selection.actions, session.selection.clips, document.folder
     project = document.project
     if folder is None:
-        shell.tell(f"Save the project first: mirrored clips are written beside it, in a folder '{FOLDER}'.")
+        shell.tell(
+            tr(
+                "Save the project first: mirrored clips are written beside it, in a folder '{folder}'.",
+                folder=FOLDER,
+            )
+        )
         return
 
     def work(job: Job) -> list[tuple[TwinClip, Loaded]]:
@@ -50,13 +56,14 @@ def make_twins(shell: Shell) -> None:
         if not made:
             return
         if document.folder != folder or any(project.clips[c].id not in document.project.clips for c in clips):
-            shell.tell("The project was changed meanwhile; make the twins again.")
+            shell.tell(tr("The project was changed meanwhile; make the twins again."))
             return
         before = document.project
         try:
             count = sum(len(twin.actions) for twin, _ in made) or len(made)
             document.edit(
-                f"Make {count} mirrored twin{'s' if count != 1 else ''}", lambda p: with_twins(p, made)
+                tr("Make {twins}", twins=many(count, "mirrored twin")),
+                lambda p: with_twins(p, made),
             )
         except EditError as error:
             shell.tell(str(error))
@@ -68,15 +75,13 @@ def make_twins(shell: Shell) -> None:
             )
         else:
             session.selection.select_clips(tuple(c for c in after.clips if c not in before.clips))
-        words = (
-            f"{count} mirrored twin{'s' if count != 1 else ''}"
-            if actions
-            else f"{clips_words(count)} mirrored"
-        )
+        words = many(count, "mirrored twin") if actions else tr("{clips} mirrored", clips=clips_words(count))
         names = ", ".join(twin.name for twin, _ in made[:3]) + (" …" if len(made) > 3 else "")
-        shell.tell(f"{words}: {names}. Written to {folder / FOLDER}.")
+        shell.tell(
+            tr("{words}: {names}. Written to {folder}.", words=words, names=names, folder=folder / FOLDER)
+        )
 
-    shell.jobs.start("Making mirrored twins", work, done, lambda error: shell.tell(str(error)))
+    shell.jobs.start(tr("Making mirrored twins"), work, done, lambda error: shell.tell(str(error)))
 
 
 def write_twin(twin: TwinClip, folder: Path) -> Loaded:

@@ -10,6 +10,7 @@ from app.project.importing import Importing
 from app.project.load import readable
 from app.shell.context import Contribution, Shell
 from app.shell.places import Places
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -22,20 +23,20 @@ def contribute(shell: Shell) -> Contribution:
         choices = (
             Choice(
                 "import",
-                "Import clips",
-                f"A folder of your own motion: {readable().splitlines()[0]}",
+                tr("Import clips"),
+                tr("A folder of your own motion: {formats}", formats=readable().splitlines()[0]),
                 importing.ask_import_folder,
             ),
             Choice(
                 "practice",
-                "Practice",
-                "152 clips without labels: say of each what it is, the graph grows with it",
+                tr("Practice"),
+                tr("152 clips without labels: say of each what it is, the graph grows with it"),
                 lambda: files.open(PRACTICE, template=True),
             ),
             Choice(
                 "sample",
-                "Look at the sample",
-                "A finished character that stands, gestures and talks",
+                tr("Look at the sample"),
+                tr("A finished character that stands, gestures and talks"),
                 lambda: files.open(SAMPLE, template=True),
             ),
         )

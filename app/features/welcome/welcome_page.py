@@ -24,6 +24,7 @@ from app.look.theme import theme
 from app.project.document import Document
 from app.project.files import Files
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.making import make_widget
 
 LEAST = QSize(400, 270)  # pixels of a room in which all of it is whole
@@ -108,14 +109,14 @@ class WelcomePage(QWidget):
         self.files, self.session, self.document, self.room = files, session, document, room
         self.closed = False
         self.setAutoFillBackground(True)
-        self.setAccessibleName("Begin")
-        title = QLabel("How would you like to begin?", self)
+        self.setAccessibleName(tr("Begin"))
+        title = QLabel(tr("How would you like to begin?"), self)
         title.setProperty("heading", True)
         title.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self.recent = Card(Choice("recent", "Go on", "", self._choose_recent), session, self)
+        self.recent = Card(Choice("recent", tr("Go on"), "", self._choose_recent), session, self)
         self.cards = [*(Card(c, session, self) for c in choices), self.recent]
         self.skip = make_widget(
-            QToolButton, self, text="Begin with an empty graph", toolTip="Close this page"
+            QToolButton, self, text=tr("Begin with an empty graph"), toolTip=tr("Close this page")
         )
         self.skip.clicked.connect(self._close)
         grid = QGridLayout()
@@ -174,7 +175,9 @@ class WelcomePage(QWidget):
     def _tell_recent(self) -> None:
         names = [path.name.split(".")[0] for path in self.files.recent()[:RECENT]]
         self.recent.tell(
-            f"With {', '.join(names)}" if names else "Projects that you have saved are found here",
+            tr("With {names}", names=", ".join(names))
+            if names
+            else tr("Projects that you have saved are found here"),
             bool(names),
         )
 

@@ -41,6 +41,16 @@ def test_a_video_is_written_and_its_progress_told(qapp, talk, tmp_path):
     assert [p.name for p in folder.iterdir()] == ["a.mp4"]
 
 
+def test_a_range_of_it_is_what_the_whole_has_there(qapp, talk, tmp_path):
+    project, ident = talk
+    for name, seconds, start in (("all", 2.0, 0.0), ("range", 0.5, 1.0)):
+        order = RenderOrder(tmp_path / f"{name}.bvh", ident, seconds, start=start)
+        write(project, ROOT / "sample_clips", order, Job("x", lambda job: None))
+    whole, part = (read_bvh(tmp_path / f"{name}.bvh") for name in ("all", "range"))
+    assert part.frames == 16
+    assert abs(abs((whole.rotations[30:46] * part.rotations).sum(-1)) - 1).max() < 1e-4
+
+
 def test_motion_is_the_performance(qapp, talk, tmp_path):
     from metagraph.playback.player import pose_at
     from metagraph.playback.running_plan import perform

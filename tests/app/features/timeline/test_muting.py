@@ -69,6 +69,11 @@ def test_the_title_s_menu_and_tip_say_what_a_click_does(stage):
     assert [a.text().split("\t")[0] for a in menu.actions() if not a.isSeparator()] == [
         "Mute",
         "Solo",
+        "Lock",
+        "Compact",
+        "Normal",
+        "Tall",
+        "All lanes as usual",
         "Let all be seen",
     ]
     menu.actions()[1].trigger()

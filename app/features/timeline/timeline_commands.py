@@ -1,0 +1,173 @@
+"""The timeline's commands: the range, markers, what is seen of it, snapping and ripple."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from PySide6.QtCore import QSettings
+
+from app.shell.actions import Command
+from app.shell.context import Shell
+
+
+def commands(shell: Shell) -> tuple[Command, ...]:
+    session, performance = shell.stage.session, shell.stage.performance
+    noted = performance.timeline
+
+    def there() -> bool:
+        return shell.document.project.skeleton is not None
+
+    def noting(do: Callable[[], object]) -> Callable[[], object]:
+        """Return a command that does nothing while a clip or an action is looked at alone."""
+        return lambda: do() if session.transport.show == "plan" else None
+
+    def panel() -> Any:
+        shell.show("timeline")
+        return shell.panel("timeline")
+
+    def press(switch: str) -> Callable[[], object]:
+        return lambda: getattr(shell.panel("timeline"), switch).toggle()
+
+    def move(step: int) -> Callable[[], object]:
+        return lambda: noted.jump(step)
+
+    def command(
+        ident: str, group: str, text: str, run: Callable[[], object], keys: tuple[str, ...], **more: Any
+    ) -> Command:
+        return Command(ident, "&Play", group, text, run, keys, when="meta", **{"enabled": there, **more})
+
+    def taller(by: float) -> Callable[[], object]:
+        """Return what makes the lane of the layer that is edited taller."""
+
+        def size() -> None:
+            titles, lane = panel().lanes.titles, session.place.layer
+            titles.size(lane, titles.view.sizes.factor(lane) * by)
+
+        return size
+
+    def automatic() -> None:
+        talk = shell.document.project.conversations.get(performance.conversation or "")
+        if talk is not None:
+            noted.automatic(talk)
+            shell.show("timeline")
+
+    def snaps() -> bool:
+        return QSettings().value("timeline/magnet", "true") != "false"
+
+    tip = "What is between in and out is played again and again, and can be written alone"
+    return (
+        command("range_in", "range", "Loop from &here", noting(noted.set_in), ("I",), tip=tip),
+        command("range_out", "range", "Loop &to here", noting(noted.set_out), ("O",), tip=tip),
+        command(
+            "range_clear",
+            "range",
+            "&Clear loop range",
+            noting(noted.clear_range),
+            ("Ctrl+Shift+X",),
+        ),
+        command(
+            "marker",
+            "markers",
+            "Add &marker",
+            noting(noted.add_marker),
+            ("Ctrl+Alt+M",),
+            tip="A named moment at the playhead; on the timeline, M alone",
+        ),
+        command("marker_next", "markers", "&Next marker", move(1), ("Shift+M",)),
+        command("marker_before", "markers", "&Previous marker", move(-1), ("Ctrl+Shift+M",)),
+        command(
+            "timeline_all",
+            "timeline",
+            "Zoom the timeline to &all",
+            lambda: panel().lanes.zoom_all(),
+            ("Shift+Z",),
+        ),
+        command(
+            "timeline_selection",
+            "timeline",
+            "&Zoom the timeline to the selection",
+            lambda: panel().lanes.zoom_selection(),
+            ("Z",),
+            tip="The selected requests or action; else the loop range",
+        ),
+        command(
+            "timeline_snap",
+            "timeline",
+            "&Snap on the timeline",
+            press("magnet"),
+            ("S",),
+            checked=snaps,
+        ),
+        command(
+            "timeline_ripple",
+            "timeline",
+            "&Ripple on the timeline",
+            press("ripple"),
+            ("Shift+R",),
+            checked=lambda: performance.requests.ripple,
+            tip="What follows goes along with what is moved",
+        ),
+        command(
+            "lock_layer",
+            "timeline",
+            "&Lock the layer's requests",
+            lambda: noted.lock(session.place.layer, session.place.layer not in noted.now.locked),
+            ("Shift+L",),
+            tip="Requests of the layer that is edited cannot be moved or taken back",
+            checked=lambda: session.place.layer in noted.now.locked,
+        ),
+        command("lane_taller", "timeline", "Taller lane", taller(1.3), ("Alt+Shift+Up",)),
+        command("lane_lower", "timeline", "Lower lane", taller(1 / 1.3), ("Alt+Shift+Down",)),
+        command(
+            "automatic_cuts",
+            "timeline",
+            "A&utomatic cuts",
+            automatic,
+            ("Ctrl+Shift+U",),
+            tip="The camera of the conversation on stage follows who speaks",
+            enabled=lambda: performance.conversation is not None,
+        ),
+        command(
+            "captions",
+            "timeline",
+            "&Captions",
+            lambda: noted.show_captions(not noted.now.captions),
+            ("Shift+C",),
+            tip="The words of who speaks, at the bottom of the picture",
+            checked=lambda: noted.now.captions,
+        ),
+        command(
+            "what_if",
+            "timeline",
+            "What other seeds would pla&y",
+            press("ghosts"),
+            ("Shift+W",),
+            tip="Three more rows under the lanes; a click takes one over",
+        ),
+        command(
+            "what_if_others",
+            "timeline",
+            "Three ot&her seeds",
+            lambda: shell.panel("timeline").what_if.others(),
+            (),
+            tip="The next three, where other seeds are shown",
+        ),
+        command(
+            "requests_copy",
+            "timeline",
+            "Copy re&quests",
+            lambda: performance.requests.to_clipboard(session.onstage.requests),
+            (),
+            tip="As a text that another window pastes, too; Ctrl+C on the timeline",
+            enabled=lambda: performance.requests.kept is not None and bool(session.onstage.requests),
+        ),
+        command(
+            "requests_paste",
+            "timeline",
+            "Paste requests at the p&layhead",
+            performance.requests.paste,
+            (),
+            tip="Ctrl+V on the timeline",
+        ),
+    )

@@ -1,0 +1,124 @@
+"""The camera of a conversation, as its cuts say, and the captions of what is said: for the preview and for
+what is written alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.stage.playback_source import Shown
+from metagraph.graph.conversation import Conversation, Word, side_name
+from metagraph.graph.timeline import Cut
+from metagraph.speech.automatic_cuts import cut_at
+from metagraph.speech.captions import (
+    Caption,
+    captions_of,
+    captions_of_text,
+    conversation_captions,
+    line_words,
+    told_words,
+)
+from preview.camera import Camera
+from preview.shots import shot_camera
+
+Seen = tuple[Any, Shown]  # a figure, and what it plays
+SAMPLED = 2  # moments of a cut from which it is told where heads are
+HEAD, MOST = (
+    0.085,
+    4.0,
+)  # of the height, from a head's middle to its top, hair included; most that it is larger
+FARTHEST = 8.0  # seconds of a cut over which they are
+
+
+class Cutting:
+    """Finds cameras once for each cut: they stand still, where those who talk are while it is seen."""
+
+    def __init__(self) -> None:
+        self._of: tuple[object, ...] = ()
+        self._kept: dict[tuple[Cut, float, float], Camera] = {}
+        self._heads: list[tuple[float, float]] = []
+
+    def camera(
+        self, seen: Sequence[Seen], cuts: tuple[Cut, ...], seconds: float, aspect: float
+    ) -> Camera | None:
+        """Return the camera at a time; None where no cut says any. seen: who talk, the first side first."""
+        found = cut_at(cuts, seconds)
+        if found is None or len(seen) < 2:
+            return None
+        cut, end = found
+        of = (*(figure for figure, _ in seen), *(shown.plan for _, shown in seen))
+        if len(of) != len(self._of) or any(a is not b for a, b in zip(of, self._of, strict=True)):
+            self._of, self._kept = of, {}
+            self._heads = [_head(figure) for figure, _ in seen]
+        key = (cut, end, round(aspect, 2))
+        if key not in self._kept:
+            self._kept[key] = _camera(
+                seen, self._heads, cut, min(end, cut.at + FARTHEST, seen[0][1].length), aspect
+            )
+        return self._kept[key]
+
+
+def _head(figure: Any) -> tuple[float, float]:
+    """Return how far the middle of a figure's head is above where `Figure.head` says, and how tall a person
+    with such a head is, metres: a figure of a cartoon may have one three times as large.
+    """
+    rotations, positions = figure.skeleton.globals(figure.skeleton.rest)
+    above = float(figure.bounds(positions)[1][1] - figure.head(rotations, positions)[1])
+    lift = max(0.0, (above - HEAD * figure.height) / 2)
+    return lift, min(MOST, max(1.0, (above - lift) / (HEAD * figure.height))) * figure.height
+
+
+def _camera(
+    seen: Sequence[Seen], sizes: Sequence[tuple[float, float]], cut: Cut, end: float, aspect: float
+) -> Camera:
+    times = np.linspace(cut.at, max(cut.at, end), SAMPLED)
+    heads, heights, lows, highs = [], [], [], []
+    for (figure, shown), (lift, height) in zip(seen, sizes, strict=True):
+        pose, skeleton = shown.pose(times), shown.skeleton
+        assert pose is not None and skeleton is not None
+        rotations, positions = skeleton.globals(pose)
+        if shown.stand is not None:
+            rotations, positions = shown.stand.placed(rotations, positions)
+        middle = np.mean([figure.head(r, p) for r, p in zip(rotations, positions, strict=True)], axis=0)
+        heads.append(middle + np.array([0.0, lift, 0.0]))
+        heights.append(height)
+        low, high = figure.bounds(positions)
+        lows.append(low)
+        highs.append(high)
+    bounds = (np.min(lows, axis=0), np.max(highs, axis=0))
+    return shot_camera(cut.shot, cut.side, np.array(heads), heights, bounds, aspect)
+
+
+def captions_shown(
+    shown: Shown,
+    conversation: Conversation | None,
+    folder: Path,
+    lines: Mapping[str, Sequence[Word]] | None = None,
+) -> tuple[Caption, ...]:
+    """Return the captions of what is played, by start. lines: the words of lines by time, None to read
+    them.
+    """
+    if shown.clip is not None:
+        return ()
+    if conversation is not None:
+        named = len({side.name for side in conversation.sides}) == len(conversation.sides)
+        return tuple(
+            Caption(
+                c.start, c.end, f"{side_name(conversation, c.side)}: {c.text}" if named else c.text, c.side
+            )
+            for c in conversation_captions(conversation)
+        )
+    out: list[Caption] = []
+    for speech in shown.plan.track.speeches:
+        line = shown.project.lines.get(speech.line or "")
+        known = dict(lines or {})
+        if line is not None and lines is None:
+            known[str(speech.line)] = line_words(line, shown.folder or folder)
+        words = told_words(speech, known)
+        text = speech.text or (line.text if line is not None else "")
+        out += captions_of(words) if words else captions_of_text(speech, text)
+    return tuple(sorted(out, key=lambda c: c.start))

@@ -1,0 +1,190 @@
+"""What is noted on the timeline of what is on stage, edited: the range played again and again, markers,
+locked layers, cuts; and which marker is selected.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QObject, Signal
+
+from app.project.document import Document
+from app.stage.session import Session
+from metagraph.graph import timeline as notes
+from metagraph.graph.conversation import Conversation
+from metagraph.graph.model import Project
+from metagraph.graph.timeline import Cut, Lane, Marker, Shot, Timeline
+
+NEAR = 0.02  # seconds within which the playhead stands on a marker
+
+
+class TimelineEdits(QObject):
+    """changed: something else is noted, or another marker is selected. length: seconds of what is on stage.
+    marker: id of the selected one.
+    """
+
+    changed = Signal()
+
+    def __init__(
+        self, document: Document, session: Session, length: Callable[[], float], parent: QObject | None = None
+    ) -> None:
+        super().__init__(parent)
+        self.document, self.session, self._length = document, session, length
+        self.marker: str | None = None
+        document.changed.connect(self._edited)
+        document.loaded.connect(lambda: self.select(None))
+        session.onstage.performance_changed.connect(self._restaged)
+        session.onstage.conversation_changed.connect(self._restaged)
+
+    @property
+    def key(self) -> str:
+        """The id of what is on stage, by which its notes are kept."""
+        onstage = self.session.onstage
+        if onstage.mode == "manual":
+            return notes.IMPROVISED
+        return onstage.conversation or onstage.performance or notes.IMPROVISED
+
+    @property
+    def now(self) -> Timeline:
+        return notes.timeline_of(self.document.project, self.key)
+
+    def _edited(self, before: Project, after: Project) -> None:
+        if before.timelines is not after.timelines:
+            if self.marker is not None and self.selected is None:
+                self.marker = None
+            self.changed.emit()
+
+    def _restaged(self) -> None:
+        if self.session.onstage.requests or self.selected is None:
+            self.select(None)
+
+    def change(self, text: str, merge: str | None = None, **changes: object) -> None:
+        """Note something else; one step to undo."""
+        key = self.key
+        self.document.edit(text, lambda p: notes.change_timeline(p, key, **changes), merge)
+
+    # --- the range
+
+    @property
+    def range(self) -> tuple[float, float] | None:
+        """First and last second of what is played again and again; None for all."""
+        return self.now.range
+
+    def set_range(self, start: float, end: float) -> None:
+        """Play from `start` to `end`, whichever comes first, again and again; a slip of the hand is
+        nothing.
+        """
+        start, end = sorted((round(max(0.0, start), 3), round(max(0.0, end), 3)))
+        if end - start >= notes.SHORTEST_RANGE:
+            self.change("Set loop range", range=(start, end))
+
+    def set_in(self, at: float | None = None) -> None:
+        """Let the range begin at a time, by default the playhead."""
+        start = self.session.transport.seconds if at is None else at
+        end = self.range[1] if self.range is not None else self._length()
+        self.set_range(
+            start, end if end - start >= notes.SHORTEST_RANGE else max(self._length(), start + 1.0)
+        )
+
+    def set_out(self, at: float | None = None) -> None:
+        """Let the range end at a time, by default the playhead."""
+        end = self.session.transport.seconds if at is None else at
+        start = self.range[0] if self.range is not None else 0.0
+        self.set_range(start if end - start >= notes.SHORTEST_RANGE else 0.0, end)
+
+    def clear_range(self) -> None:
+        self.change("Clear loop range", range=None)
+
+    # --- markers
+
+    @property
+    def selected(self) -> Marker | None:
+        return next((m for m in self.now.markers if m.id == self.marker), None)
+
+    def select(self, ident: str | None) -> None:
+        """Select a marker, and no request with it; None for none."""
+        if ident is not None and self.session.onstage.requests:
+            self.session.onstage.select_requests(())
+        if ident != self.marker:
+            self.marker = ident
+            self.changed.emit()
+
+    def add_marker(self, at: float | None = None, name: str = "") -> str:
+        """Put a marker at a time, by default the playhead, and select it; return its id."""
+        made, key = "", self.key
+        seconds = self.session.transport.seconds if at is None else at
+
+        def edit(project: Project) -> Project:
+            nonlocal made
+            project, made = notes.add_marker(project, key, seconds, name)
+            return project
+
+        self.document.edit("Add marker", edit)
+        self.select(made)
+        return made
+
+    def move_marker(self, ident: str, at: float, merge: str | None = None) -> None:
+        key = self.key
+        self.document.edit(
+            "Move marker", lambda p: notes.change_marker(p, key, ident, at=round(max(0.0, at), 3)), merge
+        )
+
+    def rename_marker(self, ident: str, name: str) -> None:
+        key, words = self.key, " ".join(name.split())[:200]
+        self.document.edit("Rename marker", lambda p: notes.change_marker(p, key, ident, name=words))
+
+    def remove_marker(self, *idents: str) -> None:
+        """Take markers away; all where none is named."""
+        key, gone = self.key, idents or tuple(m.id for m in self.now.markers)
+        text = "Remove marker" if len(gone) == 1 else f"Remove {len(gone)} markers"
+        self.document.edit(text, lambda p: notes.remove_markers(p, key, gone))
+
+    def jump(self, step: int) -> None:
+        """Go to the next marker, or with -1 to the one before, and select it."""
+        at, markers = self.session.transport.seconds, self.now.markers
+        found = (
+            next((m for m in markers if m.at > at + NEAR), None)
+            if step > 0
+            else next((m for m in reversed(markers) if m.at < at - NEAR), None)
+        )
+        if found is not None:
+            self.session.transport.show_plan()
+            self.session.transport.seek(found.at)
+            self.select(found.id)
+
+    # --- layers and cameras
+
+    def lock(self, lane: Lane, on: bool) -> None:
+        """Let requests of a lane not be moved or taken back, or let them again."""
+        locked = tuple(
+            x for x in ("stage", "body", "arms", "head") if (on if x == lane else x in self.now.locked)
+        )
+        self.change(f"{'Lock' if on else 'Unlock'} layer", locked=locked)
+
+    def cut_to(self, shot: Shot, side: int, at: float) -> None:
+        """Cut to a picture at a time; the first cut of a conversation is made at its beginning, too."""
+        cuts = self.now.cuts
+        if not cuts and at > notes.SAME_CUT:
+            cuts = (Cut(at=0.0, shot="two"),)
+        self.set_cuts("Cut", notes.with_cut(cuts, Cut(at=round(max(0.0, at), 3), shot=shot, side=side)))
+
+    def move_cut(self, number: int, at: float) -> None:
+        cuts = list(self.now.cuts)
+        cuts[number] = Cut(at=round(at, 3), shot=cuts[number].shot, side=cuts[number].side)
+        self.set_cuts("Move cut", tuple(cuts))
+
+    def remove_cut(self, number: int) -> None:
+        """Take a cut away: the picture before it goes on."""
+        self.set_cuts("Remove cut", tuple(c for n, c in enumerate(self.now.cuts) if n != number))
+
+    def automatic(self, talk: Conversation) -> None:
+        """Cut by who speaks."""
+        from metagraph.speech.automatic_cuts import automatic_cuts
+
+        self.set_cuts("Automatic cuts", automatic_cuts(talk))
+
+    def set_cuts(self, text: str, cuts: tuple[Cut, ...]) -> None:
+        self.change(text, cuts=cuts)
+
+    def show_captions(self, on: bool) -> None:
+        self.change("Show captions" if on else "Hide captions", captions=on)

@@ -1,0 +1,146 @@
+"""A skeleton's joints as a figure seen from the front: clicked, or circled by a drag, to say which move."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+import numpy as np
+from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QHelpEvent, QMouseEvent, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QToolTip, QWidget
+
+from app.look.theme import theme
+from metagraph.motion.skeleton import Skeleton
+
+MARGIN, LEAST, MOST, NEAR = 18.0, 2.5, 6.0, 11.0  # pixels
+
+
+class JointFigure(QWidget):
+    """clicked: the joint that was clicked. circled: the joints within a drag's rectangle, and whether they
+    are to move: by the left button, or, with Alt or the right one, not.
+    """
+
+    clicked = Signal(str)
+    circled = Signal(object, bool)
+
+    def __init__(self, skeleton: Skeleton, look: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._skeleton, self._look = skeleton, theme(look)
+        self._seen = front(skeleton)
+        self._moving: frozenset[str] = frozenset()
+        self._under: int | None = None  # the joint under the pointer
+        self._from: QPointF | None = None  # where a drag began
+        self._to = QPointF()
+        self.setMouseTracking(True)
+        self.setAccessibleName("Joints as a figure")
+        self.setAccessibleDescription("For the mouse; the list beside it has the same joints.")
+
+    def sizeHint(self) -> QSize:
+        return QSize(300, 480)
+
+    def show_moving(self, joints: Collection[str]) -> None:
+        """Show which joints move."""
+        self._moving = frozenset(joints)
+        self.update()
+
+    def place_of(self, joint: str) -> QPointF:
+        """Return where a joint is drawn."""
+        return QPointF(*self._places()[self._skeleton.index(joint)])
+
+    def _places(self) -> np.ndarray:
+        """Return `[J, 2]` where joints are drawn, pixels."""
+        low, high = self._seen.min(0), self._seen.max(0)
+        span = np.maximum(high - low, 1e-6)
+        room = np.array([self.width(), self.height()]) - 2 * MARGIN
+        scale = float((room / span).min())
+        middle = np.array([self.width(), self.height()]) / 2
+        return (self._seen - (low + high) / 2) * [scale, -scale] + middle
+
+    def _joint_at(self, point: QPointF) -> int | None:
+        away = np.hypot(*(self._places() - [point.x(), point.y()]).T)
+        nearest = int(away.argmin())
+        return nearest if away[nearest] <= NEAR else None
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        places, skeleton, t = self._places(), self._skeleton, self._look
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        moving = [name in self._moving for name in skeleton.names]
+        strong, weak = t.fill("gesture"), QColor(t.line)
+        for on in (False, True):  # what moves is drawn over what does not
+            painter.setPen(
+                QPen(strong if on else weak, 5 if on else 3, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap)
+            )
+            for joint, parent in enumerate(skeleton.parents):
+                if parent >= 0 and moving[joint] is on:
+                    painter.drawLine(QPointF(*places[parent]), QPointF(*places[joint]))
+        for joint, radius in enumerate(self._radii(places)):
+            chosen = joint == self._under
+            painter.setPen(QPen(QColor(t.text), 2 if chosen else 1))
+            # Filled or hollow, so that no colour is needed to tell.
+            painter.setBrush(strong if moving[joint] else QColor(t.panel))
+            painter.drawEllipse(QPointF(*places[joint]), radius + 2 * chosen, radius + 2 * chosen)
+        if self._from is not None and (self._to - self._from).manhattanLength() > 4:
+            painter.setPen(QPen(QColor(t.text), 1, Qt.PenStyle.DashLine))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawRect(QRectF(self._from, self._to).normalized())
+        painter.end()
+
+    def _radii(self, places: np.ndarray) -> np.ndarray:
+        """Return how large joints are drawn: smaller where they are close together, as in hands."""
+        away = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1))
+        away[away < 1e-6] = np.inf  # the same place: one covers the other
+        return np.clip(away.min(1) / 2.5, LEAST, MOST)
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        self._from = self._to = event.position()
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        self._to = event.position()
+        self._under = self._joint_at(event.position()) if self._from is None else None
+        self.setCursor(
+            Qt.CursorShape.PointingHandCursor if self._under is not None else Qt.CursorShape.ArrowCursor
+        )
+        self.update()
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        if self._from is None:
+            return
+        begun, self._from = self._from, None
+        if (event.position() - begun).manhattanLength() <= 4:
+            joint = self._joint_at(event.position())
+            if joint is not None:
+                self.clicked.emit(self._skeleton.names[joint])
+        else:
+            area = QRectF(begun, event.position()).normalized()
+            inside = [
+                name
+                for name, at in zip(self._skeleton.names, self._places(), strict=True)
+                if area.contains(QPointF(*at))
+            ]
+            off = event.button() == Qt.MouseButton.RightButton or bool(
+                event.modifiers() & Qt.KeyboardModifier.AltModifier
+            )
+            self.circled.emit(tuple(inside), not off)
+        self.update()
+
+    def leaveEvent(self, event: QEvent) -> None:
+        self._under = None
+        self.update()
+
+    def event(self, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
+            joint = self._joint_at(QPointF(event.pos()))
+            QToolTip.showText(
+                event.globalPos(), self._skeleton.names[joint] if joint is not None else "", self
+            )
+            return True
+        return super().event(event)
+
+
+def front(skeleton: Skeleton) -> np.ndarray:
+    """Return `[J, 2]` where joints are, right and up, metres, of somebody in the rest pose who is looked at
+    from the front.
+    """
+    _, positions = skeleton.globals(skeleton.rest)
+    return np.asarray(positions[:, :2], float)

@@ -1,0 +1,111 @@
+"""Where cameras stand in a conversation: over a shoulder, close, or all who talk from three quarters.
+
+All stand on one side of the line between two who talk, so that who looks to the right does so in every
+picture (the rule of 180 degrees). Sizes and angles are the usual ones of filmed talk (over the shoulder from
+the chest up, close from the shoulders up, all from the knees up), in shares of a figure's height; the numbers
+are ours.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from preview.camera import Camera
+
+Array = NDArray[Any]
+Shot = Literal["over", "two", "close"]
+
+# Metres from the head of whose shoulder it is, for one of 1.75 m; how far beside it one looks past.
+BEHIND, BESIDE, ABOVE = 0.78, 0.21, 0.07
+USUAL = 1.75  # metres of the figure those are for
+OVER_FOV, CLOSE_FOV, TWO_FOV = math.radians(30.0), math.radians(22.0), math.radians(28.0)
+CLOSE_TURN = math.radians(24.0)  # by which a close camera stands beside the line of sight
+LOOKING = 0.03  # of the height, by which there is more room before a face than behind it
+TWO_TURN = math.radians(22.0)  # by which that of all stands beside the middle
+
+
+def camera_from(eye: ArrayLike, target: ArrayLike, fov: float) -> Camera:
+    """Return a camera at `eye [3]` that looks at `target [3]`."""
+    away = np.asarray(eye, float) - np.asarray(target, float)
+    distance = max(0.05, float(np.linalg.norm(away)))
+    x, y, z = np.asarray(target, float)
+    return Camera(
+        (float(x), float(y), float(z)),
+        math.atan2(away[0], away[2]),
+        math.asin(max(-1.0, min(1.0, away[1] / distance))),
+        distance,
+        fov,
+    )
+
+
+def camera_side(heads: Array) -> Array:
+    """Return the direction `[3]` from the line between those who talk to where the cameras are: level,
+    towards the viewer.
+    """
+    along = heads[-1] - heads[0]
+    if len(heads) > 2:  # in a circle: the two who stand farthest apart, to the viewer's left and right
+        along = heads[int(np.argmax(heads[:, 0]))] - heads[int(np.argmin(heads[:, 0]))]
+    beside = np.array([-along[2], 0.0, along[0]])
+    length = float(np.linalg.norm(beside))
+    if length < 1e-6:
+        return np.array([0.0, 0.0, 1.0])
+    beside /= length
+    return -beside if beside[2] < 0 or (beside[2] == 0 and beside[0] < 0) else beside
+
+
+def partner(heads: Array, side: int) -> int:
+    """Return over whose shoulder a side is seen: of several, who stands most opposite."""
+    others = [n for n in range(len(heads)) if n != side]
+    return max(others, key=lambda n: float(np.linalg.norm((heads[n] - heads[side])[[0, 2]])), default=side)
+
+
+def shot_camera(
+    shot: Shot, side: int, heads: Array, heights: Sequence[float], bounds: tuple[Array, Array], aspect: float
+) -> Camera:
+    """Return the camera of a shot. side: who is seen. heads: middles of the heads `[N, 3]`, metres. heights:
+    of the figures. bounds: lowest and highest corner of all of them. aspect: width by height.
+    """
+    side = min(side, len(heads) - 1)
+    if shot == "two" or len(heads) < 2:
+        return _all(heads, heights, bounds, aspect)
+    beside, other = camera_side(heads), partner(heads, side)
+    sight = heads[other] - heads[side]
+    sight[1] = 0.0
+    sight /= max(1e-6, float(np.linalg.norm(sight)))
+    across = np.array([-sight[2], 0.0, sight[0]])  # level, across the line of sight, on the cameras' side
+    across = -across if float(across @ beside) < 0 else across
+    if shot == "close":
+        angle = CLOSE_TURN if float(np.cross(sight, beside)[1]) > 0 else -CLOSE_TURN
+        turned = np.array(
+            [
+                sight[0] * math.cos(angle) + sight[2] * math.sin(angle),
+                0.0,
+                sight[2] * math.cos(angle) - sight[0] * math.sin(angle),
+            ]
+        )
+        height = heights[side]
+        target = heads[side] + height * (LOOKING * sight - np.array([0.0, 0.045, 0.0]))
+        tall = 0.34 * height * max(1.0, 1.0 / aspect)
+        return camera_from(
+            target + turned * (tall / 2 / math.tan(CLOSE_FOV / 2)) + (0, 0.02 * height, 0), target, CLOSE_FOV
+        )
+    scale = heights[other] / USUAL
+    apart = max(0.3, float(np.linalg.norm((heads[other] - heads[side])[[0, 2]])))
+    aside = BESIDE * (apart + BEHIND * scale) / apart  # so that the line to the face passes the head
+    eye = heads[other] + scale * (BEHIND * sight + aside * across + np.array([0.0, ABOVE, 0.0]))
+    target = heads[side] + 0.10 * scale * (across * 0.3 - np.array([0.0, 0.9, 0.0]))
+    return camera_from(eye, target, OVER_FOV * max(1.0, min(1.6, 1.5 / aspect)))
+
+
+def _all(heads: Array, heights: Sequence[float], bounds: tuple[Array, Array], aspect: float) -> Camera:
+    """Return the camera that sees all who talk from the knees up, from three quarters."""
+    beside = camera_side(heads)
+    camera = Camera(fov=TWO_FOV).facing(math.atan2(beside[0], beside[2]) - TWO_TURN, math.radians(4.0))
+    low, high = np.array(bounds[0], float), np.array(bounds[1], float)
+    low[1] = max(low[1], float(heads[:, 1].min()) - 0.62 * float(max(heights)))
+    return camera.frame((low, high), aspect, 1.12)

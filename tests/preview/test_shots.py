@@ -1,0 +1,60 @@
+"""Cameras of a conversation: all on one side of the line, who is meant in the picture, nobody in the way."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from preview.shots import camera_from, camera_side, shot_camera
+
+HEADS = np.array([[-0.65, 1.6, 0.0], [0.65, 1.7, 0.0]])
+BOUNDS = (np.array([-1.0, 0.0, -0.4]), np.array([1.0, 1.85, 0.4]))
+CIRCLE = np.array([[-0.9, 1.6, 0.0], [0.9, 1.6, 0.0], [0.0, 1.6, -1.2]])
+
+
+def seen(shot, side, heads=HEADS, aspect=16 / 9):
+    camera = shot_camera(shot, side, heads, [1.7, 1.8, 1.6][: len(heads)], BOUNDS, aspect)
+    return camera, camera.project(heads, aspect)
+
+
+@pytest.mark.parametrize("aspect", [16 / 9, 1.0, 9 / 16])
+@pytest.mark.parametrize(
+    "heads", [HEADS, HEADS @ np.diag([-1, 1, 1]), CIRCLE], ids=["two", "swapped", "three"]
+)
+def test_who_is_meant_is_in_the_picture_and_all_cameras_stand_on_one_side(heads, aspect):
+    beside, middle = camera_side(heads), heads[:2].mean(0)
+    for shot in ("over", "close", "two"):
+        for side in range(len(heads)):
+            camera, at = seen(shot, side, heads, aspect)
+            shown = at if shot == "two" else at[[side]]
+            assert ((shown > 0.04) & (shown < 0.96)).all()
+            if len(heads) == 2:
+                assert (camera.eye - middle) @ beside > 0
+
+
+def test_over_a_shoulder_the_other_is_nearer_and_to_the_side_of_the_face():
+    for heads, side, other in ((HEADS, 0, 1), (HEADS, 1, 0), (CIRCLE, 0, 1), (CIRCLE, 1, 0), (CIRCLE, 2, 0)):
+        camera, at = seen("over", side, heads)
+        away = np.linalg.norm(heads - camera.eye, axis=1)
+        assert away[other] < 1.0 < away[side]
+        assert abs(at[other, 0] - at[side, 0]) > 0.2, "the one does not hide the other"
+
+
+def test_who_looks_to_the_right_does_so_in_every_picture():
+    """The left one's partner is to the right of it, whatever is seen."""
+    for shot in ("over", "two"):
+        for side in (0, 1):
+            _, at = seen(shot, side)
+            assert at[0, 0] < at[1, 0]
+    close, _ = seen("close", 0)
+    assert close.axes[0] @ (HEADS[1] - HEADS[0]) > 0
+
+
+def test_a_camera_is_where_it_was_put():
+    camera = camera_from((1.0, 2.0, 3.0), (0.5, 1.0, -1.0), 0.5)
+    assert camera.eye == pytest.approx([1.0, 2.0, 3.0]) and camera.target == (0.5, 1.0, -1.0)
+
+
+def test_one_alone_is_seen_whole():
+    camera, at = seen("over", 3, HEADS[:1])
+    assert ((at > 0) & (at < 1)).all() and camera.distance > 1

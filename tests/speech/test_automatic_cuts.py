@@ -1,0 +1,67 @@
+"""Cuts that follow who speaks: never too short, never to who is silent, no cut to what is seen anyway."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from metagraph.graph.conversation import Conversation, Segment, Side
+from metagraph.graph.timeline import Cut, with_cut
+from metagraph.speech import automatic_cuts as c
+
+
+def talk(*sides, length=40.0):
+    made = tuple(
+        Side(name=str(n), segments=tuple(Segment(k, a, b) for k, a, b in s)) for n, s in enumerate(sides)
+    )
+    return Conversation(name="x", length=length, sides=made)
+
+
+def test_it_begins_with_all_and_cuts_to_who_speaks_a_little_early():
+    some = talk([("clause", 3.0, 7.0)], [("clause", 8.0, 12.0)], length=13.0)
+    assert [(x.at, x.shot, x.side) for x in c.automatic_cuts(some)] == [
+        (0.0, "two", 0), (2.88, "over", 0), (7.88, "over", 1),
+    ]  # fmt: skip
+
+
+def test_an_answer_in_passing_is_no_cut():
+    some = talk(
+        [("clause", 3.0, 6.0), ("clause", 6.5, 9.0)],
+        [("response", 5.0, 5.5), ("clause", 7.0, 7.6)],
+        length=10.0,
+    )
+    assert [x.side for x in c.automatic_cuts(some)] == [0, 0]
+
+
+def test_who_speaks_long_is_seen_closer_and_a_long_silence_shows_all():
+    some = talk([("clause", 3.0 + 2 * n, 4.9 + 2 * n) for n in range(8)], [], length=40.0)
+    assert [x.shot for x in c.automatic_cuts(some)] == ["two", "over", "close", "over", "two"]
+
+
+@given(st.lists(st.tuples(st.integers(0, 2), st.floats(0.1, 6), st.floats(0.1, 5)), max_size=25))
+def test_no_picture_is_shorter_than_one_can_see(drawn):
+    sides, at = [[], [], []], 0.0
+    for side, pause, length in drawn:
+        start = at + pause / 2
+        if not sides[side] or sides[side][-1][2] <= start:
+            sides[side].append(("clause", start, start + length))
+        at = start + length * 0.8
+    cuts = c.automatic_cuts(talk(*sides, length=at + 10))
+    assert cuts[0] == Cut(at=0.0, shot="two")
+    assert all(y.at - x.at >= c.SHORTEST - 0.011 for x, y in pairwise(cuts))
+    assert all((x.shot, x.side) != (y.shot, y.side) for x, y in pairwise(cuts))
+
+
+def test_the_cut_of_a_time_lasts_until_the_next():
+    cuts = (Cut(at=1.0, shot="two"), Cut(at=4.0, shot="close", side=1))
+    assert c.cut_at(cuts, 0.5) is None and c.cut_at(cuts, 1.0) == (cuts[0], 4.0)
+    assert c.cut_at(cuts, 9.0) == (cuts[1], float("inf"))
+
+
+def test_a_cut_replaces_one_at_its_time_and_says_nothing_twice():
+    cuts = (Cut(at=0.0, shot="two"), Cut(at=4.0, shot="over"))
+    assert with_cut(cuts, Cut(at=4.03, shot="close")) == (cuts[0], Cut(at=4.03, shot="close"))
+    assert with_cut(cuts, Cut(at=2.0, shot="two")) == cuts
+    assert with_cut(cuts, Cut(at=2.0, shot="over")) == (cuts[0], Cut(at=2.0, shot="over"))
