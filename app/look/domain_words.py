@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.translation import tr
+from app.translation import tr, tr_noop
 
 KIND_TITLES = {
     "stance": tr("Stance"),
@@ -35,3 +35,13 @@ COLOR_LABELS = {
     "blue": tr("Blue label"),
     "purple": tr("Purple label"),
 }
+
+# What stands in sentences and lists as the domain writes it: whoever shows one says `tr(word)`.
+WORDS = (
+    *(tr_noop("body"), tr_noop("arms"), tr_noop("head")),
+    *(tr_noop("stance"), tr_noop("gesture"), tr_noop("fidget"), tr_noop("transition")),
+    *(tr_noop("left"), tr_noop("right"), tr_noop("both")),
+    *(tr_noop("preparation"), tr_noop("stroke"), tr_noop("hold"), tr_noop("retraction")),
+    *(tr_noop("positive"), tr_noop("negative"), tr_noop("Positive"), tr_noop("Negative")),
+    *(tr_noop("idle"), tr_noop("listening"), tr_noop("talking")),
+)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
+from app.translation import tr
 from app.widgets.one_dialog import show_one
 
 
@@ -23,9 +24,9 @@ def contribute(shell: Shell) -> Contribution:
                 "generate_motion",
                 "&Motion",
                 "make",
-                "&Generate…",
+                tr("&Generate…"),
                 show,
-                tip="Learn from takes how people move when they talk, and let characters move so",
+                tip=tr("Learn from takes how people move when they talk, and let characters move so"),
             ),
         ),
     )

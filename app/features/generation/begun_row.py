@@ -8,6 +8,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QWidget
 
 from app.features.generation.training_run import left_of
+from app.translation import tr
 from app.widgets.quiet_fields import ComboBox
 from metagraph.generation.standing import Standing
 
@@ -25,14 +26,14 @@ class BegunRow(QWidget):
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         self.which = ComboBox(self)
-        self.which.setAccessibleName("Training begun before")
+        self.which.setAccessibleName(tr("Training begun before"))
         self.which.setMinimumContentsLength(16)
         self.which.currentIndexChanged.connect(self._offer)
-        self.go = QPushButton("Go on", self, autoDefault=False)
+        self.go = QPushButton(tr("Go on"), self, autoDefault=False)
         self.go.clicked.connect(lambda: self.resumed.emit(self.which.currentData()))
-        self.keep = QPushButton("Keep as it is", self, autoDefault=False)
+        self.keep = QPushButton(tr("Keep as it is"), self, autoDefault=False)
         self.keep.clicked.connect(lambda: self.kept.emit(self.which.currentData()))
-        row.addWidget(QLabel("Begun before", self))
+        row.addWidget(QLabel(tr("Begun before"), self))
         row.addWidget(self.which, 1)
         row.addWidget(self.go)
         row.addWidget(self.keep)
@@ -58,11 +59,11 @@ class BegunRow(QWidget):
             return
         over = one.share >= 1
         self.go.setToolTip(
-            "For as many minutes more as are set above"
+            tr("For as many minutes more as are set above")
             if over
-            else "From its last checkpoint, for the time that was set when it was begun"
+            else tr("From its last checkpoint, for the time that was set when it was begun")
         )
-        self.keep.setToolTip("Make a model of what was learned until the last checkpoint")
+        self.keep.setToolTip(tr("Make a model of what was learned until the last checkpoint"))
         self.keep.setVisible(not one.kept)
         self.keep.setEnabled(one.step > 0)
 

@@ -13,6 +13,7 @@ from app.features.generation.use_page import UsePage
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.session import Session
+from app.translation import tr
 from metagraph.graph.model import Project
 
 
@@ -25,17 +26,17 @@ class GenerationDialog(QDialog):
         super().__init__(parent)
         self.document = document
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle("Generate motion")
+        self.setWindowTitle(tr("Generate motion"))
         self.resize(1120, 680)
         self.use = UsePage(document, session, jobs, self)
         self.learn = LearnPage(document, session, jobs, begin, self)
         self.tabs = QTabWidget(self)
-        self.tabs.setAccessibleName("Generate or learn")
-        self.tabs.addTab(self.use, "Generate")
-        self.tabs.addTab(self.learn, "Learn from takes")
+        self.tabs.setAccessibleName(tr("Generate or learn"))
+        self.tabs.addTab(self.use, tr("Generate"))
+        self.tabs.addTab(self.learn, tr("Learn from takes"))
         self.said = QLabel(self, wordWrap=True)
         self.said.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        close = QPushButton("Close", self, autoDefault=False)
+        close = QPushButton(tr("Close"), self, autoDefault=False)
         close.clicked.connect(self.close)
         foot = QHBoxLayout()
         foot.addWidget(self.said, 1)
@@ -72,7 +73,10 @@ class GenerationDialog(QDialog):
         cut = self.learn.begun.cut_short()
         if cut:
             for page in (self.use, self.learn):
-                self._say(page, f"The training of '{cut}' is not over: go on with it under Learn from takes.")
+                self._say(
+                    page,
+                    tr("The training of '{cut}' is not over: go on with it under Learn from takes.", cut=cut),
+                )
 
     def _follow(self, before: Project, after: Project) -> None:
         if (

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from app.look.plural import many
 from app.project.new_clips import Loaded, pieces, save
+from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.graph import edits
 from metagraph.graph.conversation_edits import change_side
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 KINDS = {"matching": "Matching", "flow-vae": "Flow-VAE", "moglow": "MoGlow", "cvae": "CVAE"}
 FOLDER = "generated"  # beside the project file, where new clips are kept
 LEAST, MOST = 1.0, 8.0  # seconds of clips cut from takes
-UNCUT = "Make more minutes, lower Chance, or train longer."
+UNCUT = tr("Make more minutes, lower Chance, or train longer.")
 Progress = Callable[[int, int], None]
 Cancelled = Callable[[], bool]
 
@@ -95,7 +96,7 @@ def list_takes(
         name = take.source.name
         told = [left for n in (*take.notes, *batch.notes) if (left := _without_name(n, name)) != n]
         wordless = any("no words" in n for n in told)
-        heard = "by loudness" if wordless else "words"
+        heard = tr("by loudness") if wordless else tr("words")
         rows.append(TakeRow(name, take.seconds, heard, " ".join(dict.fromkeys(told))))
     rows += [
         TakeRow(_file_of(w), wrong=_without_name(w, _file_of(w)), bad=True)
@@ -153,7 +154,7 @@ def side_motion(
     from metagraph.generation.performing import side_clip
 
     talk = project.conversations[ident]
-    name = f"{talk.name} {talk.sides[side].name or side + 1} by {named}"
+    name = tr("{talk} {side} by {model}", talk=talk.name, side=talk.sides[side].name or side + 1, model=named)
     clip, notes = side_clip(model, project, ident, side, folder, chance, name, progress, cancelled)
     if cancelled():
         raise CancelledError
@@ -261,11 +262,26 @@ def first_stance(project: Project) -> str | None:
 
 def about(card: ModelCard, project: Project) -> str:
     """Return what a model is, in words: its kind, what it learned from, whose figure it moves."""
-    hours = f"{60 * card.hours:.0f} minutes" if card.hours < 1 else f"{card.hours:.1f} hours"
-    learned = f"{hours} of {many(len(card.takes), 'take')}" if card.takes else "nothing"
+    hours = (
+        tr("{minutes:.0f} minutes", minutes=60 * card.hours)
+        if card.hours < 1
+        else tr("{hours:.1f} hours", hours=card.hours)
+    )
+    learned = (
+        tr("{hours} of {takes}", hours=hours, takes=many(len(card.takes), "take"))
+        if card.takes
+        else tr("nothing")
+    )
     own = project.skeleton is not None and card.skeleton.fingerprint == project.skeleton.fingerprint
-    fits = "this project's figure" if own else "another figure: its motion is retargeted"
+    fits = tr("this project's figure") if own else tr("another figure: its motion is retargeted")
     licences = sorted({t.licence for t in card.takes if t.licence and not t.licence.startswith("no licence")})
-    told = f" Takes under {'; '.join(licences)[:160].rstrip('. ')}." if licences else ""
+    told = tr(" Takes under {licences}.", licences="; ".join(licences)[:160].rstrip(". ")) if licences else ""
     kind = KINDS.get(card.kind, card.kind)
-    return f"{kind}, learned from {learned}, {many(card.steps, 'step')}; made for {fits}.{told}"
+    return tr(
+        "{kind}, learned from {learned}, {steps}; made for {fits}.{told}",
+        kind=kind,
+        learned=learned,
+        steps=many(card.steps, "step"),
+        fits=fits,
+        told=told,
+    )

@@ -43,6 +43,7 @@ from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, SpinBox
 from metagraph.generation.standing import Standing, busy
@@ -50,13 +51,13 @@ from metagraph.generation.stored import SUFFIX
 from metagraph.generation.train_plan import PLAN, folder_of, read_takes
 
 TIPS = (
-    ("matching", "Follows the speech best for the time it takes: 15 minutes are a beginning"),
-    ("flow-vae", "As in the paper: a code of poses and a flow over it; needs longer"),
-    ("moglow", "The paper's comparison: a flow over the poses themselves"),
-    ("cvae", "The paper's other comparison: moves little"),
+    ("matching", tr("Follows the speech best for the time it takes: 15 minutes are a beginning")),
+    ("flow-vae", tr("As in the paper: a code of poses and a flow over it; needs longer")),
+    ("moglow", tr("The paper's comparison: a flow over the poses themselves")),
+    ("cvae", tr("The paper's other comparison: moves little")),
 )
-SIZES = (("small", "small, for this machine"), ("paper", "as in the paper, for a graphics card"))
-HEADS = ("Take", "Length", "Speech", "What to know")
+SIZES = (("small", tr("small, for this machine")), ("paper", tr("as in the paper, for a graphics card")))
+HEADS = (tr("Take"), tr("Length"), tr("Speech"), tr("What to know"))
 
 
 def missing() -> str | None:
@@ -93,13 +94,13 @@ class LearnPage(Page):
     def _left(self) -> QVBoxLayout:
         box = QVBoxLayout()
         box.setSpacing(6)
-        self.title = self.heading("Takes")
+        self.title = self.heading(tr("Takes"))
         box.addWidget(self.title)
         row = QHBoxLayout()
         self.add = self.button(
-            "Add folder…", "Clips with sound beside them: talk.bvh and talk.wav", self.choose_folder
+            tr("Add folder…"), tr("Clips with sound beside them: talk.bvh and talk.wav"), self.choose_folder
         )
-        self.clear = self.button("Clear", "Forget the folders", self.forget)
+        self.clear = self.button(tr("Clear"), tr("Forget the folders"), self.forget)
         row.addWidget(self.add)
         row.addWidget(self.clear)
         row.addStretch(1)
@@ -107,7 +108,7 @@ class LearnPage(Page):
         self.table = QTableWidget(0, len(HEADS), self)
         self.table.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
         self.table.setHorizontalHeaderLabels(list(HEADS))
-        self.table.setAccessibleName("Takes to learn from")
+        self.table.setAccessibleName(tr("Takes to learn from"))
         self.table.verticalHeader().hide()
         self.table.setShowGrid(False)
         self.table.setWordWrap(False)
@@ -130,10 +131,10 @@ class LearnPage(Page):
     def _right(self) -> QVBoxLayout:
         box = QVBoxLayout()
         box.setSpacing(6)
-        box.addWidget(self.heading("Model"))
+        box.addWidget(self.heading(tr("Model")))
         self.kind, self.how_large = ComboBox(self), ComboBox(self)
-        self.kind.setAccessibleName("Kind of model")
-        self.how_large.setAccessibleName("Size")
+        self.kind.setAccessibleName(tr("Kind of model"))
+        self.how_large.setAccessibleName(tr("Size"))
         for n, (kind, tip) in enumerate(TIPS):
             self.kind.addItem(KINDS[kind], kind)
             self.kind.setItemData(n, tip, Qt.ItemDataRole.ToolTipRole)
@@ -141,20 +142,26 @@ class LearnPage(Page):
             self.how_large.addItem(words, size)
         self.minutes = SpinBox(self, minimum=1, maximum=10000, value=15)
         self.minutes.setSuffix(" min")
-        self.minutes.setAccessibleName("Minutes")
-        self.name = QLineEdit("new model", self)
-        self.name.setAccessibleName("Name of the model")
+        self.minutes.setAccessibleName(tr("Minutes"))
+        self.name = QLineEdit(tr("new model"), self)
+        self.name.setAccessibleName(tr("Name of the model"))
         row = QHBoxLayout()
-        for words, field in (("Kind", self.kind), ("Size", self.how_large), ("for", self.minutes)):
+        for words, field in (
+            (tr("Kind"), self.kind),
+            (tr("Size"), self.how_large),
+            (tr("for"), self.minutes),
+        ):
             row.addWidget(QLabel(words, self))
             row.addWidget(field)
         row.addStretch(1)
         box.addLayout(row)
         row = QHBoxLayout()
-        self.train = self.button("Train", "In a process of its own, beside your work", self.start)
+        self.train = self.button(tr("Train"), tr("In a process of its own, beside your work"), self.start)
         strengthen(self.train)
-        self.stop = self.button("Stop and keep", "End now, and keep what was learned so far", self.end)
-        row.addWidget(QLabel("Name", self))
+        self.stop = self.button(
+            tr("Stop and keep"), tr("End now, and keep what was learned so far"), self.end
+        )
+        row.addWidget(QLabel(tr("Name"), self))
         row.addWidget(self.name, 1)
         row.addWidget(self.train)
         row.addWidget(self.stop)
@@ -186,7 +193,7 @@ class LearnPage(Page):
 
     def choose_folder(self) -> None:
         start = str(self.folders[-1] if self.folders else self.document.folder or Path.home())
-        name = QFileDialog.getExistingDirectory(self, "A folder of takes", start)
+        name = QFileDialog.getExistingDirectory(self, tr("A folder of takes"), start)
         if name:
             self.look_through([*self.folders, Path(name)])
 
@@ -200,9 +207,9 @@ class LearnPage(Page):
             return
         self.folders = list(dict.fromkeys(folders))
         project, chosen = self.document.project, list(self.folders)
-        self.said.emit("Reading takes…")
+        self.said.emit(tr("Reading takes…"))
         job = self.jobs.start(
-            "Reading takes",
+            tr("Reading takes"),
             lambda job: list_takes(chosen, project, job.tell, lambda: job.cancelled),
             self._listed,
             self._failed,
@@ -213,7 +220,7 @@ class LearnPage(Page):
         self._enable()
 
     def _tell_reading(self, done: int, total: int, _: str) -> None:
-        self.said.emit(f"Reading takes: {done} of {total}")
+        self.said.emit(tr("Reading takes: {done} of {total}", done=done, total=total))
 
     def _read(self) -> None:
         self._job = None
@@ -224,17 +231,25 @@ class LearnPage(Page):
         rows = sorted(listing.rows, key=lambda r: not r.bad)
         self.table.setRowCount(len(rows))
         for n, take in enumerate(rows):
-            length = f"{take.seconds:.0f} s" if not take.bad else "left out"
+            length = f"{take.seconds:.0f} s" if not take.bad else tr("left out")
             for column, text in enumerate((take.name, length, take.heard, take.wrong)):
                 item = QTableWidgetItem(text)
                 item.setToolTip(text)
                 self.table.setItem(n, column, item)
         self.table.setColumnWidth(0, min(220, self.table.columnWidth(0)))
         good, bad = sum(not r.bad for r in rows), sum(r.bad for r in rows)
-        self.title.setText(f"Takes · {good}, {listing.seconds / 60:.1f} min" if rows else "Takes")
-        left = f" {many(bad, 'clip')} left out: the first rows say why." if bad else ""
-        short = " That is little: an hour or more is better." if good and listing.seconds < 1800 else ""
-        self.said.emit(f"{many(good, 'take')} can be learned from.{left}{short}" if rows else "")
+        self.title.setText(
+            tr("Takes · {good}, {minutes:.1f} min", good=good, minutes=listing.seconds / 60)
+            if rows
+            else tr("Takes")
+        )
+        left = tr(" {bad} left out: the first rows say why.", bad=many(bad, "clip")) if bad else ""
+        short = tr(" That is little: an hour or more is better.") if good and listing.seconds < 1800 else ""
+        self.said.emit(
+            tr("{good} can be learned from.{left}{short}", good=many(good, "take"), left=left, short=short)
+            if rows
+            else ""
+        )
         self._show_note()
         self._enable()
 
@@ -243,13 +258,13 @@ class LearnPage(Page):
         rows = {i.row() for i in self.table.selectedItems()}
         item = self.table.item(min(rows), 3) if rows else None
         if item is None:
-            empty = (
+            empty = tr(
                 "Each clip needs its sound beside it, under the same name: talk.bvh and talk.wav, its own "
+                "voice in the first channel, the partner's in the second. Words (ELAN, TextGrid …) help."
             )
-            empty += "voice in the first channel, the partner's in the second. Words (ELAN, TextGrid …) help."
             self.note.setText("" if self.table.rowCount() else empty)
             return
-        self.note.setText(item.text() or "Nothing is wrong with it.")
+        self.note.setText(item.text() or tr("Nothing is wrong with it."))
 
     # --- training
 
@@ -279,20 +294,30 @@ class LearnPage(Page):
 
         folder = self.document.folder
         if folder is None:
-            self.said.emit("Save the project first: the model is kept as a file beside it.")
+            self.said.emit(tr("Save the project first: the model is kept as a file beside it."))
             return
         if self.listing.batch is None or self.run is not None or self._job is not None:
             return
-        name = self.name.text().strip().strip(".") or "new model"
+        name = self.name.text().strip().strip(".") or tr("new model")
         if any(c in name for c in '/\\:*?"<>|'):
-            self.said.emit("The model's name is a file's name: leave out / \\ : * ? \" < > |.")
+            self.said.emit(tr("The model's name is a file's name: leave out / \\ : * ? \" < > |."))
             return
         out = folder / FOLDER / f"{name}{SUFFIX}"
         if out.exists():
-            self.said.emit(f"There is a model '{name}' already: choose another name, so that it is not lost.")
+            self.said.emit(
+                tr(
+                    "There is a model '{name}' already: choose another name, so that it is not lost.",
+                    name=name,
+                )
+            )
             return
         if (folder_of(out) / PLAN).exists():
-            self.said.emit(f"A training of '{name}' was begun before: go on with it, or choose another name.")
+            self.said.emit(
+                tr(
+                    "A training of '{name}' was begun before: go on with it, or choose another name.",
+                    name=name,
+                )
+            )
             return
         wish = {
             "kind": self.kind.currentData(),
@@ -313,7 +338,12 @@ class LearnPage(Page):
             return
         folder, minutes = folder_of(standing.out), float(self.minutes.value())
         if busy(folder):
-            self.said.emit(f"'{standing.out.stem}' is being trained by another process, which comes first.")
+            self.said.emit(
+                tr(
+                    "'{model}' is being trained by another process, which comes first.",
+                    model=standing.out.stem,
+                )
+            )
             return
 
         def work(hear: Hear) -> tuple[Process, Any, Any]:
@@ -326,10 +356,10 @@ class LearnPage(Page):
     def _prepare(self, work: Callable[[Hear], tuple[Process, Any, Any]]) -> None:
         """Do what a training needs on a job's thread, and follow the process that comes of it."""
         said: deque[Any] = deque()
-        self.said.emit("Preparing…")
+        self.said.emit(tr("Preparing…"))
         self.plots.clear()
         job = self.jobs.start(
-            "Preparing the training",
+            tr("Preparing the training"),
             lambda _: work(said.append),
             lambda made: self._started(said, *made),
             self._failed,
@@ -348,7 +378,7 @@ class LearnPage(Page):
         self.progress.setValue(0)
         self.stands.setText("")
         self.progress.show()
-        self.said.emit("Training in a process of its own: go on working meanwhile.")
+        self.said.emit(tr("Training in a process of its own: go on working meanwhile."))
         self.preview.begin(rig, takes)
         self.fill()
 
@@ -364,7 +394,7 @@ class LearnPage(Page):
         if event.landmarks:
             self.preview.show_sample(event.landmarks)
         if event.event == "finish":
-            self.said.emit("The model is being measured and written…")
+            self.said.emit(tr("The model is being measured and written…"))
         if event.event == "note" and event.text:
             self.said.emit(event.text)
 
@@ -372,16 +402,22 @@ class LearnPage(Page):
         """Stop soon, and keep the model as it is."""
         if self.run is not None:
             self.run.stop()
-            self.said.emit("Stopping: the model is being written…")
+            self.said.emit(tr("Stopping: the model is being written…"))
             self._enable()
 
     def _ended(self, model: Path | None, error: str) -> None:
         self.run = None
         self.progress.hide()
         if model is None:
-            self.said.emit(error or "The training ended without a model.")
+            self.said.emit(error or tr("The training ended without a model."))
         else:
-            self.said.emit(f"The model '{model.stem}' is kept in {model.parent.name}. Use it under Generate.")
+            self.said.emit(
+                tr(
+                    "The model '{model}' is kept in {folder}. Use it under Generate.",
+                    model=model.stem,
+                    folder=model.parent.name,
+                )
+            )
             self.trained.emit(model)
         self.fill()
 

@@ -7,6 +7,8 @@ from collections.abc import Callable
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QWidget
 
+from app.translation import tr
+
 
 class Page(QWidget):
     """said: words for the foot of the window."""
@@ -31,7 +33,7 @@ class Page(QWidget):
             if words:
                 label = QLabel(words, self)
                 if n == 0:  # what rows begin with stands below each other
-                    label.setFixedWidth(label.fontMetrics().horizontalAdvance("Model") + 4)
+                    label.setFixedWidth(label.fontMetrics().horizontalAdvance(tr("Model")) + 4)
                 row.addWidget(label)
             row.addWidget(field)
             row.addSpacing(6)

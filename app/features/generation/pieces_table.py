@@ -14,17 +14,18 @@ from PySide6.QtWidgets import QHBoxLayout, QHeaderView, QTableWidget, QTableWidg
 from app.features.generation.generation_jobs import Piece
 from app.features.generation.sample_preview import FigurePreview
 from app.project.document import Document
+from app.translation import tr
 from app.widgets.quiet_fields import ComboBox
 from metagraph.generation.landmarks import landmarks_of
 from metagraph.generation.networks import FPS
 from metagraph.generation.poses import poses_of
 from metagraph.graph.model import Kind, Limb
 
-HEADS = ("Piece", "Length", "Taken for", "Sure", "Arm")
+HEADS = (tr("Piece"), tr("Length"), tr("Taken for"), tr("Sure"), tr("Arm"))
 KIND, SURE, LIMB = 2, 3, 4  # columns
 KINDS: tuple[Kind, ...] = ("gesture", "fidget")
 LIMBS: tuple[Limb, ...] = ("both", "left", "right")
-EMPTY = "What is made and cut stands here, to be looked at before it is dropped."
+EMPTY = tr("What is made and cut stands here, to be looked at before it is dropped.")
 
 
 class PiecesTable(QTableWidget):
@@ -34,7 +35,7 @@ class PiecesTable(QTableWidget):
         super().__init__(0, len(HEADS), parent)
         self.pieces: list[Piece] = []
         self.setHorizontalHeaderLabels(list(HEADS))
-        self.setAccessibleName("Pieces")
+        self.setAccessibleName(tr("Pieces"))
         self.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
         self.verticalHeader().hide()
         self.setShowGrid(False)
@@ -81,8 +82,8 @@ class PiecesTable(QTableWidget):
             self.setItem(n, 0, name)
             self.setItem(n, 1, QTableWidgetItem(f"{piece.clip.duration:.1f} s"))
             self.setItem(n, SURE, QTableWidgetItem(f"{100 * piece.sure:.0f} %" if piece.sure > 0 else ""))
-            self._offer(n, KIND, KINDS, piece.kind, f"What {piece.clip.name} is taken for")
-            self._offer(n, LIMB, LIMBS, piece.limb, f"Which arm {piece.clip.name} takes")
+            self._offer(n, KIND, KINDS, piece.kind, tr("What {name} is taken for", name=piece.clip.name))
+            self._offer(n, LIMB, LIMBS, piece.limb, tr("Which arm {name} takes", name=piece.clip.name))
         self.blockSignals(False)
         self.viewport().update()
         if pieces:
@@ -95,8 +96,8 @@ class PiecesTable(QTableWidget):
         box = ComboBox(self)
         box.setAccessibleName(name)
         box.setFrame(False)
-        box.addItems(list(values))
-        box.setCurrentText(now)
+        box.addItems([tr(value) for value in values])
+        box.setCurrentIndex(values.index(now))
         box.currentIndexChanged.connect(lambda _: self._labelled(row))
         self.setCellWidget(row, column, box)
 
@@ -134,8 +135,8 @@ class PiecesView(QWidget):
         super().__init__(parent)
         self.document = document
         self.table = PiecesTable(self)
-        self.preview = FigurePreview(("",), "A piece that is selected moves here.", FPS, self)
-        self.preview.setAccessibleName("How the selected piece moves")
+        self.preview = FigurePreview(("",), tr("A piece that is selected moves here."), FPS, self)
+        self.preview.setAccessibleName(tr("How the selected piece moves"))
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.addWidget(self.table, 3)

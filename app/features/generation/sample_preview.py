@@ -12,6 +12,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, QTimer
 from PySide6.QtGui import QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
+from app.translation import tr
 from metagraph.generation.landmarks import LANDMARKS, landmarks_of
 from metagraph.generation.poses import PoseRig
 from metagraph.generation.takes import Take
@@ -97,9 +98,9 @@ class SamplePreview(FigurePreview):
     """The take on the left, the model on the right; words alone before there is anything."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
-        empty = "While a model learns, a take moves here, and beside it somebody as the model would."
-        super().__init__(("as recorded", "as the model moves by now"), empty, RATE, parent)
-        self.setAccessibleName("A take, and how the model moves by now")
+        empty = tr("While a model learns, a take moves here, and beside it somebody as the model would.")
+        super().__init__((tr("as recorded"), tr("as the model moves by now")), empty, RATE, parent)
+        self.setAccessibleName(tr("A take, and how the model moves by now"))
 
     def begin(self, rig: PoseRig, takes: Sequence[Take]) -> None:
         """Show a take: where in one most is said oneself."""

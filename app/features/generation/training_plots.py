@@ -11,14 +11,15 @@ from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from app.look.theme import theme
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.still_plot import empty_plot, still_plot
 
 # Statistics of which 1 is right, as people read them; others are told in words.
 RATIOS = {
-    "speed": "speed",
-    "trembling": "trembling",
-    "wrist_range": "reach",
-    "profile": "goes with stresses",
+    "speed": tr("speed"),
+    "trembling": tr("trembling"),
+    "wrist_range": tr("reach"),
+    "profile": tr("goes with stresses"),
 }
 STYLES = (
     Qt.PenStyle.SolidLine,
@@ -44,8 +45,8 @@ class TrainingPlots(QWidget):
         layout.setSpacing(10)
         self.left, self.right = (still_plot(self) for _ in range(2))
         for plot, name in (
-            (self.left, "How near the training is to its goal"),
-            (self.right, "Statistics of the samples"),
+            (self.left, tr("How near the training is to its goal")),
+            (self.right, tr("Statistics of the samples")),
         ):
             plot.setAccessibleName(name)
             layout.addWidget(plot)
@@ -72,11 +73,11 @@ class TrainingPlots(QWidget):
         look = theme(self.session.look.name)
         colours = (look.text, look.warning, look.dim, look.error, look.text)
         for plot, words, lines in (
-            (self.left, next(iter(self.goals), "what training is after"), self.goals),
-            (self.right, "samples beside takes: 1 is right", self.ratios),
+            (self.left, next(iter(self.goals), tr("what training is after")), self.goals),
+            (self.right, tr("samples beside takes: 1 is right"), self.ratios),
         ):
             empty_plot(plot, look)
-            plot.setLabel("bottom", "minutes", color=look.dim)
+            plot.setLabel("bottom", tr("minutes"), color=look.dim)
             plot.setTitle(words, color=look.dim, size="9pt")
             if lines is self.ratios:
                 legend = plot.addLegend(

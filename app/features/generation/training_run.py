@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.look.plural import many
+from app.translation import tr
 
 if TYPE_CHECKING:
     from metagraph.generation.standing import Standing
@@ -19,9 +20,9 @@ if TYPE_CHECKING:
 
 # What an event's numbers tell, the most telling first.
 GOALS = {
-    "likelihood": "likelihood: more is better",
-    "matching": "error of the flow: less is better",
-    "loss": "error: less is better",
+    "likelihood": tr("likelihood: more is better"),
+    "matching": tr("error of the flow: less is better"),
+    "loss": tr("error: less is better"),
 }
 LITTLE = 0.4  # of a core: other work takes the rest
 LOOKS = 200  # milliseconds between two looks at what was said
@@ -95,10 +96,12 @@ def left_of(standing: Standing) -> str:
     """Return how far a training got, in words."""
     kind, step = standing.plan.kind, standing.step
     if not step:
-        return f"{kind}, nothing kept yet"
+        return tr("{kind}, nothing kept yet", kind=kind)
     if standing.share >= 1:
-        return f"{kind}, {many(step, 'step')}, its time is over"
-    return f"{kind}, {many(step, 'step')}, {100 * standing.share:.0f} % done"
+        return tr("{kind}, {steps}, its time is over", kind=kind, steps=many(step, "step"))
+    return tr(
+        "{kind}, {steps}, {share:.0f} % done", kind=kind, steps=many(step, "step"), share=100 * standing.share
+    )
 
 
 class TrainingRun(QObject):
@@ -146,9 +149,13 @@ class TrainingRun(QObject):
 
 def stands_of(event: Event) -> str:
     """Return how far a training is, in words; also how little of the machine it gets, where that is so."""
-    words = f"{many(event.step, 'step')}, {event.minutes:.1f} min"
+    words = tr("{steps}, {minutes:.1f} min", steps=many(event.step, "step"), minutes=event.minutes)
     got = event.seconds / (60 * event.minutes)
-    return f"{words}; busy machine: {100 * got:.0f} % of a core" if got < LITTLE else words
+    return (
+        tr("{words}; busy machine: {share:.0f} % of a core", words=words, share=100 * got)
+        if got < LITTLE
+        else words
+    )
 
 
 def goal(event: Event) -> tuple[str, float]:

@@ -35,6 +35,7 @@ from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from metagraph.errors import FileError
@@ -44,7 +45,7 @@ from metagraph.generation.stored import SUFFIX, read_card
 from metagraph.graph.conversation import side_name
 
 FILE, CHOOSE = "file", "choose"  # a sound that was chosen, and choosing one
-NOBODY = (
+NOBODY = tr(
     "There is no conversation yet: drop a recording of two who talk on the window, and choose a side here."
 )
 
@@ -67,8 +68,8 @@ class UsePage(Page):
         self.about.setProperty("dim", True)
         box.addWidget(self.about)
         for words, row in (
-            ("A side of a conversation", self._side_row()),
-            ("Clips for the meta-graph", self._takes_row()),
+            (tr("A side of a conversation"), self._side_row()),
+            (tr("Clips for the meta-graph"), self._takes_row()),
         ):
             box.addSpacing(8)
             box.addWidget(self.heading(words))
@@ -84,66 +85,70 @@ class UsePage(Page):
 
     def _model_row(self) -> QHBoxLayout:
         self.model = ComboBox(self)
-        self.model.setAccessibleName("Model")
+        self.model.setAccessibleName(tr("Model"))
         self.model.setMinimumWidth(220)
         self.model.currentIndexChanged.connect(self._about)
-        choose = self.button("Choose file…", "A model from elsewhere", self.choose_model)
+        choose = self.button(tr("Choose file…"), tr("A model from elsewhere"), self.choose_model)
         self.seed = SpinBox(self, minimum=1, maximum=9999, value=1)
-        self.seed.setAccessibleName("Seed")
-        self.seed.setToolTip("Another number moves otherwise to the same speech")
+        self.seed.setAccessibleName(tr("Seed"))
+        self.seed.setToolTip(tr("Another number moves otherwise to the same speech"))
         self.temperature = DoubleSpinBox(self, minimum=0, maximum=1.2, singleStep=0.1, decimals=1, value=1.0)
-        self.temperature.setAccessibleName("Chance")
-        self.temperature.setToolTip("How much happens by chance: 0 moves least, 1 as was learned")
+        self.temperature.setAccessibleName(tr("Chance"))
+        self.temperature.setToolTip(tr("How much happens by chance: 0 moves least, 1 as was learned"))
         self.guidance = DoubleSpinBox(self, minimum=0, maximum=5, singleStep=0.25, decimals=2, value=GUIDANCE)
-        self.guidance.setAccessibleName("Follows the speech")
-        self.guidance.setToolTip("How closely it follows the speech; 1 as was learned. Matching models alone")
+        self.guidance.setAccessibleName(tr("Follows the speech"))
+        self.guidance.setToolTip(
+            tr("How closely it follows the speech; 1 as was learned. Matching models alone")
+        )
         return self.row(
-            ("Model", self.model),
+            (tr("Model"), self.model),
             ("", choose),
-            ("Seed", self.seed),
-            ("Chance", self.temperature),
-            ("Follows the speech", self.guidance),
+            (tr("Seed"), self.seed),
+            (tr("Chance"), self.temperature),
+            (tr("Follows the speech"), self.guidance),
         )
 
     def _side_row(self) -> QHBoxLayout:
         self.side = ComboBox(self)
-        self.side.setAccessibleName("Who moves so")
+        self.side.setAccessibleName(tr("Who moves so"))
         self.side.setMinimumWidth(260)
         self.move_button = self.button(
-            "Move by the model",
-            "Arms, head and spine move to the whole conversation; legs, eyes and lips as before",
+            tr("Move by the model"),
+            tr("Arms, head and spine move to the whole conversation; legs, eyes and lips as before"),
             self.move_side,
         )
         strengthen(self.move_button)
         self.nobody = QLabel(NOBODY, self)
         self.nobody.setProperty("dim", True)
-        return self.row(("Who", self.side), ("", self.move_button), ("", self.nobody))
+        return self.row((tr("Who"), self.side), ("", self.move_button), ("", self.nobody))
 
     def _takes_row(self) -> QHBoxLayout:
         self.speech = ComboBox(self)
-        self.speech.setAccessibleName("To whose speech")
+        self.speech.setAccessibleName(tr("To whose speech"))
         self.speech.setMinimumWidth(260)
         self.speech.activated.connect(self._speech_chosen)
         self.minutes = DoubleSpinBox(self, minimum=0.2, maximum=10, singleStep=0.5, decimals=1, value=3)
         self.minutes.setSuffix(" min")
-        self.minutes.setAccessibleName("Minutes")
+        self.minutes.setAccessibleName(tr("Minutes"))
         self.cut_button = self.button(
-            "Make and cut", "Cut at still moments that are alike, so that no jump shows", self.make_pieces
+            tr("Make and cut"),
+            tr("Cut at still moments that are alike, so that no jump shows"),
+            self.make_pieces,
         )
-        return self.row(("To", self.speech), ("for", self.minutes), ("", self.cut_button))
+        return self.row((tr("To"), self.speech), (tr("for"), self.minutes), ("", self.cut_button))
 
     def _drop_row(self) -> QHBoxLayout:
         self.stance = ComboBox(self)
-        self.stance.setAccessibleName("Stance they leave and come back to")
+        self.stance.setAccessibleName(tr("Stance they leave and come back to"))
         self.stance.setMinimumWidth(200)
         self.drop_button = self.button(
-            "Drop", "In the library, and on the arms' layer of the graph", self.drop
+            tr("Drop"), tr("In the library, and on the arms' layer of the graph"), self.drop
         )
         self.drop_button.setMinimumWidth(120)
         strengthen(self.drop_button)
         self.progress = make_widget(QProgressBar, self, maximumWidth=180, textVisible=False)
-        self.cancel_button = self.button("Cancel", "Nothing is changed then", self.cancel)
-        row = self.row(("On", self.stance), ("", self.drop_button))
+        self.cancel_button = self.button(tr("Cancel"), tr("Nothing is changed then"), self.cancel)
+        row = self.row((tr("On"), self.stance), ("", self.drop_button))
         for widget in (self.progress, self.cancel_button):
             widget.hide()
             row.addWidget(widget)
@@ -167,13 +172,13 @@ class UsePage(Page):
             if box is self.speech:
                 if self._sound is not None:
                     box.addItem(self._sound.name, FILE)
-                box.addItem("Choose a sound…", CHOOSE)
+                box.addItem(tr("Choose a sound…"), CHOOSE)
             box.choose(chosen)
         stance = self.stance.currentData()
         self.stance.clear()
         for s in project.graphs["arms"].stances.values():
-            self.stance.addItem(f"arms · {s.name}", s.id)
-        self.stance.addItem("the library alone", "")
+            self.stance.addItem(tr("{layer} · {name}", layer=tr("arms"), name=s.name), s.id)
+        self.stance.addItem(tr("the library alone"), "")
         wanted = stance if stance is not None else first_stance(project)
         self.stance.choose(wanted)
         self._enable()
@@ -197,7 +202,9 @@ class UsePage(Page):
 
     def choose_model(self) -> None:
         start = str(self.document.folder or Path.home())
-        name, _ = QFileDialog.getOpenFileName(self, "Choose a model", start, f"Models (*{SUFFIX})")
+        name, _ = QFileDialog.getOpenFileName(
+            self, tr("Choose a model"), start, tr("Models (*{suffix})", suffix=SUFFIX)
+        )
         if name:
             self.show_model(Path(name))
 
@@ -205,7 +212,7 @@ class UsePage(Page):
         """Say what the chosen model is."""
         path = self.model.currentData()
         if path is None:
-            self.about.setText("There is no model yet: train one, or choose a file.")
+            self.about.setText(tr("There is no model yet: train one, or choose a file."))
         else:
             try:
                 self.about.setText(about(read_card(path), self.document.project))
@@ -222,7 +229,9 @@ class UsePage(Page):
         from app.project.speech_files import SOUNDS
 
         start, kinds = str(self.document.folder or Path.home()), " ".join(f"*{s}" for s in SOUNDS)
-        name, _ = QFileDialog.getOpenFileName(self, "Choose a sound", start, f"Sounds ({kinds})")
+        name, _ = QFileDialog.getOpenFileName(
+            self, tr("Choose a sound"), start, tr("Sounds ({kinds})", kinds=kinds)
+        )
         if name:
             self._sound = Path(name)
         self.fill()
@@ -237,7 +246,7 @@ class UsePage(Page):
         self.cut_button.setEnabled(free)
         count = len(self.table.chosen())
         self.drop_button.setEnabled(self._job is None and count > 0)
-        self.drop_button.setText(f"Drop {many(count, 'clip')}" if count else "Drop")
+        self.drop_button.setText(tr("Drop {count}", count=many(count, "clip")) if count else tr("Drop"))
 
     def _start(self, title: str, work: Callable[[Job], Any], done: Callable[[Any], None]) -> None:
         self.said.emit(f"{title}…")
@@ -266,11 +275,11 @@ class UsePage(Page):
     def cancel(self) -> None:
         if self._job is not None:
             self._job.cancel()
-            self.said.emit("Cancelled; nothing was changed.")
+            self.said.emit(tr("Cancelled; nothing was changed."))
 
     def _folder(self) -> Path | None:
         if self.document.folder is None:
-            self._failed(ValueError("save the project first: new clips are kept as files beside it"))
+            self._failed(ValueError(tr("save the project first: new clips are kept as files beside it")))
         return self.document.folder
 
     def _chance(self) -> Any:
@@ -291,7 +300,9 @@ class UsePage(Page):
         if talk.sides[side].project is not None:
             who = side_name(talk, side)
             self._failed(
-                ValueError(f"{who} is moved by another project: clear that in Sounds and names first")
+                ValueError(
+                    tr("{who} is moved by another project: clear that in Sounds and names first", who=who)
+                )
             )
             return
 
@@ -305,10 +316,10 @@ class UsePage(Page):
         def done(made: Any) -> None:
             loaded, notes = made
             if ident not in self.document.project.conversations:
-                self._failed(ValueError("the conversation is gone; the clip is kept in its folder"))
+                self._failed(ValueError(tr("the conversation is gone; the clip is kept in its folder")))
                 return
             self.document.edit(
-                "Move by a model",
+                tr("Move by a model"),
                 lambda p: with_side_moved(p, loaded, named, chance.seed, ident, side),
             )
             self.session.onstage.set_conversation(ident)
@@ -317,9 +328,17 @@ class UsePage(Page):
             self.session.transport.seek(0.0)
             self.session.transport.set_playing(True)
             told = " ".join(notes)
-            self.said.emit(f"{side_name(talk, side)} moves by '{named}', seed {chance.seed}. {told}".rstrip())
+            self.said.emit(
+                tr(
+                    "{who} moves by '{named}', seed {seed}. {told}",
+                    who=side_name(talk, side),
+                    named=named,
+                    seed=chance.seed,
+                    told=told,
+                ).rstrip()
+            )
 
-        self._start("Making motion", work, done)
+        self._start(tr("Making motion"), work, done)
 
     # --- clips
 
@@ -360,11 +379,21 @@ class UsePage(Page):
             self.table.show_pieces(found)
             told = " ".join(notes)
             if not found:
-                self.said.emit(f"Nothing can be cut: {why}. {UNCUT} {told}".rstrip())
+                self.said.emit(
+                    tr(
+                        "Nothing can be cut: {why}. {remedy} {told}", why=why, remedy=UNCUT, told=told
+                    ).rstrip()
+                )
                 return
-            self.said.emit(f"{many(len(found), 'piece')}, not kept yet: drop those you like. {told}".rstrip())
+            self.said.emit(
+                tr(
+                    "{pieces}, not kept yet: drop those you like. {told}",
+                    pieces=many(len(found), "piece"),
+                    told=told,
+                ).rstrip()
+            )
 
-        self._start("Making motion to cut", work, done)
+        self._start(tr("Making motion to cut"), work, done)
 
     def drop(self) -> None:
         """Keep the checked pieces as files, and drop them on the graph: one step of undo."""
@@ -376,16 +405,23 @@ class UsePage(Page):
         def done(loaded: Any) -> None:
             where = stance if stance in self.document.project.graphs["arms"].stances else None
             self.document.edit(
-                "Drop generated clips", lambda p: with_pieces(p, chosen, loaded, named, seed, where)
+                tr("Drop generated clips"), lambda p: with_pieces(p, chosen, loaded, named, seed, where)
             )
             new = {path for path, *_ in loaded}
             ids = tuple(e.id for e in self.document.project.clips.values() if e.path in new)
             self.session.selection.select_clips(ids)
             self.table.show_pieces([p for p in self.table.pieces if p not in chosen])
-            place = "dropped on the arms' layer" if where else "in the library"
-            self.said.emit(f"{many(len(ids), 'clip')} {place}; they say that '{named}' made them.")
+            place = tr("dropped on the arms' layer") if where else tr("in the library")
+            self.said.emit(
+                tr(
+                    "{clips} {place}; they say that '{named}' made them.",
+                    clips=many(len(ids), "clip"),
+                    place=place,
+                    named=named,
+                )
+            )
 
-        self._start("Keeping clips", lambda _: keep_pieces(chosen, project, folder), done)
+        self._start(tr("Keeping clips"), lambda _: keep_pieces(chosen, project, folder), done)
 
     def close_down(self) -> None:
         self.view.preview.still()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtWidgets import QWidget
 
 from app.shell.context import Contribution, Panel, Shell
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -15,7 +16,7 @@ def contribute(shell: Shell) -> Contribution:
 
     return Contribution(
         panels=(
-            Panel("life", "Life", "right below", make, where={"perform": "side"}, opens={"talk": "side"}),
+            Panel("life", tr("Life"), "right below", make, where={"perform": "side"}, opens={"talk": "side"}),
         ),
         late_imports=("app.features.life.life_panel",),
     )

@@ -19,8 +19,10 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.features.life.dial_words import in_sentence
 from app.project.document import Document
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.choice_row import ChoiceRow
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, Slider
@@ -60,19 +62,27 @@ class DialRow:
     ):
         self.dial, self.default, self._set = dial, default, set_value
         self._before = default  # what it was before it was turned off
-        self.tick = QCheckBox(dial.label, parent)
-        self.tick.setToolTip(f"{dial.tip}\nUntick it to turn it off." if dial.off is not None else dial.tip)
-        self.label = make_widget(QLabel, dial.label, parent, toolTip=dial.tip)
+        label, tip = tr(dial.label), tr(dial.tip)
+        self.tick = QCheckBox(label, parent)
+        self.tick.setToolTip(tr("{tip}\nUntick it to turn it off.", tip=tip) if dial.off is not None else tip)
+        self.label = make_widget(QLabel, label, parent, toolTip=tip)
         self.slider = DialSlider(parent, round((dial.high - dial.low) / dial.step), self.put_back)
-        self.slider.setToolTip(f"{dial.tip}\nDouble-click puts it back to {default:g} {dial.unit}".rstrip())
-        self.slider.setAccessibleName(dial.label)
+        self.slider.setToolTip(
+            tr(
+                "{tip}\nDouble-click puts it back to {default:g} {unit}",
+                tip=tip,
+                default=default,
+                unit=tr(dial.unit),
+            ).rstrip()
+        )
+        self.slider.setAccessibleName(label)
         self.slider.setFocusPolicy(Qt.FocusPolicy.ClickFocus)  # its number has the same keys
         decimals = 0 if dial.step >= 1 else 1 if dial.step >= 0.1 else 3 if dial.step < 0.01 else 2
         self.number = DoubleSpinBox(
             parent, minimum=dial.low, maximum=dial.high, singleStep=dial.step, decimals=decimals
         )
-        self.number.setSuffix(f" {dial.unit}" if dial.unit else "")
-        self.number.setAccessibleName(dial.label)
+        self.number.setSuffix(f" {tr(dial.unit)}" if dial.unit else "")
+        self.number.setAccessibleName(label)
         self.number.setKeyboardTracking(False)
         self.number.setFixedWidth(92)
         head = self.tick if dial.off is not None else self.label
@@ -124,16 +134,16 @@ class LifePanel(QWidget):
         outer = QVBoxLayout(self)
         outer.setContentsMargins(12, 8, 12, 8)
         outer.setSpacing(8)
-        self.on = QCheckBox("Alive: breathes, looks, blinks and speaks of itself", self)
-        self.on.clicked.connect(lambda on: self._change("Turn life on or off", on=on))
+        self.on = QCheckBox(tr("Alive: breathes, looks, blinks and speaks of itself"), self)
+        self.on.clicked.connect(lambda on: self._change(tr("Turn life on or off"), on=on))
         outer.addWidget(self.on)
         top = QGridLayout()
         top.setHorizontalSpacing(10)
         outer.addLayout(top)
         self.rows: dict[str, DialRow] = {"stillness": self._row(DIALS[0], top, 0, None)}
-        self.rows["stillness"].tick.setText("Stillness")
-        factors = ((MODE_WORDS[m], f"What {m} makes of them, as factors") for m in MODES)
-        self.tabs = ChoiceRow(self, (("Always", "The amounts themselves"), *factors))
+        self.rows["stillness"].tick.setText(tr("Stillness"))
+        factors = ((MODE_WORDS[m], tr("What {mode} makes of them, as factors", mode=tr(m))) for m in MODES)
+        self.tabs = ChoiceRow(self, ((tr("Always"), tr("The amounts themselves")), *factors))
         self.tabs.show_choice(0)
         self.tabs.chosen.connect(lambda n: self.show_mode(None if n == 0 else MODES[n - 1]))
         outer.addWidget(self.tabs)
@@ -167,7 +177,7 @@ class LifePanel(QWidget):
         group, n = "", 0
         for dial in DIALS[1:] if mode is None else MANNER_DIALS:
             if dial.group != group:
-                title = QLabel(dial.group, page)
+                title = QLabel(tr(dial.group), page)
                 title.setProperty("title", True)
                 title.setContentsMargins(0, 8 if group else 0, 0, 0)
                 grid.addWidget(title, n, 0, 1, 3)
@@ -178,7 +188,7 @@ class LifePanel(QWidget):
             rows[dial.name] = self._row(dial, grid, n, mode)
             n += 1
         if mode is not None:
-            back = make_widget(QToolButton, page, text="Back to the usual")
+            back = make_widget(QToolButton, page, text=tr("Back to the usual"))
             back.clicked.connect(lambda: self._usual(mode))
             grid.addWidget(back, n, 0, 1, 2)
             n += 1
@@ -192,20 +202,20 @@ class LifePanel(QWidget):
     def _add_moods(self, page: QWidget, grid: QGridLayout, row: int) -> None:
         """Add the choice of a named mood above its dials."""
         self.moods = ComboBox(page)
-        self.moods.setAccessibleName("Mood")
-        self.moods.setToolTip("The mood it is in where no request tells another")
+        self.moods.setAccessibleName(tr("Mood"))
+        self.moods.setToolTip(tr("The mood it is in where no request tells another"))
         for feeling in FEELINGS:
             self.moods.addItem(MOOD_WORDS[feeling], feeling)
-        self.moods.addItem("Its own", None)
+        self.moods.addItem(tr("Its own"), None)
         self.moods.activated.connect(self._take_mood)
-        grid.addWidget(QLabel("In a mood", page), row, 0)
+        grid.addWidget(QLabel(tr("In a mood"), page), row, 0)
         grid.addWidget(self.moods, row, 1, 1, 2)
 
     def _take_mood(self, place: int) -> None:
         feeling = self.moods.itemData(place)
         if feeling is not None:
             valence, arousal = MOODS[feeling]
-            self._change("Change the mood", None, None, valence=valence, arousal=arousal)
+            self._change(tr("Change the mood"), None, None, valence=valence, arousal=arousal)
 
     def show_mode(self, mode: Mode | None) -> None:
         """Show the amounts, or what one mode makes of them."""
@@ -240,7 +250,12 @@ class LifePanel(QWidget):
     def _dial(self, dial: Dial, mode: Mode | None, value: float, done: bool) -> None:
         """Set a number; what is dragged is one step to undo."""
         value = round(value, 4)
-        self._change(f"Change {dial.label.lower()}", f"life/{mode}/{dial.name}", mode, **{dial.name: value})
+        self._change(
+            tr("Change {amount}", amount=in_sentence(dial)),
+            f"life/{mode}/{dial.name}",
+            mode,
+            **{dial.name: value},
+        )
         if done:
             self.document.finish_merging()
 
@@ -257,7 +272,7 @@ class LifePanel(QWidget):
     def _usual(self, mode: Mode) -> None:
         life = self.document.project.life
         modes = {m: x for m, x in life.modes.items() if m != mode}
-        self._set(f"Put {mode} back to the usual", None, None, modes=modes)
+        self._set(tr("Put {mode} back to the usual", mode=tr(mode)), None, None, modes=modes)
 
     def _set(self, text: str, life: Life | None, merge: str | None, **changes: object) -> None:
         fields = {f: getattr(life, f) for f in life.__struct_fields__} if life is not None else changes

@@ -13,6 +13,7 @@ from app.shell.actions import Command
 from app.shell.context import Contribution, Panel, Shell
 from app.shell.verbs import Verb, Verbs
 from app.stage.problem_watch import ProblemWatch
+from app.translation import tr
 from metagraph.formats.imports import Imported
 
 if TYPE_CHECKING:
@@ -84,10 +85,10 @@ def contribute(shell: Shell) -> Contribution:
     session.onstage.mode_changed.connect(begin)
     return Contribution(
         panels=(
-            Panel("manual", "Manual state machine", "centre", make, when="manual", instead_of="graph"),
+            Panel("manual", tr("Manual state machine"), "centre", make, when="manual", instead_of="graph"),
             Panel(
                 "inspector",
-                "Properties",
+                tr("Properties"),
                 "right below",
                 lambda: editor().inspector,
                 when="manual",
@@ -99,10 +100,10 @@ def contribute(shell: Shell) -> Contribution:
                 "manual",
                 "&Graph",
                 "author",
-                "&Manual state machine",
+                tr("&Manual state machine"),
                 lambda: session.set_mode("meta" if here() else "manual"),
                 checked=here,
-                tip="Draw states and links one by one, as in the engines' editors",
+                tip=tr("Draw states and links one by one, as in the engines' editors"),
             ),
         ),
     )

@@ -19,13 +19,14 @@ from PySide6.QtWidgets import (
 from app.features.manual import manual_many
 from app.features.manual.manual_canvas import ManualCanvas
 from app.look.plural import many
+from app.translation import tr
 from app.widgets.form_fields import Chooser, Field
 from app.widgets.making import make_widget
 from metagraph.graph import manual_groups
 from metagraph.graph.manual import Alias
 from metagraph.graph.name_search import fits
 
-NO_ENTRY = "no entry: nothing leads to it"
+NO_ENTRY = tr("no entry: nothing leads to it")
 IDENT = Qt.ItemDataRole.UserRole
 
 
@@ -35,46 +36,46 @@ class AliasPage(QWidget):
     def __init__(self, canvas: ManualCanvas, parent: QWidget) -> None:
         super().__init__(parent)
         self.canvas, self.alias = canvas, ""
-        self.name = Field(self, "Name of the alias", "Name of the alias")
+        self.name = Field(self, tr("Name of the alias"), tr("Name of the alias"))
         self.name.editingFinished.connect(self._rename)
         self.words = QLabel(self, wordWrap=True)
         self.words.setProperty("dim", True)
-        self.every = make_widget(QCheckBox, "every state, also those to come", self)
-        self.every.clicked.connect(lambda on: self._set("Change alias", every=on))
+        self.every = make_widget(QCheckBox, tr("every state, also those to come"), self)
+        self.every.clicked.connect(lambda on: self._set(tr("Change alias"), every=on))
         self.again = make_widget(
             QCheckBox,
-            "may lead a state back to itself",
+            tr("may lead a state back to itself"),
             self,
-            toolTip="Otherwise its links skip their own target",
+            toolTip=tr("Otherwise its links skip their own target"),
         )
-        self.again.clicked.connect(lambda on: self._set("Change alias", again=on))
+        self.again.clicked.connect(lambda on: self._set(tr("Change alias"), again=on))
         self.entry = Chooser(
-            self, toolTip="The state that links to this alias lead to, which makes it a group"
+            self, toolTip=tr("The state that links to this alias lead to, which makes it a group")
         )
         self.entry.activated.connect(
-            lambda n: self._set("Change entry", entry=self.entry.itemData(n) or None)
+            lambda n: self._set(tr("Change entry"), entry=self.entry.itemData(n) or None)
         )
         form = QFormLayout()
         form.setHorizontalSpacing(14)
         form.setVerticalSpacing(7)
         form.setLabelAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
-        form.addRow("Stands for", self.every)
-        form.addRow("Again", self.again)
-        form.addRow("Entered by", self.entry)
+        form.addRow(tr("Stands for"), self.every)
+        form.addRow(tr("Again"), self.again)
+        form.addRow(tr("Entered by"), self.entry)
         self.search = QLineEdit(self)
-        self.search.setPlaceholderText("Find states")
-        self.search.setAccessibleName("Find states of the alias")
+        self.search.setPlaceholderText(tr("Find states"))
+        self.search.setAccessibleName(tr("Find states of the alias"))
         self.search.setClearButtonEnabled(True)
         self.search.textChanged.connect(self._filter)
         self.list = QListWidget(self)
-        self.list.setAccessibleName("States of the alias")
+        self.list.setAccessibleName(tr("States of the alias"))
         self.list.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self.list.setUniformItemSizes(True)
         self.list.setMinimumHeight(220)
         self.list.itemChanged.connect(self._ticked)
         self.members = make_widget(
-            QPushButton, "Select its states", self, toolTip="Also by a double click on the alias"
+            QPushButton, tr("Select its states"), self, toolTip=tr("Also by a double click on the alias")
         )
         self.members.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.members.clicked.connect(lambda: manual_many.select_members(self.canvas, self.alias))
@@ -96,11 +97,15 @@ class AliasPage(QWidget):
         self.alias = first.id
         for part in (self.name, self.every, self.again, self.entry, self.search, self.list, self.members):
             part.setEnabled(one)
-        self.name.show_text(first.name if one else f"{len(aliases)} aliases", first.id)
+        self.name.show_text(first.name if one else tr("{aliases} aliases", aliases=len(aliases)), first.id)
         inside = frozenset(manual.members(first))
         leave = len(manual.out.get(first.id, ()))
         self.words.setText(
-            f"An alias stands for {many(len(inside), 'state')}; {many(leave, 'link')} can be taken from each."
+            tr(
+                "An alias stands for {inside}; {leave} can be taken from each.",
+                inside=many(len(inside), "state"),
+                leave=many(leave, "link"),
+            )
         )
         self.every.setChecked(first.every)
         self.again.setChecked(first.again)
@@ -141,5 +146,5 @@ class AliasPage(QWidget):
         alias = self.canvas.document.project.alias(self.alias)
         name = " ".join(self.name.text().split())
         if alias is not None and self.name.isEnabled() and name != alias.name:
-            self._set("Rename alias", name=name)
+            self._set(tr("Rename alias"), name=name)
             self.name.show_text(getattr(self.canvas.document.project.alias(self.alias), "name", ""), None)

@@ -7,15 +7,16 @@ from typing import Any, Literal
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
+from app.translation import tr
 from app.widgets.form_fields import MIXED, Chooser, Mixed, Seconds, common
 from metagraph.graph.manual import Link
 
 Way = Literal["none", "end", "part", "time"]
 WORDS: dict[Way, str] = {
-    "none": "none",
-    "end": "when the source ends",
-    "part": "at a share of it",
-    "time": "at a time of its clip",
+    "none": tr("none"),
+    "end": tr("when the source ends"),
+    "part": tr("at a share of it"),
+    "time": tr("at a time of its clip"),
 }
 
 
@@ -39,13 +40,13 @@ class ExitRow(QWidget):
         super().__init__(parent)
         self.way = Chooser(
             self,
-            toolTip="When the source may be left. A loop has no end: asked to leave, it is left at once",
+            toolTip=tr("When the source may be left. A loop has no end: asked to leave, it is left at once"),
         )
         self.way.activated.connect(lambda n: self.chosen.emit(self.way.itemData(n)))
-        self.time = Seconds(self, "Exit time: seconds of the source's clip at which it may be left")
+        self.time = Seconds(self, tr("Exit time: seconds of the source's clip at which it may be left"))
         self.time.valueChanged.connect(self.timed)
         self.part = Seconds(
-            self, "The share of what the source plays by which the blend is over", 100, " %", 5, 0
+            self, tr("The share of what the source plays by which the blend is over"), 100, " %", 5, 0
         )
         self.part.valueChanged.connect(lambda v: self.shared.emit(v / 100))
         line = QHBoxLayout(self)
@@ -58,7 +59,7 @@ class ExitRow(QWidget):
         """Show what several links have in common."""
         ways: Any = common([way_of(x) for x in links])
         when = common([x.condition.when for x in links])
-        none = {"request": "at once", "finished": "at its end"}.get(str(when), "none")
+        none = {"request": tr("at once"), "finished": tr("at its end")}.get(str(when), tr("none"))
         entries = [(none if way == "none" else words, way) for way, words in WORDS.items()]
         self.way.show_entries(entries, None if ways is Mixed else ways, MIXED)
         self.time.setVisible(ways == "time")

@@ -30,11 +30,13 @@ from app.features.manual.manual_gestures import Band, DrawLink, ManualPan, Move
 from app.features.manual.manual_overlay import Marks, paint_over, plays
 from app.features.manual.manual_pictures import Pictures
 from app.features.manual.manual_scene import NODE, NOTHING, ManualScene, ManualView, fitted
+from app.look.plural import clips_words
 from app.look.theme import theme
 from app.project.document import Document
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
+from app.translation import tr
 from app.widgets.gesture import Hand
 from app.widgets.mime import load_of
 from metagraph.graph import manual_edits
@@ -98,7 +100,7 @@ class ManualCanvas(QWidget):
         self.setAcceptDrops(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setMinimumSize(420, 320)
-        self.setAccessibleName("State machine")
+        self.setAccessibleName(tr("State machine"))
         document.changed.connect(self._edited)
         document.loaded.connect(self._reload)
         session.place.layer_changed.connect(self._relayer)
@@ -417,9 +419,9 @@ class ManualCanvas(QWidget):
         """Draw a link from each source to each target, and select what was drawn."""
         layer = self.session.place.layer
         if len(sources) == len(targets) == 1:
-            self.do_links("Draw link", lambda p: manual_edits.add_link(p, layer, sources[0], targets[0]))
+            self.do_links(tr("Draw link"), lambda p: manual_edits.add_link(p, layer, sources[0], targets[0]))
         else:
-            self.do_links("Draw links", lambda p: manual_edits.add_links(p, layer, sources, targets))
+            self.do_links(tr("Draw links"), lambda p: manual_edits.add_links(p, layer, sources, targets))
 
     def do_links(self, text: str, edit: Callable[[Project], Project]) -> None:
         """Make an edit that draws links, and select those."""
@@ -434,7 +436,7 @@ class ManualCanvas(QWidget):
         layer, before = self.session.place.layer, set(self.scene().manual.states)
         corner = self.view.back(at) - QPointF(NODE.width() / 2, NODE.height() / 2)
         x, y = round(corner.x() / 8) * 8, round(corner.y() / 8) * 8
-        words = f"Place {len(clips)} clip{'s' if len(clips) != 1 else ''}"
+        words = tr("Place {clips}", clips=clips_words(len(clips)))
         self._views.setdefault(layer, self.view)
         if self.do(words, lambda p: manual_edits.add_states(p, clips, layer, x, y)):
             self.session.selection.select_states(

@@ -15,7 +15,9 @@ from app.features.manual.arranging import arranged
 from app.features.manual.manual_host import ManualHost
 from app.features.manual.manual_painter import facts, words_of
 from app.features.manual.manual_scene import ManualHit
+from app.look.plural import many
 from app.project.load import Load
+from app.translation import tr
 from metagraph.graph import manual_edits
 from metagraph.graph.manual import ANY, Link
 from metagraph.graph.model import Project
@@ -45,14 +47,14 @@ kept = Clipboard()
 def remove(canvas: ManualHost) -> None:
     s = canvas.session
     count = len(s.selection.states) + len(s.selection.links)
-    what = (
-        f"{count} nodes and links"
-        if s.selection.states and s.selection.links
-        else f"{count} states"
-        if s.selection.states
-        else f"{count} links"
-    )
-    text = f"Remove {what if count > 1 else 'state' if s.selection.states else 'link'}"
+    if count == 1:
+        text = tr("Remove state") if s.selection.states else tr("Remove link")
+    elif s.selection.states and s.selection.links:
+        text = tr("Remove {count} nodes and links", count=count)
+    elif s.selection.states:
+        text = tr("Remove {count} states", count=count)
+    else:
+        text = tr("Remove {count} links", count=count)
     canvas.do(text, lambda p: manual_edits.remove(p, s.selection.states, s.selection.links))
 
 
@@ -70,22 +72,26 @@ def paste(canvas: ManualHost) -> None:
     """Paste states where the mouse is, settings onto the selected links, or links for the selected states."""
     links, settings = canvas.session.selection.links, kept.settings
     if settings is not None and links:
-        canvas.do("Paste link settings", lambda p: manual_edits.paste_settings(p, links, settings))
+        canvas.do(tr("Paste link settings"), lambda p: manual_edits.paste_settings(p, links, settings))
     elif kept.links and canvas.session.selection.states:
         manual_many.paste_links(canvas, kept.links)
     elif kept.piece is not None:
         at = canvas.view.back(canvas.at)
-        _paste(canvas, kept.piece, at.x(), at.y(), "Paste")
+        _paste(canvas, kept.piece, at.x(), at.y(), tr("Paste {states}", states=_states(kept.piece)))
 
 
 def duplicate(canvas: ManualHost) -> None:
     piece = manual_edits.copied(canvas.document.project, canvas.session.selection.states)
     if piece.states:
         x, y = min(s.x for s in piece.states), min(s.y for s in piece.states)
-        _paste(canvas, piece, x + SHIFT, y + SHIFT, "Duplicate")
+        _paste(canvas, piece, x + SHIFT, y + SHIFT, tr("Duplicate {states}", states=_states(piece)))
 
 
-def _paste(canvas: ManualHost, piece: manual_edits.CopiedPiece, x: float, y: float, verb: str) -> None:
+def _states(piece: manual_edits.CopiedPiece) -> str:
+    return many(len(piece.states), "state")
+
+
+def _paste(canvas: ManualHost, piece: manual_edits.CopiedPiece, x: float, y: float, words: str) -> None:
     layer = canvas.session.place.layer
     made: tuple[str, ...] = ()
 
@@ -94,7 +100,7 @@ def _paste(canvas: ManualHost, piece: manual_edits.CopiedPiece, x: float, y: flo
         after, made = manual_edits.paste(project, layer, piece, round(x / 8) * 8, round(y / 8) * 8)
         return after
 
-    if canvas.do(f"{verb} {len(piece.states)} state{'s' if len(piece.states) != 1 else ''}", edit):
+    if canvas.do(words, edit):
         canvas.session.selection.select_states(made)
 
 
@@ -105,13 +111,13 @@ def select_all(canvas: ManualHost) -> None:
 def arrange(canvas: ManualHost) -> None:
     """Put every node where the automatic layout has it, and show all."""
     layer, places = canvas.session.place.layer, arranged(canvas.scene().manual)
-    canvas.do("Arrange nodes", lambda p: manual_edits.move_nodes(p, layer, places))
+    canvas.do(tr("Arrange nodes"), lambda p: manual_edits.move_nodes(p, layer, places))
     canvas.session.selection.select_states()
     canvas.fit()
 
 
 def start_here(canvas: ManualHost, state: str) -> None:
-    canvas.do("Start here", lambda p: manual_edits.set_start(p, state))
+    canvas.do(tr("Start here"), lambda p: manual_edits.set_start(p, state))
 
 
 def nudge(canvas: ManualHost, x: float, y: float) -> None:
@@ -120,7 +126,7 @@ def nudge(canvas: ManualHost, x: float, y: float) -> None:
     places = {i: (found[i].x + x, found[i].y + y) for i in canvas.session.selection.states if i in found}
     if places:
         canvas.do(
-            "Move node" if len(places) == 1 else f"Move {len(places)} nodes",
+            tr("Move node") if len(places) == 1 else tr("Move {places} nodes", places=len(places)),
             lambda p: manual_edits.move_nodes(p, layer, places),
         )
 
@@ -178,7 +184,8 @@ def fill(out: QMenu, canvas: ManualHost, hit: ManualHit) -> None:
     s = canvas.session
 
     def add(text: str, run: Run, keys: str = "", enabled: bool = True) -> None:
-        action = out.addAction(f"{text}\t{keys}" if keys else text, run)
+        told = QKeySequence(keys).toString(QKeySequence.SequenceFormat.NativeText)
+        action = out.addAction(f"{text}\t{told}" if keys else text, run)
         action.setEnabled(enabled)
 
     node = hit.area in ("node", "edge")
@@ -188,56 +195,61 @@ def fill(out: QMenu, canvas: ManualHost, hit: ManualHit) -> None:
     if hit.area == "link" and hit.ident not in s.selection.links:
         s.selection.select_states((), (hit.ident,))
     if node:
-        add("Draw link from here", lambda: canvas.begin_link(hit.ident))
+        add(tr("Draw link from here"), lambda: canvas.begin_link(hit.ident))
     alias = canvas.scene().manual.aliases.get(hit.ident)
     if alias is not None:
         _fill_alias(canvas, add, alias.id, others)
     if node and hit.ident != ANY and alias is None:
-        add("Make alias of selected", lambda: manual_many.make_alias(canvas), "Ctrl+G")
+        add(tr("Make alias of selected"), lambda: manual_many.make_alias(canvas), "Ctrl+G")
         add(
-            "Start here",
+            tr("Start here"),
             lambda: start_here(canvas, hit.ident),
             enabled=canvas.scene().manual.start != hit.ident,
         )
-        add("Play alone", lambda: s.show_context(hit.ident))
+        add(tr("Play alone"), lambda: s.show_context(hit.ident))
     if node and hit.ident != ANY:
         out.addSeparator()
-        add("Select links out of here", lambda: manual_many.select_links(canvas, False), "O")
-        add("Select links to here", lambda: manual_many.select_links(canvas, True), "I")
+        add(tr("Select links out of here"), lambda: manual_many.select_links(canvas, False), "O")
+        add(tr("Select links to here"), lambda: manual_many.select_links(canvas, True), "I")
         out.addSeparator()
         if kept.links:
-            add("Paste links", lambda: paste(canvas), "Ctrl+V")
-        add("Copy", lambda: copy(canvas), "Ctrl+C")
-        add("Duplicate", lambda: duplicate(canvas), "Ctrl+D")
-        add("Remove", lambda: remove(canvas), "Del")
+            add(tr("Paste links"), lambda: paste(canvas), "Ctrl+V")
+        add(tr("Copy"), lambda: copy(canvas), "Ctrl+C")
+        add(tr("Duplicate"), lambda: duplicate(canvas), "Ctrl+D")
+        add(tr("Remove"), lambda: remove(canvas), "Del")
     elif hit.area == "link":
-        add("Play link", lambda: s.show_context(hit.ident))
+        add(tr("Play link"), lambda: s.show_context(hit.ident))
         out.addSeparator()
-        add("Copy", lambda: copy(canvas), "Ctrl+C")
-        add("Paste settings", lambda: paste(canvas), "Ctrl+V", kept.settings is not None)
-        add("Remove", lambda: remove(canvas), "Del")
+        add(tr("Copy"), lambda: copy(canvas), "Ctrl+C")
+        add(tr("Paste settings"), lambda: paste(canvas), "Ctrl+V", kept.settings is not None)
+        add(tr("Remove"), lambda: remove(canvas), "Del")
     elif not node:
-        add("Paste", lambda: paste(canvas), "Ctrl+V", kept.piece is not None)
-        add("Select all", lambda: select_all(canvas), "Ctrl+A")
+        add(tr("Paste"), lambda: paste(canvas), "Ctrl+V", kept.piece is not None)
+        add(tr("Select all"), lambda: select_all(canvas), "Ctrl+A")
         out.addSeparator()
         chosen = bool(s.selection.states)
-        add("Make alias of selected", lambda: manual_many.make_alias(canvas), "Ctrl+G", chosen)
+        add(tr("Make alias of selected"), lambda: manual_many.make_alias(canvas), "Ctrl+G", chosen)
         there = bool(canvas.scene().manual.states)
-        add("Make alias of every state", lambda: manual_many.make_alias(canvas, True), enabled=there)
-        add("Paste links from a table", lambda: manual_many.paste_table(canvas), "", manual_many.has_table())
-        add("Copy links as a table", lambda: manual_many.copy_table(canvas), enabled=there)
+        add(tr("Make alias of every state"), lambda: manual_many.make_alias(canvas, True), enabled=there)
+        add(
+            tr("Paste links from a table"),
+            lambda: manual_many.paste_table(canvas),
+            "",
+            manual_many.has_table(),
+        )
+        add(tr("Copy links as a table"), lambda: manual_many.copy_table(canvas), enabled=there)
         out.addSeparator()
-        add("Arrange nodes", lambda: arrange(canvas), enabled=bool(canvas.scene().manual.states))
-        add("Show all", lambda: _show_all(canvas), "F")
+        add(tr("Arrange nodes"), lambda: arrange(canvas), enabled=bool(canvas.scene().manual.states))
+        add(tr("Show all"), lambda: _show_all(canvas), "F")
 
 
 def _fill_alias(canvas: ManualHost, add: Callable[..., None], alias: str, chosen: tuple[str, ...]) -> None:
     """Offer what can be done with an alias. chosen: the states that were selected before."""
-    add("Select its states", lambda: manual_many.select_members(canvas, alias))
+    add(tr("Select its states"), lambda: manual_many.select_members(canvas, alias))
     if chosen:
-        count = f"{len(chosen)} selected state{'s' if len(chosen) != 1 else ''}"
-        add(f"Add {count}", lambda: manual_many.choose(canvas, alias, chosen))
-        add(f"Take away {count}", lambda: manual_many.choose(canvas, alias, chosen, False))
+        count = many(len(chosen), "selected state")
+        add(tr("Add {count}", count=count), lambda: manual_many.choose(canvas, alias, chosen))
+        add(tr("Take away {count}", count=count), lambda: manual_many.choose(canvas, alias, chosen, False))
 
 
 def _show_all(canvas: ManualHost) -> None:
@@ -248,7 +260,11 @@ def _show_all(canvas: ManualHost) -> None:
 def drop_words(project: Project, load: Load) -> tuple[bool, str]:
     """Return whether a drop makes states, and what it does or why not."""
     why = manual_edits.refusal(project, load.clips) if load.clips else None
-    words = why or f"drop to make {f'{load.count} states' if load.count > 1 else 'a state'} here"
+    words = why or (
+        tr("drop to make {count} states here", count=load.count)
+        if load.count > 1
+        else tr("drop to make a state here")
+    )
     return why is None, words[:1].upper() + words[1:]
 
 
@@ -257,30 +273,45 @@ def tip(canvas: ManualHost, hit: ManualHit) -> str:
     manual = canvas.scene().manual
     trouble = canvas.troubles.get(hit.ident, "")
     if hit.ident == ANY:
-        return "Any state: links from here can be taken from every state\nDrag from its border to a state"
+        return tr("Any state: links from here can be taken from every state\nDrag from its border to a state")
     if hit.area in ("node", "edge") and hit.ident in manual.aliases:
         alias = manual.aliases[hit.ident]
         names = [manual.states[i].name for i in manual.members(alias)]
-        more = f" and {len(names) - 12} more" if len(names) > 12 else ""
-        stands = f"stands for {', '.join(names[:12])}{more}" if names else "stands for no state"
-        help_ = "Drag from its border to draw links from each, double-click to select them"
+        more = tr(" and {count} more", count=len(names) - 12) if len(names) > 12 else ""
+        stands = (
+            tr("stands for {names}{more}", names=", ".join(names[:12]), more=more)
+            if names
+            else tr("stands for no state")
+        )
+        help_ = tr("Drag from its border to draw links from each, double-click to select them")
         return "\n".join(x for x in (alias.name, stands, trouble, help_) if x)
     if hit.area in ("node", "edge") and hit.ident in manual.states:
         state = manual.states[hit.ident]
-        help_ = "Drag to draw a link" if hit.area == "edge" else "Drag to move, double-click to play it alone"
+        help_ = (
+            tr("Drag to draw a link")
+            if hit.area == "edge"
+            else tr("Drag to move, double-click to play it alone")
+        )
         return "\n".join(x for x in (state.name, facts(canvas.document.project, state), trouble, help_) if x)
     if hit.area == "link" and hit.ident in manual.links:
         link = manual.links[hit.ident]
-        begins = "Any state" if link.source == ANY else manual_edits.name_of(manual, link.source)
+        begins = tr("Any state") if link.source == ANY else manual_edits.name_of(manual, link.source)
         ends = f"{begins} → {manual_edits.name_of(manual, link.target)}"
         when = (
-            "on request: "
+            tr("on request: ")
             if link.condition.when == "request"
-            else "when finished "
+            else tr("when finished ")
             if not words_of(link)
-            else "at "
+            else tr("at ")
         )
         return "\n".join(
-            x for x in (ends, f"{when}{words_of(link)}".strip(), f"blends for {link.blend:g} s", trouble) if x
+            x
+            for x in (
+                ends,
+                f"{when}{words_of(link)}".strip(),
+                tr("blends for {blend:g} s", blend=link.blend),
+                trouble,
+            )
+            if x
         )
     return ""

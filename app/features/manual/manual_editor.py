@@ -12,13 +12,14 @@ from app.features.manual import manual_many
 from app.features.manual.manual_canvas import ManualCanvas
 from app.features.manual.manual_inspector import Inspector
 from app.look.plural import many
+from app.translation import tr
 from app.widgets.form_fields import Chooser
 from app.widgets.making import make_widget
 from metagraph.graph.model import Project
 from metagraph.graph.name_search import fits
 from metagraph.graph.problem import Problem
 
-FIND = "Select the states whose names hold these words (/): sit wave, sit -wave, sit | stand"
+FIND = tr("Select the states whose names hold these words (/): sit wave, sit -wave, sit | stand")
 
 
 class ManualEditor(QWidget):
@@ -31,27 +32,27 @@ class ManualEditor(QWidget):
         self.words = QLabel(self)
         self.words.setProperty("dim", True)
         self.search = make_widget(QLineEdit, self, toolTip=FIND)
-        self.search.setPlaceholderText("Find states")
-        self.search.setAccessibleName("Find states")
+        self.search.setPlaceholderText(tr("Find states"))
+        self.search.setAccessibleName(tr("Find states"))
         self.search.setClearButtonEnabled(True)
         self.search.setMinimumWidth(90)
         self.search.textEdited.connect(self._find)
         self.search.returnPressed.connect(self._found)
         self.table = _button(
             self,
-            "Import table…",
-            "Draw links from a spreadsheet: from, to, when, trigger, weight, exit, blend",
+            tr("Import table…"),
+            tr("Draw links from a spreadsheet: from, to, when, trigger, weight, exit, blend"),
         )
         self.table.clicked.connect(self._choose_table)
-        self.trigger = Chooser(self, toolTip="A trigger that links of this layer wait for")
+        self.trigger = Chooser(self, toolTip=tr("A trigger that links of this layer wait for"))
         self.trigger.setMinimumWidth(110)
         self.fire = _button(
-            self, "Fire", "Fire it now: the machine goes there over the shortest way of links"
+            self, tr("Fire"), tr("Fire it now: the machine goes there over the shortest way of links")
         )
         self.fire.clicked.connect(self._fire)
-        self.arrange = _button(self, "Arrange", "Put the nodes in columns, from the start on")
+        self.arrange = _button(self, tr("Arrange"), tr("Put the nodes in columns, from the start on"))
         self.arrange.clicked.connect(lambda: commands.arrange(canvas))
-        self.fit = _button(self, "Show all", "Show what is selected, or all (F)")
+        self.fit = _button(self, tr("Show all"), tr("Show what is selected, or all (F)"))
         self.fit.clicked.connect(canvas.fit)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
@@ -88,12 +89,17 @@ class ManualEditor(QWidget):
         manual = self.canvas.scene().manual
         zoom = f"{self.canvas.view.scale * 100:.0f} %"
         self.words.setText(
-            f"{many(len(manual.states), 'state')}, {many(len(manual.links), 'link')} for "
-            f"{many(len(manual.ways), 'connection')}    {zoom}"
+            tr(
+                "{states}, {links} for {ways}    {zoom}",
+                states=many(len(manual.states), "state"),
+                links=many(len(manual.links), "link"),
+                ways=many(len(manual.ways), "connection"),
+                zoom=zoom,
+            )
         )
         chosen = self.trigger.currentData()
         first = chosen if chosen in manual.triggers else next(iter(manual.triggers), None)
-        self.trigger.show_entries([(t, t) for t in manual.triggers], first, "no trigger yet")
+        self.trigger.show_entries([(t, t) for t in manual.triggers], first, tr("no trigger yet"))
         for part in (self.trigger, self.fire):
             part.setEnabled(bool(manual.triggers))
         self.arrange.setEnabled(bool(manual.states))

@@ -6,6 +6,7 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 
 from app.features.manual.manual_host import ManualHost
 from app.features.manual.manual_scene import ManualHit
+from app.translation import tr
 from app.widgets.gesture import PressDrag, Reason
 from metagraph.graph import manual_edits
 
@@ -65,7 +66,7 @@ class Move(PressDrag):
         self.host.drag_nodes({})
         if places:
             layer = self.host.session.place.layer
-            text = "Move node" if len(places) == 1 else f"Move {len(places)} nodes"
+            text = tr("Move node") if len(places) == 1 else tr("Move {places} nodes", places=len(places))
             self.host.document.edit(text, lambda p: manual_edits.move_nodes(p, layer, places))
 
     def cancel(self, reason: Reason) -> None:
@@ -139,7 +140,7 @@ class DrawLink(PressDrag):
 
     def _tell(self) -> str:
         count = len(self.sources) * len(self.targets)
-        return f"{count} links at once" if self.target and count > 1 else ""
+        return tr("{count} links at once", count=count) if self.target and count > 1 else ""
 
     def finish(self, at: QPointF) -> None:
         self.update(at)
@@ -153,7 +154,7 @@ class DrawLink(PressDrag):
         elif self.target:
             self.host.add_links(self.sources, self.targets)
         else:
-            self.host.refuse("let a link go on a state")
+            self.host.refuse(tr("let a link go on a state"))
 
     def cancel(self, reason: Reason) -> None:
         self.host.show_link("", QPointF(), "")

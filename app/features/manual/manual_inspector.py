@@ -27,9 +27,11 @@ from app.features.manual.alias_page import AliasPage
 from app.features.manual.exit_row import ExitRow
 from app.features.manual.manual_canvas import ManualCanvas
 from app.features.manual.manual_mask import StateMask
+from app.look.domain_words import LAYER_LONG_TITLES
 from app.look.plural import many
 from app.look.theme import theme
 from app.stage.performance import Performance
+from app.translation import tr
 from app.widgets.choice_row import LimbRow
 from app.widgets.form_fields import MIXED, Chooser, Field, Mixed, Seconds, common
 from app.widgets.making import make_widget
@@ -38,7 +40,7 @@ from metagraph.graph.manual import Link, State
 from metagraph.graph.model import LIMBS, Project
 from metagraph.playback.manual_playback import action_of
 
-WHEN = (("when its source has finished", "finished"), ("on request", "request"))
+WHEN = ((tr("when its source has finished"), "finished"), (tr("on request"), "request"))
 
 
 class Inspector(QScrollArea):
@@ -86,13 +88,13 @@ class Inspector(QScrollArea):
         self.words.setProperty("dim", True)
         box.addWidget(self.title)
         box.addWidget(self.words)
-        self.start = Chooser(page, toolTip="The state this layer begins in")
+        self.start = Chooser(page, toolTip=tr("The state this layer begins in"))
         self.start.activated.connect(
-            lambda n: self._try("Start here", lambda p: manual_edits.set_start(p, self.start.itemData(n)))
+            lambda n: self._try(tr("Start here"), lambda p: manual_edits.set_start(p, self.start.itemData(n)))
         )
-        form.addRow("Begins in", self.start)
+        form.addRow(tr("Begins in"), self.start)
         box.addLayout(form)
-        self.triggers_title = QLabel("Triggers: click to fire one now", page)
+        self.triggers_title = QLabel(tr("Triggers: click to fire one now"), page)
         self.triggers_title.setProperty("dim", True)
         box.addWidget(self.triggers_title)
         self.triggers = QVBoxLayout()
@@ -104,39 +106,44 @@ class Inspector(QScrollArea):
 
     def _state_page(self) -> QWidget:
         page, box, form = self._page()
-        self.name = Field(page, "Name of the state", "Name")
+        self.name = Field(page, tr("Name of the state"), tr("Name"))
         self.name.editingFinished.connect(self._rename)
         box.addWidget(self.name)
         self.clip = QLabel(page, wordWrap=True)
         self.clip.setProperty("dim", True)
         box.addWidget(self.clip)
         box.addLayout(form)
-        self.loop = QCheckBox("plays over and over", page)
-        self.loop.setToolTip("Otherwise it holds its last frame")
+        self.loop = QCheckBox(tr("plays over and over"), page)
+        self.loop.setToolTip(tr("Otherwise it holds its last frame"))
         self.loop.clicked.connect(
-            lambda: self._state("Change loop", loop=self.loop.checkState() != Qt.CheckState.Unchecked)
+            lambda: self._state(tr("Change loop"), loop=self.loop.checkState() != Qt.CheckState.Unchecked)
         )
-        form.addRow("Loop", self.loop)
-        self.first, self.last = Seconds(page, "Start in the clip"), Seconds(page, "End in the clip")
+        form.addRow(tr("Loop"), self.loop)
+        self.first, self.last = Seconds(page, tr("Start in the clip")), Seconds(page, tr("End in the clip"))
         self.first.valueChanged.connect(lambda v: self._trim("start", v))
         self.last.valueChanged.connect(lambda v: self._trim("end", v))
-        form.addRow("Start, end", _row(page, self.first, self.last))
-        self.limb = LimbRow(page, "base pose")
-        self.limb.chosen.connect(lambda n: self._state("Change limb", limb=LIMBS[n]))
-        form.addRow("Limb", self.limb)
-        self.joints = make_widget(QPushButton, page, toolTip="Let it move only some joints")
+        form.addRow(tr("Start, end"), _row(page, self.first, self.last))
+        self.limb = LimbRow(page, tr("base pose"))
+        self.limb.chosen.connect(lambda n: self._state(tr("Change limb"), limb=LIMBS[n]))
+        form.addRow(tr("Limb"), self.limb)
+        self.joints = make_widget(QPushButton, page, toolTip=tr("Let it move only some joints"))
         self.joints.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.joints.clicked.connect(lambda: StateMask(self.document, self.session, self).open())
-        form.addRow("Joints", self.joints)
+        form.addRow(tr("Joints"), self.joints)
         self.layer = QLabel(page)
-        form.addRow("Layer", self.layer)
-        self.begin = make_widget(QPushButton, "Start here", page, toolTip="Let the layer begin in this state")
+        form.addRow(tr("Layer"), self.layer)
+        self.begin = make_widget(
+            QPushButton, tr("Start here"), page, toolTip=tr("Let the layer begin in this state")
+        )
         self.begin.clicked.connect(lambda: commands.start_here(self.canvas, self.session.selection.states[0]))
-        self.alone = QPushButton("Play alone", page)
+        self.alone = QPushButton(tr("Play alone"), page)
         self.alone.clicked.connect(lambda: self.session.show_context(self.session.selection.states[0]))
         box.addWidget(_row(page, self.begin, self.alone))
         self.group = make_widget(
-            QPushButton, "Make alias", page, toolTip="One node that stands for all that is selected (Ctrl+G)"
+            QPushButton,
+            tr("Make alias"),
+            page,
+            toolTip=tr("One node that stands for all that is selected (Ctrl+G)"),
         )
         self.group.clicked.connect(lambda: manual_many.make_alias(self.canvas))
         box.addWidget(self.group)
@@ -151,48 +158,50 @@ class Inspector(QScrollArea):
         self.ends.setProperty("title", True)
         box.addWidget(self.ends)
         box.addLayout(form)
-        self.when = Chooser(page, toolTip="When the link is taken")
-        self.when.activated.connect(lambda n: self._link("Change condition", condition={"when": WHEN[n][1]}))
-        form.addRow("Taken", self.when)
-        self.trigger = Field(page, "What is fired to take it", "Trigger")
+        self.when = Chooser(page, toolTip=tr("When the link is taken"))
+        self.when.activated.connect(
+            lambda n: self._link(tr("Change condition"), condition={"when": WHEN[n][1]})
+        )
+        form.addRow(tr("Taken"), self.when)
+        self.trigger = Field(page, tr("What is fired to take it"), tr("Trigger"))
         self.trigger.editingFinished.connect(self._retrigger)
-        form.addRow("Trigger", self.trigger)
+        form.addRow(tr("Trigger"), self.trigger)
         self.weight = Seconds(
             page,
-            "Weight against the other links taken when the source has finished; 1 is usual",
+            tr("Weight against the other links taken when the source has finished; 1 is usual"),
             1000,
             "",
             0.1,
         )
         self.weight.valueChanged.connect(self._weigh)
-        form.addRow("Weight", self.weight)
+        form.addRow(tr("Weight"), self.weight)
         self.exit = ExitRow(page)
         self.exit.chosen.connect(self._leave)
-        self.exit.timed.connect(lambda v: self._number("Change exit time", "exit_time", v))
-        self.exit.shared.connect(lambda v: self._number("Change exit time", "exit_part", v))
-        form.addRow("Exit", self.exit)
-        self.blend = Seconds(page, "Blend: seconds in which the target takes over")
-        self.blend.valueChanged.connect(lambda v: self._number("Change blend", "blend", v))
-        form.addRow("Blend", self.blend)
+        self.exit.timed.connect(lambda v: self._number(tr("Change exit time"), "exit_time", v))
+        self.exit.shared.connect(lambda v: self._number(tr("Change exit time"), "exit_part", v))
+        form.addRow(tr("Exit"), self.exit)
+        self.blend = Seconds(page, tr("Blend: seconds in which the target takes over"))
+        self.blend.valueChanged.connect(lambda v: self._number(tr("Change blend"), "blend", v))
+        form.addRow(tr("Blend"), self.blend)
         self.form = form
-        self.fire = make_widget(QPushButton, "Fire", page, toolTip="Fire its trigger now")
+        self.fire = make_widget(QPushButton, tr("Fire"), page, toolTip=tr("Fire its trigger now"))
         self.fire.clicked.connect(self._fire)
         self.play = make_widget(
             QPushButton,
-            "Play link",
+            tr("Play link"),
             page,
-            toolTip="Play its source's end, the blend, and its target's beginning",
+            toolTip=tr("Play its source's end, the blend, and its target's beginning"),
         )
         self.play.clicked.connect(lambda: self.session.show_context(self.session.selection.links[0]))
         box.addWidget(_row(page, self.fire, self.play))
         self.copy = make_widget(
             QPushButton,
-            "Copy",
+            tr("Copy"),
             page,
-            toolTip="Copy links: their settings for other links, or all of them for other states",
+            toolTip=tr("Copy links: their settings for other links, or all of them for other states"),
         )
         self.copy.clicked.connect(self._copy)
-        self.paste = QPushButton("Paste settings", page)
+        self.paste = QPushButton(tr("Paste settings"), page)
         self.paste.clicked.connect(lambda: commands.paste(self.canvas))
         box.addWidget(_row(page, self.copy, self.paste))
         self.group.setFocusPolicy(Qt.FocusPolicy.TabFocus)
@@ -241,13 +250,17 @@ class Inspector(QScrollArea):
 
     def _show_machine(self) -> None:
         manual = self.canvas.scene().manual
-        self.title.setText(f"{self.session.place.layer.capitalize()} layer")
+        self.title.setText(LAYER_LONG_TITLES[self.session.place.layer])
         self.words.setText(
-            f"{many(len(manual.states), 'state')}, {many(len(manual.links), 'link')} for "
-            f"{many(len(manual.ways), 'connection')}. Select one to change it, or many to change all."
+            tr(
+                "{states}, {links} for {ways}. Select one to change it, or many to change all.",
+                states=many(len(manual.states), "state"),
+                links=many(len(manual.links), "link"),
+                ways=many(len(manual.ways), "connection"),
+            )
         )
         self.start.show_entries(
-            [(s.name, s.id) for s in manual.states.values()], manual.start, "no state yet"
+            [(s.name, s.id) for s in manual.states.values()], manual.start, tr("no state yet")
         )
         self.start.setEnabled(bool(manual.states))
         self.triggers_title.setVisible(bool(manual.triggers))
@@ -268,10 +281,13 @@ class Inspector(QScrollArea):
         self.name.setEnabled(one)
         self.name.show_text(first.name if one else many(len(states), "state"), tuple(s.id for s in states))
         clips = {
-            project.clips[s.clip].name if s.clip in project.clips else "a clip that is gone" for s in states
+            project.clips[s.clip].name if s.clip in project.clips else tr("a clip that is gone")
+            for s in states
         }
         self.clip.setText(
-            f"plays {next(iter(clips))}" if len(clips) == 1 else f"play {many(len(clips), 'clip')}"
+            tr("plays {clip}", clip=next(iter(clips)))
+            if len(clips) == 1
+            else tr("play {clips}", clips=many(len(clips), "clip"))
         )
         loop = common([s.loop for s in states])
         self.loop.setTristate(loop is Mixed)
@@ -281,19 +297,22 @@ class Inspector(QScrollArea):
         self.last.show_value(common([round(b, 4) for _, b in spans]))
         self.limb.show_limb(common([s.limb for s in states]))
         joints = common([s.joints for s in states])
-        self.joints.setText(MIXED if joints is Mixed else f"{len(joints)} joints…" if joints else "All…")
+        self.joints.setText(
+            MIXED if joints is Mixed else tr("{joints} joints…", joints=len(joints)) if joints else tr("All…")
+        )
         self.joints.setEnabled(project.skeleton is not None)
-        self.layer.setText(first.layer)
+        self.layer.setText(tr(first.layer))
         start = self.canvas.scene().manual.start
         self.begin.setEnabled(one and start != first.id)
-        self.begin.setText("Starts here" if one and start == first.id else "Start here")
+        self.begin.setText(tr("Starts here") if one and start == first.id else tr("Start here"))
         self.alone.setEnabled(one)
         self._trouble(self.state_trouble, [s.id for s in states])
 
     def _show_links(self, links: list[Link]) -> None:
         project, one = self.document.project, len(links) == 1
         source, target = (project.state(i) or project.alias(i) for i in (links[0].source, links[0].target))
-        names = f"{escape(source.name) if source else 'Any state'} → {escape(target.name) if target else '?'}"
+        begins = escape(source.name) if source else tr("Any state")
+        names = f"{begins} → {escape(target.name) if target else '?'}"
         self.ends.setText(names if one else many(len(links), "link"))
         when = common([x.condition.when for x in links])
         self.when.show_entries(WHEN, None if when is Mixed else when, MIXED)
@@ -333,7 +352,7 @@ class Inspector(QScrollArea):
         states = self.states()
         name = " ".join(self.name.text().split())
         if len(states) == 1 and name != states[0].name:
-            self._state("Rename state", name=name)
+            self._state(tr("Rename state"), name=name)
 
     def _trim(self, field: str, value: float) -> None:
         chosen = self.session.selection.states
@@ -355,18 +374,18 @@ class Inspector(QScrollArea):
             return project
 
         if value >= 0:
-            self._try("Trim", edit)
+            self._try(tr("Trim"), edit)
         self.show_selection()  # what was out of the clip was clamped
 
     def _retrigger(self) -> None:
         links, words = self.links(), self.trigger.text()
         mixed = bool(links) and common([x.condition.trigger for x in links]) is Mixed
         if links and not (mixed and words == MIXED) and any(x.condition.trigger != words for x in links):
-            self._link("Change trigger", condition={"trigger": words})
+            self._link(tr("Change trigger"), condition={"trigger": words})
 
     def _weigh(self, value: float) -> None:
         if value > 0:
-            self._link("Change weight", condition={"weight": round(value, 3)})
+            self._link(tr("Change weight"), condition={"weight": round(value, 3)})
         else:
             self.show_selection()
 
@@ -390,7 +409,7 @@ class Inspector(QScrollArea):
                 project = manual_edits.update_links(project, [ident], exit_time=at, exit_part=None)
             return project
 
-        self._try("Change exit time", edit)
+        self._try(tr("Change exit time"), edit)
         self.show_selection()
 
     def _copy(self) -> None:

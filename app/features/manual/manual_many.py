@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QApplication, QFileDialog, QWidget
 
 from app.features.manual.manual_host import ManualHost
 from app.look.plural import many
+from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.formats import manual_table
 from metagraph.formats.clips import is_face_recording
@@ -15,7 +16,7 @@ from metagraph.graph import manual_groups
 from metagraph.graph.manual import Link
 from metagraph.graph.model import Project
 
-TABLES = "Tables (*.csv *.tsv *.txt)"
+TABLES = tr("Tables (*.csv *.tsv *.txt)")
 SUFFIXES = (".csv", ".tsv")
 
 
@@ -28,7 +29,7 @@ def make_alias(canvas: ManualHost, every: bool = False) -> None:
     """Make an alias of the selected states, or of every state, and select it."""
     layer, chosen = canvas.session.place.layer, canvas.session.selection.states
     before = set(canvas.scene().manual.aliases)
-    words = "Make alias of every state" if every else "Make alias"
+    words = tr("Make alias of every state") if every else tr("Make alias")
     if canvas.do(words, lambda p: manual_groups.add_alias(p, layer, chosen, every)):
         canvas.session.selection.select_states(
             tuple(i for i in canvas.scene().manual.aliases if i not in before)
@@ -43,7 +44,7 @@ def select_members(canvas: ManualHost, alias: str) -> None:
 def choose(canvas: ManualHost, alias: str, states: tuple[str, ...], on: bool = True) -> None:
     """Let an alias stand for states as well, or no longer; they stay selected."""
     kept = canvas.session.selection.states
-    words = "Add to alias" if on else "Take from alias"
+    words = tr("Add to alias") if on else tr("Take from alias")
     if canvas.do(words, lambda p: manual_groups.choose(p, alias, states, on)):
         canvas.session.selection.select_states(kept)
 
@@ -55,13 +56,15 @@ def select_links(canvas: ManualHost, into: bool) -> None:
     if found:
         canvas.session.selection.select_states((), found)
     else:
-        canvas.refuse(f"no link {'leads to' if into else 'leaves'} what is selected")
+        canvas.refuse(
+            tr("no link leads to what is selected") if into else tr("no link leaves what is selected")
+        )
 
 
 def paste_links(canvas: ManualHost, links: tuple[Link, ...]) -> None:
     """Draw copied links for the selected states instead."""
     layer, nodes = canvas.session.place.layer, canvas.session.selection.states
-    canvas.do_links("Paste links", lambda p: manual_groups.paste_links(p, layer, links, nodes))
+    canvas.do_links(tr("Paste links"), lambda p: manual_groups.paste_links(p, layer, links, nodes))
 
 
 # --- tables
@@ -82,9 +85,15 @@ def paste_table(canvas: ManualHost) -> None:
     try:
         rows = manual_table.rows_of(QApplication.clipboard().text())
     except ValueError as error:
-        canvas.refuse(f"What was copied is no table of links: {error}. {manual_table.REMEDY}")
+        canvas.refuse(
+            tr(
+                "What was copied is no table of links: {error}. {remedy}",
+                error=error,
+                remedy=manual_table.REMEDY,
+            )
+        )
         return
-    _fill(canvas, rows, "the clipboard")
+    _fill(canvas, rows, tr("the clipboard"))
 
 
 def has_table() -> bool:
@@ -99,7 +108,7 @@ def copy_table(canvas: ManualHost) -> None:
 
 
 def choose_table(canvas: ManualHost, parent: QWidget, start: str) -> None:
-    name, _ = QFileDialog.getOpenFileName(parent, "Import links from a table", start, TABLES)
+    name, _ = QFileDialog.getOpenFileName(parent, tr("Import links from a table"), start, TABLES)
     if name:
         import_table(canvas, Path(name))
 
@@ -112,16 +121,16 @@ def _fill(canvas: ManualHost, rows: list[manual_table.Row], name: str) -> None:
         told[:] = [manual_table.filled(project, layer, rows)]
         return told[0].project
 
-    canvas.do_links(f"Import links from {name}", edit)
+    canvas.do_links(tr("Import links from {name}", name=name), edit)
     for out in told:
         canvas.refuse(words(out, name))
 
 
 def words(out: manual_table.Filled, name: str) -> str:
     """Say what came of a table, and of its rows that could not be read the first."""
-    said = f"{many(out.links, 'link')} drawn from {name}"
+    said = tr("{links} drawn from {name}", links=many(out.links, "link"), name=name)
     if out.changed:
-        said += f", {out.changed:,} changed"
+        said += tr(", {changed:,} changed", changed=out.changed)
     if out.problems:
-        said += f"; {many(len(out.problems), 'row')} left out: {out.problems[0]}"
+        said += tr("; {rows} left out: {first}", rows=many(len(out.problems), "row"), first=out.problems[0])
     return said

@@ -7,6 +7,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.project.document import Document
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.joint_mask import MaskDialog
 from metagraph.graph import manual_edits
 
@@ -16,7 +17,7 @@ class StateMask(MaskDialog):
 
     def __init__(self, document: Document, session: Session, parent: QWidget) -> None:
         super().__init__(document, session, parent)
-        self.setWindowTitle("Joints the state moves")
+        self.setWindowTitle(tr("Joints the state moves"))
         first = document.project.state(session.selection.states[0])
         masked = set(first.joints) if first is not None else set()
         self.tree.blockSignals(True)
@@ -29,7 +30,9 @@ class StateMask(MaskDialog):
     def accept(self) -> None:
         joints, chosen = self.joints(), self.session.selection.states
         if not joints and any(i.checkState(0) == Qt.CheckState.Unchecked for i in self.items.values()):
-            self.document.failed.emit("A state must move at least one joint.")
+            self.document.failed.emit(tr("A state must move at least one joint."))
             return
-        self.document.edit("Change joints", lambda p: manual_edits.update_states(p, chosen, joints=joints))
+        self.document.edit(
+            tr("Change joints"), lambda p: manual_edits.update_states(p, chosen, joints=joints)
+        )
         self.done(self.DialogCode.Accepted)

@@ -11,11 +11,12 @@ from PySide6.QtGui import QColor, QPainter, QPen
 from app.features.manual import manual_painter as painter
 from app.features.manual.manual_scene import ManualHit
 from app.stage.playback_source import Shown
+from app.translation import tr
 from metagraph.graph.model import Layer
 from metagraph.playback.manual_playback import clip_seconds
 
 TOLD = 8  # selected links, up to which each tells what it waits for
-EMPTY = "Drop clips here to make states. Drag from a state's border to draw a link."
+EMPTY = tr("Drop clips here to make states. Drag from a state's border to draw a link.")
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,9 @@ from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen, QPixmap, QPolygonF
 
 from app.features.manual.manual_scene import LOOP, ManualScene, ManualView
+from app.look.plural import many
 from app.look.theme import Theme
+from app.translation import tr
 from metagraph.graph.manual import ANY, Alias, Link, State
 from metagraph.graph.model import Project
 
@@ -182,7 +184,7 @@ def words_of(link: Link) -> str:
     """Say in a few words when a link is taken."""
     at = f"{link.exit_time:g} s" if link.exit_time is not None else ""
     if not at and link.exit_part is not None and (link.exit_part < 1 or link.condition.when == "request"):
-        at = "at the end" if link.exit_part >= 1 else f"at {link.exit_part * 100:g} %"
+        at = tr("at the end") if link.exit_part >= 1 else tr("at {part:g} %", part=link.exit_part * 100)
     return f"{link.condition.trigger}  {at}".strip() if link.condition.when == "request" else at
 
 
@@ -238,7 +240,9 @@ def paint_node(
         if view.scale >= TINY:
             painter.setFont(_font(look.font.toString(), max(9.5, 13 * view.scale), True))
             painter.setPen(QColor(t.dim))
-            painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, "Any state" if view.scale > 0.5 else "Any")
+            painter.drawText(
+                rect, Qt.AlignmentFlag.AlignCenter, tr("Any state") if view.scale > 0.5 else tr("Any")
+            )
         return
     if ident in look.scene.manual.aliases:
         paint_alias(painter, look, look.scene.manual.aliases[ident], rect)
@@ -277,9 +281,9 @@ def paint_alias(painter: QPainter, look: ManualLook, alias: Alias, rect: QRectF)
         return
     room = 14 * scale if scale >= SMALL else 3
     inner = rect.adjusted(room, 0, -room, 0)
-    words = "every state" if alias.every else f"{count} state{'' if count == 1 else 's'}"
+    words = tr("every state") if alias.every else many(count, "state")
     if alias.entry is not None:
-        words += f", enters {look.scene.manual.states[alias.entry].name}"
+        words += tr(", enters {name}", name=look.scene.manual.states[alias.entry].name)
     lines = [(alias.name, max(9.5, 12 * scale), True, t.text)]
     if scale >= SMALL:
         lines.append((words, max(9.0, 11 * scale), False, t.dim))
@@ -368,9 +372,9 @@ def facts(project: Project, state: State) -> str:
     if state.loop:
         words.insert(0, "↻")
     if state.limb != "both":
-        words.append(state.limb)
+        words.append(tr(state.limb))
     if state.joints:
-        words.append(f"{len(state.joints)} joints")
+        words.append(tr("{joints} joints", joints=len(state.joints)))
     return "  ".join(words)
 
 

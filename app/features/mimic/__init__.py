@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -19,9 +20,9 @@ def contribute(shell: Shell) -> Contribution:
                 "mimic",
                 "&Play",
                 "live",
-                "Mimic &keypoints…",
+                tr("Mimic &keypoints…"),
                 mimic,
-                tip="Let the character do as a person before a camera did",
+                tip=tr("Let the character do as a person before a camera did"),
                 enabled=can,
                 when="meta",
             ),

@@ -26,6 +26,7 @@ from PySide6.QtWidgets import (
 from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.jobs import Job
+from app.translation import tr
 from metagraph.formats.keypoints import read_keypoints
 from metagraph.graph import performance_edits
 from metagraph.graph.model import LAYERS, Project
@@ -36,7 +37,7 @@ from metagraph.mimicry.performing import REST, Mimicry, mimic_performance, place
 if TYPE_CHECKING:
     from app.shell.context import Shell
 
-FILTER = "Keypoints of OpenPose or MediaPipe (*.json *.jsonl);;All files (*)"
+FILTER = tr("Keypoints of OpenPose or MediaPipe (*.json *.jsonl);;All files (*)")
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "keypoints" / "conversation.openpose.json"
 _NUMBERED = re.compile(r"_\d+_keypoints\.json$", re.I)
 
@@ -50,10 +51,10 @@ class MimicDialog(QDialog):
         super().__init__(shell.widget)
         self.shell, self.keypoints, self.name = shell, keypoints, name
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle("Mimic keypoints")
+        self.setWindowTitle(tr("Mimic keypoints"))
         self.setMinimumWidth(480)
         layout = QVBoxLayout(self)
-        deep = "with depth" if keypoints.dims == 3 else "without depth"
+        deep = tr("with depth") if keypoints.dims == 3 else tr("without depth")
         facts = QLabel(f"{name}: {many(len(keypoints), 'frame')}, {keypoints.seconds:.1f} s, {deep}", self)
         facts.setWordWrap(True)
         layout.addWidget(facts)
@@ -62,14 +63,20 @@ class MimicDialog(QDialog):
         form = QFormLayout()
         layout.addLayout(form)
         self.mirror = self._box(
-            "As in a mirror",
-            "The character moves its right where the person moves the left, as somebody face to face does",
+            tr("As in a mirror"),
+            tr(
+                "The character moves its right where the person moves the left, as somebody face to face does"
+            ),
             True,
         )
-        form.addRow("Sides", self.mirror)
+        form.addRow(tr("Sides"), self.mirror)
         row = QHBoxLayout()
         self.layers = {
-            layer: self._box(layer.capitalize(), f"The {layer} goes to the stances the person is in", True)
+            layer: self._box(
+                tr(layer.capitalize()),
+                tr("The {layer} goes to the stances the person is in", layer=tr(layer)),
+                True,
+            )
             for layer in LAYERS
         }
         project = shell.document.project
@@ -79,23 +86,25 @@ class MimicDialog(QDialog):
             box.toggled.connect(lambda _: self._changed())
             row.addWidget(box)
         row.addStretch(1)
-        form.addRow("Layers", row)
+        form.addRow(tr("Layers"), row)
         self.gaze = self._box(
-            "Look where the person looks", "The character looks where the person's head is turned", False
+            tr("Look where the person looks"),
+            tr("The character looks where the person's head is turned"),
+            False,
         )
-        form.addRow("Gaze", self.gaze)
+        form.addRow(tr("Gaze"), self.gaze)
         kept = shell.stage.performance.requests.kept
         into = (
-            f"What is seen is added to '{kept.name}'."
+            tr("What is seen is added to '{name}'. Gestures and fidgets go on as they do.", name=kept.name)
             if kept is not None
-            else "What is seen becomes a new performance."
+            else tr("What is seen becomes a new performance. Gestures and fidgets go on as they do.")
         )
-        layout.addWidget(self._dim(f"{into} Gestures and fidgets go on as they do."))
+        layout.addWidget(self._dim(into))
         if keypoints.dims == 2:
-            layout.addWidget(self._dim("Without depth, leaning towards the camera is not seen."))
+            layout.addWidget(self._dim(tr("Without depth, leaning towards the camera is not seen.")))
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
         buttons.button(QDialogButtonBox.StandardButton.Cancel).setIcon(QIcon())
-        self.go = QPushButton("Mimic", self)
+        self.go = QPushButton(tr("Mimic"), self)
         strengthen(self.go)
         buttons.addButton(self.go, QDialogButtonBox.ButtonRole.AcceptRole)
         self.go.setDefault(True)
@@ -135,15 +144,15 @@ class MimicDialog(QDialog):
             return mimic_performance(project, keypoints, mirror, layers, gaze, into, tell)
 
         def failed(error: Exception) -> None:
-            QMessageBox.warning(shell.widget, "Not mimicked", str(error))
+            QMessageBox.warning(shell.widget, tr("Not mimicked"), str(error))
 
         def done(found: Mimicry) -> None:
             if shell.document.project.skeleton is project.skeleton:
                 _taken(shell, found, stage if kept is not None else None)
             else:
-                shell.tell("What was seen was dropped, since another project was opened.")
+                shell.tell(tr("What was seen was dropped, since another project was opened."))
 
-        shell.jobs.start(f"Mimicking {name}", work, done, failed)
+        shell.jobs.start(tr("Mimicking {name}", name=name), work, done, failed)
         super().accept()
 
 
@@ -164,12 +173,17 @@ def _taken(shell: Shell, found: Mimicry, stage: str | None) -> None:
         return project
 
     if not found.sightings:
-        shell.tell("No stance of the project was made out in the keypoints.")
+        shell.tell(tr("No stance of the project was made out in the keypoints."))
         return
-    shell.document.edit("Mimic keypoints", edit)
+    shell.document.edit(tr("Mimic keypoints"), edit)
     shell.stage.session.onstage.set_performance(made)
     shell.stage.session.transport.show_plan()
-    shell.tell(f"Saw {many(len(found.sightings), 'stance')}: the requests are in the performance below.")
+    shell.tell(
+        tr(
+            "Saw {stances}: the requests are in the performance below.",
+            stances=many(len(found.sightings), "stance"),
+        )
+    )
 
 
 def recording_of(file: Path) -> Path:
@@ -186,7 +200,7 @@ def open_keypoints(shell: Shell, path: str | Path | None = None) -> None:
     """Ask for keypoints (or take `path`), read them on a thread and open the dialog."""
     if not path:
         start = str(QSettings().value("mimic/folder") or shell.document.folder or Path.home())
-        path, _ = QFileDialog.getOpenFileName(shell.widget, "Mimic keypoints", start, FILTER)
+        path, _ = QFileDialog.getOpenFileName(shell.widget, tr("Mimic keypoints"), start, FILTER)
         if not path:
             return
         QSettings().setValue("mimic/folder", str(Path(path).parent))
@@ -196,6 +210,6 @@ def open_keypoints(shell: Shell, path: str | Path | None = None) -> None:
         MimicDialog(shell, keypoints, file.name).open()
 
     def failed(error: Exception) -> None:
-        QMessageBox.warning(shell.widget, "Not read", str(error))
+        QMessageBox.warning(shell.widget, tr("Not read"), str(error))
 
-    shell.jobs.start(f"Reading {file.name}", lambda _: read_keypoints(file), show, failed)
+    shell.jobs.start(tr("Reading {name}", name=file.name), lambda _: read_keypoints(file), show, failed)

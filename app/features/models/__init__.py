@@ -12,6 +12,7 @@ from app.project.importing import FileDrop
 from app.project.load import ANNOTATIONS
 from app.shell.actions import Command
 from app.shell.context import Contribution, Panel, Shell
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -38,7 +39,7 @@ def contribute(shell: Shell) -> Contribution:
         panels=(
             Panel(
                 "models",
-                "Models",
+                tr("Models"),
                 "bottom",
                 make,
                 study=False,
@@ -50,9 +51,9 @@ def contribute(shell: Shell) -> Contribution:
                 "annotate",
                 "&File",
                 "import",
-                "Import &annotation…",
+                tr("Import &annotation…"),
                 annotate,
-                tip="Learn from an ELAN file what follows what",
+                tip=tr("Learn from an ELAN file what follows what"),
                 when="meta",
             ),
         ),

@@ -29,11 +29,12 @@ from PySide6.QtWidgets import (
 )
 
 from app.features.models.meaning_choices import ChoiceTable, Entries, MeaningRow
-from app.look.plural import many
+from app.look.plural import listed, many
 from app.look.theme import KIND_MARKS, strengthen, theme
 from app.project.annotation_reading import Reading, begin, into, told
 from app.project.document import Document
 from app.stage.session import Session
+from app.translation import tr, tr_noop
 from app.widgets.act_strip import Strip, clock
 from app.widgets.form_fields import Seconds
 from app.widgets.making import make_widget
@@ -46,28 +47,38 @@ if TYPE_CHECKING:
     from app.shell.context import Shell
 
 SAMPLE = Path(__file__).resolve().parents[3] / "sample_clips" / "annotation" / "conversation.eaf"
-FILTER = "ELAN annotations (*.eaf);;All files (*)"
+FILTER = tr("ELAN annotations (*.eaf);;All files (*)")
 MOST = 1000  # labels that can be said otherwise; those beyond are rare
 REMEMBERED = 400  # tiers and labels that are kept for the next project
 WORTH = 10  # acts from which a model is learned unless said otherwise
 OTHER = "other"
-LEGEND = (("gesture", "gesture"), ("fidget", "fidget"), ("transition", "change of stance"))
+LEGEND = (("gesture", tr("gesture")), ("fidget", tr("fidget")), ("transition", tr("change of stance")))
 ROLE_TIPS = {
-    "left arm": "What the left arm does: gestures, fidgets, changes of stance",
-    "right arm": "What the right arm does: gestures, fidgets, changes of stance",
-    "arms": "Gestures of one or both arms that the annotation does not tell apart",
-    "head action": "Nods, shakes and the like",
-    "head stance": "How the head is held, or changes between that",
-    "body": "How body, legs and spine stand, or changes between that",
-    "speech": "When the one who is watched speaks: the models learn what is done talking, listening and idle",
-    "partner's speech": "When the other speaks",
+    "left arm": tr("What the left arm does: gestures, fidgets, changes of stance"),
+    "right arm": tr("What the right arm does: gestures, fidgets, changes of stance"),
+    "arms": tr("Gestures of one or both arms that the annotation does not tell apart"),
+    "head action": tr("Nods, shakes and the like"),
+    "head stance": tr("How the head is held, or changes between that"),
+    "body": tr("How body, legs and spine stand, or changes between that"),
+    "speech": tr(
+        "When the one who is watched speaks: the models learn what is done talking, listening and idle"
+    ),
+    "partner's speech": tr("When the other speaks"),
 }
+ROLE_TITLES = (
+    tr_noop("Left arm"),
+    tr_noop("Right arm"),
+    tr_noop("Head action"),
+    tr_noop("Head stance"),
+    tr_noop("Partner's speech"),
+    tr_noop("Ignore"),
+)  # beside layers, as they are shown
 ROLE_ENTRIES: Entries = [
-    (role.capitalize(), role, ROLE_TIPS.get(role, "")) for role in (*ROLES, *SPEECH, IGNORE)
+    (tr(role.capitalize()), role, ROLE_TIPS.get(role, "")) for role in (*ROLES, *SPEECH, IGNORE)
 ]
 MEANING_TIPS = {
-    "stance": "The label names the stance that is held: where another begins, the stance changes",
-    **dict.fromkeys(PHASES, "A phase of a gesture: phases that follow each other are one gesture"),
+    "stance": tr("The label names the stance that is held: where another begins, the stance changes"),
+    **dict.fromkeys(PHASES, tr("A phase of a gesture: phases that follow each other are one gesture")),
 }
 
 
@@ -91,9 +102,9 @@ def meaning_entries(meaning: str) -> list[tuple[str, object, str]]:
     out.insert(
         -1,
         (
-            "With other tags…",
+            tr("With other tags…"),
             OTHER,
-            "A gesture with tags of your own; actions of the graph need the same tags",
+            tr("A gesture with tags of your own; actions of the graph need the same tags"),
         ),
     )
     return out
@@ -102,10 +113,10 @@ def meaning_entries(meaning: str) -> list[tuple[str, object, str]]:
 def meaning_words(meaning: str) -> str:
     first, tags = parted(meaning)
     if first == IGNORE:
-        return "Ignore"
+        return tr("Ignore")
     mark = KIND_MARKS["gesture" if first in PHASES else first]
-    words = {"transition": "change of stance", "stance": "stance held"}.get(first, first)
-    return f"{mark} {', '.join((words, *tags))}"
+    words = {"transition": tr("change of stance"), "stance": tr("stance held")}.get(first) or tr(first)
+    return f"{mark} {', '.join((words, *map(tr, tags)))}"
 
 
 class AnnotateDialog(QDialog):
@@ -124,7 +135,7 @@ class AnnotateDialog(QDialog):
             key=lambda t: (*SPEECH, IGNORE).count(reading.roles[t.name]) + (reading.roles[t.name] == IGNORE),
         )  # those that are read first
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle("Import annotation")
+        self.setWindowTitle(tr("Import annotation"))
         self.resize(1040, 780)
         self._build(annotation)
         self._show_tiers()
@@ -146,8 +157,11 @@ class AnnotateDialog(QDialog):
         ]
         if len(people) > 1:
             facts.append(
-                f"{len(people)} people, {' and '.join(read) or 'none'} of them read: another's tiers can be "
-                "chosen instead"
+                tr(
+                    "{people} people, {names} of them read: another's tiers can be chosen instead",
+                    people=len(people),
+                    names=listed(read) or tr("none"),
+                )
             )
         title = QLabel(self.name, self)
         title.setProperty("title", True)
@@ -159,14 +173,14 @@ class AnnotateDialog(QDialog):
         tables.setSpacing(18)
         self.tiers = self._table(
             tables,
-            "What the tiers stand for",
-            ("Tier", "Intervals", "Read as"),
+            tr("What the tiers stand for"),
+            (tr("Tier"), tr("Intervals"), tr("Read as")),
             138,
             5,
             lambda _: ROLE_ENTRIES,
         )
         self.labels = self._table(
-            tables, "What the labels mean", ("Label", "Layer", "Times", "Means"), 188, 6,
+            tables, tr("What the labels mean"), (tr("Label"), tr("Layer"), tr("Times"), tr("Means")), 188, 6,
             lambda row: meaning_entries(self.reading.labels[row].meaning),
         )  # fmt: skip
         self.tiers.chosen.connect(lambda row, role: self._set_role(self.order[row].name, role))
@@ -174,11 +188,11 @@ class AnnotateDialog(QDialog):
         layout.addLayout(tables, 3)
         row = QHBoxLayout()
         row.setSpacing(12)
-        caption = QLabel("What is seen", self)
+        caption = QLabel(tr("What is seen"), self)
         caption.setProperty("title", True)
         row.addWidget(caption)
         marks = "    ".join(f"{KIND_MARKS[kind]} {words}" for kind, words in LEGEND)
-        legend = QLabel(f"{marks}    the left arm above, the right below, both across", self)
+        legend = QLabel(tr("{marks}    the left arm above, the right below, both across", marks=marks), self)
         legend.setProperty("dim", True)
         row.addWidget(legend)
         row.addStretch(1)
@@ -191,7 +205,7 @@ class AnnotateDialog(QDialog):
         layout.addLayout(self._options())
         self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
         self.buttons.button(QDialogButtonBox.StandardButton.Cancel).setIcon(QIcon())
-        self.go = QPushButton("Import", self)
+        self.go = QPushButton(tr("Import"), self)
         strengthen(self.go)
         self.buttons.addButton(self.go, QDialogButtonBox.ButtonRole.AcceptRole)
         self.go.setDefault(True)
@@ -224,13 +238,13 @@ class AnnotateDialog(QDialog):
         form.setVerticalSpacing(8)
         row = QHBoxLayout()
         row.setSpacing(16)
-        self.learn = {layer: QCheckBox(layer.capitalize(), self) for layer in LAYERS}
+        self.learn = {layer: QCheckBox(tr(layer.capitalize()), self) for layer in LAYERS}
         for box in self.learn.values():
             box.toggled.connect(self._enable)
             row.addWidget(box)
         self.smoothing = Seconds(
             self,
-            "Added to every count, so that what was not seen can happen; 0 as in the paper",
+            tr("Added to every count, so that what was not seen can happen; 0 as in the paper"),
             10,
             "",
             0.1,
@@ -238,47 +252,47 @@ class AnnotateDialog(QDialog):
         )
         self.smoothing.show_value(0.0)
         row.addSpacing(12)
-        row.addWidget(QLabel("Smoothing", self))
+        row.addWidget(QLabel(tr("Smoothing"), self))
         row.addWidget(self.smoothing)
         row.addStretch(1)
-        form.addRow("Learn a model of", row)
+        form.addRow(tr("Learn a model of"), row)
         row = QHBoxLayout()
         row.setSpacing(16)
         self.as_shares = make_widget(
             QRadioButton,
-            "shares of all gestures",
+            tr("shares of all gestures"),
             self,
-            toolTip="So many of the gestures are positive, whatever came before",
+            toolTip=tr("So many of the gestures are positive, whatever came before"),
         )
         self.as_states = make_widget(
             QRadioButton,
-            "states of their own",
+            tr("states of their own"),
             self,
-            toolTip="What follows a positive gesture differs from what follows others",
+            toolTip=tr("What follows a positive gesture differs from what follows others"),
         )
         self.as_shares.setChecked(True)
         row.addWidget(self.as_shares)
         row.addWidget(self.as_states)
         row.addStretch(1)
-        form.addRow("Positive and negative are", row)
+        form.addRow(tr("Positive and negative are"), row)
         row = QHBoxLayout()
         row.setSpacing(10)
         self.keep = make_widget(
             QCheckBox,
-            "as a performance called",
+            tr("as a performance called"),
             self,
-            toolTip="Played as it was seen; another seed plays it with other actions",
+            toolTip=tr("Played as it was seen; another seed plays it with other actions"),
         )
         self.keep.setChecked(True)
         self.keep.toggled.connect(self._enable)
         self.called = QLineEdit(Path(self.name).stem, self)
-        self.called.setAccessibleName("Name of the performance")
+        self.called.setAccessibleName(tr("Name of the performance"))
         self.called.setMaximumWidth(280)
         self.called.textChanged.connect(self._enable)
         row.addWidget(self.keep)
         row.addWidget(self.called, 1)
         row.addStretch(1)
-        form.addRow("Keep it", row)
+        form.addRow(tr("Keep it"), row)
         return form
 
     # --- showing
@@ -286,26 +300,28 @@ class AnnotateDialog(QDialog):
     def _show_tiers(self) -> None:
         rows = []
         for tier in self.order:
-            of = f"{tier.name} of {tier.whose}" if tier.whose else tier.name
-            some = ", ".join(x or "(empty)" for x in list(tier.labels)[:6])
+            of = tr("{name} of {whose}", name=tier.name, whose=tier.whose) if tier.whose else tier.name
+            some = ", ".join(x or tr("(empty)") for x in list(tier.labels)[:6])
             role = self.reading.roles[tier.name]
-            tip = f"{of}: {some}" if some else f"{of}: nothing in it"
+            tip = f"{of}: {some}" if some else tr("{of}: nothing in it", of=of)
             rows.append(
-                MeaningRow((tier.name, f"{len(tier.intervals):,}"), role.capitalize(), role == IGNORE, tip)
+                MeaningRow(
+                    (tier.name, f"{len(tier.intervals):,}"), tr(role.capitalize()), role == IGNORE, tip
+                )
             )
-        self.tiers.show_rows(rows, "There is no tier in this annotation.")
+        self.tiers.show_rows(rows, tr("There is no tier in this annotation."))
 
     def _show_labels(self) -> None:
         rows = [
             MeaningRow(
-                (x.text or "(empty)", x.layer, f"{x.count:,}"),
+                (x.text or tr("(empty)"), tr(x.layer), f"{x.count:,}"),
                 meaning_words(x.meaning),
                 x.meaning == IGNORE,
                 x.text,
             )
             for x in self.reading.labels[:MOST]
         ]
-        self.labels.show_rows(rows, "Say what the tiers stand for, then their labels come here.")
+        self.labels.show_rows(rows, tr("Say what the tiers stand for, then their labels come here."))
 
     def _changed(self, first: bool = False) -> None:
         """Show what comes of the tiers and labels as they are read now."""
@@ -316,7 +332,8 @@ class AnnotateDialog(QDialog):
             count = len(seen.get(layer, ()))
             fresh = first or not box.isEnabled()
             box.setEnabled(count > 0)
-            box.setText(f"{layer.capitalize()} ({many(count, 'action')})" if count else layer.capitalize())
+            name = tr(layer.capitalize())
+            box.setText(f"{name} ({many(count, 'action')})" if count else name)
             if fresh or not count:
                 box.setChecked(count >= WORTH)
         tagged = any(act.tags for acts in seen.values() for act in acts)
@@ -345,7 +362,10 @@ class AnnotateDialog(QDialog):
     def _set_meaning(self, label: Label, meaning: str) -> None:
         if meaning == OTHER:
             words, ok = QInputDialog.getText(
-                self, "Tags", f"'{label.text}' is a gesture that is", text=" ".join(parted(label.meaning)[1])
+                self,
+                tr("Tags"),
+                tr("'{label}' is a gesture that is", label=label.text),
+                text=" ".join(parted(label.meaning)[1]),
             )
             meaning = (
                 f"gesture {' '.join(words.replace(',', ' ').casefold().split())}".strip()
@@ -363,7 +383,7 @@ class AnnotateDialog(QDialog):
         made = into(
             self.document.project, self.reading, learned, tagged, name, max(0.0, self.smoothing.value())
         )
-        self.document.edit("Import annotation", lambda _: made.project)
+        self.document.edit(tr("Import annotation"), lambda _: made.project)
         keep("tiers", self.reading.roles)
         keep("labels", made.project.labels)
         if made.performance is not None:
@@ -397,7 +417,7 @@ def open_annotation(
     """
     if not path:
         start = str(shell.document.folder or Path.home())
-        path, _ = QFileDialog.getOpenFileName(shell.widget, "Import annotation", start, FILTER)
+        path, _ = QFileDialog.getOpenFileName(shell.widget, tr("Import annotation"), start, FILTER)
         if not path:
             return
     file = SAMPLE if str(path) == "sample" else Path(path)
@@ -418,13 +438,13 @@ def open_annotation(
             done(dialog)
 
     def failed(error: Exception) -> None:
-        QMessageBox.warning(shell.widget, "Not imported", str(error))
+        QMessageBox.warning(shell.widget, tr("Not imported"), str(error))
 
-    shell.jobs.start(f"Reading {file.name}", work, show, failed)
+    shell.jobs.start(tr("Reading {name}", name=file.name), work, show, failed)
 
 
 def _taken(shell: Shell, observed: Mapping[Layer, Sequence[Act]], performance: str | None) -> None:
     count = sum(len(acts) for acts in observed.values())
-    shell.tell(f"Read {many(count, 'action')} from the annotation.")
+    shell.tell(tr("Read {count} from the annotation.", count=many(count, "action")))
     shell.panel("models").show_imported(observed, performance)
     shell.show("models")

@@ -13,11 +13,13 @@ from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from app.features.models.heatmap import SIDES
+from app.features.models.state_names import state_name
 from app.look.theme import KIND_MARKS, theme
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.still_plot import empty_plot, still_plot
 from metagraph.playback.compare import SURE, Comparison, quantiles
-from metagraph.playback.learn import State, state_words
+from metagraph.playback.learn import State
 
 WIDTH = 0.34  # of a bar; two stand side by side
 
@@ -36,19 +38,22 @@ def verdict(found: Comparison) -> str:
     """Say in a sentence how well a model makes what was seen."""
     layer = found.model.layer
     if found.observed is None:
-        return "Nothing to compare with yet: outlined is what the matrix comes to in the long run."
+        return tr("Nothing to compare with yet: outlined is what the matrix comes to in the long run.")
     apart = found.apart()
     worst = int(np.argmax(np.abs(np.nan_to_num(apart, posinf=1e9, neginf=-1e9))))
     if abs(apart[worst]) <= SURE:
-        return "Each comes as often as was seen, give or take what chance explains."
+        return tr("Each comes as often as was seen, give or take what chance explains.")
     name, seen, made = (
-        state_words(found.observed.states[worst], layer),
+        state_name(found.observed.states[worst], layer),
         found.observed.shares()[worst],
         found.expected[worst],
     )
-    return f"Not as seen: {name} came in {seen:.0%} of actions, the model makes {made:.0%}.".replace(
-        "%", " %"
-    )
+    return tr(
+        "Not as seen: {name} came in {seen:.0%} of actions, the model makes {made:.0%}.",
+        name=name,
+        seen=seen,
+        made=made,
+    ).replace("%", " %")
 
 
 class ComparePlot(QWidget):
@@ -64,7 +69,10 @@ class ComparePlot(QWidget):
         layout.setSpacing(2)
         row = QHBoxLayout()
         row.setSpacing(12)
-        for title, plot in (("How often, % of actions", self.often), ("How long, seconds", self.long)):
+        for title, plot in (
+            (tr("How often, % of actions"), self.often),
+            (tr("How long, seconds"), self.long),
+        ):
             box = QVBoxLayout()
             box.setSpacing(0)
             label = QLabel(title, self)
@@ -165,21 +173,37 @@ class ComparePlot(QWidget):
 
 def often_words(found: Comparison, n: int) -> str:
     """Say how often a state was seen and made."""
-    name = state_words(found.generated.states[n], found.model.layer)
-    made = f"made {found.generated.shares()[n]:.1%}, give or take {2 * found.deviation[n]:.1%} by chance"
+    name = state_name(found.generated.states[n], found.model.layer)
+    made = tr(
+        "made {share:.1%}, give or take {chance:.1%} by chance",
+        share=found.generated.shares()[n],
+        chance=2 * found.deviation[n],
+    )
     if found.observed is None:
-        return f"{name}: {made}; in the long run {found.expected[n]:.1%}".replace("%", " %")
-    return f"{name}: seen {found.observed.shares()[n]:.1%}, {made}".replace("%", " %")
+        return tr(
+            "{name}: {made}; in the long run {expected:.1%}", name=name, made=made, expected=found.expected[n]
+        ).replace("%", " %")
+    return tr(
+        "{name}: seen {share:.1%}, {made}", name=name, share=found.observed.shares()[n], made=made
+    ).replace("%", " %")
 
 
 def long_words(found: Comparison, n: int) -> str:
     """Say how long a state, or the rest between, lasts: the median, and what four of five lie between."""
     states = found.generated.states
-    name = state_words(states[n], found.model.layer) if n < len(states) else "rest between actions"
+    name = state_name(states[n], found.model.layer) if n < len(states) else tr("rest between actions")
     parts = []
-    for word, tally in (("seen", found.observed), ("made", found.generated)):
+    for word, tally in ((tr("seen"), found.observed), (tr("made"), found.generated)):
         lengths = None if tally is None else tally.lengths[n] if n < len(states) else tally.rests
         if lengths is not None and len(lengths):
             low, _, middle, _, high = quantiles(lengths)
-            parts.append(f"{word} {middle:.1f} s (mostly {low:.1f} to {high:.1f})")
-    return f"{name}: {', '.join(parts) or 'never'}"
+            parts.append(
+                tr(
+                    "{word} {middle:.1f} s (mostly {low:.1f} to {high:.1f})",
+                    word=word,
+                    middle=middle,
+                    low=low,
+                    high=high,
+                )
+            )
+    return f"{name}: {', '.join(parts) or tr('never')}"

@@ -20,9 +20,11 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QLineEdit, QWidget
 
+from app.features.models.state_names import a_state, tag_words
 from app.look.theme import KIND_MARKS, Theme, theme
+from app.translation import tr
 from metagraph.graph.model import Layer, Markov
-from metagraph.playback.learn import State, state_words, states_of
+from metagraph.playback.learn import State, states_of
 
 HEAD = 38.0  # pixels above the columns
 SIDE = 104.0  # left of the rows
@@ -114,20 +116,21 @@ def sentence(model: Markov, layer: Layer, row: int, column: int) -> str:
     """Say a cell: "After a left gesture, a right fidget follows in 13 % of cases."."""
     states = states_of(model)
     p = model.matrix[row][column]
-    what = "the same" if row == column else _a(states[column], layer)
-    again = " again" if row == column else ""
-    if p <= 0 or p >= 1:
-        return f"After {_a(states[row], layer)}, {what} {'never' if p <= 0 else 'always'} follows{again}."
+    before = a_state(states[row], layer)
+    what = tr("the same") if row == column else a_state(states[column], layer)
+    again = tr(" again") if row == column else ""
+    if p <= 0:
+        return tr("After {before}, {what} never follows{again}.", before=before, what=what, again=again)
+    if p >= 1:
+        return tr("After {before}, {what} always follows{again}.", before=before, what=what, again=again)
     share = f"{p:.1%}".replace(".0%", "%").replace("%", " %")
-    return f"After {_a(states[row], layer)}, {what} follows{again} in {share} of cases."
-
-
-def _a(state: State, layer: Layer) -> str:
-    words, _, tags = state_words(state, layer).partition(", ")
-    if words.startswith("both "):
-        words = f"{words.removeprefix('both ')} of both arms"
-    tags = f"{tags.replace(', ', ' ')} " if tags else ""
-    return f"a {tags}{words}"
+    return tr(
+        "After {before}, {what} follows{again} in {share} of cases.",
+        before=before,
+        what=what,
+        again=again,
+        share=share,
+    )
 
 
 class HeatMap(QWidget):
@@ -155,13 +158,13 @@ class HeatMap(QWidget):
         self._moved = False
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setAccessibleName("What follows what, in percent")
+        self.setAccessibleName(tr("What follows what, in percent"))
         self.setAccessibleDescription(
-            "A row what is played, a column what follows. Arrows choose, plus and minus or digits change."
+            tr("A row what is played, a column what follows. Arrows choose, plus and minus or digits change.")
         )
         self.field = QLineEdit(self)
         self.field.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self.field.setAccessibleName("Percent")
+        self.field.setAccessibleName(tr("Percent"))
         self.field.hide()
         self.field.installEventFilter(self)
 
@@ -202,7 +205,7 @@ class HeatMap(QWidget):
         small = QFont(self.font())
         small.setPixelSize(11)
         painter.setFont(small)
-        painter.drawText(QRectF(0, 0, SIDE - 12, HEAD - 6), _CORNER, "after ↓  then →")
+        painter.drawText(QRectF(0, 0, SIDE - 12, HEAD - 6), _CORNER, tr("after ↓  then →"))
         metrics = QFontMetricsF(self.font())
         widest = max(metrics.horizontalAdvance(self._row_words(s, cells.high)) for s in states) + _GAP
         margin = max(0.0, SIDE - 14 - widest)
@@ -245,10 +248,10 @@ class HeatMap(QWidget):
         """What tells a state from others of its kind: the limb, or the kind itself where there are no
         sides.
         """
-        return state[0] if self.layer == "arms" else state[1]
+        return tr(state[0] if self.layer == "arms" else state[1])
 
     def _row_words(self, state: State, high: float) -> str:
-        tags = state[2] if high >= _TWO_LINES else _SHORT.get(state[2], state[2])
+        tags = tag_words(state) if high >= _TWO_LINES or state[2] not in _SHORT else _SHORT[state[2]]
         return (
             f"{self._name(state)} {tags}".strip()
             if high < _TWO_LINES
@@ -274,12 +277,12 @@ class HeatMap(QWidget):
         )
         if two:
             below = QRectF(box.left() + _GAP, box.center().y() - 3, box.width() - _GAP, box.height() / 2)
-            self._tags(painter, t, below, state[2], n, Qt.AlignmentFlag.AlignLeft)
+            self._tags(painter, t, below, state, n, Qt.AlignmentFlag.AlignLeft)
 
     def _column_head(self, painter: QPainter, t: Theme, box: QRectF, state: State, n: int, lit: bool) -> None:
         metrics, name = QFontMetricsF(self.font()), self._name(state)
         if metrics.horizontalAdvance(name) > box.width() - _GAP - 2:
-            name = SIDES.get(name) or metrics.elidedText(
+            name = (SIDES[state[0]] if self.layer == "arms" else "") or metrics.elidedText(
                 name, Qt.TextElideMode.ElideRight, box.width() - _GAP - 2
             )
         width = _GAP + metrics.horizontalAdvance(name)
@@ -290,7 +293,7 @@ class HeatMap(QWidget):
                 painter,
                 t,
                 QRectF(box.left() + 1, line.bottom() - 3, box.width() - 2, 18),
-                state[2],
+                state,
                 n,
                 Qt.AlignmentFlag.AlignHCenter,
             )
@@ -307,16 +310,14 @@ class HeatMap(QWidget):
         painter.setOpacity(1.0)
 
     def _tags(
-        self, painter: QPainter, t: Theme, line: QRectF, tags: str, n: int, side: Qt.AlignmentFlag
+        self, painter: QPainter, t: Theme, line: QRectF, state: State, n: int, side: Qt.AlignmentFlag
     ) -> None:
         small = QFont(self.font())
         small.setPixelSize(11)
         painter.setOpacity(0.45 if n in self.closed else 1.0)
         painter.setFont(small)
         painter.setPen(QColor(t.dim))
-        told = QFontMetricsF(small).elidedText(
-            tags.replace(" ", ", "), Qt.TextElideMode.ElideRight, line.width()
-        )
+        told = QFontMetricsF(small).elidedText(tag_words(state), Qt.TextElideMode.ElideRight, line.width())
         painter.drawText(line, side | Qt.AlignmentFlag.AlignVCenter, told)
         painter.setOpacity(1.0)
 
@@ -491,13 +492,17 @@ class HeatMap(QWidget):
 
     def _state_sentence(self, n: int) -> str:
         assert self.model is not None
-        words = _a(states_of(self.model)[n], self.layer)
+        words = a_state(states_of(self.model)[n], self.layer)
         out = words[:1].upper() + words[1:]
         if self.model.lengths:
             mean, deviation = self.model.lengths[n]
-            out += f" lasts {mean:.1f} s on average, give or take {deviation:.1f} s."
+            out += tr(
+                " lasts {mean:.1f} s on average, give or take {deviation:.1f} s.",
+                mean=mean,
+                deviation=deviation,
+            )
         else:
-            out += " lasts 1 to 3 s."
+            out += tr(" lasts 1 to 3 s.")
         if n in self.closed:
-            out += " It is passed over: the graph has no such action yet."
+            out += tr(" It is passed over: the graph has no such action yet.")
         return out

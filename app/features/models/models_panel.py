@@ -26,11 +26,13 @@ from PySide6.QtWidgets import (
 
 from app.features.models.compare_plot import ComparePlot
 from app.features.models.heatmap import HeatMap
+from app.features.models.state_names import state_name
 from app.look.plural import many
 from app.look.theme import KIND_MARKS
 from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.act_strip import Strip
 from app.widgets.form_fields import Chooser, Seconds
 from app.widgets.making import make_widget
@@ -41,7 +43,6 @@ from metagraph.playback.learn import (
     Act,
     State,
     acts_of_asks,
-    state_words,
     states_of,
     with_cell,
     with_state,
@@ -54,13 +55,11 @@ SAMPLE = 60.0  # seconds of the sample
 TALL = 430  # pixels the panel likes to have, its title included
 IMPORTED = "imported"  # what was read last, whether or not it was kept
 MERGE = "matrix"
-TEACH = (
+TEACH = tr(
     "<b>Nobody has been watched yet:</b> this is the {origin}. Annotate a video in ELAN, with a tier for "
-    "each arm, the head and the body "
-    "and labels such as <i>gesture, fidget, stance-transition, nodding</i>. <a href='learn'>Import the .eaf "
-    "file</a> or drop it on the "
-    "window: what follows what is counted and becomes the model. <a href='sample'>Try the sample "
-    "annotation.</a>"
+    "each arm, the head and the body and labels such as <i>gesture, fidget, stance-transition, "
+    "nodding</i>. <a href='learn'>Import the .eaf file</a> or drop it on the window: what follows what is "
+    "counted and becomes the model. <a href='sample'>Try the sample annotation.</a>"
 )
 
 
@@ -105,7 +104,10 @@ class ModelsPanel(QWidget):
         bottom = QHBoxLayout()
         bottom.setSpacing(12)
         self.again = make_widget(
-            QPushButton, "Another sample", self, toolTip="Let chance draw other actions from the same model"
+            QPushButton,
+            tr("Another sample"),
+            self,
+            toolTip=tr("Let chance draw other actions from the same model"),
         )
         self.again.clicked.connect(self._another)
         self.strip = Strip(self.session, self, titles=False)
@@ -123,13 +125,15 @@ class ModelsPanel(QWidget):
         top.addWidget(self.title)
         top.addWidget(self.origin)
         top.addStretch(1)
-        self.back = make_widget(QPushButton, "Back to default", self, toolTip="Forget this layer's model")
+        self.back = make_widget(
+            QPushButton, tr("Back to default"), self, toolTip=tr("Forget this layer's model")
+        )
         self.back.clicked.connect(self._reset)
         self.learn = make_widget(
             QPushButton,
-            "Learn from annotation…",
+            tr("Learn from annotation…"),
             self,
-            toolTip="Read an ELAN file (.eaf) and count what follows what",
+            toolTip=tr("Read an ELAN file (.eaf) and count what follows what"),
         )
         self.learn.clicked.connect(lambda: self.learn_wanted.emit(""))
         top.addWidget(self.back)
@@ -160,18 +164,18 @@ class ModelsPanel(QWidget):
         right.setSpacing(6)
         fields = QHBoxLayout()
         fields.setSpacing(8)
-        self.gap = Seconds(self, "Mean rest between actions", most=600)
+        self.gap = Seconds(self, tr("Mean rest between actions"), most=600)
         self.gap.valueChanged.connect(self._set_gap)
         self.shares: dict[str, Seconds] = {}
-        self.share_words = QLabel("positive and negative are states of their own", self)
+        self.share_words = QLabel(tr("positive and negative are states of their own"), self)
         self.share_words.setProperty("dim", True)
-        fields.addWidget(QLabel("Rest", self))
+        fields.addWidget(QLabel(tr("Rest"), self))
         fields.addWidget(self.gap)
         self.share_labels = []
         for tag in ("positive", "negative"):
             field = Seconds(
                 self,
-                f"How many of the gestures are asked for as {tag}",
+                tr("How many of the gestures are asked for as {tag}", tag=tr(tag)),
                 most=100,
                 suffix=" %",
                 step=1,
@@ -179,15 +183,15 @@ class ModelsPanel(QWidget):
             )
             field.valueChanged.connect(lambda value, t=tag: self._set_share(t, value))
             self.shares[tag] = field
-            label = QLabel(f"{tag.capitalize()}", self)
+            label = QLabel(tr(tag.capitalize()), self)
             self.share_labels.append(label)
             fields.addWidget(label)
             fields.addWidget(field)
         fields.addWidget(self.share_words)
         fields.addStretch(1)
-        self.against = QLabel("Compared with", self)
+        self.against = QLabel(tr("Compared with"), self)
         fields.addWidget(self.against)
-        self.chooser = Chooser(self, "What was seen, beside which the model's making stands")
+        self.chooser = Chooser(self, tr("What was seen, beside which the model's making stands"))
         self.chooser.activated.connect(self._choose)
         fields.addWidget(self.chooser)
         right.addLayout(fields)
@@ -234,9 +238,10 @@ class ModelsPanel(QWidget):
             return
         project, layer, shown = self.document.project, self.session.place.layer, self.model()
         own = layer in project.markov
-        self.title.setText(f"{layer.capitalize()}: what follows what")
-        default = "default, from the paper" if layer == "arms" else "default"
-        self.origin.setText(f"{'learned or edited' if own else default} · {many(len(shown.states), 'state')}")
+        self.title.setText(tr("{layer}: what follows what", layer=tr(layer.capitalize())))
+        default = tr("default, from the paper") if layer == "arms" else tr("default")
+        of = tr("learned or edited") if own else default
+        self.origin.setText(f"{of} · {many(len(shown.states), 'state')}")
         self.back.setEnabled(own)
         kinds = {kind for _, kind in project.graphs[layer].index}
         closed = (
@@ -267,7 +272,7 @@ class ModelsPanel(QWidget):
             if len(acts) > 1:
                 out[ident] = kept.name, acts
         if len(self.imported.get(layer, ())) > 1:
-            out[IMPORTED] = "the last import", tuple(self.imported[layer])
+            out[IMPORTED] = tr("the last import"), tuple(self.imported[layer])
         return out
 
     def _show_sources(self) -> None:
@@ -278,8 +283,13 @@ class ModelsPanel(QWidget):
         self.against.setVisible(bool(sources))
         self.teach.setVisible(not sources)
         own = self.session.place.layer in self.document.project.markov
-        origin = "model as it was edited" if own else "default model"
-        self.teach.setText(TEACH.format(origin=f"{origin} of the {self.session.place.layer}"))
+        layer = tr(self.session.place.layer)
+        origin = (
+            tr("model as it was edited of the {layer}", layer=layer)
+            if own
+            else tr("default model of the {layer}", layer=layer)
+        )
+        self.teach.setText(TEACH.format(origin=origin))
 
     def _choose(self, place: int) -> None:
         self.source = self.chooser.itemData(place)
@@ -313,7 +323,7 @@ class ModelsPanel(QWidget):
 
     def _failed(self, error: Exception) -> None:
         self._busy = False
-        self.document.failed.emit(f"The model cannot be compared: {error}")
+        self.document.failed.emit(tr("The model cannot be compared: {error}", error=error))
 
     # --- following
 
@@ -335,19 +345,21 @@ class ModelsPanel(QWidget):
         self.document.edit(text, lambda p: edits.set_markov(p, change(model(p, layer))), merge)
 
     def _add_state(self, state: State) -> None:
-        self._edit("Add a state", lambda m: with_state(m, state))
+        self._edit(tr("Add a state"), lambda m: with_state(m, state))
 
     def _cell(self, row: int, column: int, probability: float, dragging: bool) -> None:
         if dragging and self._before is None:
             self._before = self.model()
         before = self._before
         if before is not None and dragging:
-            self._edit("Change what follows", lambda _: with_cell(before, row, column, probability), MERGE)
+            self._edit(
+                tr("Change what follows"), lambda _: with_cell(before, row, column, probability), MERGE
+            )
         elif before is not None:
             self._before = None
             self.document.finish_merging()
         else:
-            self._edit("Change what follows", lambda m: with_cell(m, row, column, probability))
+            self._edit(tr("Change what follows"), lambda m: with_cell(m, row, column, probability))
 
     def _cancel(self) -> None:
         if self._before is not None:
@@ -356,7 +368,7 @@ class ModelsPanel(QWidget):
 
     def _set_gap(self, value: float) -> None:
         if value > 0:
-            self._edit("Change rest between actions", lambda m: replace(m, gap=round(value, 2)))
+            self._edit(tr("Change rest between actions"), lambda m: replace(m, gap=round(value, 2)))
         else:
             self.refresh()
 
@@ -370,11 +382,11 @@ class ModelsPanel(QWidget):
         def change(m: Markov) -> Markov:
             return replace(m, **{tag: share, other: min(getattr(m, other), round(1 - share, 4))})
 
-        self._edit(f"Change share of {tag}", change)
+        self._edit(tr("Change share of {tag}", tag=tr(tag)), change)
 
     def _reset(self) -> None:
         layer = self.session.place.layer
-        self.document.edit("Back to the default model", lambda p: edits.reset_markov(p, layer))
+        self.document.edit(tr("Back to the default model"), lambda p: edits.reset_markov(p, layer))
 
     def _another(self) -> None:
         self.seed += 1
@@ -391,19 +403,20 @@ class ModelsPanel(QWidget):
         )
         limbs: tuple[Limb, ...] = LIMBS if layer == "arms" else ("both",)
         kinds: tuple[Kind, ...] = ("gesture", "fidget", "transition")
-        add = menu.addMenu("Add a state")
+        add = menu.addMenu(tr("Add a state"))
         for limb in limbs:
             for kind in kinds:
                 for tag in tags if kind == "gesture" else ("",):
                     state: State = (limb, kind, tag)
                     if state not in there:
-                        words = f"{KIND_MARKS[kind]} {state_words(state, layer)}"
+                        words = f"{KIND_MARKS[kind]} {state_name(state, layer)}"
                         add.addAction(words, partial(self._add_state, state))
         add.setEnabled(not add.isEmpty())
         if 0 <= row < len(shown.states) and len(shown.states) > 1:
-            words = state_words(states_of(shown)[row], layer)
+            words = state_name(states_of(shown)[row], layer)
             menu.addAction(
-                f"Remove {words}", lambda: self._edit("Remove a state", lambda m: without_state(m, row))
+                tr("Remove {words}", words=words),
+                lambda: self._edit(tr("Remove a state"), lambda m: without_state(m, row)),
             )
         return menu
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
+from app.translation import tr
 from app.widgets.one_dialog import show_one
 
 
@@ -23,9 +24,9 @@ def contribute(shell: Shell) -> Contribution:
                 "motion_graph",
                 "&Graph",
                 "author",
-                "Motion &graph of takes…",
+                tr("Motion &graph of takes…"),
                 show,
-                tip="New motion from takes, and clips cut from them",
+                tip=tr("New motion from takes, and clips cut from them"),
                 enabled=lambda: bool(shell.document.project.clips),
             ),
         ),

@@ -22,15 +22,16 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import strengthen
 from app.project.document import Document
+from app.translation import tr, tr_noop
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph.conversation import Rates
 from metagraph.graph.conversation_edits import set_rates
 
-HEADS = ("What goes together", "Matched", "Of", "Rate", "95 % interval", "By chance")
+HEADS = (tr("What goes together"), tr("Matched"), tr("Of"), tr("Rate"), tr("95 % interval"), tr("By chance"))
 FIELDS = {
-    "clause with either hand": "clause",
-    "response with a nod": "response",
-    "partner's hesitation with a nod": "hesitation",
+    tr_noop("clause with either hand"): "clause",
+    tr_noop("response with a nod"): "response",
+    tr_noop("partner's hesitation with a nod"): "hesitation",
 }
 
 
@@ -52,15 +53,17 @@ class RatesDialog(QDialog):
         super().__init__(parent)
         self.document, self.rows = document, tuple(rows)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle("Speech and movement")
+        self.setWindowTitle(tr("Speech and movement"))
         self.resize(720, 320)
         box = QVBoxLayout(self)
         box.setContentsMargins(14, 12, 14, 12)
         box.setSpacing(8)
         words = QLabel(
-            "A segment is matched where a hand, or the head up and down, moves near it. By chance: the same "
-            "speech laid elsewhere over the "
-            "same motion; only a rate well above that says that they go together.",
+            tr(
+                "A segment is matched where a hand, or the head up and down, moves near it. By chance: the "
+                "same speech laid elsewhere over the same motion; only a rate well above that says that "
+                "they go together."
+            ),
             self,
             wordWrap=True,
         )
@@ -69,7 +72,7 @@ class RatesDialog(QDialog):
         self.table = QTableWidget(len(self.rows), len(HEADS), self)
         self.table.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
         self.table.setHorizontalHeaderLabels(list(HEADS))
-        self.table.setAccessibleName("How often people move when something is said")
+        self.table.setAccessibleName(tr("How often people move when something is said"))
         self.table.verticalHeader().hide()
         self.table.setShowGrid(False)
         self.table.setSelectionMode(QTableWidget.SelectionMode.NoSelection)
@@ -81,7 +84,7 @@ class RatesDialog(QDialog):
         for n, row in enumerate(self.rows):
             seen = row.total > 0
             texts = (
-                row.hypothesis[:1].upper() + row.hypothesis[1:],
+                tr(row.hypothesis)[:1].upper() + tr(row.hypothesis)[1:],
                 f"{row.matched:,}",
                 f"{row.total:,}",
                 _share(row.rate) if seen else "–",
@@ -95,21 +98,23 @@ class RatesDialog(QDialog):
                 self.table.setItem(n, column, item)
         box.addWidget(self.table, 1)
         row_box = QHBoxLayout()
-        row_box.addWidget(QLabel("Move so", self))
+        row_box.addWidget(QLabel(tr("Move so"), self))
         self.who = ComboBox(self)
-        self.who.setAccessibleName("Whose rates")
+        self.who.setAccessibleName(tr("Whose rates"))
         for ident, talk in document.project.conversations.items():
-            everyone = "both" if len(talk.sides) == 2 else "all"
+            everyone = tr("both") if len(talk.sides) == 2 else tr("all")
             self.who.addItem(f"{talk.name}: {everyone}", (ident, tuple(range(len(talk.sides)))))
             for side, one in enumerate(talk.sides):
-                self.who.addItem(f"{talk.name}: {one.name or f'side {side + 1}'}", (ident, (side,)))
+                self.who.addItem(
+                    f"{talk.name}: {one.name or tr('side {number}', number=side + 1)}", (ident, (side,))
+                )
         row_box.addWidget(self.who)
         row_box.addStretch(1)
-        self.go = QPushButton("Use these rates", self, autoDefault=False)
+        self.go = QPushButton(tr("Use these rates"), self, autoDefault=False)
         self.go.setEnabled(self.who.count() > 0 and any(row.total for row in self.rows))
         self.go.clicked.connect(self.use)
         strengthen(self.go)
-        close = QPushButton("Close", self, autoDefault=False)
+        close = QPushButton(tr("Close"), self, autoDefault=False)
         close.clicked.connect(self.close)
         row_box.addWidget(self.go)
         row_box.addWidget(close)
@@ -129,7 +134,7 @@ class RatesDialog(QDialog):
                 )
             return project
 
-        self.document.edit("Use observed rates", edit)
+        self.document.edit(tr("Use observed rates"), edit)
         self.close()
 
 

@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.look.theme import theme
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.still_plot import empty_plot, still_plot
 
 BINS = 80
@@ -43,7 +44,7 @@ class CostPlot(QWidget):
     def _draw(self) -> None:
         look = theme(self.session.look.name)
         empty_plot(self.plot, look)
-        self.plot.setLabel("bottom", "cost, m", color=look.dim)
+        self.plot.setLabel("bottom", tr("cost, m"), color=look.dim)
         found = self.shown
         if found is None:
             return

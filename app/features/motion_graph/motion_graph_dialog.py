@@ -39,6 +39,7 @@ from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.project.new_clips import pieces, save
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import DoubleSpinBox, SpinBox
 from metagraph.compiling import there
@@ -48,8 +49,10 @@ from metagraph.graph.model import Project
 
 KS = (2, 3, 4)  # of the table
 LONG = 4000  # ms after which a wait is explained
-WAIT = "Working… The first time after installing, the search is compiled for this machine: up to a minute."
-LOADING = (
+WAIT = tr(
+    "Working… The first time after installing, the search is compiled for this machine: up to a minute."
+)
+LOADING = tr(
     "Working… New motion needs a compiler, which is being loaded (60 MB, once); then the search is compiled "
     "for this machine. That takes a minute or two."
 )
@@ -60,8 +63,20 @@ def fits_words(limit: Any) -> str:
     from metagraph.suggest.fits import fits
 
     found = fits(limit.costs, limit.level)
-    rows = "\n".join(f"{f.name}: {f.limit:.3g} m, off by {100 * f.distance:.1f} % at most" for f in found)
-    return f"What other distributions of these costs say, the nearest first:\n{rows}" if found else ""
+    rows = "\n".join(
+        tr(
+            "{name}: {limit:.3g} m, off by {share:.1f} % at most",
+            name=f.name,
+            limit=f.limit,
+            share=100 * f.distance,
+        )
+        for f in found
+    )
+    return (
+        tr("What other distributions of these costs say, the nearest first:\n{rows}", rows=rows)
+        if found
+        else ""
+    )
 
 
 class MotionGraphDialog(QDialog):
@@ -73,7 +88,7 @@ class MotionGraphDialog(QDialog):
         super().__init__(parent)
         self.document, self.session, self.jobs = document, session, jobs
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle("Motion graph")
+        self.setWindowTitle(tr("Motion graph"))
         self.resize(1080, 720)
         self.states: Any = None  # synthesis.states.States of the chosen takes
         self.limit: Any = None  # synthesis.graph.Threshold
@@ -117,18 +132,20 @@ class MotionGraphDialog(QDialog):
     def _build_right(self) -> None:
         self.right = QVBoxLayout()
         self.right.setSpacing(6)
-        self.right.addWidget(self._heading("What counts as a jump"))
+        self.right.addWidget(self._heading(tr("What counts as a jump")))
         row = QHBoxLayout()
         self.k = SpinBox(self, minimum=2, maximum=10, value=3)
         self.k.setToolTip(
-            "Costs are those of a frame and one so many frames later: the larger, the more transitions, and "
-            "the rougher"
+            tr(
+                "Costs are those of a frame and one so many frames later: the larger, the more "
+                "transitions, and the rougher"
+            )
         )
-        self.k.setAccessibleName("Frames apart")
+        self.k.setAccessibleName(tr("Frames apart"))
         self.level = DoubleSpinBox(self, minimum=50, maximum=99.9, value=95, suffix=" %", decimals=1)
-        self.level.setToolTip("Transitions may cost as much as so many of these costs")
-        self.level.setAccessibleName("Level")
-        for words, field in (("Frames apart (k)", self.k), ("Level", self.level)):
+        self.level.setToolTip(tr("Transitions may cost as much as so many of these costs"))
+        self.level.setAccessibleName(tr("Level"))
+        for words, field in ((tr("Frames apart (k)"), self.k), (tr("Level"), self.level)):
             row.addWidget(QLabel(words, self))
             row.addWidget(field)
             row.addSpacing(10)
@@ -142,11 +159,13 @@ class MotionGraphDialog(QDialog):
         self.right.addWidget(self.words)
         self.table = QTableWidget(len(KS), 5, self)
         self.table.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
-        self.table.setHorizontalHeaderLabels(["k", "Frames", "Transitions", "Frames kept", "Trans. kept"])
+        self.table.setHorizontalHeaderLabels(
+            ["k", tr("Frames"), tr("Transitions"), tr("Frames kept"), tr("Trans. kept")]
+        )
         self.table.horizontalHeader().setDefaultAlignment(
             Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
         )
-        self.table.setAccessibleName("Frames and transitions for each k")
+        self.table.setAccessibleName(tr("Frames and transitions for each k"))
         self.table.verticalHeader().hide()
         self.table.setShowGrid(False)
         self.table.setSelectionMode(QTableWidget.SelectionMode.NoSelection)
@@ -158,9 +177,9 @@ class MotionGraphDialog(QDialog):
             self.table.horizontalHeader().sizeHint().height() + len(KS) * self.table.rowHeight(0) + 4
         )
         self.right.addWidget(self.table)
-        self.count_button = QPushButton("Compare k = 2, 3, 4", self, autoDefault=False)
+        self.count_button = QPushButton(tr("Compare k = 2, 3, 4"), self, autoDefault=False)
         self.count_button.setToolTip(
-            "Kept is what leads on: the largest part in which every frame can be reached from every other"
+            tr("Kept is what leads on: the largest part in which every frame can be reached from every other")
         )
         self.count_button.clicked.connect(self.count)
         self.right.addWidget(self.count_button, 0, Qt.AlignmentFlag.AlignLeft)
@@ -172,10 +191,10 @@ class MotionGraphDialog(QDialog):
         self.said.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.progress = make_widget(QProgressBar, self, maximumWidth=180, textVisible=False)
         self.progress.hide()
-        self.stop = QPushButton("Cancel", self, autoDefault=False)
+        self.stop = QPushButton(tr("Cancel"), self, autoDefault=False)
         self.stop.clicked.connect(self.cancel)
         self.stop.hide()
-        close = QPushButton("Close", self, autoDefault=False)
+        close = QPushButton(tr("Close"), self, autoDefault=False)
         close.clicked.connect(self.close)
         row.addWidget(self.said, 1)
         for widget in (self.progress, self.stop, close):
@@ -208,7 +227,9 @@ class MotionGraphDialog(QDialog):
             self._show_table({})
         seconds = sum(clip.duration for clip in self.takes.clips)
         self.picked.title.setText(
-            f"Takes · {len(self.takes.ids)} chosen, {seconds / 60:.1f} min" if self.takes.ids else "Takes"
+            tr("Takes · {count} chosen, {minutes:.1f} min", count=len(self.takes.ids), minutes=seconds / 60)
+            if self.takes.ids
+            else tr("Takes")
         )
         self._soon.start()
 
@@ -226,7 +247,7 @@ class MotionGraphDialog(QDialog):
             states = known[1] if known is not None else states_of(takes.clips)
             return takes.clips, states, threshold(states, k, level)
 
-        self.jobs.start("Comparing frames", work, self._compared, self._incomparable, quick=True)
+        self.jobs.start(tr("Comparing frames"), work, self._compared, self._incomparable, quick=True)
 
     def _incomparable(self, error: Exception) -> None:
         """What takes before could do is not what these can."""
@@ -246,24 +267,32 @@ class MotionGraphDialog(QDialog):
         self.plot.show_threshold(limit)
         if limit is None:
             none = not self.picked.list.rowCount()
-            first = (
-                "There are no clips yet. Import long recordings:"
+            self.words.setText(
+                tr(
+                    "There are no clips yet. Import long recordings: of frames that are alike, transitions "
+                    "are made."
+                )
                 if none
-                else "Choose takes, long recordings:"
+                else tr("Choose takes, long recordings: of frames that are alike, transitions are made.")
             )
-            self.words.setText(f"{first} of frames that are alike, transitions are made.")
             return
         fitted = (
-            "A transition may cost"
+            tr("A transition may cost")
             if limit.distribution is None
-            else "Johnson's S_B, fitted: a transition may cost"
+            else tr("Johnson's S_B, fitted: a transition may cost")
         )
         off = abs(limit.limit - limit.observed) / max(limit.observed, 1e-9)
-        beside = f" ({off:.0%} off)".replace("%", " %") if off > 0.05 else ""
+        beside = tr(" ({off:.0%} off)", off=off).replace("%", " %") if off > 0.05 else ""
         self.words.setToolTip(fits_words(limit))
         self.words.setText(
-            f"{fitted} {limit.limit:.3g} m, summed over joints. Dotted: the costs themselves say "
-            f"{limit.observed:.3g} m{beside}."
+            tr(
+                "{fitted} {limit:.3g} m, summed over joints. Dotted: the costs themselves say "
+                "{observed:.3g} m{beside}.",
+                fitted=fitted,
+                limit=limit.limit,
+                observed=limit.observed,
+                beside=beside,
+            )
         )
 
     # --- jobs
@@ -308,7 +337,7 @@ class MotionGraphDialog(QDialog):
     def cancel(self) -> None:
         if self._job is not None:
             self._job.cancel()
-            self.said.setText("Cancelled; nothing was changed.")
+            self.said.setText(tr("Cancelled; nothing was changed."))
 
     def _failed(self, error: Exception) -> None:
         text = str(error)
@@ -318,11 +347,11 @@ class MotionGraphDialog(QDialog):
         """Fill the table: how much is kept for each k."""
         takes, level = self.takes, self.level.value() / 100
         if not takes.ids:
-            self._failed(ValueError("choose takes first"))
+            self._failed(ValueError(tr("choose takes first")))
             return
         self._counted = (takes.clips, self.level.value())
         self._start(
-            "Motion graphs",
+            tr("Motion graphs"),
             lambda job: table(takes, KS, level, job.tell, lambda: job.cancelled),
             self._show_table,
         )
@@ -343,7 +372,9 @@ class MotionGraphDialog(QDialog):
         takes = self.takes
         if not takes.told:
             self._failed(
-                ValueError("choose takes and say beside each what was heard during it: a conversation's side")
+                ValueError(
+                    tr("choose takes and say beside each what was heard during it: a conversation's side")
+                )
             )
             return
 
@@ -353,7 +384,7 @@ class MotionGraphDialog(QDialog):
             told = [n for n, speech in enumerate(takes.speech) if speech]
             return counted([takes.clips[n] for n in told], [takes.speech[n] for n in told])
 
-        self._start("Counting movements", work, self._show_rates)
+        self._start(tr("Counting movements"), work, self._show_rates)
 
     def _show_rates(self, rows: Any) -> None:
         RatesDialog(self.document, rows, self).open()
@@ -369,8 +400,12 @@ class MotionGraphDialog(QDialog):
             self._failed(error)
             return
         if not takes.ids or limit is None or self.states is None or self.states[0] != takes.clips:
-            why = "these takes cannot be compared: choose others" if takes.ids else "choose takes first"
-            self._failed(ValueError(f"{why}; their frames are compared before anything can be found"))
+            why = (
+                tr("these takes cannot be compared: choose others") if takes.ids else tr("choose takes first")
+            )
+            self._failed(
+                ValueError(tr("{why}; their frames are compared before anything can be found", why=why))
+            )
             return
         folder = self._folder()
         if folder is None:
@@ -394,18 +429,18 @@ class MotionGraphDialog(QDialog):
             found = synthesise(made, takes, wish, name, lambda: job.cancelled, folder)
             return made, found, () if job.cancelled else save([found.clip], folder, FOLDER, taken)
 
-        self._start("New motion", work, self._found)
+        self._start(tr("New motion"), work, self._found)
 
     def _found(self, made: Any) -> None:
         self.graph, found, loaded = made[0], made[1], made[2]
         graph, takes_told = self.graph, self.takes.told
         assert isinstance(found, FoundMotion)
-        self._keep(loaded, "Add new motion", self._for)
+        self._keep(loaded, tr("Add new motion"), self._for)
         self.graph = graph  # the takes are the same
         deaf = (
             ""
             if takes_told or not self.wishes.talks
-            else " What was heard during the takes is not known, so speech did not guide it."
+            else tr(" What was heard during the takes is not known, so speech did not guide it.")
         )
         self.said.setText(found.words() + deaf)
 
@@ -436,7 +471,7 @@ class MotionGraphDialog(QDialog):
     def _folder(self) -> Any:
         folder = self.document.folder
         if folder is None:
-            self._failed(ValueError("save the project first: new clips are kept as files beside it"))
+            self._failed(ValueError(tr("save the project first: new clips are kept as files beside it")))
         return folder
 
     # --- clips from takes
@@ -447,7 +482,7 @@ class MotionGraphDialog(QDialog):
         project, k, level = self.document.project, self.k.value(), self.level.value() / 100
         clips = takes_of(project, ids).clips
         if not clips:
-            self._failed(ValueError("choose takes first"))
+            self._failed(ValueError(tr("choose takes first")))
             return
         folder = self._folder()
         if folder is None:
@@ -466,17 +501,21 @@ class MotionGraphDialog(QDialog):
                 cuts += pieces(clip, [(start, end) for start, end, _ in candidates(clip, limit, LEAST, MOST)])
             return save(cuts, folder, FOLDER, taken) if cuts and not job.cancelled else ()
 
-        self._start("Cutting takes", work, self._cut)
+        self._start(tr("Cutting takes"), work, self._cut)
 
     def _cut(self, loaded: Any) -> None:
         if not loaded:
             self.said.setText(
-                "No still moments were found that these takes leave and come back to: raise k or the level, "
-                "or cut by hand."
+                tr(
+                    "No still moments were found that these takes leave and come back to: raise k or the "
+                    "level, or cut by hand."
+                )
             )
             return
-        self._keep(loaded, "Cut takes into clips")
+        self._keep(loaded, tr("Cut takes into clips"))
         self.said.setText(
-            f"{many(len(loaded), 'clip')} in the library, not labelled yet: Graph > Label clips… proposes "
-            "what each is."
+            tr(
+                "{clips} in the library, not labelled yet: Graph > Label clips… proposes what each is.",
+                clips=many(len(loaded), "clip"),
+            )
         )

@@ -21,16 +21,17 @@ from app.features.motion_graph.synthesis_jobs import Wish
 from app.features.motion_graph.takes_list import side_words
 from app.look.theme import strengthen
 from app.project.document import Document
+from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.graph.conversation import SOUNDS, Segment, Side, Sound, heard_by
 
 WINDOW = 15.0  # seconds, as in the paper's evaluation
 KINDS: tuple[tuple[Sound, str], ...] = (
-    ("clause", "Clauses"),
-    ("response", "Responses"),
-    ("hesitation", "Partner's hesitations"),
-    ("idle", "Idle"),
+    ("clause", tr("Clauses")),
+    ("response", tr("Responses")),
+    ("hesitation", tr("Partner's hesitations")),
+    ("idle", tr("Idle")),
 )
 
 
@@ -45,37 +46,39 @@ class Wishes(QFrame):
         box = QVBoxLayout(self)
         box.setContentsMargins(0, 4, 0, 0)
         box.setSpacing(6)
-        title = QLabel("New motion", self)
+        title = QLabel(tr("New motion"), self)
         title.setProperty("heading", True)
         box.addWidget(title)
         row = QHBoxLayout()
         self.speech = ComboBox(self)
-        self.speech.setAccessibleName("Goes with")
+        self.speech.setAccessibleName(tr("Goes with"))
         self.speech.setMinimumWidth(200)
         self.speech.activated.connect(self._limits)
-        self.start = self._seconds("From", 0.0, 0.0)
-        self.length = self._seconds("Seconds", 1.0, WINDOW)
+        self.start = self._seconds(tr("From"), 0.0, 0.0)
+        self.length = self._seconds(tr("Seconds"), 1.0, WINDOW)
         self.search = ComboBox(self)
-        self.search.setAccessibleName("Search")
-        self.search.addItem("the best there is", True)
-        self.search.addItem("quick, by chance", False)
+        self.search.setAccessibleName(tr("Search"))
+        self.search.addItem(tr("the best there is"), True)
+        self.search.addItem(tr("quick, by chance"), False)
         self.search.setItemData(
-            0, "Dynamic programming over all frames: finds a motion whenever there is one, none costs less", 3
+            0,
+            tr("Dynamic programming over all frames: finds a motion whenever there is one, none costs less"),
+            3,
         )
         self.search.setItemData(
             1,
-            "Stochastic greedy search, as in the paper: other results with other seeds; may find nothing",
+            tr("Stochastic greedy search, as in the paper: other results with other seeds; may find nothing"),
             3,
         )
         self.search.activated.connect(self._limits)
         self.seed = DoubleSpinBox(self, minimum=1, maximum=9999, decimals=0, value=1)
-        self.seed.setAccessibleName("Seed")
+        self.seed.setAccessibleName(tr("Seed"))
         for words, field in (
-            ("Goes with", self.speech),
-            ("from", self.start),
-            ("for", self.length),
-            ("Search", self.search),
-            ("seed", self.seed),
+            (tr("Goes with"), self.speech),
+            (tr("from"), self.start),
+            (tr("for"), self.length),
+            (tr("Search"), self.search),
+            (tr("seed"), self.seed),
         ):
             row.addWidget(QLabel(words, self))
             row.addWidget(field)
@@ -83,27 +86,29 @@ class Wishes(QFrame):
         row.addStretch(1)
         box.addLayout(row)
         row = QHBoxLayout()
-        row.addWidget(QLabel("Meets", self))
+        row.addWidget(QLabel(tr("Meets"), self))
         self.kinds: dict[Sound, QCheckBox] = {}
         for kind, words in KINDS:
             self.kinds[kind] = make_widget(QCheckBox, words, self, checked=True)
             row.addWidget(self.kinds[kind])
-        self.peaks = make_widget(QCheckBox, "Stresses", self, checked=True)
-        self.peaks.setToolTip("A clause's stress lies where the stress lay that the motion was made with")
+        self.peaks = make_widget(QCheckBox, tr("Stresses"), self, checked=True)
+        self.peaks.setToolTip(tr("A clause's stress lies where the stress lay that the motion was made with"))
         row.addWidget(self.peaks)
-        self.edges = make_widget(QCheckBox, "Starts and ends", self, checked=True)
-        self.edges.setToolTip("What is heard begins and ends where that did which the motion was made with")
+        self.edges = make_widget(QCheckBox, tr("Starts and ends"), self, checked=True)
+        self.edges.setToolTip(
+            tr("What is heard begins and ends where that did which the motion was made with")
+        )
         row.addWidget(self.edges)
         self.tolerance = DoubleSpinBox(
             self, minimum=0.0, maximum=1.0, singleStep=0.05, decimals=2, value=0.1, suffix=" s"
         )
-        self.tolerance.setAccessibleName("Tolerance")
+        self.tolerance.setAccessibleName(tr("Tolerance"))
         row.addSpacing(8)
-        row.addWidget(QLabel("give or take", self))
+        row.addWidget(QLabel(tr("give or take"), self))
         row.addWidget(self.tolerance)
-        self.whole = QCheckBox("Move the speaker with it", self)
+        self.whole = QCheckBox(tr("Move the speaker with it"), self)
         self.whole.setToolTip(
-            "Motion for the whole conversation, which then moves this speaker instead of the graph"
+            tr("Motion for the whole conversation, which then moves this speaker instead of the graph")
         )
         self.whole.toggled.connect(self._limits)
         row.addSpacing(8)
@@ -113,7 +118,7 @@ class Wishes(QFrame):
         row = QHBoxLayout()
         self.soft = SoftWishes(self)
         row.addWidget(self.soft, 1)
-        self.go = QPushButton("Find", self, autoDefault=False)
+        self.go = QPushButton(tr("Find"), self, autoDefault=False)
         self.go.clicked.connect(self.wanted)
         self.soft.wanted.connect(self.go.click)
         strengthen(self.go)
@@ -130,7 +135,7 @@ class Wishes(QFrame):
         """List whose speech there is."""
         chosen, first = self.speech.currentData(), not self.speech.count()
         self.speech.clear()
-        self.speech.addItem("no speech", None)
+        self.speech.addItem(tr("no speech"), None)
         for ident, talk in self.document.project.conversations.items():
             for n in range(2):
                 self.speech.addItem(side_words(talk, n), (ident, n))
@@ -194,7 +199,7 @@ class Wishes(QFrame):
         """Return what the new clip is called."""
         chosen = self.speech.currentData()
         if chosen is None:
-            return "new motion"
+            return tr("new motion")
         talk = self.document.project.conversations[chosen[0]]
         part = "" if self.moves is not None else f" {self.start.value():g}s"
         return f"{talk.name} {talk.sides[chosen[1]].name or chosen[1] + 1}{part}"

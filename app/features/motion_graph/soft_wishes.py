@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QLabel, QLineEdit, QWidget
 
+from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import DoubleSpinBox
 from metagraph.graph.conversation import Segment, Side
@@ -31,51 +32,61 @@ class SoftWishes(QWidget):
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         self.loudness = self._weight(
-            "Loudness",
-            "Frames cost that were said louder or softer than what is said now, by the speaker's own spread; "
-            "0.25 is a good start. Needs the sounds of the conversations",
+            tr("Loudness"),
+            tr(
+                "Frames cost that were said louder or softer than what is said now, by the speaker's own "
+                "spread; 0.25 is a good start. Needs the sounds of the conversations"
+            ),
         )
         self.rate = self._weight(
-            "Speaking rate",
-            "Frames cost that were said faster or slower than what is said now; 0.25 is a good start. By "
-            "words where there are any, else by the sound",
+            tr("Speaking rate"),
+            tr(
+                "Frames cost that were said faster or slower than what is said now; 0.25 is a good start. By "
+                "words where there are any, else by the sound"
+            ),
         )
-        self.words = QLineEdit(self, placeholderText="big; round = circle, ball")
-        self.words.setAccessibleName("Words that want motion")
+        self.words = QLineEdit(self, placeholderText=tr("big; round = circle, ball"))
+        self.words.setAccessibleName(tr("Words that want motion"))
         self.words.setToolTip(
-            "Where one of these is said, motion comes from where a take says it, or one alike. Part them by "
-            "semicolons"
+            tr(
+                "Where one of these is said, motion comes from where a take says it, or one alike. Part "
+                "them by semicolons"
+            )
         )
         self.words.setMinimumWidth(170)
         self.words.returnPressed.connect(self.wanted)
-        self.must = make_widget(QCheckBox, "have to be met", self)
-        self.must.setToolTip("Other constraints are given up before these words are missed")
+        self.must = make_widget(QCheckBox, tr("have to be met"), self)
+        self.must.setToolTip(tr("Other constraints are given up before these words are missed"))
         self.speed = DoubleSpinBox(
             self, minimum=0, maximum=50, singleStep=5, decimals=0, value=0, prefix="± ", suffix=" %"
         )
-        self.speed.setAccessibleName("Speed may change by")
+        self.speed.setAccessibleName(tr("Speed may change by"))
         self.speed.setToolTip(
-            "Plays it faster and slower, outside of strokes, steps and transitions, so that starts, ends and "
-            "stresses come when they are heard; try 15 %"
+            tr(
+                "Plays it faster and slower, outside of strokes, steps and transitions, so that starts, "
+                "ends and stresses come when they are heard; try 15 %"
+            )
         )
         for words, field in (
-            ("Beside: as loud", self.loudness),
-            ("as fast", self.rate),
-            ("words", self.words),
+            (tr("Beside: as loud"), self.loudness),
+            (tr("as fast"), self.rate),
+            (tr("words"), self.words),
         ):
             row.addWidget(QLabel(words, self))
             row.addWidget(field, int(field is self.words))
             row.addSpacing(6)
         row.addWidget(self.must)
         row.addSpacing(6)
-        row.addWidget(QLabel("speed", self))
+        row.addWidget(QLabel(tr("speed"), self))
         row.addWidget(self.speed)
         row.addSpacing(12)
 
     def _weight(self, name: str, tip: str) -> DoubleSpinBox:
         out = DoubleSpinBox(self, minimum=0, maximum=20, singleStep=0.05, decimals=2, value=0)
         out.setAccessibleName(name)
-        out.setToolTip(f"{tip}. What a second costs that is off by one spread, of what a transition may cost")
+        out.setToolTip(
+            tr("{tip}. What a second costs that is off by one spread, of what a transition may cost", tip=tip)
+        )
         return out
 
     def wish(self) -> SoftWish:

@@ -16,6 +16,7 @@ import msgspec
 
 from app.features.motion_graph.soft_wishes import spoken
 from app.look.plural import many
+from app.translation import tr
 from metagraph.graph.conversation import SOUNDS, Segment, Side, Sound, heard_by
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
@@ -77,12 +78,12 @@ def left_out(project: Project) -> str:
     alike = [e for e in moving if e.motion is not None and e.motion.skeleton == project.skeleton]
     still = sum(e.frames <= 1 for e in alike)
     reasons = (
-        (still, "of one frame"),
-        (len(moving) - len(alike), "of another skeleton"),
-        (len(project.clips) - len(moving), "whose file is missing"),
+        (still, tr("of one frame")),
+        (len(moving) - len(alike), tr("of another skeleton")),
+        (len(project.clips) - len(moving), tr("whose file is missing")),
     )
     told = [f"{many(count, 'clip')} {why}" for count, why in reasons if count]
-    return f"Left out: {', '.join(told)}." if told else ""
+    return tr("Left out: {told}.", told=", ".join(told)) if told else ""
 
 
 def during(heard: Sequence[Segment], seconds: float) -> tuple[Segment, ...]:
@@ -149,19 +150,29 @@ class FoundMotion:
     def words(self) -> str:
         rate = self.jumps / max(self.clip.duration, 1e-9)
         jumps = (
-            "no transition"
+            tr("no transition")
             if not self.jumps
-            else f"{self.jumps} transitions, {rate:.2f} a second"
+            else tr("{jumps} transitions, {rate:.2f} a second", jumps=self.jumps, rate=rate)
             if self.jumps > 1
-            else "1 transition"
+            else many(1, "transition")
         )
-        again = f"{self.looks.repeated:.0%} of it shown again within 3 s, {self.looks.rest_words()}"
-        found = f"found in {self.took:.2f} s"
+        again = tr(
+            "{repeated:.0%} of it shown again within 3 s, {rest}",
+            repeated=self.looks.repeated,
+            rest=self.looks.rest_words(),
+        )
+        found = tr("found in {took:.2f} s", took=self.took)
         given_up = f" {self.given_up[0].upper()}{self.given_up[1:]}." if self.given_up else ""
         beside = f" {self.beside[0].upper()}{self.beside[1:]}." if self.beside else ""
-        return (
-            f"{self.clip.duration:.1f} s with {jumps}, cost {self.cost:.3g} m, {found}; {again}.{given_up}"
-            f"{beside}"
+        return tr(
+            "{duration:.1f} s with {jumps}, cost {cost:.3g} m, {found}; {again}.{given_up}{beside}",
+            duration=self.clip.duration,
+            jumps=jumps,
+            cost=self.cost,
+            found=found,
+            again=again,
+            given_up=given_up,
+            beside=beside,
         )
 
 

@@ -19,11 +19,12 @@ from PySide6.QtWidgets import (
 
 from app.features.motion_graph.synthesis_jobs import FOLDER, LONG, left_out, speech_of, usable
 from app.project.document import Document
+from app.translation import tr
 from metagraph.graph.conversation import Conversation
 from metagraph.graph.conversation_edits import change_side
 from metagraph.graph.model import Project
 
-NONE = "nothing known"
+NONE = tr("nothing known")
 ROW = 30  # pixels
 HEARD = 2  # the column of what was heard
 
@@ -41,12 +42,12 @@ class TakesList(QWidget):
         box = QVBoxLayout(self)
         box.setContentsMargins(0, 0, 0, 0)
         box.setSpacing(6)
-        self.title = QLabel("Takes", self)
+        self.title = QLabel(tr("Takes"), self)
         self.title.setProperty("heading", True)
         self.list = QTableWidget(0, 3, self)
         self.list.setTabKeyNavigation(False)  # Tab leaves it, arrows go about in it
-        self.list.setHorizontalHeaderLabels(["Clip", "Length", "What was heard"])
-        self.list.setAccessibleName("Takes")
+        self.list.setHorizontalHeaderLabels([tr("Clip"), tr("Length"), tr("What was heard")])
+        self.list.setAccessibleName(tr("Takes"))
         self.list.verticalHeader().hide()
         self.list.setShowGrid(False)
         self.list.setTextElideMode(Qt.TextElideMode.ElideMiddle)
@@ -66,17 +67,19 @@ class TakesList(QWidget):
         self.note = QLabel(self, wordWrap=True)
         self.note.setProperty("dim", True)
         self.note.hide()
-        self.cut_button = QPushButton("Cut selected takes into clips", self, autoDefault=False)
+        self.cut_button = QPushButton(tr("Cut selected takes into clips"), self, autoDefault=False)
         self.cut_button.setToolTip(
-            "At still moments in a pose it comes back to, so that no jump shows; the clips then wait to be "
-            "labelled"
+            tr(
+                "At still moments in a pose it comes back to, so that no jump shows; the clips then wait "
+                "to be labelled"
+            )
         )
         self.cut_button.clicked.connect(self.cut_wanted)
         box.addWidget(self.title)
         box.addWidget(self.list, 1)
         box.addWidget(self.note)
-        self.rates_button = QPushButton("Count movements with speech…", self, autoDefault=False)
-        self.rates_button.setToolTip("How often hands and head moved when something was said")
+        self.rates_button = QPushButton(tr("Count movements with speech…"), self, autoDefault=False)
+        self.rates_button.setToolTip(tr("How often hands and head moved when something was said"))
         self.rates_button.clicked.connect(self.rates_wanted)
         row = QHBoxLayout()
         row.addWidget(self.cut_button)
@@ -120,7 +123,7 @@ class TakesList(QWidget):
             talk = project.conversations[recorded[0]]
             words = side_words(talk, recorded[1])
         item = QTableWidgetItem(f"{words}  ▾" if project.conversations else words)
-        tip = "Click to say whose side of which conversation was recorded along with it"
+        tip = tr("Click to say whose side of which conversation was recorded along with it")
         item.setToolTip(f"{item.text()}\n{tip}")
         return item
 
@@ -152,7 +155,7 @@ class TakesList(QWidget):
                         project = change_side(project, ident, n, take=None)
             return project if chosen is None else change_side(project, *chosen, take=clip)
 
-        self.document.edit("Tell what was heard", edit)
+        self.document.edit(tr("Tell what was heard"), edit)
 
     def chosen(self) -> list[str]:
         """Return the ids of the takes that are checked."""
@@ -178,4 +181,4 @@ class TakesList(QWidget):
 
 def side_words(talk: Conversation, side: int) -> str:
     """Return a side of a conversation in words."""
-    return f"{talk.name}: {talk.sides[side].name or f'speaker {side + 1}'}"
+    return f"{talk.name}: {talk.sides[side].name or tr('speaker {number}', number=side + 1)}"

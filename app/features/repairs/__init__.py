@@ -9,6 +9,7 @@ from app.project.importing import Importing
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
 from app.shell.notice import Notice
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -29,13 +30,13 @@ def contribute(shell: Shell) -> Contribution:
             or tuple(a.clip for a in session.selection.selected_actions())
             or tuple(document.project.clips)
         )
-        words = title or f"Repairs of {clips_words(len(set(chosen)))}"
+        words = title or tr("Repairs of {clips}", clips=clips_words(len(set(chosen))))
         RepairsDialog(document, shell.jobs, words, dict.fromkeys(chosen), lines, shell.widget).show()
 
     def noticed(title: str, clips: Sequence[str], lines: Sequence[str]) -> None:
         notice.tell(
-            "Some clips were repaired: look…",
-            "What reading them put right, and what to leave as it is in the files",
+            tr("Some clips were repaired: look…"),
+            tr("What reading them put right, and what to leave as it is in the files"),
             lambda: show(title, clips, tuple(lines)),
         )
 
@@ -46,9 +47,9 @@ def contribute(shell: Shell) -> Contribution:
                 "repairs",
                 "&Edit",
                 "properties",
-                "Repa&irs…",
+                tr("Repa&irs…"),
                 show,
-                tip="What reading the files put right, and what to leave as it is",
+                tip=tr("What reading the files put right, and what to leave as it is"),
                 enabled=lambda: bool(document.project.clips),
                 menus=("clip",),
             ),

@@ -17,9 +17,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
+from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.tree_items import items_below, top_items
 from metagraph.formats.repairs import Repaired, Reread, repairs_of, reread
@@ -28,12 +30,12 @@ from metagraph.graph.edits import EditError
 
 PLACE = Qt.ItemDataRole.UserRole
 TITLES = {
-    BIND_POSE: "Drop bind poses at the ends",
-    LONE_FRAME: "Mend frames unlike both their neighbours",
-    UNIT: "Find the unit of length",
-    UP: "Turn from Z up to Y up",
-    ONE_FRAME: "Skip bind poses of one frame",
-    NAME: "Clean names",
+    BIND_POSE: tr("Drop bind poses at the ends"),
+    LONE_FRAME: tr("Mend frames unlike both their neighbours"),
+    UNIT: tr("Find the unit of length"),
+    UP: tr("Turn from Z up to Y up"),
+    ONE_FRAME: tr("Skip bind poses of one frame"),
+    NAME: tr("Clean names"),
 }
 TICKED, OPEN = Qt.CheckState.Checked, Qt.CheckState.Unchecked
 
@@ -54,7 +56,7 @@ class RepairsDialog(QDialog):
         self.document, self.jobs, self.clips = document, jobs, tuple(clips)
         self.found: list[Repaired] = []
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle("Repairs")
+        self.setWindowTitle(tr("Repairs"))
         self.resize(760, 520)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(16, 14, 16, 14)
@@ -64,18 +66,18 @@ class RepairsDialog(QDialog):
         self.words = QLabel(self, wordWrap=True)
         self.words.setProperty("dim", True)
         self.tree = make_widget(QTreeWidget, self, uniformRowHeights=True)
-        self.tree.setHeaderLabels(["Clip", "What was done"])
+        self.tree.setHeaderLabels([tr("Clip"), tr("What was done")])
         self.tree.setColumnWidth(0, 320)
-        self.tree.setAccessibleName("Repairs")
+        self.tree.setAccessibleName(tr("Repairs"))
         self.tree.itemChanged.connect(self._count)
         self.lines = QPlainTextEdit("\n".join(lines), self, readOnly=True)
-        self.lines.setAccessibleName("Also noted")
+        self.lines.setAccessibleName(tr("Also noted"))
         self.lines.setMaximumHeight(110)
         self.lines.setVisible(bool(lines))
         self.trouble = QLabel(self, wordWrap=True)
         self.trouble.hide()
         self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
-        self.go = self.buttons.addButton("Apply", QDialogButtonBox.ButtonRole.ApplyRole)
+        self.go = self.buttons.addButton(tr("Apply"), QDialogButtonBox.ButtonRole.ApplyRole)
         self.go.clicked.connect(self.apply)
         strengthen(self.go)
         self.buttons.rejected.connect(self.reject)
@@ -114,13 +116,12 @@ class RepairsDialog(QDialog):
         self.tree.blockSignals(False)
         self.tree.setVisible(bool(found))
         self.words.setText(
-            (
+            tr(
                 "Reading the files put this right. Untick what should be left as it is in the file; it can "
-                "be "
-                "ticked again at any time."
+                "be ticked again at any time."
             )
             if found
-            else "Nothing had to be put right in these clips."
+            else tr("Nothing had to be put right in these clips.")
         )
         self._count()
 
@@ -135,7 +136,7 @@ class RepairsDialog(QDialog):
     def _count(self, *_: object) -> None:
         count = len(self.changes())
         self.go.setEnabled(count > 0)
-        self.go.setText(f"Apply {count} change{'s' if count != 1 else ''}" if count else "Apply")
+        self.go.setText(tr("Apply {changes}", changes=many(count, "change")) if count else tr("Apply"))
 
     def apply(self) -> None:
         """Read the clips again with and without those repairs, on a thread; one undo step."""
@@ -149,16 +150,20 @@ class RepairsDialog(QDialog):
 
         def done(result: Reread) -> None:
             if self.document.project is not project:
-                self._fail("The project was changed meanwhile; apply it again.")
+                self._fail(tr("The project was changed meanwhile; apply it again."))
                 return
             failures = list(result.failures)
             try:
                 if result.count:
-                    left = sum(not made for _, made in changes)
-                    verb = "Leave out" if left == len(changes) else "Make" if not left else "Change"
-                    self.document.edit(
-                        f"{verb} {len(changes)} repair{'s' if len(changes) != 1 else ''}", result.into
+                    left, repairs = sum(not made for _, made in changes), many(len(changes), "repair")
+                    words = (
+                        tr("Leave out {repairs}", repairs=repairs)
+                        if left == len(changes)
+                        else tr("Make {repairs}", repairs=repairs)
+                        if not left
+                        else tr("Change {repairs}", repairs=repairs)
                     )
+                    self.document.edit(words, result.into)
             except EditError as error:
                 failures.append(str(error))
             self.found = []
@@ -166,7 +171,7 @@ class RepairsDialog(QDialog):
             if failures:
                 self._fail("\n".join(failures[:4]))
 
-        self.jobs.start("Reading clips again", work, done, lambda error: self._fail(str(error)))
+        self.jobs.start(tr("Reading clips again"), work, done, lambda error: self._fail(str(error)))
 
     def _fail(self, words: str) -> None:
         self.trouble.setText(words)

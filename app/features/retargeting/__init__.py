@@ -7,6 +7,7 @@ from app.project.files import Files
 from app.project.importing import Importing
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -22,9 +23,9 @@ def contribute(shell: Shell) -> Contribution:
                 "joint_maps",
                 "&Graph",
                 "skeleton",
-                "&Joint maps…",
+                tr("&Joint maps…"),
                 lambda: retargeting.change_maps(session.selection.clips),
-                tip="How clips of other skeletons were brought onto this one",
+                tip=tr("How clips of other skeletons were brought onto this one"),
                 enabled=lambda: bool(document.project.joint_maps),
             ),
         ),

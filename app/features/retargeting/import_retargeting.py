@@ -14,6 +14,7 @@ from app.look.plural import clips_words
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.project.kept_maps import keep_map
+from app.translation import tr
 from metagraph.errors import FileError
 from metagraph.formats.imports import Imported, Strangers, bring_over, strangers_of
 from metagraph.graph.project_retargeting import Bringing
@@ -59,17 +60,17 @@ class Retargeting(QObject):
 
         def then(result: Imported) -> None:
             if result.loaded:
-                self.document.edit("Change joint map", result.into)
-                self.told.emit(f"Retargeted {clips_words(len(result.loaded))} again.")
+                self.document.edit(tr("Change joint map"), result.into)
+                self.told.emit(tr("Retargeted {loaded} again.", loaded=clips_words(len(result.loaded))))
 
         def done(groups: tuple[Strangers, ...]) -> None:
             if not groups:
-                self.told.emit("No clip of this project was retargeted.")
+                self.told.emit(tr("No clip of this project was retargeted."))
             elif self.document.project is project:
                 self.ask(groups, then)
 
         self.jobs.start(
-            "Reading retargeted clips",
+            tr("Reading retargeted clips"),
             lambda _: strangers_of(project, folder, chosen),
             done,
             self.failed.emit,
@@ -100,7 +101,7 @@ class Retargeting(QObject):
         try:
             keep_map(joint_map)
         except (FileError, OSError) as error:
-            self.told.emit(f"The joint map is kept in this project only ({error}).")
+            self.told.emit(tr("The joint map is kept in this project only ({error}).", error=error))
 
         def done(result: Imported) -> None:
             if (
@@ -108,7 +109,7 @@ class Retargeting(QObject):
                 or self.document.project.skeleton is not bringing.project.skeleton
             ):
                 result = replace(result, loaded=(), joint_maps={}, retargeted=0)
-                self.told.emit("The clips were not retargeted, since another project was opened.")
+                self.told.emit(tr("The clips were not retargeted, since another project was opened."))
             self._end(lambda: then(result))
 
         def failed(error: Exception) -> None:
@@ -116,7 +117,7 @@ class Retargeting(QObject):
             self._end(lambda: then(Imported(())))
 
         self.jobs.start(
-            f"Retargeting {clips_words(len(group.clips))}",
+            tr("Retargeting {clips}", clips=clips_words(len(group.clips))),
             lambda job: self._work(job, bringing, group, joint_map),
             done,
             failed,

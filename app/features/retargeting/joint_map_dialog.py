@@ -26,6 +26,7 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import DARK, LIGHT, strengthen
 from app.project.jobs import Jobs
+from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.stick_figures import StickFigures
@@ -35,7 +36,7 @@ from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import JointMap, known_roles
 
 JOINT = Qt.ItemDataRole.UserRole
-NONE = "– none –"
+NONE = tr("– none –")
 AT_ONCE = 12  # rows that get their boxes in one go
 SHOWN = 150  # frames of a clip that are played
 
@@ -62,7 +63,7 @@ class JointMapDialog(QDialog):
             self.target.names[j]: role for role, j in known_roles(self.target, bringing.roles).items()
         }
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle("Another skeleton")
+        self.setWindowTitle(tr("Another skeleton"))
         self.resize(1200, 720)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(16, 14, 16, 14)
@@ -83,8 +84,8 @@ class JointMapDialog(QDialog):
         self.missing = QLabel(self, wordWrap=True)
         layout.addWidget(self.missing)
         self.buttons = QDialogButtonBox(self)
-        self.go = self.buttons.addButton("Retarget", QDialogButtonBox.ButtonRole.AcceptRole)
-        self.leave = self.buttons.addButton("Leave them out", QDialogButtonBox.ButtonRole.RejectRole)
+        self.go = self.buttons.addButton(tr("Retarget"), QDialogButtonBox.ButtonRole.AcceptRole)
+        self.leave = self.buttons.addButton(tr("Leave them out"), QDialogButtonBox.ButtonRole.RejectRole)
         strengthen(self.go)
         self.buttons.accepted.connect(self.accept)
         self.buttons.rejected.connect(self.reject)
@@ -102,51 +103,63 @@ class JointMapDialog(QDialog):
     def _say(self) -> None:
         paths = list(dict.fromkeys(Path(path).name for path, *_ in self.strangers.clips))
         count = len(self.strangers.clips)
-        files = ", ".join(paths[:2]) + (f" and {len(paths) - 2} more" if len(paths) > 2 else "")
-        self.headline.setText(
-            f"{count} clips have another skeleton" if count > 1 else "A clip has another skeleton"
+        files = ", ".join(paths[:2]) + (
+            tr(" and {count} more", count=len(paths) - 2) if len(paths) > 2 else ""
         )
-        words = (
-            f"From {files}: {len(self.source)} joints, {self.source.height:.2f} m tall; {self.strangers.why}."
+        self.headline.setText(
+            tr("{count} clips have another skeleton", count=count)
+            if count > 1
+            else tr("A clip has another skeleton")
+        )
+        words = tr(
+            "From {files}: {joints} joints, {height:.2f} m tall; {why}.",
+            files=files,
+            joints=len(self.source),
+            height=self.source.height,
+            why=self.strangers.why,
         )
         if not self.strangers.why:  # they are in the project
-            words = (
-                f"From {files}: {len(self.source)} joints, {self.source.height:.2f} m tall. This is how "
-                "they were brought over."
+            words = tr(
+                "From {files}: {joints} joints, {height:.2f} m tall. This is how they were brought over.",
+                files=files,
+                joints=len(self.source),
+                height=self.source.height,
             )
-            self.headline.setText(f"{count} clips were retargeted" if count > 1 else "A clip was retargeted")
+            self.headline.setText(
+                tr("{count} clips were retargeted", count=count) if count > 1 else tr("A clip was retargeted")
+            )
         elif self.strangers.remembered:
-            words += " The joints are mapped as you did it before."
+            words += tr(" The joints are mapped as you did it before.")
         else:
-            words += (
+            words += tr(
                 " The joints below were paired by what they do and by their names; look at those that "
                 "are not sure."
             )
         self.details.setText(words)
-        self.go.setText(f"Retarget {count} clips" if count > 1 else "Retarget the clip")
+        self.go.setText(tr("Retarget {count} clips", count=count) if count > 1 else tr("Retarget the clip"))
         if not self.strangers.why:
-            self.go.setText("Retarget again")
-            self.leave.setText("Keep as it is")
+            self.go.setText(tr("Retarget again"))
+            self.leave.setText(tr("Keep as it is"))
         elif count == 1:
-            self.leave.setText("Leave it out")
+            self.leave.setText(tr("Leave it out"))
 
     def _table(self) -> QWidget:
         page = QWidget(self)
         box = QVBoxLayout(page)
         box.setContentsMargins(0, 0, 8, 0)
-        self.doubtful = QCheckBox("Only what is not sure or not mapped", page)
+        self.doubtful = QCheckBox(tr("Only what is not sure or not mapped"), page)
         self.doubtful.toggled.connect(self._narrow)
-        self.contacts = QCheckBox("Hands touch their own body where they did", page)
-        self.contacts.setToolTip("On the face, the chest, the thighs, the other arm and hand")
+        self.contacts = QCheckBox(tr("Hands touch their own body where they did"), page)
+        self.contacts.setToolTip(tr("On the face, the chest, the thighs, the other arm and hand"))
         self.contacts.setChecked(self.map.contacts)
         self.contacts.toggled.connect(self._touch)
         self.tree = make_widget(QTreeWidget, page, rootIsDecorated=False, uniformRowHeights=True)
-        self.tree.setHeaderLabels(["Joint of the clips", "Moves", "As", "Sure", "Why"])
-        self.tree.setAccessibleName("Joint map")
+        self.tree.setHeaderLabels([tr("Joint of the clips"), tr("Moves"), tr("As"), tr("Sure"), tr("Why")])
+        self.tree.setAccessibleName(tr("Joint map"))
         header = self.tree.header()
         header.setStretchLastSection(True)
         self.tree.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        for column, width in enumerate((170, 180, 140, 56)):
+        for column, width in enumerate((170, 180, 136, 60)):
             self.tree.setColumnWidth(column, width)
         header.setSectionResizeMode(3, QHeaderView.ResizeMode.Fixed)
         self.tree.currentItemChanged.connect(self._mark)
@@ -177,9 +190,9 @@ class JointMapDialog(QDialog):
     def combo(self, joint: str) -> QComboBox:
         """Return the box in which is chosen what the joint moves."""
         if joint not in self.combos:
-            combo = ComboBox(self.tree, toolTip="The joint of your character that follows it")
+            combo = ComboBox(self.tree, toolTip=tr("The joint of your character that follows it"))
             combo.setModel(self.names)
-            combo.setAccessibleName(f"{joint} moves")
+            combo.setAccessibleName(tr("{joint} moves", joint=joint))
             combo.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
 
             combo.setCurrentIndex(self._number(joint))
@@ -197,14 +210,14 @@ class JointMapDialog(QDialog):
         page = QWidget(self)
         box = QVBoxLayout(page)
         box.setContentsMargins(8, 0, 0, 0)
-        self.clip = ComboBox(page, toolTip="The clip that is played")
-        self.clip.setAccessibleName("Clip that is played")
+        self.clip = ComboBox(page, toolTip=tr("The clip that is played"))
+        self.clip.setAccessibleName(tr("Clip that is played"))
         self.clip.addItems([clip.name for *_, clip in self.strangers.clips])
         self.clip.activated.connect(lambda _: self._play())
         self.figures = StickFigures(page)
-        self.figures.words = ("as it is", "on your character")
+        self.figures.words = (tr("as it is"), tr("on your character"))
         row = QHBoxLayout()
-        row.addWidget(QLabel("Play", page))
+        row.addWidget(QLabel(tr("Play"), page))
         row.addWidget(self.clip, 1)
         box.addLayout(row)
         box.addWidget(self.figures, 1)
@@ -242,7 +255,7 @@ class JointMapDialog(QDialog):
                 self.combos[name].setCurrentIndex(self._number(name))
             item.setText(2, pair.role.replace("_", " ") if pair is not None else "")
             item.setText(3, f"{pair.sure:.0%}" if pair is not None else "")
-            item.setText(4, pair.why if pair is not None else "moves nothing")
+            item.setText(4, pair.why if pair is not None else tr("moves nothing"))
             item.setToolTip(4, item.text(4))
             unsure = pair is not None and pair.sure < 0.7
             for column in range(5):
@@ -254,16 +267,19 @@ class JointMapDialog(QDialog):
                 )
         missing = self.map.missing
         free = len(self.target) - len({p.target for p in self.map.pairs})
-        words = f"{len(self.map.pairs)} of {len(self.source)} joints are mapped."
+        words = tr(
+            "{mapped} of {joints} joints are mapped.", mapped=len(self.map.pairs), joints=len(self.source)
+        )
         if free:
-            words += f" {free} joints of your character keep to their parents."
+            words += tr(" {free} joints of your character keep to their parents.", free=free)
         if missing:
             parts = [m.removeprefix("no ").removesuffix(" in both") for m in missing]
-            more = f" and {len(parts) - 4} more" if len(parts) > 4 else ""
-            words = (
-                f"Still missing: {', '.join(parts[:4])}{more}. Choose what moves them above. Where your own "
-                "character's joints are not"
-                " known, say so under Graph, Skeleton first."
+            more = tr(" and {count} more", count=len(parts) - 4) if len(parts) > 4 else ""
+            words = tr(
+                "Still missing: {parts}{more}. Choose what moves them above. Where your own "
+                "character's joints are not known, say so under Graph, Skeleton first.",
+                parts=", ".join(parts[:4]),
+                more=more,
             )
         self.missing.setText(words)
         self.missing.setStyleSheet(f"color: {look.warning}" if missing else "")
@@ -297,7 +313,7 @@ class JointMapDialog(QDialog):
         clip = clip.trimmed(0, min(SHOWN, clip.frames))
         self.figures.show_clips(clip, None)
         if joint_map.missing:
-            self.trouble.setText("Your character moves as soon as nothing is missing.")
+            self.trouble.setText(tr("Your character moves as soon as nothing is missing."))
             return
         self.trouble.clear()
 
@@ -310,5 +326,5 @@ class JointMapDialog(QDialog):
                 self.trouble.setText(str(error))
 
         self.jobs.start(
-            "Trying the joint map", lambda _: bringing.bring(clip, joint_map), done, failed, quick=True
+            tr("Trying the joint map"), lambda _: bringing.bring(clip, joint_map), done, failed, quick=True
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from app.features.study.operator_counting import OperatorCounting
 from app.shell.actions import Command
 from app.shell.context import Contribution, Shell
+from app.translation import tr
 
 
 def contribute(shell: Shell) -> Contribution:
@@ -19,16 +20,21 @@ def contribute(shell: Shell) -> Contribution:
     return Contribution(
         commands=(
             Command(
-                "study", "&Study", "", "&Run a study…", run, tip="Lead a participant through a timing study"
+                "study",
+                "&Study",
+                "",
+                tr("&Run a study…"),
+                run,
+                tip=tr("Lead a participant through a timing study"),
             ),
             Command(
                 "count_operators",
                 "&Study",
                 "",
-                "&Count operators",
+                tr("&Count operators"),
                 counting.toggle,
                 checked=lambda: counting.on,
-                tip="Count keys, pointings, buttons and drags as they happen",
+                tip=tr("Count keys, pointings, buttons and drags as they happen"),
             ),
         ),
     )

@@ -12,6 +12,7 @@ from PySide6.QtCore import QObject, QTimer
 from PySide6.QtWidgets import QLabel
 
 from app.features.study.operator_events import Hands
+from app.translation import tr
 from metagraph.study.klm import predicted
 
 if TYPE_CHECKING:
@@ -25,9 +26,11 @@ class Counting(QObject):
         super().__init__(shell.widget)
         self.label = QLabel(shell.widget)
         self.label.setToolTip(
-            "Keys, pointings, buttons pressed or released, drags, and hands changing over since this was "
-            "turned on.\n"
-            "The seconds are what an expert would take who need not think (Card, Moran and Newell 1980)."
+            tr(
+                "Keys, pointings, buttons pressed or released, drags, and hands changing over since this was "
+                "turned on.\n"
+                "The seconds are what an expert would take who need not think (Card, Moran and Newell 1980)."
+            )
         )
         shell.widget.statusBar().addPermanentWidget(self.label)
         self.total: Counter[str] = Counter()

@@ -14,8 +14,9 @@ from app.shell.header import Header
 from app.shell.places import Places
 from app.shell.workspace_keeper import Workspaces
 from app.stage.compatibility_state import Compatibility
+from app.translation import tr
 
-CLOSED = "Not during a study: everybody works on the same clips."
+CLOSED = tr("Not during a study: everybody works on the same clips.")
 
 
 class ReservedWindow:

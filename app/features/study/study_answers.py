@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.translation import tr
 from metagraph.study.questionnaires import BUTTONS, Item, Scale
 
 _EDGE = 12  # pixels left and right of a line of marks
@@ -137,7 +138,7 @@ class Question(QWidget):
         self.field = self._field(item, value)
         self.field.setAccessibleName(item.text)
         column.addWidget(self.field)
-        self.missing = QLabel("Please answer this one.", self)
+        self.missing = QLabel(tr("Please answer this one."), self)
         self.missing.setProperty("missing", True)
         self.missing.hide()
         column.addWidget(self.missing)

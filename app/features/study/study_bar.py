@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 from app.features.study.study_screen import clock, rich
 from app.look.theme import strengthen, theme
 from app.stage.session import Session
+from app.translation import tr
 from app.widgets.making import make_widget
 
 WARNINGS = (120.0, 30.0)  # seconds before the end at which it is said
@@ -28,7 +29,7 @@ class StudyBar(QToolBar):
     """Above the window's own bar. Instructions unfold below the title."""
 
     def __init__(self, session: Session, parent: QWidget) -> None:
-        super().__init__("Study", parent)
+        super().__init__(tr("Study"), parent)
         self.session = session
         self.setObjectName("study")
         self.setMovable(False)
@@ -41,13 +42,15 @@ class StudyBar(QToolBar):
         column.addLayout(row)
         self.title = QLabel(inner)
         self.title.setProperty("heading", True)
-        self.more = make_widget(QToolButton, inner, text="Instructions", checkable=True)
+        self.more = make_widget(QToolButton, inner, text=tr("Instructions"), checkable=True)
         self.more.toggled.connect(self._unfold)
         self.told = QLabel(inner)
         self.time = QLabel(inner)
         self.time.setMinimumWidth(110)
         self.time.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-        self.note, self.pause, self.done = (QPushButton(text, inner) for text in ("Note…", "Pause", "Done"))
+        self.note, self.pause, self.done = (
+            QPushButton(text, inner) for text in (tr("Note…"), tr("Pause"), tr("Done"))
+        )
         strengthen(self.done)
         self.done.setMinimumWidth(84)
         row.addWidget(self.title)
@@ -87,7 +90,9 @@ class StudyBar(QToolBar):
             return
         left = 60 * minutes - elapsed
         near = left <= WARNINGS[0]
-        self.time.setText(f"{clock(left)} left")
+        self.time.setText(tr("{clock} left", clock=clock(left)))
         self.time.setStyleSheet(f"color: {look.warning}; font-weight: 600" if near else "")
         self.told.setStyleSheet(f"color: {look.warning}")
-        self.told.setText("Half a minute left" if left <= WARNINGS[1] else "Two minutes left" if near else "")
+        self.told.setText(
+            tr("Half a minute left") if left <= WARNINGS[1] else tr("Two minutes left") if near else ""
+        )

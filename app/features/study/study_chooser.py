@@ -23,12 +23,16 @@ from app.features.study.study_guide import Guide
 from app.look.theme import strengthen
 from app.project.files import Files
 from app.shell.places import Places
+from app.translation import tr, tr_noop
 from metagraph.errors import FileError
 from metagraph.study.sitting import standing
 from metagraph.study.study_plan import Study, read_study
 
 if TYPE_CHECKING:
     from app.shell.context import Shell
+
+OVER = (tr_noop("done"), tr_noop("withdrawn"))  # what `standing` says where nobody goes on
+OTHERS = (tr_noop("not begun"), tr_noop("declined"))  # it says that, too
 
 
 def run_study(
@@ -37,7 +41,7 @@ def run_study(
     """Begin or resume a sitting in the window; what is not given is asked for."""
     if path is None:
         name, _ = QFileDialog.getOpenFileName(
-            shell.widget, "Run a study", str(Path.home()), "Studies (*.yaml *.yml)"
+            shell.widget, tr("Run a study"), str(Path.home()), tr("Studies (*.yaml *.yml)")
         )
         if not name:
             return
@@ -45,7 +49,7 @@ def run_study(
     try:
         study = read_study(path)
     except FileError as error:
-        QMessageBox.warning(shell.widget, "This study cannot be run", str(error))
+        QMessageBox.warning(shell.widget, tr("This study cannot be run"), str(error))
         return
     if participant is not None:
         begin(shell, study, participant, experimenter)
@@ -64,7 +68,7 @@ def begin(shell: Shell, study: Study, participant: str, experimenter: bool = Fal
     try:
         guide = Guide(shell, study, participant, experimenter)
     except (FileError, ValueError) as error:
-        QMessageBox.warning(shell.widget, "This sitting cannot begin", str(error))
+        QMessageBox.warning(shell.widget, tr("This sitting cannot begin"), str(error))
         return None
     guide.show()
     return guide
@@ -78,26 +82,26 @@ class Chooser(QDialog):
     def __init__(self, study: Study, parent: QWidget) -> None:
         super().__init__(parent)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle("Run a study")
+        self.setWindowTitle(tr("Run a study"))
         self.resize(460, 420)
         title = QLabel(study.plan.title, self)
         title.setProperty("heading", True)
         title.setWordWrap(True)
         self.list = QListWidget(self)
-        self.list.setAccessibleName("Participants")
+        self.list.setAccessibleName(tr("Participants"))
         first: QListWidgetItem | None = None
         for who in study.plan.ids:
             words = standing(study, who)
-            item = QListWidgetItem(f"{who}    {words}", self.list)
+            item = QListWidgetItem(f"{who}    {tr(words)}", self.list)
             item.setData(Qt.ItemDataRole.UserRole, who)
-            if words in ("done", "withdrawn"):
+            if words in OVER:
                 item.setFlags(item.flags() & ~Qt.ItemFlag.ItemIsEnabled)
             elif first is None:
                 first = item
         if first is not None:
             self.list.setCurrentItem(first)
         self.list.itemActivated.connect(lambda _: self._go())
-        cancel, self.go = QPushButton("Cancel", self), QPushButton("Start", self)
+        cancel, self.go = QPushButton(tr("Cancel"), self), QPushButton(tr("Start"), self)
         cancel.clicked.connect(self.reject)
         strengthen(self.go)
         self.go.clicked.connect(self._go)
@@ -110,7 +114,7 @@ class Chooser(QDialog):
         column.setContentsMargins(18, 16, 18, 16)
         column.setSpacing(10)
         column.addWidget(title)
-        column.addWidget(QLabel("Who takes part?", self))
+        column.addWidget(QLabel(tr("Who takes part?"), self))
         column.addWidget(self.list, 1)
         column.addLayout(buttons)
 

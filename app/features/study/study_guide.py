@@ -27,6 +27,7 @@ from app.features.study.study_screen import (
 )
 from app.project.files import Files
 from app.project.jobs import Job
+from app.translation import tr, tr_noop
 from metagraph import __version__
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from app.shell.context import Shell
 
 
+EDITORS = (tr_noop("Meta-graph"), tr_noop("State machine"))  # of `CONDITION_TITLES`
 CLAP = 600  # milliseconds of a flash
 
 
@@ -58,15 +60,18 @@ class Guide(QObject):
         except OSError as error:
             raise FileError(
                 folder,
-                f"cannot be made ({error.strerror or error})",
-                "on beginning",
-                "Check your rights there.",
+                tr("cannot be made ({why})", why=error.strerror or error),
+                tr("on beginning"),
+                tr("Check your rights there."),
             ) from None
         self._lock = QLockFile(str(folder / "sitting.lock"))
         self._lock.setStaleLockTime(0)
         if not self._lock.tryLock(0):
             raise FileError(
-                folder, "another window has this sitting open", participant, "Go on there, or close it."
+                folder,
+                tr("another window has this sitting open"),
+                participant,
+                tr("Go on there, or close it."),
             )
         try:
             self.sitting = Sitting(study, participant, machine(), __version__)
@@ -89,7 +94,9 @@ class Guide(QObject):
         self.bar.pause.clicked.connect(lambda: self.pause())
         self.bar.note.clicked.connect(self.write_note)
         self._enter()
-        shell.jobs.start("What is worked with", lambda job: manifest(study), self.sitting.freeze, quick=True)
+        shell.jobs.start(
+            tr("What is worked with"), lambda job: manifest(study), self.sitting.freeze, quick=True
+        )
 
     # --- the window
 
@@ -141,7 +148,12 @@ class Guide(QObject):
         phase = self.sitting.phase
         if phase is None:
             self._show(
-                text_page("This sitting is over", "All of it was gone through before.", "Close", self._finish)
+                text_page(
+                    tr("This sitting is over"),
+                    tr("All of it was gone through before."),
+                    tr("Close"),
+                    self._finish,
+                )
             )
         elif phase.works:
             self._load(phase)
@@ -165,20 +177,27 @@ class Guide(QObject):
             )
         if phase.name == "end":
             return text_page(
-                phase.title, phase.text or "That was all. You have helped a great deal.", "Close", self.go_on
+                phase.title,
+                phase.text or tr("That was all. You have helped a great deal."),
+                tr("Close"),
+                self.go_on,
             )
-        limit = f"\n\nYou have {phase.minutes:g} minutes." if phase.minutes else ""
+        limit = tr("\n\nYou have {minutes:g} minutes.", minutes=phase.minutes) if phase.minutes else ""
         return text_page(
             phase.title,
             phase.text + (limit if phase.condition else ""),
-            "Start" if phase.condition else "Go on",
+            tr("Start") if phase.condition else tr("Go on"),
             self.go_on,
         )
 
     def _about(self, phase: Phase) -> str:
         names = [self.study.plan.task(phase.task).name] if phase.task is not None else []
-        names += [f"the editor “{CONDITION_TITLES[phase.condition]}”"] if phase.condition is not None else []
-        return f"About {', with '.join(names)}" if names else ""
+        names += (
+            [tr("the editor “{title}”", title=tr(CONDITION_TITLES[phase.condition]))]
+            if phase.condition is not None
+            else []
+        )
+        return tr("About {names}", names=tr(", with ").join(names)) if names else ""
 
     def _show(self, page: Page) -> None:
         """Lay a page over the window, whose commands rest."""
@@ -186,7 +205,11 @@ class Guide(QObject):
         self.reserved.allow_page()
         self.shell.stage.session.transport.set_playing(False)
         self.reserved.reach(False)
-        step = f"   {phase.index + 1} of {len(self.sitting.course)}" if phase is not None else ""
+        step = (
+            tr("   {number} of {count}", number=phase.index + 1, count=len(self.sitting.course))
+            if phase is not None
+            else ""
+        )
         self.screen.show_page(page, f"{self.study.plan.title}   {self.participant}{step}")
 
     def go_on(self) -> None:
@@ -213,9 +236,9 @@ class Guide(QObject):
 
     def _load(self, phase: Phase) -> None:
         """Make or open the project of a task on a thread; its time begins when it is there."""
-        self._show(Page(phase.title, "One moment: the clips are loaded.").finish())
+        self._show(Page(phase.title, tr("One moment: the clips are loaded.")).finish())
         study, path, again = self.study, self.sitting.file, self.sitting.now.begun
-        name = study.plan.task(phase.task).name if phase.task is not None else "Practice"
+        name = study.plan.task(phase.task).name if phase.task is not None else tr("Practice")
         reference = study.reference(phase.task) if phase.task is not None else None
 
         def work(job: Job) -> Project:
@@ -224,18 +247,18 @@ class Guide(QObject):
             return write(make(study, phase.clips, name, reference), path)
 
         self.shell.jobs.start(
-            "Loading the clips", work, lambda project: self._begin(phase, project), self._cannot
+            tr("Loading the clips"), work, lambda project: self._begin(phase, project), self._cannot
         )
 
     def _cannot(self, error: Exception) -> None:
         self.recorder.tell("error", what="failed", words=str(error))
         self._show(
             question_page(
-                "This cannot go on",
+                tr("This cannot go on"),
                 str(error),
-                "Try again",
+                tr("Try again"),
                 self.show,
-                "Close the window",
+                tr("Close the window"),
                 self.shell.widget.close,
             )
         )
@@ -255,9 +278,9 @@ class Guide(QObject):
             self._resumed = False
             self.sitting.writer.add("pause", state="begin", why="resumed")
             page = text_page(
-                "Welcome back",
-                "Your work is as you left it. The clock goes on when you do.",
-                "Go on",
+                tr("Welcome back"),
+                tr("Your work is as you left it. The clock goes on when you do."),
+                tr("Go on"),
                 self.unpause,
             )
             self._show(page)
@@ -312,7 +335,7 @@ class Guide(QObject):
         if self._working:
             self._stop()
             self.recorder.tell("pause", state="begin")
-            self._show(text_page("Paused", "The clock stands still.", "Go on", self.unpause))
+            self._show(text_page(tr("Paused"), tr("The clock stands still."), tr("Go on"), self.unpause))
 
     def unpause(self) -> None:
         self.sitting.writer.add("pause", state="end")
@@ -322,11 +345,11 @@ class Guide(QObject):
         """Ask whether the task is done; the clock runs on meanwhile."""
         self._show(
             question_page(
-                "Are you done?",
-                "You cannot come back to it.",
-                "Yes, done",
+                tr("Are you done?"),
+                tr("You cannot come back to it."),
+                tr("Yes, done"),
                 lambda: self.finish_task("done"),
-                "No, go on",
+                tr("No, go on"),
                 self._back_to_work,
             )
         )
@@ -347,18 +370,18 @@ class Guide(QObject):
         except FileError as error:
             self._show(
                 question_page(
-                    "This could not be saved",
+                    tr("This could not be saved"),
                     str(error),
-                    "Try again",
+                    tr("Try again"),
                     lambda: self.finish_task(why),
-                    "Close the window",
+                    tr("Close the window"),
                     self.shell.widget.close,
                 )
             )
             return
         self.bar.hide()
         if why == "time":
-            self._show(text_page("Time is up", "What you have made is kept.", "Go on", self.show))
+            self._show(text_page(tr("Time is up"), tr("What you have made is kept."), tr("Go on"), self.show))
         else:
             self.show()
 

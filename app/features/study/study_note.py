@@ -6,6 +6,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QDialog, QHBoxLayout, QLabel, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
 
 from app.look.theme import strengthen
+from app.translation import tr
 
 
 class NoteDialog(QDialog):
@@ -16,13 +17,13 @@ class NoteDialog(QDialog):
     def __init__(self, experimenter: bool, parent: QWidget) -> None:
         super().__init__(parent)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setWindowTitle("Note")
+        self.setWindowTitle(tr("Note"))
         self.by = "experimenter" if experimenter else "participant"
         self.words = QPlainTextEdit(self)
         self.words.setTabChangesFocus(True)
         self.words.setMinimumSize(420, 120)
-        self.words.setAccessibleName("Note")
-        self.keep, cancel = QPushButton("Keep", self), QPushButton("Cancel", self)
+        self.words.setAccessibleName(tr("Note"))
+        self.keep, cancel = QPushButton(tr("Keep"), self), QPushButton(tr("Cancel"), self)
         strengthen(self.keep)
         self.keep.clicked.connect(self._keep)
         cancel.clicked.connect(self.reject)
@@ -35,7 +36,7 @@ class NoteDialog(QDialog):
         column = QVBoxLayout(self)
         column.setContentsMargins(16, 14, 16, 14)
         column.setSpacing(10)
-        column.addWidget(QLabel("What is worth remembering? The clock runs on.", self))
+        column.addWidget(QLabel(tr("What is worth remembering? The clock runs on."), self))
         column.addWidget(self.words)
         column.addLayout(buttons)
 

@@ -12,6 +12,7 @@ from app.features.study.reserved_window import ReservedWindow
 from app.features.study.study_screen import clock
 from app.project.files import Files
 from app.project.opening import with_motion_of
+from app.translation import tr
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, Slider
 from metagraph.errors import FileError
@@ -31,7 +32,7 @@ class ReplayBar(QToolBar):
     """Which part, where in it, how fast, and what happens."""
 
     def __init__(self, parent: QWidget) -> None:
-        super().__init__("Replay", parent)
+        super().__init__(tr("Replay"), parent)
         self.setObjectName("replay")
         self.setMovable(False)
         inner = QWidget(self)
@@ -39,20 +40,20 @@ class ReplayBar(QToolBar):
         row.setContentsMargins(6, 2, 6, 2)
         row.setSpacing(8)
         self.part = ComboBox(inner)
-        self.part.setAccessibleName("Part of the sitting")
-        self.play = make_widget(QPushButton, inner, text="Play", checkable=True)
+        self.part.setAccessibleName(tr("Part of the sitting"))
+        self.play = make_widget(QPushButton, inner, text=tr("Play"), checkable=True)
         self.speed = ComboBox(inner)
-        self.speed.setAccessibleName("Speed")
+        self.speed.setAccessibleName(tr("Speed"))
         for value in SPEEDS:
             self.speed.addItem(f"{value:g} ×", value)
         self.slider = Slider(Qt.Orientation.Horizontal, inner)
-        self.slider.setAccessibleName("Moment")
+        self.slider.setAccessibleName(tr("Moment"))
         self.slider.setMinimumWidth(160)
         self.time = QLabel(inner)
         self.time.setMinimumWidth(110)
         self.told = QLabel(inner)
         self.told.setMinimumWidth(260)
-        self.leave = QPushButton("Close", inner)
+        self.leave = QPushButton(tr("Close"), inner)
         for widget in (self.part, self.play, self.speed):
             row.addWidget(widget)
         row.addWidget(self.slider, 2)
@@ -83,7 +84,10 @@ class Replayer(QObject):
         self.parts = parts(study, read(study.log(participant)).events)
         if not self.parts:
             raise FileError(
-                study.log(participant), "nothing was worked on", participant, "Choose another sitting."
+                study.log(participant),
+                tr("nothing was worked on"),
+                participant,
+                tr("Choose another sitting."),
             )
         self.part: Part = self.parts[0]
         self.again: Again | None = None
@@ -115,9 +119,9 @@ class Replayer(QObject):
         self.bar.play.setChecked(False)
         self.part, self.again = self.parts[number], None
         part = self.part
-        self.bar.told.setText("The clips are loaded…")
+        self.bar.told.setText(tr("The clips are loaded…"))
         self.shell.jobs.start(
-            "Loading the clips",
+            tr("Loading the clips"),
             lambda job: first_project(self.study, part),
             lambda project: self._loaded(part, project),
             lambda error: self.bar.told.setText(str(error)),
@@ -130,7 +134,9 @@ class Replayer(QObject):
         self.bar.slider.setRange(0, max(1, round(part.seconds * 10)))
         self._show_first()
         if part.silent:
-            self.bar.told.setText(f"{part.silent} edits of this log do not say what they changed")
+            self.bar.told.setText(
+                tr("{silent} edits of this log do not say what they changed", silent=part.silent)
+            )
         self.ready.emit()
 
     def _show_first(self) -> None:
@@ -147,7 +153,7 @@ class Replayer(QObject):
     def set_playing(self, on: bool) -> None:
         """Go on from here, or stand still."""
         self.bar.play.setChecked(on)
-        self.bar.play.setText("Pause" if on else "Play")
+        self.bar.play.setText(tr("Pause") if on else tr("Play"))
         self._last = monotonic()
         if on and self.again is not None and self.at >= self.part.seconds:
             self._show_first()
@@ -197,7 +203,7 @@ class Replayer(QObject):
         except ValueError as error:
             self.bar.told.setText(str(error))
             return
-        self.shell.document.edit(words or "Replay", lambda _: project)
+        self.shell.document.edit(words or tr("Replay"), lambda _: project)
 
     # --- what was looked at
 
@@ -245,7 +251,7 @@ class Replayer(QObject):
 
     def _tell(self) -> None:
         """Show where it stands, and what happened last."""
-        self.bar.time.setText(f"{clock(self.at)} of {clock(self.part.seconds)}")
+        self.bar.time.setText(tr("{at} of {whole}", at=clock(self.at), whole=clock(self.part.seconds)))
         if not self.bar.slider.isSliderDown():
             self.bar.slider.setValue(round(self.at * 10))
         done = self.part.events[: self.part.until(self.at)]
@@ -270,13 +276,13 @@ def _said(event: dict[str, Any]) -> str:
     """Return an event in words; nothing of those that are not worth any."""
     kind = event["type"]
     if kind == "pause":
-        return "Paused" if event.get("state") == "begin" else "Goes on"
+        return tr("Paused") if event.get("state") == "begin" else tr("Goes on")
     if kind == "idle":
-        return f"Nothing was done for {event.get('seconds', 0):.0f} s"
+        return tr("Nothing was done for {seconds:.0f} s", seconds=event.get("seconds", 0))
     if kind in ("undo", "redo"):
-        return f"{'Undo' if kind == 'undo' else 'Redo'}: {event.get('words', '')}"
+        return f"{tr('Undo') if kind == 'undo' else tr('Redo')}: {event.get('words', '')}"
     if kind in ("edit", "error", "note"):
         return str(event.get("words", ""))
     if kind in ("view", "playback"):
-        return f"{'Looks' if kind == 'view' else 'Preview'}: {event.get('what', '')}"
+        return f"{tr('Looks') if kind == 'view' else tr('Preview')}: {event.get('what', '')}"
     return ""

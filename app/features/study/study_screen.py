@@ -23,6 +23,7 @@ from PySide6.QtWidgets import (
 from app.features.study.study_answers import Question
 from app.look.theme import strengthen, theme
 from app.stage.session import Session
+from app.translation import tr
 from metagraph.study.questionnaires import Questionnaire
 
 WIDE = 720  # pixels of a column that reads well
@@ -89,10 +90,10 @@ class ConsentPage(Page):
 
     def __init__(self, title: str, text: str, agreed: Run, declined: Run) -> None:
         super().__init__(title, text)
-        self.tick = QCheckBox("I have read this, and I agree to take part", self)
+        self.tick = QCheckBox(tr("I have read this, and I agree to take part"), self)
         self.column.addWidget(self.tick)
-        self.button("I do not take part", declined)
-        go = self.button("Go on", agreed, strong=True)
+        self.button(tr("I do not take part"), declined)
+        go = self.button(tr("Go on"), agreed, strong=True)
         go.setEnabled(False)
         self.tick.toggled.connect(go.setEnabled)
         self.finish()
@@ -102,12 +103,14 @@ class BreakPage(Page):
     """Counts a break down; it may be ended before, and last longer."""
 
     def __init__(self, minutes: float, run: Run) -> None:
-        super().__init__("Time for a break", "Get up, look out of the window, have something to drink.")
+        super().__init__(
+            tr("Time for a break"), tr("Get up, look out of the window, have something to drink.")
+        )
         self.left = round(minutes * 60)
         self.clock = QLabel(self)
         self.clock.setProperty("clock", True)
         self.column.addWidget(self.clock)
-        self.button("Go on", run, strong=True)
+        self.button(tr("Go on"), run, strong=True)
         self.finish()
         self._timer = QTimer(self, interval=1000)
         self._timer.timeout.connect(self._tick)
@@ -119,7 +122,7 @@ class BreakPage(Page):
         self._show()
 
     def _show(self) -> None:
-        self.clock.setText(clock(self.left) if self.left > 0 else "Go on when you are ready.")
+        self.clock.setText(clock(self.left) if self.left > 0 else tr("Go on when you are ready."))
 
 
 class ClapPage(Page):
@@ -147,7 +150,7 @@ class QuestionsPage(Page):
         done: Run,
     ) -> None:
         super().__init__(
-            asked.title or "Some questions",
+            asked.title or tr("Some questions"),
             "\n\n".join(filter(None, (f"**{about}**" if about else "", asked.instructions))),
         )
         self._answer, self._done = answer, done
@@ -157,7 +160,7 @@ class QuestionsPage(Page):
         for question in self.questions:
             question.answered.connect(answer)
             self.column.addWidget(question)
-        self.button("Done", self.leave, strong=True)
+        self.button(tr("Done"), self.leave, strong=True)
         self.finish()
 
     def leave(self) -> None:

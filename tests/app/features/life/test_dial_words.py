@@ -1,0 +1,22 @@
+"""What the panel shows of dials is told by the domain in English, and marked here for translation."""
+
+from __future__ import annotations
+
+import pytest
+
+from app import translation
+from app.features.life.dial_words import in_sentence
+from metagraph.graph.life import DIALS, MANNER_DIALS
+
+
+def test_every_dial_can_be_said_in_german() -> None:
+    words = translation.words_of("de")
+    for dial in (*DIALS[1:], *MANNER_DIALS):
+        assert {dial.group, dial.label, dial.tip} <= words.keys(), dial.name
+    assert {DIALS[0].label, DIALS[0].tip} <= words.keys()
+
+
+def test_a_label_is_small_in_an_english_sentence_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert in_sentence(DIALS[0]) == "stillness"
+    monkeypatch.setattr(translation, "_words", translation.words_of("de"))
+    assert in_sentence(DIALS[0]) == "Ruhe"

@@ -1,0 +1,31 @@
+"""Models' states are named as the domain names them, and in German."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+
+from app import translation
+from app.features.models.state_names import a_state, state_name
+from metagraph.graph.words import KINDS, LAYERS, LIMBS
+from metagraph.playback.learn import state_words
+
+
+def test_english_names_are_the_domains() -> None:
+    for limb, kind, tags, layer in product(LIMBS, KINDS, ("", "positive", "negative big"), LAYERS):
+        assert state_name((limb, kind, tags), layer) == state_words((limb, kind, tags), layer)
+
+
+def test_a_sentence_has_tags_before_and_both_arms_behind() -> None:
+    assert a_state(("left", "gesture", "positive"), "arms") == "a positive left gesture"
+    assert a_state(("both", "fidget", ""), "arms") == "a fidget of both arms"
+    assert a_state(("both", "fidget", ""), "head") == "a fidget"
+
+
+def test_no_state_is_left_in_english(monkeypatch: pytest.MonkeyPatch) -> None:
+    words = translation.words_of("de")
+    assert {f"{limb} {kind}" for limb, kind in product(LIMBS, KINDS)} | {*KINDS, *LIMBS} <= words.keys()
+    monkeypatch.setattr(translation, "_words", words)
+    assert a_state(("left", "gesture", "positive"), "arms") == "„Geste links, positiv“"
+    assert state_name(("both", "fidget", "negative"), "head") == "Fidget, negativ"
