@@ -10,6 +10,7 @@ from PySide6.QtGui import QColor, QHelpEvent, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QToolTip, QWidget
 
 from app.look.theme import theme
+from app.translation import tr
 from metagraph.motion.skeleton import Skeleton
 
 MARGIN, LEAST, MOST, NEAR = 18.0, 2.5, 6.0, 11.0  # pixels
@@ -32,8 +33,8 @@ class JointFigure(QWidget):
         self._from: QPointF | None = None  # where a drag began
         self._to = QPointF()
         self.setMouseTracking(True)
-        self.setAccessibleName("Joints as a figure")
-        self.setAccessibleDescription("For the mouse; the list beside it has the same joints.")
+        self.setAccessibleName(tr("Joints as a figure"))
+        self.setAccessibleDescription(tr("For the mouse; the list beside it has the same joints."))
 
     def sizeHint(self) -> QSize:
         return QSize(300, 480)
