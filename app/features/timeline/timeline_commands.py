@@ -114,7 +114,7 @@ def commands(shell: Shell) -> tuple[Command, ...]:
             "timeline",
             tr("&Lock the layer's requests"),
             lambda: noted.lock(session.place.layer, session.place.layer not in noted.now.locked),
-            ("Shift+L",),
+            ("Shift+K",),
             tip=tr("Requests of the layer that is edited cannot be moved or taken back"),
             checked=lambda: session.place.layer in noted.now.locked,
         ),
