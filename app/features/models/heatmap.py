@@ -281,10 +281,12 @@ class HeatMap(QWidget):
 
     def _column_head(self, painter: QPainter, t: Theme, box: QRectF, state: State, n: int, lit: bool) -> None:
         metrics, name = QFontMetricsF(self.font()), self._name(state)
-        if metrics.horizontalAdvance(name) > box.width() - _GAP - 2:
-            name = (SIDES[state[0]] if self.layer == "arms" else "") or metrics.elidedText(
-                name, Qt.TextElideMode.ElideRight, box.width() - _GAP - 2
-            )
+        room = box.width() - _GAP - 2
+        if self.layer == "arms":  # all sides short where one has no room
+            widest = max(metrics.horizontalAdvance(tr(limb)) for limb in SIDES)
+            name = SIDES[state[0]] if widest > room else name
+        elif metrics.horizontalAdvance(name) > room:
+            name = metrics.elidedText(name, Qt.TextElideMode.ElideRight, room)
         width = _GAP + metrics.horizontalAdvance(name)
         line = QRectF(box.center().x() - width / 2, box.bottom() - (34 if state[2] else 18), width + 4, 18)
         self._words(painter, t, line, state, n, lit, name)
