@@ -104,9 +104,17 @@ def test_every_dialog_keeps_to_it_too(drive, tmp_path):
     assert not any(found.values()), told(found)
 
 
-def test_on_a_screen_twice_as_fine_words_are_as_whole():
-    """Measures of letters differ by parts of a pixel there; Qt takes its scale when it starts."""
-    environment = {**os.environ, "QT_SCALE_FACTOR": "2", "PYTHONPATH": str(ROOT)}
+@pytest.mark.parametrize(("scale", "language"), [("2", "en"), ("1", "de")])
+def test_on_a_screen_twice_as_fine_and_in_another_language_words_are_as_whole(scale, language):
+    """Measures of letters differ by parts of a pixel on such a screen; Qt takes its scale, and the window its
+    language, when it starts.
+    """
+    environment = {
+        **os.environ,
+        "QT_SCALE_FACTOR": scale,
+        "METAGRAPH_LANGUAGE": language,
+        "PYTHONPATH": str(ROOT),
+    }
     done = subprocess.run(
         [sys.executable, "-m", "tests.app.painted_words_twice"],
         env=environment,
