@@ -34,8 +34,21 @@ ANSWERS: dict[str, Callable[[], Any]] = {
     "expandingDirections": lambda: _qt("QtCore", "Qt").Orientation(0),
 }
 SILENT = frozenset(
-    ("accept", "addItem", "done", "initializeGL", "paint", "paintGL", "redo", "reject", "resizeGL", "run")
+    (
+        "accept",
+        "addItem",
+        "doItemsLayout",
+        "done",
+        "initializeGL",
+        "paint",
+        "paintGL",
+        "redo",
+        "reject",
+        "resizeGL",
+        "run",
+    )
     + ("setEditorData", "setGeometry", "setModelData", "sort", "startDrag", "stepBy", "undo")
+    + ("updateGeometries",)
 )
 _MARK = "__guarded__"
 
