@@ -21,12 +21,15 @@ ANSWERS: dict[str, Callable[[], Any]] = {
     **dict.fromkeys(("hasHeightForWidth", "focusNextPrevChild", "dropMimeData"), bool),
     "filterAcceptsRow": lambda: True,  # better one too many than none
     "lessThan": bool,
-    **dict.fromkeys(("rowCount", "columnCount", "count"), int),
+    **dict.fromkeys(("rowCount", "columnCount", "count", "horizontalOffset", "verticalOffset"), int),
+    "isIndexHidden": bool,
+    "visualRect": lambda: _qt("QtCore", "QRect")(),
+    "visualRegionForSelection": lambda: _qt("QtGui", "QRegion")(),
     **dict.fromkeys(("heightForWidth", "id"), lambda: -1),
     **dict.fromkeys(("data", "headerData", "createEditor", "itemAt", "takeAt", "mimeData"), lambda: None),
     **dict.fromkeys(("sizeHint", "minimumSizeHint", "minimumSize"), lambda: _qt("QtCore", "QSize")()),
     **dict.fromkeys(("boundingRect",), lambda: _qt("QtCore", "QRectF")()),
-    **dict.fromkeys(("index", "parent"), lambda: _qt("QtCore", "QModelIndex")()),
+    **dict.fromkeys(("index", "indexAt", "moveCursor", "parent"), lambda: _qt("QtCore", "QModelIndex")()),
     "shape": lambda: _qt("QtGui", "QPainterPath")(),
     **dict.fromkeys(("displayText", "textFromValue"), str),
     "valueFromText": float,
@@ -34,21 +37,19 @@ ANSWERS: dict[str, Callable[[], Any]] = {
     "expandingDirections": lambda: _qt("QtCore", "Qt").Orientation(0),
 }
 SILENT = frozenset(
-    (
-        "accept",
-        "addItem",
-        "doItemsLayout",
-        "done",
-        "initializeGL",
-        "paint",
-        "paintGL",
-        "redo",
-        "reject",
+    ("accept", "addItem", "doItemsLayout", "done", "initializeGL", "paint", "paintGL", "redo", "reject")
+    + (
         "resizeGL",
         "run",
+        "setEditorData",
+        "setGeometry",
+        "setModelData",
+        "sort",
+        "startDrag",
+        "stepBy",
+        "undo",
     )
-    + ("setEditorData", "setGeometry", "setModelData", "sort", "startDrag", "stepBy", "undo")
-    + ("updateGeometries",)
+    + ("scrollContentsBy", "scrollTo", "selectAll", "setSelection", "updateGeometries")
 )
 _MARK = "__guarded__"
 
