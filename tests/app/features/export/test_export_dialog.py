@@ -193,3 +193,22 @@ def test_files_of_another_origin_are_asked_about_before_they_are_overwritten(toy
     drive.wait(lambda: dialog.open_button.isEnabled(), 60)
     assert json.loads((tmp_path / "toy.xstate.json").read_bytes())["type"] == "parallel"
     dialog.reject()
+
+
+def test_every_target_is_written_by_a_click(toys, tmp_path):
+    """One after the other, each into a folder of its own; an avatar, which needs a mesh, says so."""
+    drive = toys
+    dialog = opened(drive)
+    refused = {}
+    for name in registry.targets():
+        pick(drive, dialog, name)
+        put(dialog, str(tmp_path / name))
+        QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+        drive.wait(lambda n=name: n in dialog.results or bool(dialog.trouble.text()), 60)
+        if name in dialog.results:
+            assert any(path.is_file() for path in (tmp_path / name).rglob("*")), name
+            assert dialog.open_button.isEnabled() and dialog.words.text().startswith("Written: "), name
+        else:
+            refused[name] = dialog.trouble.text()
+    dialog.reject()
+    assert refused.keys() == {"vrm"} and "choose a mesh" in refused["vrm"]
