@@ -146,13 +146,12 @@ def directed(
     if not captions:
         yield from pictures(seen, times, size, look, camera, into)
         return
-    from PySide6.QtGui import QGuiApplication
-
+    from app.cli.screenless import screenless_application
     from app.stage.caption_paint import captioned
     from metagraph.speech.captions import captions_at
 
     # Text needs the fonts of an application, which a program without a window has not.
-    application = QGuiApplication.instance() or QGuiApplication(["metagraph", "-platform", "offscreen"])
+    application = screenless_application()
     for at, picture in zip(times, pictures(seen, times, size, look, camera, into), strict=True):
         yield captioned(picture, captions_at(captions, float(at)))
     del application

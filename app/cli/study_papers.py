@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 
 EPOCH = b"19700101000000"
@@ -12,13 +11,13 @@ def papers_maker():
     """Return what makes a PDF, a page as large as the drawing, of an SVG file's text; the same text gives the
     same bytes.
     """
-    if "QT_QPA_PLATFORM" not in os.environ:
-        os.environ["QT_QPA_PLATFORM"] = "offscreen"
     from PySide6.QtCore import QBuffer, QByteArray, QIODevice, QMarginsF, QRectF, QSizeF
-    from PySide6.QtGui import QGuiApplication, QPageSize, QPainter, QPdfWriter
+    from PySide6.QtGui import QPageSize, QPainter, QPdfWriter
     from PySide6.QtSvg import QSvgRenderer
 
-    app = QGuiApplication.instance() or QGuiApplication(["metagraph"])
+    from app.cli.screenless import screenless_application
+
+    app = screenless_application()
 
     def paper(drawing: str) -> bytes:
         assert app is not None
