@@ -7,6 +7,7 @@ from typing import Any
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeyEvent
 
+from app.translation import tr
 from app.widgets.lane_geometry import LEFT
 
 Key, Held = Qt.Key, Qt.KeyboardModifier
@@ -32,7 +33,7 @@ class LaneKeys:
                 or timeline.marker is not None
             )
         if key == Key.Key_M and held == Held.NoModifier:
-            return bool(view.session.transport.show == "plan")
+            return True
         if held == Held.ControlModifier and key in (Key.Key_C, Key.Key_X):
             return bool(view.session.onstage.requests)
         if held == Held.ControlModifier and key == Key.Key_V:
@@ -72,8 +73,13 @@ class LaneKeys:
             requests.close_up(chosen, view.performance.shown.plan)
         elif chosen and key in (Key.Key_Return, Key.Key_Enter):
             view.edit(chosen[0])
-        elif key == Key.Key_M and held == Held.NoModifier and view.session.transport.show == "plan":
-            timeline.add_marker()
+        elif key == Key.Key_M and held == Held.NoModifier:
+            if view.session.transport.show == "plan":
+                timeline.add_marker()
+            else:
+                view.performance.document.failed.emit(
+                    tr("Markers are a performance's: Esc goes back to it from what is looked at alone.")
+                )
         elif key in (Key.Key_Up, Key.Key_Down):
             self._choose(1 if key == Key.Key_Down else -1)
         elif timeline.selected is not None and key in (Key.Key_Left, Key.Key_Right):

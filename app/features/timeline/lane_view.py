@@ -245,7 +245,7 @@ class Lanes(LaneSpan):
         if found is not None:
             self.session.jump(action=found[1].action.id)
         else:
-            self._scrub(event.position().x())
+            self.scrub(event.position().x())
 
     def _press(self, mark: Mark, event: QMouseEvent) -> None:
         ident, chosen = mark.ask.id, self.session.onstage.requests
@@ -270,7 +270,7 @@ class Lanes(LaneSpan):
             self.setCursor(self._held_cursor())
             self.update()
         elif event.buttons() & Qt.MouseButton.LeftButton:
-            self._scrub(x)
+            self.scrub(x)
         elif event.buttons() & Qt.MouseButton.MiddleButton:
             self.first = max(0.0, self.first - (x - self._grip) / self.each)
             self.update()
@@ -359,9 +359,11 @@ class Lanes(LaneSpan):
         seconds = round(self.session.transport.seconds, 2) if self.performance.live.stage is None else None
         request_menu(self, self.performance, seconds).popup(self.mapToGlobal(QPointF(x, RULER).toPoint()))
 
-    def _scrub(self, x: float) -> None:
-        self.session.transport.set_playing(False)
-        self.session.transport.seek(max(0.0, self.scale().seconds(max(x, LEFT))))
+    def scrub(self, x: float) -> None:
+        """Go to a place, still; in what is looked at alone to its end at most."""
+        transport, seconds = self.session.transport, self.scale().seconds(max(x, LEFT))
+        transport.set_playing(False)
+        transport.seek(seconds if transport.show == "plan" else min(seconds, self.performance.shown.length))
 
     def set_sizes(self, sizes: Sizes) -> None:
         """Show other lanes, or lanes of other heights."""

@@ -23,6 +23,8 @@ class RulerHost(Protocol):
 
     def scale(self) -> Scale: ...
 
+    def scrub(self, x: float) -> None: ...
+
 
 class RangeDrag(PressDrag):
     """grip: what of the range is held. range: as it will be, seconds."""
@@ -59,9 +61,7 @@ class RangeDrag(PressDrag):
         if self.begun and self.range is not None and self.range != self._was:
             timeline.set_range(*self.range)
         elif not self.begun and self.grip == "new":
-            transport = self.host.performance.session.transport
-            transport.set_playing(False)
-            transport.seek(self.host.scale().seconds(at.x()))
+            self.host.scrub(at.x())
 
 
 class MarkerDrag(PressDrag):

@@ -19,9 +19,9 @@ def commands(shell: Shell) -> tuple[Command, ...]:
     def there() -> bool:
         return shell.document.project.skeleton is not None
 
-    def noting(do: Callable[[], object]) -> Callable[[], object]:
-        """Return a command that does nothing while a clip or an action is looked at alone."""
-        return lambda: do() if session.transport.show == "plan" else None
+    def performing() -> bool:
+        """Whether the timeline is a performance's, and no clip's or action's that is looked at alone."""
+        return there() and session.transport.show == "plan"
 
     def panel() -> Any:
         shell.show("timeline")
@@ -58,22 +58,28 @@ def commands(shell: Shell) -> tuple[Command, ...]:
 
     tip = tr("What is between in and out is played again and again, and can be written alone")
     return (
-        command("range_in", "range", tr("Loop from &here"), noting(noted.set_in), ("I",), tip=tip),
-        command("range_out", "range", tr("Loop &to here"), noting(noted.set_out), ("O",), tip=tip),
+        command(
+            "range_in", "range", tr("Loop from &here"), noted.set_in, ("I",), tip=tip, enabled=performing
+        ),
+        command(
+            "range_out", "range", tr("Loop &to here"), noted.set_out, ("O",), tip=tip, enabled=performing
+        ),
         command(
             "range_clear",
             "range",
             tr("&Clear loop range"),
-            noting(noted.clear_range),
+            noted.clear_range,
             ("Ctrl+Shift+X",),
+            enabled=performing,
         ),
         command(
             "marker",
             "markers",
             tr("Add &marker"),
-            noting(noted.add_marker),
+            noted.add_marker,
             ("Ctrl+Alt+M",),
             tip=tr("A named moment at the playhead; on the timeline, M alone"),
+            enabled=performing,
         ),
         command("marker_next", "markers", tr("&Next marker"), move(1), ("Shift+M",)),
         command("marker_before", "markers", tr("&Previous marker"), move(-1), ("Ctrl+Shift+M",)),

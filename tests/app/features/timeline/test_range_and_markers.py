@@ -139,6 +139,29 @@ def test_markers_are_added_named_moved_gone_to_and_removed(stage, monkeypatch):
     assert "double-click renames" in view._tip(QPointF(x(view, 5.5)))
 
 
+def test_a_clip_alone_has_no_markers_and_no_range_and_says_so(stage):
+    view, timeline, transport = stage.timeline.lanes, stage.performance.timeline, stage.session.transport
+    timeline.add_marker(6.0)
+    clip = next(iter(stage.document.project.clips))
+    transport.show_clip(clip)
+    transport.set_playing(False)
+    stage.wait(lambda: stage.performance.shown.clip == clip)
+    said = []
+    stage.document.failed.connect(said.append)
+    machine = stage.actions["machine"].isChecked()
+    view.setFocus()
+    QTest.keyClick(view, Qt.Key.Key_M)
+    assert len(timeline.now.markers) == 1 and "Esc" in said[-1]
+    assert stage.actions["machine"].isChecked() == machine, "the key is the timeline's, not the machine's"
+    length = stage.performance.shown.length
+    QTest.mouseClick(view, LEFT_BUTTON, NONE, x(view, length + 5.0))
+    assert transport.seconds == pytest.approx(length)
+    assert not any(stage.actions[name].isEnabled() for name in ("range_in", "range_out", "marker"))
+    stage.do("marker_next")
+    assert transport.show == "plan"
+    assert stage.actions["range_in"].isEnabled()
+
+
 def test_markers_are_moved_and_renamed_and_layers_locked_by_keys(stage, monkeypatch):
     view, timeline = stage.timeline.lanes, stage.performance.timeline
     timeline.add_marker(3.0)
