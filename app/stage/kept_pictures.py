@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QImage
 
 from app.stage.picture_process import PictureOrder
-from app.stage.picture_store import PictureStore, cache_folder, key_of
+from app.stage.picture_store import PictureStore, key_of, pictures_folder
 
 Work = PictureOrder | tuple[str, list[QImage]] | None
 
@@ -58,7 +58,7 @@ class KeptPictures(QObject):
             self._thread.join(5)
 
     def _run(self) -> None:
-        store = PictureStore(cache_folder())
+        store = PictureStore(pictures_folder())
         with contextlib.suppress(RuntimeError):  # the window is gone
             while (work := self._work.get()) is not None:
                 if isinstance(work, tuple):

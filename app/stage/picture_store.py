@@ -4,26 +4,23 @@ found by what they show: the clip's content, the figure, the look and the size. 
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
-import os
 from pathlib import Path
 
-from PySide6.QtCore import QByteArray, QStandardPaths, Qt
+from PySide6.QtCore import QBuffer, QByteArray, QIODevice, Qt
 from PySide6.QtGui import QImage, QImageWriter, QPainter
 
 from app.stage.picture_process import LARGE, SCALE, SCRUB, SIZE, PictureOrder
+from metagraph.disk_cache import DiskCache, cache_folder
 
 DRAWN = 1  # to be raised when pictures are drawn otherwise
-MOST = 192 * 1024 * 1024  # bytes on disk; those not looked at for longest go
-LEFT = 0.8  # of them, after a clearing
+MOST = 192 * 1024 * 1024  # bytes on disk
 KEPT = ("card", "bare", "large", "scrub")
 
 
-def cache_folder() -> Path:
+def pictures_folder() -> Path | None:
     """Return where this person's pictures are kept."""
-    base = QStandardPaths.writableLocation(QStandardPaths.StandardLocation.CacheLocation)
-    return Path(base) / "pictures"
+    return cache_folder("pictures")
 
 
 def key_of(order: PictureOrder) -> str:
@@ -47,29 +44,21 @@ def key_of(order: PictureOrder) -> str:
 
 
 class PictureStore:
-    """folder: made when there is something to keep. Used by one thread at a time. Whatever the disk refuses,
-    no picture comes from it, and none is kept.
-    """
+    """Square pictures by keys, as `DiskCache` keeps files. Used by one thread at a time."""
 
-    def __init__(self, folder: Path, most: int = MOST) -> None:
-        self.folder, self.most = folder, most
-        self._bytes: int | None = None  # of all pictures there, once it was looked
+    def __init__(self, folder: Path | None, most: int = MOST) -> None:
+        self.files = DiskCache(folder, most, ".png")
 
     def load(self, key: str) -> list[QImage] | None:
         """Return what was kept; None where nothing is, or nothing that could be read."""
-        path = self._path(key)
-        try:
-            data = path.read_bytes()
-        except OSError:
+        data = self.files.read(key)
+        if data is None:
             return None
         sheet = QImage()
         side = sheet.height() if sheet.loadFromData(data, "PNG") else 0
         if side == 0 or sheet.width() % side:
-            with contextlib.suppress(OSError):
-                path.unlink()
+            self.files.drop(key)
             return None
-        with contextlib.suppress(OSError):
-            os.utime(path)
         if sheet.width() == side:
             return [sheet]
         return [sheet.copy(n * side, 0, side, side) for n in range(sheet.width() // side)]
@@ -88,56 +77,9 @@ class PictureStore:
             for n, picture in enumerate(pictures):
                 painter.drawImage(n * side, 0, picture)
             painter.end()
-        path = self._path(key)
-        beside = path.with_suffix(f".{os.getpid()}")
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            writer = QImageWriter(str(beside), QByteArray(b"png"))
-            writer.setQuality(80)  # packed lightly: it is read often, and soon written
-            if not writer.write(sheet):
-                raise OSError
-            size = beside.stat().st_size
-            beside.replace(path)
-        except OSError:
-            with contextlib.suppress(OSError):
-                beside.unlink()
-            return
-        self._count()
-        self._bytes = (self._bytes or 0) + size
-        if self._bytes > self.most:
-            self.clear_old()
-
-    def clear_old(self) -> None:
-        """Let the oldest go until there is room again."""
-        files = sorted(self._files(), key=lambda f: f[1])
-        total = sum(size for _, _, size in files)
-        for path, _, size in files:
-            if total <= self.most * LEFT:
-                break
-            with contextlib.suppress(OSError):
-                Path(path).unlink()
-            total -= size
-        self._bytes = total
-
-    def _count(self) -> None:
-        if self._bytes is None:
-            self._bytes = sum(size for _, _, size in self._files())
-
-    def _files(self) -> list[tuple[str, int, int]]:
-        """Return every file with when it was looked at last and its bytes."""
-        out: list[tuple[str, int, int]] = []
-        try:
-            with os.scandir(self.folder) as found:
-                folders = [f.path for f in found if f.is_dir()]
-        except OSError:
-            return out
-        for folder in folders:
-            with contextlib.suppress(OSError), os.scandir(folder) as found:
-                for each in found:
-                    with contextlib.suppress(OSError):
-                        told = each.stat()
-                        out.append((each.path, told.st_mtime_ns, told.st_size))
-        return out
-
-    def _path(self, key: str) -> Path:
-        return self.folder / key[:2] / f"{key[2:]}.png"
+        data = QBuffer()
+        data.open(QIODevice.OpenModeFlag.WriteOnly)
+        writer = QImageWriter(data, QByteArray(b"png"))
+        writer.setQuality(80)  # packed lightly: it is read often, and soon written
+        if writer.write(sheet):
+            self.files.write(key, bytes(data.data().data()))

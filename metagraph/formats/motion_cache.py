@@ -11,8 +11,6 @@ from __future__ import annotations
 import hashlib
 import os
 import struct
-import time
-import uuid
 import zlib
 from collections.abc import Collection, Iterable
 from concurrent.futures import ThreadPoolExecutor
@@ -25,18 +23,16 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from metagraph.cache_folder import cache_folder
+from metagraph.disk_cache import DiskCache, cache_folder
 from metagraph.formats.clips import read_clips
 from metagraph.motion.clip import Clip, Repair
 from metagraph.motion.skeleton import Skeleton
 
 Array = NDArray[Any]
 
-MOST = 1 << 29  # bytes that are kept; beyond them the longest unused go
+MOST = 1 << 29  # bytes that are kept
 LARGEST = 1 << 27  # bytes of one file's motion
-SEEN = 86_400.0  # seconds after which the use of one is written down again
 MARK = b"metagraph motion 1"
-ENDING = ".motion"
 _HEAD = struct.Struct("<18sI")
 
 _skeletons: dict[bytes, Skeleton] = {}  # what was read lately: clips of a project share theirs
@@ -80,19 +76,20 @@ def read_or_kept(path: Path, digest: str, as_is: Collection[str]) -> list[Clip]:
     """Return what `read_clips` does, from what is kept where that is of the same content. digest: of the
     file. Raises FileError as `read_clips` does.
     """
-    folder = kept_in()
-    if folder is None:
-        return read_clips(path, as_is)
-    place = folder / (_key(path, digest, as_is) + ENDING)
-    try:
-        clips = _decoded(place.read_bytes())
-        _note_use(place)
-        return clips
-    except Exception:  # whatever is wrong with it, the file itself is there
-        clips = read_clips(path, as_is)
-    if _self_contained(path):
-        _writer().submit(_keep, place, clips)
+    kept, key = _cache(kept_in()), _key(path, digest, as_is)
+    content = kept.read(key)
+    if content is not None:
+        with suppress(Exception):  # whatever is wrong with it, the file itself is there
+            return _decoded(content)
+    clips = read_clips(path, as_is)
+    if kept.folder is not None and _self_contained(path):
+        _writer().submit(_keep, kept, key, clips)
     return clips
+
+
+@cache
+def _cache(folder: Path | None) -> DiskCache:
+    return DiskCache(folder, MOST, ".motion")
 
 
 def kept_in() -> Path | None:
@@ -217,48 +214,6 @@ def _writer() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(1, thread_name_prefix="motion cache")
 
 
-def _keep(place: Path, clips: list[Clip]) -> None:
-    """Write what was read, whole or not at all. Where that cannot be nothing is lost."""
-    if sum(clip.rotations.nbytes for clip in clips) > LARGEST:
-        return
-    with suppress(OSError):
-        place.parent.mkdir(parents=True, exist_ok=True)
-        _sweep_once(place.parent)
-        new = place.with_name(f"{place.name}.{uuid.uuid4().hex}")
-        try:
-            new.write_bytes(_encoded(clips))
-            new.replace(place)
-        finally:
-            new.unlink(missing_ok=True)
-
-
-def _note_use(place: Path) -> None:
-    with suppress(OSError):
-        if time.time() - place.stat().st_mtime > SEEN:
-            os.utime(place)
-
-
-@cache
-def _sweep_once(folder: Path) -> None:
-    sweep(folder)
-
-
-def sweep(folder: Path, most: int = MOST) -> None:
-    """Delete what has been unused longest until no more than so many bytes are kept, and what was left half
-    written a day ago.
-    """
-    kept = []
-    for path in folder.iterdir():
-        with suppress(OSError):
-            found = path.stat()
-            if path.suffix == ENDING:
-                kept.append((found.st_mtime, found.st_size, path))
-            elif ENDING in path.name and time.time() - found.st_mtime > SEEN:
-                path.unlink()
-    total = sum(size for _, size, _ in kept)
-    for _, size, path in sorted(kept):
-        if total <= most:
-            return
-        with suppress(OSError):
-            path.unlink()
-            total -= size
+def _keep(kept: DiskCache, key: str, clips: list[Clip]) -> None:
+    if sum(clip.rotations.nbytes for clip in clips) <= LARGEST:
+        kept.write(key, _encoded(clips))

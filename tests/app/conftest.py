@@ -105,7 +105,7 @@ def own_settings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
     # Not XDG_CACHE_HOME: there Mesa keeps its shaders.
-    monkeypatch.setattr("app.stage.kept_pictures.cache_folder", lambda: tmp_path / "cache")
+    monkeypatch.setattr("app.stage.kept_pictures.pictures_folder", lambda: tmp_path / "cache")
     QSettings().clear()
 
 

@@ -14,7 +14,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from metagraph.cache_folder import cache_folder
+from metagraph.disk_cache import cache_folder
 
 THREE, ESBUILD = "0.187.0", "0.25.12"  # the versions the player was tested with
 NET = f"https://cdn.jsdelivr.net/npm/three@{THREE}/"  # where a page finds three.js that has none of its own
