@@ -15,7 +15,7 @@ from metagraph.motion import rotation
 from metagraph.motion.character_mesh import Character, Material, followers
 from metagraph.motion.skeleton import Skeleton
 from preview import joints as rules
-from preview.mesh import VERTEX, Batch, Mesh, ball, capsule, coarse, egg
+from preview.mesh import VERTEX, Batch, Mesh, ball, capsule, coarse, egg, pieces
 
 Array = NDArray[Any]
 
@@ -85,6 +85,13 @@ class Figure:
         low, high = (points - radii[:, None]).reshape(-1, 3), (points + radii[:, None]).reshape(-1, 3)
         whole = np.isfinite(low).all(1)
         return (low[whole].min(0), high[whole].max(0)) if whole.any() else None
+
+    @cached_property
+    def boxes(self) -> tuple[Array, Array]:
+        """Return the mesh in pieces: the matrix each moves with `[B]`, and the corners of a box round it in
+        rest pose `[B, 8, 3]`, as wide again as skinning and faces may move it.
+        """
+        return pieces(self.mesh, 0.06 * self.height, 0.012 * self.height)
 
     @cached_property
     def _slack(self) -> tuple[Array, Array]:

@@ -72,6 +72,7 @@ class Store:
         self.palette = ctx.texture((3, 1), 4, dtype="f4")
         self.marks = ctx.texture((1, 1), 4)
         self._written: list[Actor] = []  # whose palettes and marks these are
+        self.palettes: list[Array] = []  # of each of them `[instances, M, 3, 4]`
 
     def __getitem__(self, mesh: Mesh) -> LoadedMesh:
         return self._meshes[mesh]
@@ -118,15 +119,14 @@ class Store:
 
     def _write_palettes(self, actors: Sequence[Actor], rows: Sequence[int], height: int) -> None:
         width = max(a.figure.mesh.matrices for a in actors)
-        if len(actors) == 1:
-            data = actors[0].figure.palette(actors[0].rotations, actors[0].positions)
-        else:
+        self.palettes = [
+            a.figure.palette(a.rotations, a.positions).reshape(a.count, -1, 3, 4) for a in actors
+        ]
+        data = self.palettes[0]
+        if len(actors) > 1:
             data = np.zeros((height, width, 3, 4), np.float32)
-            for actor, row in zip(actors, rows, strict=True):
-                palette = actor.figure.palette(actor.rotations, actor.positions)
-                data[row : row + actor.count, : actor.figure.mesh.matrices] = palette.reshape(
-                    actor.count, -1, 3, 4
-                )
+            for palette, row in zip(self.palettes, rows, strict=True):
+                data[row : row + len(palette), : palette.shape[1]] = palette
         if self.palette.size[0] < 3 * width or self.palette.size[1] < height:
             self.palette.release()
             self.palette = self._ctx.texture((3 * width, height), 4, dtype="f4")

@@ -119,6 +119,36 @@ def coarse(mesh: Mesh, cells: int = 84) -> Mesh:
     return Mesh(vertices, np.concatenate(triangles).astype(np.uint32), tuple(batches), mesh.matrices)
 
 
+def pieces(mesh: Mesh, length: float, margin: float) -> tuple[Array, Array]:
+    """Cut a mesh where its bones are, and each bone's part along its longest side.
+
+    Returns the matrix of each piece `[B]` and the corners of a box round it in rest pose `[B, 8, 3]`, with
+    `margin` metres on all sides. length: of a piece, metres, about. A triangle belongs to every bone that
+    moves one of its vertices by a quarter or more.
+    """
+    if not len(mesh.triangles):
+        return np.zeros(0, int), np.zeros((0, 8, 3))
+    corner = mesh.vertices["position"][mesh.triangles].astype(float)
+    weights = mesh.vertices["weights"][mesh.triangles]
+    which, vertex, slot = np.nonzero(weights >= np.minimum(0.25, weights.max(-1, keepdims=True)))
+    matrix = mesh.vertices["bones"][mesh.triangles[which, vertex], slot].astype(np.int64)
+    low, high = corner.min(1)[which], corner.max(1)[which]
+    of_low, of_high = np.full((mesh.matrices, 3), np.inf), np.full((mesh.matrices, 3), -np.inf)
+    np.minimum.at(of_low, matrix, low)
+    np.maximum.at(of_high, matrix, high)
+    axis = np.argmax(of_high - of_low, 1)[matrix]
+    middle = (low + high)[np.arange(len(axis)), axis] / 2
+    step = ((middle - of_low[matrix, axis]) / length).astype(np.int64)
+    key, group = np.unique(matrix * (int(step.max()) + 1) + step, return_inverse=True)
+    box = np.full((2, len(key), 3), np.inf)
+    np.minimum.at(box[0], group, low)
+    np.minimum.at(box[1], group, -high)
+    box[0] -= margin
+    box[1] = margin - box[1]
+    corners = np.stack([box[[k & 1, k >> 1 & 1, k >> 2], :, [0, 1, 2]].T for k in range(8)], 1)
+    return key // (int(step.max()) + 1), corners
+
+
 def _pieces(count: int, triangles: Array) -> Array:
     """For each vertex the least vertex it is connected to by triangles, `[V]`."""
     label = np.arange(count, dtype=np.int64)

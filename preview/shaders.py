@@ -11,6 +11,17 @@ void main() {
 }
 """
 
+# A rectangle of the picture, in pixels: left, low, right, high.
+PART_VERTEX = """#version 330 core
+uniform vec2 u_pixel;
+in vec4 in_part;
+out vec2 v_at;
+void main() {
+    v_at = mix(in_part.xy, in_part.zw, vec2(gl_VertexID & 1, gl_VertexID >> 1)) * u_pixel;
+    gl_Position = vec4(v_at * 2.0 - 1.0, 0.0, 1.0);
+}
+"""
+
 _SKY = """
 uniform vec2 u_pixel;  // one by the picture's size
 uniform vec3 u_top, u_bottom;
@@ -137,7 +148,8 @@ void main() {
 }
 """
 
-# Soft spots where the body comes near the ground: one square each.
+# Soft spots where the body comes near the ground: one square each, on the ground as the camera sees it or
+# as seen from above, where many are put into one small picture that multiplies the ground once.
 SPOT_VERTEX = """#version 330 core
 uniform mat4 u_matrix;
 in vec4 in_spot;  // x, z, radius, strength
@@ -149,18 +161,39 @@ void main() {
     gl_Position = u_matrix * vec4(in_spot.x + v_at.x * in_spot.z, 0.0, in_spot.y + v_at.y * in_spot.z, 1.0);
 }
 """
-SPOT = """#version 330 core
+_LESS = """
+// Half a step of noise hides the bands eight bits would show.
+vec4 without(vec3 less) {
+    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+    return vec4(1.0 - less - (noise - 0.5) * min(vec3(1.0 / 255.0), less), 1.0);
+}
+"""
+_SPOT = """
 uniform vec3 u_dark;
 in vec2 v_at;
 in float v_strength;
 out vec4 o_color;
-void main() {
+vec3 spot() {
     float t = clamp(1.0 - dot(v_at, v_at), 0.0, 1.0);
-    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy + v_strength * 97.0, vec2(0.06711056, 0.00583715))));
-    vec3 less = (vec3(1.0) - u_dark) * (t * t * v_strength);
-    o_color = vec4(1.0 - less - (noise - 0.5) * min(vec3(1.0 / 255.0), less), 1.0);
+    return (vec3(1.0) - u_dark) * (t * t * v_strength);
 }
 """
+SPOT = "#version 330 core\n" + _LESS + _SPOT + "void main() { o_color = without(spot()); }\n"
+SPOT_APART = "#version 330 core\n" + _SPOT + "void main() { o_color = vec4(1.0 - spot(), 1.0); }\n"
+SPOTS = (
+    "#version 330 core\n"
+    + _LESS
+    + """
+uniform sampler2D u_spots;
+uniform vec4 u_patch;
+in vec2 v_at;
+out vec4 o_color;
+void main() {
+    vec2 at = (v_at - u_patch.xy) / u_patch.zw * 0.5 + 0.5;
+    o_color = without(1.0 - textureLod(u_spots, at, 0.0).rgb);
+}
+"""
+)
 
 _SKIN = """
 uniform sampler2D u_palette;  // three texels a matrix, one row an instance
@@ -327,6 +360,7 @@ void main() {
 
 COPY = """#version 330 core
 uniform sampler2D u_picture;
+in vec2 v_at;
 out vec4 o_color;
 void main() { o_color = texelFetch(u_picture, ivec2(gl_FragCoord.xy), 0); }
 """

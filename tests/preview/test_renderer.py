@@ -9,8 +9,10 @@ import moderngl
 import numpy as np
 import pytest
 
+from metagraph.formats.gltf import read_character
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
+from preview import renderer
 from preview.camera import Camera, close_up, whole_figure
 from preview.figure import SkinnedFigure, StickFigure
 from preview.gpu import KEEP_MESHES
@@ -224,6 +226,40 @@ def test_while_the_camera_stands_pictures_are_as_if_it_had_just_come(offscreen, 
     for before, after in zip(empty, again, strict=True):
         np.testing.assert_array_equal(before, after)
     assert not np.array_equal(empty[0], empty[2])
+
+
+def test_nothing_of_a_figure_is_left_out_when_only_parts_of_a_picture_are_smoothed(
+    offscreen, mannequin, monkeypatch
+):
+    random = np.random.default_rng(5)
+    for figure in (StickFigure(mannequin_skeleton()), SkinnedFigure(mannequin)):
+        check_parts(offscreen, monkeypatch, figure, random)
+
+
+@pytest.mark.parametrize("name", ["kaykit-rogue", "robot-expressive", "sumerian-hosts/glTF/characters"])
+def test_nothing_is_left_out_of_figures_nobody_made_here(offscreen, monkeypatch, shared_data, name):
+    models = [p for p in sorted((shared_data / name).rglob("*.gl[bt]*")) if p.suffix in (".glb", ".gltf")]
+    assert models
+    random = np.random.default_rng(6)
+    for model in models[:2]:
+        check_parts(offscreen, monkeypatch, SkinnedFigure(read_character(model)), random)
+
+
+def check_parts(offscreen, monkeypatch, figure, random):
+    """Compare with what smoothing the whole picture gives, in odd poses, near, far and from all sides."""
+    skeleton = figure.skeleton
+    for distance in (0.5, 1.0, 4.0):
+        turns = rotation.from_axis_angle(random.normal(size=(len(skeleton), 3)), 0.6 * random.random())
+        pose = Pose(rotation.multiply(skeleton.rest_rotations, turns), skeleton.rest_translations)
+        scene = Scene((Actor(figure, *skeleton.globals(pose)),), shadow=False)
+        camera = Camera().frame(scene.bounds(), SIZE[0] / SIZE[1]).facing(float(random.uniform(-3, 3)), 0.2)
+        camera = replace(camera, distance=camera.distance * distance)
+        seen = offscreen.render(scene, camera, DARK, SIZE)
+        with monkeypatch.context() as patch:
+            patch.setattr(renderer, "covered", lambda frame, _: np.array([[0, 0, *frame.size]]))
+            whole_picture = offscreen.render(scene, camera, DARK, SIZE)
+        apart = np.abs(seen.astype(int) - whole_picture)
+        assert apart.max() <= 1, f"{distance}: {(apart > 1).sum()} points"  # places in a picture are rounded
 
 
 def test_state_others_leave_behind_does_not_matter(offscreen):

@@ -1,0 +1,105 @@
+"""What all passes of one picture share, and which part of the picture its figures can cover."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from preview.camera import Camera
+from preview.mesh import Mesh
+from preview.scene import Actor, Scene, Theme
+
+Array = NDArray[Any]
+
+TILE = 16  # pixels, of the squares that figures are laid over a picture by
+MARGIN = 4  # pixels that smoothing looks and writes beyond an edge, and a bit
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """What the passes of one picture share.
+
+    rows: each actor's first row in the palette. matrix: world to clip space `[4, 4]`. bounds: a box round
+    those who are no ghosts. meshes: which is drawn of each actor. light: world to shadow map, 0..1, or None.
+    """
+
+    scene: Scene
+    actors: list[Actor]
+    rows: list[int]
+    camera: Camera
+    size: tuple[int, int]
+    theme: Theme
+    matrix: Array
+    bounds: tuple[Array, Array]
+    meshes: list[Mesh]
+    light: Array | None = None
+
+    @property
+    def floor(self) -> bool:
+        """Whether the ground is seen, from above."""
+        scene = self.scene
+        plain = scene.background is None and scene.picture is None
+        return scene.ground and plain and float(self.camera.eye[1]) > 0
+
+    def which(self, solid: bool) -> list[int]:
+        """Return the places of those who are no ghosts, or of the ghosts."""
+        return [i for i, actor in enumerate(self.actors) if (actor.opacity >= 1) == solid]
+
+
+def drawable(actor: Actor) -> bool:
+    """Whether there is something to draw, and all its numbers are some."""
+    return bool(
+        actor.count
+        and len(actor.figure.mesh.vertices)
+        and np.isfinite(actor.positions).all()
+        and np.isfinite(actor.rotations).all()
+    )
+
+
+def tall(actor: Actor, camera: Camera, height: int) -> float:
+    """How many pixels tall the nearest instance is, about."""
+    away = np.linalg.norm(np.asarray(actor.positions)[..., 0, :].reshape(-1, 3) - camera.eye, axis=1).min()
+    return float(actor.figure.height / (2 * np.tan(camera.fov / 2) * max(float(away), 1e-3)) * height)
+
+
+def covered(frame: Frame, palettes: Sequence[Array]) -> Array:
+    """Return the parts of the picture with figures in them `[N, 4]`: left, low, right, high, pixels from
+    below; rectangles that do not overlap. palettes: each actor's `[instances, M, 3, 4]`.
+
+    Smoothing costs by the point, and the box round a figure with an arm out is mostly empty.
+    """
+    if not frame.actors:
+        return np.zeros((0, 4), int)
+    size = np.array(frame.size)
+    corners = np.concatenate([_corners(*at) for at in zip(frame.actors, palettes, strict=True)])
+    seen = frame.camera.project(corners, frame.size[0] / frame.size[1])
+    if not np.isfinite(seen).all():  # somebody is behind the eye, or round it
+        return np.array([[0, 0, *frame.size]])
+    seen[..., 1] = 1 - seen[..., 1]
+    seen = np.clip(seen, -1, 2) * size
+    wide, high = (size + TILE - 1) // TILE
+    low = np.maximum(np.floor((seen.min(1) - MARGIN) / TILE), 0).astype(int)
+    past = np.minimum(np.ceil((seen.max(1) + MARGIN) / TILE), (wide, high)).astype(int)
+    inside = (past > low).all(1)
+    low, past = low[inside], past[inside]
+    # Corners of rectangles, summed up along both axes, count those that lie over each tile.
+    changes = np.zeros((high + 1, wide + 1), int)
+    for x, y, sign in ((low, low, 1), (past, low, -1), (low, past, -1), (past, past, 1)):
+        np.add.at(changes, (y[:, 1], x[:, 0]), sign)
+    tiles = np.zeros((high, wide + 2), np.int8)
+    tiles[:, 1:-1] = changes.cumsum(0).cumsum(1)[:high, :wide] > 0
+    change = np.diff(tiles, axis=1)
+    (rows, first), (_, last) = np.nonzero(change == 1), np.nonzero(change == -1)
+    runs = np.stack([first, rows, last, rows + 1], 1) * TILE
+    return np.asarray(np.minimum(runs, np.tile(size, 2)))
+
+
+def _corners(actor: Actor, palette: Array) -> Array:
+    """Return the corners of the boxes round an actor's pieces, in all its instances `[N, 8, 3]`."""
+    matrix, corners = actor.figure.boxes
+    moved = palette[:, matrix].astype(float)
+    return np.asarray((corners @ moved[..., :3].swapaxes(-1, -2) + moved[..., None, :, 3]).reshape(-1, 8, 3))
