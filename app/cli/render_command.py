@@ -102,12 +102,12 @@ def pictures(
     camera: Any = None,
     into: np.ndarray | None = None,
 ) -> Iterator[np.ndarray]:
-    """Yield one picture `[H, W, 4]` for each time. camera: holds still, or, called with seconds, says one; by
+    """Give one picture `[H, W, 4]` for each time. camera: holds still, or, called with seconds, says one; by
     default it sees all. into: an array that all come in, for who is done with one before asking for the next.
     """
     from app.stage.stools import stools
     from preview.camera import whole_figure
-    from preview.offscreen import Offscreen
+    from preview.drawing_apart import drawn
     from preview.scene import THEMES, Scene
 
     theme = THEMES[look] if isinstance(look, str) else look
@@ -116,13 +116,15 @@ def pictures(
     if camera is None:
         box = bounds_of(seen, times)
         camera = whole_figure(box, size[0] / size[1], ASIDE if len(seen) > 1 else 0.0)
-    with Offscreen(*size) as offscreen:
+
+    def scenes() -> Iterator[tuple[Scene, Any]]:
         for first in range(0, len(times), TOGETHER):
             some = times[first : first + TOGETHER]
             acted = zip(*(_actors(figure, shown, some) for figure, shown in seen), strict=True)
             for at, actors in zip(some, acted, strict=True):
-                seen_from = camera(float(at)) if callable(camera) else camera
-                yield offscreen.render(Scene((*actors, *seats)), seen_from, theme, into=into)
+                yield Scene((*actors, *seats)), camera(float(at)) if callable(camera) else camera
+
+    return drawn(scenes(), len(times), size, theme, into)
 
 
 def directed(

@@ -1,0 +1,169 @@
+"""Pictures of a video drawn in other processes, where the processor draws: one process draws on one core,
+whatever the machine has, since most of the work is placing triangles.
+"""
+
+from __future__ import annotations
+
+import itertools
+import multiprocessing
+import os
+import tempfile
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from preview.camera import Camera
+from preview.figure import Figure
+from preview.offscreen import Offscreen
+from preview.scene import Actor, Scene, Theme
+
+Array = NDArray[Any]
+Seen = tuple[Scene, Camera]
+
+MOST = 4  # processes; more would wait for whoever encodes
+WORTH = 150  # pictures, from which on starting processes costs less than it saves: it takes half a second
+WAITING = 4  # pictures under way for each process
+
+
+def drawn(
+    scenes: Iterable[Seen],
+    count: int,
+    size: tuple[int, int],
+    theme: Theme,
+    into: Array | None = None,
+    processes: int | None = None,
+) -> Iterator[Array]:
+    """Yield a picture `[H, W, 4]` uint8 for each scene, in order; see `Offscreen.render`.
+
+    count: how many there will be, about. into: an array that pictures may come in, for who is done with one
+    before asking for the next; without it each is a new one. processes: how many draw beside this one; by
+    default as many as there are cores, 4 at most, and none where a graphics card draws or there are few
+    pictures. Pictures are the same wherever they are drawn.
+    """
+    scenes = iter(scenes)
+    with Offscreen(*size) as here:
+        if processes is None:
+            cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+            apart = here.renderer.software and count >= WORTH and cores > 1
+            processes = min(MOST, cores) if apart else 0
+        first = next(scenes, None)
+        if first is None:
+            return
+        scenes = itertools.chain([first], scenes)
+        if not processes:
+            for scene, camera in scenes:
+                yield here.render(scene, camera, theme, into=into)
+            return
+        with tempfile.TemporaryDirectory(prefix="metagraph-pictures-") as folder:
+            yield from _drawn_apart(scenes, first[0], here, theme, into, processes, Path(folder) / "pictures")
+
+
+def _drawn_apart(
+    scenes: Iterator[Seen],
+    first: Scene,
+    here: Offscreen,
+    theme: Theme,
+    into: Array | None,
+    processes: int,
+    path: Path,
+) -> Iterator[Array]:
+    """Draw here until the others have come up, then gather what they draw. Whatever goes wrong there is drawn
+    here.
+    """
+    figures = list({id(a.figure): a.figure for a in first.actors}.values())
+    for figure in figures:
+        _ = figure.coarse, figure.boxes  # once, for all
+    width, height = here.size
+    slots = processes * WAITING + 1  # one more, that is looked at
+    pool = np.memmap(path, np.uint8, "w+", shape=(slots, height, width, 4))
+    executor = ProcessPoolExecutor(
+        processes,
+        multiprocessing.get_context("spawn"),
+        _begin,
+        (figures, here.size, theme, str(path), slots),
+    )
+    waiting: deque[tuple[Future[int] | None, Seen]] = deque()
+    ready = executor.submit(_ready)
+    broken = False
+    number = 0
+    try:
+        while True:
+            while len(waiting) < slots - 1 and (seen := next(scenes, None)) is not None:
+                task = None
+                if ready.done() and not broken:
+                    try:
+                        task = _submitted(executor, figures, seen, number % slots)
+                    except (BrokenProcessPool, RuntimeError):
+                        broken = True
+                waiting.append((task, seen))
+                number += 1
+                if not ready.done():
+                    break  # so that they find some to draw when they have come
+            if not waiting:
+                return
+            task, (scene, camera) = waiting.popleft()
+            picture: Array | None = None
+            if task is not None:
+                try:
+                    picture = pool[task.result()]
+                except Exception:  # a process that ends may leave anything behind
+                    broken = True
+            if picture is None:
+                yield here.render(scene, camera, theme, into=into)
+            elif into is None:
+                yield np.array(picture)
+            else:
+                into[...] = picture
+                yield into
+    finally:
+        executor.shutdown(wait=True, cancel_futures=True)
+        del pool
+
+
+def _submitted(
+    executor: ProcessPoolExecutor, figures: Sequence[Figure], seen: Seen, slot: int
+) -> Future[int] | None:
+    """Hand a scene out; None where somebody is in it the others do not know."""
+    scene, camera = seen
+    numbers = [n for a in scene.actors for n, f in enumerate(figures) if f is a.figure]
+    if len(numbers) < len(scene.actors):
+        return None
+    # Figures are known there by their number: a mesh is kept by who it is.
+    actors = [replace(a, figure=None) for a in scene.actors]  # type: ignore[arg-type]
+    return executor.submit(_draw, slot, replace(scene, actors=()), actors, numbers, camera)
+
+
+# --- in the other process
+
+
+class _There:
+    """What a process draws with."""
+
+    figures: Sequence[Figure]
+    offscreen: Offscreen
+    theme: Theme
+    pool: Array
+
+
+def _begin(figures: Sequence[Figure], size: tuple[int, int], theme: Theme, path: str, slots: int) -> None:
+    os.environ["LP_NUM_THREADS"] = "1"  # each process has a core
+    _There.figures, _There.theme = figures, theme
+    _There.offscreen = Offscreen(*size)
+    _There.pool = np.memmap(path, np.uint8, "r+", shape=(slots, size[1], size[0], 4))
+
+
+def _ready() -> None:
+    """Tell that one has come up."""
+
+
+def _draw(slot: int, scene: Scene, actors: Sequence[Actor], numbers: Sequence[int], camera: Camera) -> int:
+    there = tuple(replace(a, figure=_There.figures[n]) for a, n in zip(actors, numbers, strict=True))
+    _There.offscreen.render(replace(scene, actors=there), camera, _There.theme, into=_There.pool[slot])
+    return slot

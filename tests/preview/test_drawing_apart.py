@@ -1,0 +1,106 @@
+"""Pictures drawn in other processes."""
+
+from __future__ import annotations
+
+import itertools
+import multiprocessing
+import os
+import signal
+import time
+
+import numpy as np
+import pytest
+
+from metagraph.motion import rotation
+from metagraph.motion.skeleton import Pose
+from preview.camera import whole_figure
+from preview.drawing_apart import drawn
+from preview.figure import SkinnedFigure, StickFigure
+from preview.offscreen import Offscreen
+from preview.scene import DARK, Actor, Scene
+from sample_clips.make.mannequin_skeleton import mannequin_skeleton
+from tests.preview.conftest import chain
+
+SIZE = (96, 72)
+COUNT = 60
+
+pytestmark = pytest.mark.gl
+
+
+def waving(figure, count=COUNT):
+    """Somebody who turns one joint a little more in each picture."""
+    skeleton = figure.skeleton
+    for n in range(count):
+        turns = skeleton.rest_rotations.copy()
+        turns[1] = rotation.multiply(turns[1], rotation.from_axis_angle(np.array([0.0, 0, 1]), n / count))
+        actor = Actor(figure, *skeleton.globals(Pose(turns, skeleton.rest_translations)))
+        yield Scene((actor,)), whole_figure(Scene((actor,)).bounds(), SIZE[0] / SIZE[1])
+
+
+def test_pictures_are_the_same_and_in_order_wherever_they_are_drawn(offscreen, mannequin, monkeypatch):
+    """As many as it takes until others have drawn some."""
+    scenes = list(waving(SkinnedFigure(mannequin)))
+    here = [offscreen.render(scene, camera, DARK, SIZE).copy() for scene, camera in scenes]
+    drawn_here = []
+    render = Offscreen.render
+    monkeypatch.setattr(Offscreen, "render", lambda *a, **k: drawn_here.append(1) or render(*a, **k))
+    pictures = drawn(itertools.cycle(scenes), COUNT, SIZE, DARK, processes=2)
+    for n, picture in enumerate(pictures):
+        np.testing.assert_array_equal(picture, here[n % COUNT])
+        if n + 1 - len(drawn_here) >= COUNT:
+            break
+        time.sleep(0.002)
+    pictures.close()
+    assert any(not np.array_equal(here[0], other) for other in here)
+
+
+def test_all_come_in_one_array_for_who_asks_so(offscreen):
+    into = np.zeros((SIZE[1], SIZE[0], 4), np.uint8)
+    figure = StickFigure(mannequin_skeleton())
+    sums = []
+    for picture in drawn(waving(figure), COUNT, SIZE, DARK, into, processes=1):
+        assert picture is into
+        sums.append(int(picture.astype(int).sum()))
+    expected = [int(p.astype(int).sum()) for p in drawn(waving(figure), COUNT, SIZE, DARK, processes=0)]
+    assert sums == expected
+
+
+def test_processes_that_end_leave_no_hole(offscreen):
+    scenes = list(waving(StickFigure(mannequin_skeleton())))
+    here = [offscreen.render(scene, camera, DARK, SIZE).copy() for scene, camera in scenes]
+    before = {p.pid for p in multiprocessing.active_children()}
+    killed: dict[int, int] = {}
+    for n, picture in enumerate(drawn(itertools.cycle(scenes), COUNT, SIZE, DARK, processes=2)):
+        np.testing.assert_array_equal(picture, here[n % COUNT])
+        if not killed and n >= 100:
+            for process in multiprocessing.active_children():
+                if process.pid not in before:
+                    os.kill(process.pid, signal.SIGTERM)
+                    killed[process.pid] = n
+        if killed and n > max(killed.values()) + COUNT:
+            break
+        time.sleep(0.005)
+    assert killed
+
+
+def test_who_comes_in_later_is_drawn_as_well(offscreen):
+    figure, other = StickFigure(mannequin_skeleton()), StickFigure(chain("a", "b", "c"))
+    scenes = [*waving(figure, 40), *waving(other, 40)]
+    here = list(drawn(iter(scenes), 80, SIZE, DARK, processes=0))
+    apart = list(drawn(iter(scenes), 80, SIZE, DARK, processes=1))
+    for one, two in zip(here, apart, strict=True):
+        np.testing.assert_array_equal(one, two)
+
+
+def test_who_stops_early_leaves_no_process(offscreen):
+    figure = StickFigure(chain("a", "b", "c"))
+    before = set(multiprocessing.active_children())
+    pictures = drawn(waving(figure, 500), 500, SIZE, DARK, processes=1)
+    for _ in range(50):
+        next(pictures)
+    pictures.close()
+    assert set(multiprocessing.active_children()) <= before
+
+
+def test_no_scenes_are_no_pictures(offscreen):
+    assert list(drawn(iter(()), 0, SIZE, DARK, processes=1)) == []
