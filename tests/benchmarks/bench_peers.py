@@ -1,11 +1,11 @@
-"""Every task with a peer in one table, measured in turns: python tests/benchmarks/bench_peers.py [rounds] [words]
+"""Every task with a peer in one table, measured in turns: python tests/benchmarks/bench_peers.py [rounds]
+[files] [playing] [synthesis] [exporting] [windows] [drawing]
 
-Words choose rows that hold one of them. Peers are used where they can be imported: pip install upc-pymotion
-bvhio pygltflib orjson, and assimp's command line; what is not there is said. Each round runs both sides of a
-row once, one after the other; medians, and the ratio of the medians: above 1 we are faster. Import and compile
-times are counted on both sides or on neither. ozz-animation is built from its source by hand (cmake, -O3
--march=native) and was run beside `Crowd` with its own sample of 67 tracks: its row is in the table of the
-README, not in this one.
+Words choose groups of rows. Peers are used where they can be imported: pip install upc-pymotion bvh bvhio
+pygltflib orjson; what is not there is said. Each round runs both sides of a row once, one after the other;
+medians, and the ratio of the medians: above 1 we are faster. Import and compile times are counted on both
+sides or on neither. ozz-animation is no package: it is built from its source by hand (-O3 -march=native), and
+its rows stand in the README of this folder.
 """
 
 from __future__ import annotations
@@ -59,7 +59,6 @@ class Row:
     ours: Work
     theirs: Work | None
     each: float = 1.0
-    unit: str = "ms"
 
 
 def seconds(work: Work) -> float:
@@ -95,8 +94,9 @@ def files(folder: Path) -> Iterator[Row]:
     limit, ours, *peers = readers.items()
     read_bvh(path)
     for name, reader in [*peers, limit]:
-        words = (f"BVH, {what}, warm", "names, rests, float32 quaternions, checks", *name.split(":", 1))
-        yield Row(words[0], words[1], words[2], words[-1].strip(), ours[1], reader)
+        peer, _, holds = name.partition(": ")
+        own_holds = "names, rests, float32 quaternions, checks"
+        yield Row(f"BVH, 10,000 frames ({what}), warm", own_holds, peer, holds, ours[1], reader)
     own = process("import sys; from metagraph.formats.bvh import read_bvh; read_bvh(sys.argv[1])", str(path))
     code = "import sys, pymotion.io.bvh as b; f = b.BVH(); f.load(sys.argv[1]); f.get_data()"
     other = process(code, str(path)) if "upc-pymotion: quaternions" in readers else None
@@ -291,8 +291,8 @@ def main() -> None:
                 peer = f"{1e3 * theirs:,.3g} ms" if row.theirs else "not installed"
                 ratio = f"{theirs / ours:.2f}" if row.theirs else ""
                 print(
-                    f"| {row.task} | {row.ours_holds} | {row.peer} | {row.peer_holds} | {1e3 * ours:,.3g} ms | "
-                    f"{peer} | {ratio} |",
+                    f"| {row.task} | {row.ours_holds} | {row.peer} | {row.peer_holds} | "
+                    f"{1e3 * ours:,.3g} ms | {peer} | {ratio} |",
                     flush=True,
                 )
 
