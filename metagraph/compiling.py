@@ -19,6 +19,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[1]
 NUMBA = "numba>=0.60"
 
+unkept: list[str] = []  # loops that found no folder to be kept in
 _ONE = Lock()  # one thread installs, the others wait
 
 
@@ -31,10 +32,34 @@ def there() -> bool:
     return sys.modules.get("numba") is not None or find_spec("numba") is not None
 
 
-def compiler(**options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """Return a decorator that compiles a loop as `numba.njit` does with these options, and keeps what it made
-    on disk where there is a folder for that. Installs numba (a minute, once) where it may. Raises
-    CompilerError.
+class Loops:
+    """A module of compiled loops that stand in for NumPy as soon as they are loaded. now: the module, None
+    until then.
+    """
+
+    def __init__(self, module: str) -> None:
+        self.module = module
+        self.now: Any = None
+
+    def load(self) -> None:
+        """Import the module and have it make ready what it compiles (`warm`)."""
+        if self.now is None:
+            made: Any = importlib.import_module(self.module)
+            made.warm()
+            self.now = made
+
+
+def plain(array: Any) -> Any:
+    """Return an array as loops take it, in one piece and free to be written to: numba compiles anew for any
+    other. A copy only where it is not so.
+    """
+    return array if array.flags.carray else array.copy(order="C")
+
+
+def compiler(keep: bool = True, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Return a decorator that compiles a loop as `numba.njit` does with these options, and with `keep` keeps
+    what it made on disk where there is a folder for that. Installs numba (a minute, once) where it may.
+    Raises CompilerError.
     """
     if not there():
         with _ONE:
@@ -44,8 +69,9 @@ def compiler(**options: Any) -> Callable[[Callable[..., Any]], Any]:
 
     def compiled(function: Callable[..., Any]) -> Any:
         try:
-            return numba.njit(cache=True, **options)(function)
+            return numba.njit(cache=keep, **options)(function)
         except RuntimeError:  # no folder to cache in
+            unkept.append(function.__name__)
             return numba.njit(**options)(function)
 
     return compiled

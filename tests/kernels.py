@@ -18,7 +18,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 HOME = ROOT / ".pytest_cache" / "numba"
-PATTERNS = ("kernels.py", "*_kernels.py", "wander.py")
+PATTERNS = ("kernels.py", "*_kernels.py", "wander.py", "*_solve.py", "plain_vectors.py")
 
 
 def kept() -> Path:
@@ -65,6 +65,7 @@ def compile_all() -> None:
     from app.features.motion_graph.synthesis_jobs import Wish, synthesise, takes_of, usable
     from metagraph.formats import bvh, bvh_kernels
     from metagraph.formats.store import open_project
+    from metagraph.playback import loops
     from metagraph.playback.crowd import Crowd
     from metagraph.playback.planner import make_plan
     from metagraph.synthesis.constraints import heard
@@ -79,6 +80,7 @@ def compile_all() -> None:
             next(clip.motion for clip in project.clips.values() if clip.motion), Path(folder) / "a.bvh"
         )
         bvh.read_bvh(Path(folder) / "a.bvh")
+    loops.load()
     crowd = Crowd(project, [make_plan(project, 5.0)])
     crowd.poses(1.0)
     crowd.globals(1.0)

@@ -19,6 +19,7 @@ from metagraph.graph.model import Action, Layer, Project
 from metagraph.graph.requests import AnyRequest
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose, Skeleton
+from metagraph.playback import loops
 from metagraph.playback.faces import faces_at
 from metagraph.playback.life.evaluate import enliven
 from metagraph.playback.manual_playback import (
@@ -43,7 +44,10 @@ if TYPE_CHECKING:
 ASIDE = (
     -0.35
 )  # radians the camera goes round those who talk, to see them from the side and not one of them from behind
+WATCHED = 300  # poses that were asked for when compiled loops begin to pay
 LEAD = 0.8  # seconds of stance before and after a clip shown in context
+
+_watched = [0]  # poses that were asked for
 
 
 @dataclass(frozen=True)
@@ -134,6 +138,9 @@ class Shown:
             from metagraph.playback.overlay import overlaid
 
             return overlaid(self.moving, self.project, seconds, laid)
+        _watched[0] += 1
+        if _watched[0] == WATCHED:
+            loops.load_soon()
         return pose_at(self.moving, self.project, seconds)
 
     def _moved(self, seconds: Any) -> Pose | None:

@@ -45,3 +45,22 @@ class Remembered(Generic[T]):
 
     def _same(self, project: Project, parts: tuple[Any, ...]) -> bool:
         return all(a is b for a, b in zip(self._parts(project), parts, strict=True))
+
+
+class Latest(Generic[T]):
+    """What a function finds of projects, the last few remembered: a project is a value, so the same one has
+    the same answer. What is found must not refer to the project or its clips.
+    """
+
+    def __init__(self, find: Callable[[Project], T], most: int = 4) -> None:
+        self._find, self._most = find, most
+        self._known: list[tuple[ref[Project], T]] = []
+
+    def __call__(self, project: Project) -> T:
+        for whose, value in tuple(self._known):
+            if whose() is project:
+                return value
+        value = self._find(project)
+        self._known.insert(0, (ref(project), value))
+        del self._known[self._most :]
+        return value

@@ -16,7 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.model import LAYERS, Layer, Part, Project
+from metagraph.graph.face_curves import worn
+from metagraph.graph.model import LAYERS, Action, Layer, Part, Project
+from metagraph.graph.remembered import Latest
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose, Skeleton
@@ -57,22 +59,24 @@ class Ground:
         self._inverse = rotation.conjugate(base.rotations)
         self._offsets: WeakKeyDictionary[Clip, dict[bytes, Offsets]] = WeakKeyDictionary()
 
-    def offsets(self, clip: Clip, reach: Reach) -> Offsets:
-        """Return a clip's offsets on the joints of a layer. Raises ValueError when the clip has another
-        skeleton.
+    def offsets(self, clip: Clip, reach: Reach, keep: bool = True) -> Offsets:
+        """Return a clip's offsets on the joints of a layer. keep: whether they are remembered; not by who
+        asks once. Raises ValueError when the clip has another skeleton.
         """
         known = self._offsets.get(clip)
         if known is None:
             if clip.skeleton != self.skeleton:
                 raise ValueError(f"clip '{clip.name}' has another skeleton")
-            known = self._offsets.setdefault(clip, {})
+            known = self._offsets.setdefault(clip, {}) if keep else {}
         found = known.get(reach.key)
         if found is None:
             joints = reach.joints
             away = clip.poses().translations[:, joints] - self.base.translations[joints]
             moved = np.flatnonzero(np.abs(away).max(axis=(0, 2), initial=0) > 1e-7)
             turned = rotation.continuous(rotation.multiply(self._inverse[joints], clip.rotations[:, joints]))
-            found = known[reach.key] = Offsets(turned, np.ascontiguousarray(away[:, moved]), moved)
+            found = Offsets(turned, np.ascontiguousarray(away[:, moved]), moved)
+            if keep:
+                known[reach.key] = found
         return found
 
 
@@ -127,8 +131,12 @@ def _rig(
 
 def rig(project: Project) -> ComposerRig:
     """Return the project's rig; the same object as long as skeleton, base pose, parts and weights stay as
-    they are.
+    they are. Raises ValueError without a skeleton.
     """
+    return _latest(project)
+
+
+def _found(project: Project) -> ComposerRig:
     if project.skeleton is None:
         raise ValueError("a project without clips cannot be posed")
     entry = project.clips.get(project.base.clip) if project.base.clip else None
@@ -140,3 +148,17 @@ def rig(project: Project) -> ComposerRig:
     weights = tuple(tuple(project.graphs[layer].weight(part) for part in order) for layer in LAYERS)
     ground = _ground(project.skeleton, ref(motion) if motion is not None else None, frame)
     return _rig(ground, anatomy.parts(project), weights, order)
+
+
+_latest = Latest(_found)
+
+
+def playable(project: Project, action: Action) -> Clip | None:
+    """Return the motion of an action, its curves on the project's face; None where its clip is missing or
+    has another skeleton.
+    """
+    entry = project.clips.get(action.clip)
+    motion = entry.motion if entry is not None else None
+    if motion is None or motion.skeleton != project.skeleton:
+        return None
+    return worn(project, motion) if motion.morphs else motion

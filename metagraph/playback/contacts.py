@@ -17,7 +17,7 @@ from metagraph.graph import anatomy
 from metagraph.graph.end_gaps import motion_of
 from metagraph.graph.face import axes_of, made_of
 from metagraph.graph.model import LAYERS, Project
-from metagraph.graph.remembered import Remembered
+from metagraph.graph.remembered import Latest, Remembered
 from metagraph.motion import rotation
 from metagraph.motion.body_capsules import SIDES, BodyPart, body_capsules
 from metagraph.motion.character_mesh import Character
@@ -36,6 +36,7 @@ from metagraph.motion.contact_solve import (
 from metagraph.motion.skeleton import Pose, Skeleton
 from metagraph.playback.contact_goals import LEAST, layer_goals
 from metagraph.playback.plan import Plan
+from metagraph.playback.solving import compiled, hold_hands
 
 Array = NDArray[Any]
 
@@ -58,11 +59,18 @@ def parts_of(project: Project, character: Character | None = None) -> tuple[Body
 
 def contact_rig(project: Project) -> ContactRig | None:
     """Return what contacts need of a project, None of one without two arms."""
+    return _latest(project)
+
+
+def _found(project: Project) -> ContactRig | None:
     if isinstance(project.contact_rig, ContactRig):
         return project.contact_rig
     targets = sorted(project.touched)
     key = (project.base, project.touch, tuple(targets))
     return _known.of(project, key, lambda: _rig(project, targets))
+
+
+_latest = Latest(_found)
 
 
 def _rig(project: Project, targets: Sequence[str]) -> ContactRig | None:
@@ -137,6 +145,10 @@ def goals_at(plan: Plan, project: Project, rig: ContactRig, time: float) -> list
         if cue is not None and motion_of(project, cue.action) is None:
             cue = None
         place = max(int(of.fade_starts.searchsorted(time, "right")) - 1, 0) if of.rests else -1
+        if not any(of.rests[n].action.contacts for n in (place, place - 1) if n >= 0) and not (
+            cue is not None and cue.action.contacts
+        ):
+            continue
         out += layer_goals(rig, project, of, cue, place, time, strength)
     return out
 
@@ -169,6 +181,8 @@ def touched(pose: Pose, plan: Plan, project: Project, times: Array, shown: Array
 
 def solved(pose: Pose, rig: ContactRig, goals: Sequence[Sequence[HandGoal]]) -> Pose:
     """Return poses `[N, J]` with hands at their goals, and out of the body where the rig's guard is on."""
+    if compiled(pose):
+        return hold_hands(pose, rig, goals) if rig.guard or any(goals) else pose
     busy = np.array([bool(g) for g in goals])
     if rig.guard and not busy.all():
         idle = np.flatnonzero(~busy)

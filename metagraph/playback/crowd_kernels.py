@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 
 from metagraph.compiling import compiler
+from metagraph.motion import forward_kernels
+from metagraph.playback.laying import CLIP, CUE, LANES, REST
 
 Array = Any
 Number = Any  # float32 throughout, except for times
@@ -23,9 +25,16 @@ Loop = tuple[
     Spot, Spot, Number
 ]  # a stance loop, the other side of its seam, and how much of that shows: -1 without a clip
 
-LANES = 16  # joints in a block
+AT_ONCE = 32  # characters: their blocks stay in a processor's cache
+# Rows of a layer's `lanes [3 + K, b, 16]` and `mover_lanes [3 + K, m]`: which joints turn farther, and which
+# less far, where a cue is larger or smaller than made; the layer's weights on them; and K masks, 0 where an
+# action leaves a joint to its stance.
+WIDER, NARROWER, WEIGHT, WEIGHED, MASKS = range(5)
 
-_compiled = compiler(nogil=True, fastmath={"contract", "arcp", "nsz"}, error_model="numpy")
+_OPTIONS: dict[str, Any] = {
+    "nogil": True, "fastmath": {"contract", "arcp", "nsz"}, "error_model": "numpy"
+}  # fmt: skip
+_compiled = compiler(**_OPTIONS)
 
 
 # --- blocks `[64]` float32
@@ -226,60 +235,35 @@ def _loop_way(table: Array, loop: Loop, i: int, axis: int) -> Number:
 
 
 @_compiled
-def add_layer(
-    first: int,
-    last: int,
-    seconds: Array,
-    plan_of: Array,
-    rests: Array,
-    rest_starts: Array,
-    rest_at: Array,
-    cues: Array,
-    cue_starts: Array,
-    cue_at: Array,
-    clips: Array,
-    turns: Array,
-    ways: Array,
-    blocks: Array,
-    movers: Array,
-    mover_weights: Array,
-    weights: Array,
-    weighed: bool,
-    masks: Array,
-    mover_masks: Array,
-    scales: Array,
-    mover_scales: Array,
-    out: Array,
-    out_t: Array,
+def _add_layer(
+    first: int, last: int, seconds: Array, plan_of: Array, layer: Any, out: Array, out_t: Array
 ) -> None:
-    """Add one layer's offsets for characters `first`..`last`: rotations to `out [C, B, 64]`, translations to
-    `out_t [C, J, 3]`.
-
-    turns `[rows, b, 64]`: every clip's frames; blocks `[b]`: which of the B blocks they are. ways `[rows, m,
-    3]` of joints `movers [m]`. weights `[b, 16]`. masks `[K, b, 16]`, mover_masks `[K, m]`: 0 where a masked
-    action leaves a joint to its stance. scales `[2, b, 16]`, mover_scales `[2, m]`: which turn farther, and
-    which less far, where a cue is larger or smaller than made.
+    """Add one layer's offsets for characters `first`..`last`: rotations to `out [last - first, B, 64]`,
+    translations to `out_t [C, J, 3]`. layer: as `laying.LaidLayer` has it.
     """
-    shown, stance, other = (
-        np.empty(4 * LANES, np.float32),
-        np.empty(4 * LANES, np.float32),
-        np.empty(4 * LANES, np.float32),
-    )
-    scratch = np.empty(4 * LANES, np.float32)
+    rests, cues, at, clips, turns, ways, blocks, movers, lanes, mover_lanes = layer
+    shown, stance = np.empty(4 * LANES, np.float32), np.empty(4 * LANES, np.float32)
+    other, spare = np.empty(4 * LANES, np.float32), np.empty(4 * LANES, np.float32)
     turned = np.empty(LANES, np.float32)
     for c in range(first, last):
         time, plan = seconds[c], plan_of[c]
-        if rest_at[plan] == rest_at[plan + 1]:
+        first_rest, last_rest, first_cue, last_cue = (
+            at[plan, 0],
+            at[plan + 1, 0],
+            at[plan, 1],
+            at[plan + 1, 1],
+        )
+        if first_rest == last_rest:
             continue
-        place = _last_from(cue_starts, cue_at[plan], cue_at[plan + 1], time)
-        playing = place >= cue_at[plan] and time < cues[place].end and cues[place].clip >= 0
+        place = _last_from(cues.start, first_cue, last_cue, time)
+        playing = place >= first_cue and time < cues[place].end and cues[place].clip >= 0
         mask, lead, blending = -1, np.float32(0), False
-        extent, way = 1.0, 0
+        extent, way = 1.0, WIDER
         spot = edge = (0, 0, np.float32(0))
         if playing:
             cue = cues[place]
             clip, mask = clips[cue.clip], cue.mask
-            extent, way = cue.extent, 0 if cue.extent > 1 else 1
+            extent, way = cue.extent, WIDER if cue.extent > 1 else NARROWER
             spot = _spot(clip, _clip_seconds(cue, time))
             rising = time < cue.start + cue.blend_in
             blending = rising or time >= cue.end - cue.blend_out
@@ -292,18 +276,18 @@ def add_layer(
         loop = before = (spot, spot, np.float32(-1))
         fade = np.float32(1)
         if resting:
-            current = max(_last_from(rest_starts, rest_at[plan], rest_at[plan + 1], time), rest_at[plan])
+            current = max(_last_from(rests.fade_start, first_rest, last_rest, time), first_rest)
             rest = rests[current]
             loop = _loop(rest, clips, time)
-            if current > rest_at[plan] and time < rest.fade_start + rest.fade:
+            if current > first_rest and time < rest.fade_start + rest.fade:
                 fade = np.float32(_ease((time - rest.fade_start) / rest.fade))
                 before = _loop(rests[current - 1], clips, time)
 
         for b in range(len(blocks)):
             if resting:
-                _loop_turns(turns, loop, b, stance, scratch)
+                _loop_turns(turns, loop, b, stance, spare)
                 if fade < 1:
-                    _loop_turns(turns, before, b, other, scratch)
+                    _loop_turns(turns, before, b, other, spare)
                     _mix(stance, other, np.float32(1) - fade)
             result = stance
             if playing:
@@ -313,21 +297,21 @@ def add_layer(
                     _lerp(turns[edge[0], b], turns[edge[1], b], edge[2], other)
                     _lead(shown, stance, other, lead)
                 if extent != 1:
-                    turned[:] = scales[way, b]
-                    _extend(shown, stance, extent, turned, scratch)
+                    turned[:] = lanes[way, b]
+                    _extend(shown, stance, extent, turned, spare)
                 if mask >= 0:
-                    moves = masks[mask, b]
+                    moves = lanes[MASKS + mask, b]
                     for k in range(4):
                         for i in range(LANES):
                             shown[k * LANES + i] = (
                                 shown[k * LANES + i] if moves[i] > 0 else stance[k * LANES + i]
                             )
-            if weighed:
-                _power(result, weights[b])
-            _append(out[c, blocks[b]], result)
+            if lanes[WEIGHED, b, 0] > 0:
+                _power(result, lanes[WEIGHT, b])
+            _append(out[c - first, blocks[b]], result)
 
         for m in range(len(movers)):
-            moves_m = playing and (mask < 0 or mover_masks[mask, m] > 0)
+            moves_m = playing and (mask < 0 or mover_lanes[MASKS + mask, m] > 0)
             for axis in range(3):
                 t = np.float32(0)
                 if resting:
@@ -339,50 +323,73 @@ def add_layer(
                     away = _way(ways, spot, m, axis)
                     t = away + (t - _way(ways, edge, m, axis)) * lead if blending else away
                     if extent != 1:
-                        t = under + (t - under) * np.float32(1 + (extent - 1) * mover_scales[way, m])
-                out_t[c, movers[m], axis] += t * mover_weights[m]
+                        t = under + (t - under) * np.float32(1 + (extent - 1) * mover_lanes[way, m])
+                out_t[c, movers[m], axis] += t * mover_lanes[WEIGHT, m]
 
 
 @_compiled
-def to_joints(first: int, last: int, blocked: Array, places: Array, out: Array) -> None:
-    """Scale characters' rotations to unit length and write them joint by joint: `out [C, J, 4]` from places
-    `[J]` in their blocks.
+def _to_joints(blocked: Array, places: Array, out: Array) -> None:
+    """Scale rotations `[B, 64]` to unit length and write them joint by joint: `out [J, 4]` from places
+    `[J]`.
     """
-    for c in range(first, last):
-        for b in range(blocked.shape[1]):
-            _unit(blocked[c, b])
-        flat, pose = blocked[c].reshape(-1), out[c]
-        for j in range(len(places)):
-            p = places[j]
-            pose[j, 0], pose[j, 1], pose[j, 2], pose[j, 3] = (
-                flat[p],
-                flat[p + LANES],
-                flat[p + 2 * LANES],
-                flat[p + 3 * LANES],
-            )
+    for b in range(len(blocked)):
+        _unit(blocked[b])
+    flat = blocked.reshape(-1)
+    for j in range(len(places)):
+        p = places[j]
+        out[j, 0], out[j, 1] = flat[p], flat[p + LANES]
+        out[j, 2], out[j, 3] = flat[p + 2 * LANES], flat[p + 3 * LANES]
+
+
+_to_model = compiler(keep=False, **_OPTIONS)(forward_kernels.to_model)
 
 
 @_compiled
-def to_globals(
-    first: int, last: int, parents: Array, local_r: Array, local_t: Array, out_r: Array, out_p: Array
+def pose(
+    first: int,
+    last: int,
+    seconds: Array,
+    plan_of: Array,
+    layers: Any,
+    base: Array,
+    travels: Array,
+    places: Array,
+    out_r: Array,
+    out_t: Array,
+    parents: Array,
+    model_r: Array,
+    model_p: Array,
 ) -> None:
-    """Write model-space rotations `[C, J, 4]` and positions `[C, J, 3]` of characters `first`..`last`."""
-    for c in range(first, last):
-        local, v, r, o = local_r[c], local_t[c], out_r[c], out_p[c]
-        for j in range(len(parents)):
-            p = parents[j]
-            a, b, e, s = local[j, 0], local[j, 1], local[j, 2], local[j, 3]
-            vx, vy, vz = v[j, 0], v[j, 1], v[j, 2]
-            if p < 0:
-                r[j, 0], r[j, 1], r[j, 2], r[j, 3] = a, b, e, s
-                o[j, 0], o[j, 1], o[j, 2] = vx, vy, vz
-                continue
-            x, y, z, w = r[p, 0], r[p, 1], r[p, 2], r[p, 3]
-            tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
-            o[j, 0] = o[p, 0] + vx + w * tx + y * tz - z * ty
-            o[j, 1] = o[p, 1] + vy + w * ty + z * tx - x * tz
-            o[j, 2] = o[p, 2] + vz + w * tz + x * ty - y * tx
-            r[j, 0] = w * a + x * s + y * e - z * b
-            r[j, 1] = w * b - x * e + y * s + z * a
-            r[j, 2] = w * e + x * b - y * a + z * s
-            r[j, 3] = w * s - x * a - y * b - z * e
+    """Write poses of characters `first`..`last`: rotations to `out_r [C, J, 4]`, translations to `out_t [C,
+    J, 3]`; and where `model_r [C, J, 4]` and `model_p [C, J, 3]` are not empty, those in the character's
+    space.
+
+    layers: three times what `_add_layer` takes. base `[B, 64]`, travels `[J, 3]`: the base pose. places
+    `[J]`: of the joints in the blocks.
+    """
+    blocked = np.empty((min(AT_ONCE, last - first), *base.shape), np.float32)
+    for start in range(first, last, AT_ONCE):
+        end = min(start + AT_ONCE, last)
+        for c in range(start, end):
+            blocked[c - start] = base
+            out_t[c] = travels
+        for layer in layers:
+            _add_layer(start, end, seconds, plan_of, layer, blocked, out_t)
+        for c in range(start, end):
+            _to_joints(blocked[c - start], places, out_r[c])
+        if len(model_r) > 0:
+            for c in range(start, end):
+                _to_model(parents, out_r[c], out_t[c], model_r[c], model_p[c])
+
+
+def warm() -> None:
+    """Have ready what poses are worked out with."""
+    numbers = np.zeros(0, np.int64)
+    layer = (
+        *(np.zeros(0, REST), np.zeros(0, CUE), np.zeros((1, 2), np.int64), np.zeros(0, CLIP)),
+        *(np.zeros((0, 0, 4 * LANES), np.float32), np.zeros((0, 0, 3), np.float32), numbers, numbers),
+        *(np.zeros((0, 0, LANES), np.float32), np.zeros((0, 0), np.float32)),
+    )
+    turns, places = np.zeros((0, 0, 4), np.float32), np.zeros((0, 0, 3), np.float32)
+    base = np.zeros((0, 4 * LANES), np.float32), np.zeros((0, 3), np.float32), numbers
+    pose(0, 0, np.zeros(0), numbers, (layer, layer, layer), *base, turns, places, numbers, turns, places)

@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.composer import rig
 from metagraph.playback.plan import Plan
-from metagraph.playback.player import layers_at, morphs_at
+from metagraph.playback.player import layered, morphs_at
 from metagraph.playback.weight import weighed
 
 
@@ -20,7 +19,7 @@ def faces_at(plan: Plan, project: Project, times: NDArray[Any]) -> list[dict[str
     at = np.asarray(times, np.float64)
     if project.skeleton is None or not len(at):
         return [morphs_at(plan, project, float(time)) for time in at]
-    pose = weighed(rig(project).compose(layers_at(plan, project, at), len(at)), plan, project, at)
+    pose = weighed(layered(plan, project, at), plan, project, at)
     return [
         morphs_at(plan, project, float(time), composed=Pose(rotations, translations))
         for time, rotations, translations in zip(at, pose.rotations, pose.translations, strict=True)

@@ -17,10 +17,11 @@ from numpy.typing import NDArray
 from metagraph.graph import anatomy
 from metagraph.graph.model import Action, Project
 from metagraph.motion.clip import Clip
+from metagraph.playback.composer import playable
 from metagraph.playback.feet import STANDS as HELD_BELOW
 from metagraph.playback.feet import FeetOfPlan
 from metagraph.playback.plan import Plan
-from metagraph.playback.player import cue_weight, loop_seconds, playable
+from metagraph.playback.player import cue_weight, loop_seconds
 from metagraph.playback.weight import foot_rows_of, plants, weight_of
 
 Array = NDArray[Any]

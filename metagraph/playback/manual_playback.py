@@ -23,13 +23,13 @@ from metagraph.graph.model import LAYERS, Action, Kind, Layer, Project, Timing
 from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.choice import pick
-from metagraph.playback.composer import Ground, Reach, rig
+from metagraph.playback.composer import Ground, Reach, playable, rig
 from metagraph.playback.life.body import body_of
 from metagraph.playback.life.evaluate import enliven, face_weights
 from metagraph.playback.life.schedule import Schedule, schedule
 from metagraph.playback.life.track import Track
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Report
-from metagraph.playback.player import Sample, add_life, ease, mix, playable, sample
+from metagraph.playback.player import Sample, add_life, ease, mix, sample
 
 Array = NDArray[Any]
 LEAST = 1 / 30  # seconds a state plays at least: links in a circle without length take their time

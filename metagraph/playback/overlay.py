@@ -23,7 +23,7 @@ from metagraph.playback.composer import Reach, rig
 from metagraph.playback.contacts import touched
 from metagraph.playback.life.evaluate import enliven
 from metagraph.playback.plan import Plan
-from metagraph.playback.player import ease, layers_at, sample
+from metagraph.playback.player import ease, layered, layers_at, sample
 from metagraph.playback.weight import weighed
 
 Array = NDArray[Any]
@@ -53,10 +53,10 @@ def overlaid(plan: Plan, project: Project, seconds: Any, overlay: Overlay | None
     at = np.asarray(seconds, np.float64)
     times = at.reshape(-1)
     frame = rig(project)
-    layers = layers_at(plan, project, times)
     if overlay is None or not overlay.weight.any():
-        pose = frame.compose(layers, len(times))
+        pose = layered(plan, project, times)
     else:
+        layers = layers_at(plan, project, times)
         body: dict[Layer, Any] = {"body": layers.pop("body")} if "body" in layers else {}
         pose = _over(frame.compose(body, len(times)), project, layers, overlay)
     shown = None if overlay is None else 1 - overlay.weight * (1 - overlay.arms)

@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
-from metagraph.graph.face_curves import worn
 from metagraph.graph.model import LAYERS, Action, Layer, Project
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.composer import Ground, Reach, rig
+from metagraph.playback.composer import Ground, Reach, playable, rig
 from metagraph.playback.contacts import touched
+from metagraph.playback.laid_plan import composed
 from metagraph.playback.life.body import body_of
 from metagraph.playback.life.evaluate import Playing, enliven, face_weights
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Rest
@@ -45,7 +45,7 @@ def pose_at(plan: Plan, project: Project, seconds: Any, alive: bool = True) -> P
     at = np.asarray(seconds, np.float64)
     times = at.reshape(-1)
     frame = rig(project)
-    pose = frame.compose(layers_at(plan, project, times), len(times))
+    pose = layered(plan, project, times)
     if alive and project.life.on and plan.life.end > 0 and len(times):
         pose = weighed(pose, plan, project, times)
         if len(times) == 1:  # whose face is mostly asked for next
@@ -66,12 +66,21 @@ def _weighed_at(plan: Plan, project: Project, seconds: float) -> Pose:
         if of() is plan and whose() is project and when == seconds:
             return pose
     times = np.array([float(seconds)])
-    return _alone(weighed(rig(project).compose(layers_at(plan, project, times), 1), plan, project, times))
+    return _alone(weighed(layered(plan, project, times), plan, project, times))
 
 
 def _alone(pose: Pose) -> Pose:
     """Return the only pose of several, in memory of its own."""
     return Pose(pose.rotations[0].copy(), pose.translations[0].copy())
+
+
+def layered(plan: Plan, project: Project, times: Array) -> Pose:
+    """Return what the layers alone compose at `times [N]`: rotations `[N, J, 4]`, translations `[N, J,
+    3]`.
+    """
+    frame = rig(project)
+    found = composed(plan, project, frame, times)
+    return found if found is not None else frame.compose(layers_at(plan, project, times), len(times))
 
 
 def layers_at(plan: Plan, project: Project, times: Array) -> dict[Layer, Sample]:
@@ -114,17 +123,6 @@ def loop_seconds(project: Project, action: Action, elapsed: Array) -> tuple[Arra
         return start + phase, start + phase, np.zeros_like(phase)
     old = np.where(elapsed >= period, 1 - ease(phase / seam), 0.0)
     return start + phase, start + np.minimum(period + phase, length), old
-
-
-def playable(project: Project, action: Action) -> Clip | None:
-    """Return the motion of an action, its curves on the project's face; None where its clip is missing or
-    has another skeleton.
-    """
-    entry = project.clips.get(action.clip)
-    motion = entry.motion if entry is not None else None
-    if motion is None or motion.skeleton != project.skeleton:
-        return None
-    return worn(project, motion) if motion.morphs else motion
 
 
 Sample = tuple[

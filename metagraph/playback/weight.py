@@ -20,7 +20,7 @@ from metagraph.graph import anatomy
 from metagraph.graph.end_gaps import motion_of
 from metagraph.graph.face import axes_of, made_of
 from metagraph.graph.model import Action, Project
-from metagraph.graph.remembered import Remembered
+from metagraph.graph.remembered import Latest, Remembered
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.contact_solve import ContactArm, ContactPose, ContactRig
@@ -41,6 +41,7 @@ from metagraph.playback.follow_through import (
     knot_time,
 )
 from metagraph.playback.plan import LayerPlan, Plan
+from metagraph.playback.solving import carry_weight, compiled
 
 Array = NDArray[Any]
 Vector = tuple[float, float, float]
@@ -77,6 +78,10 @@ _known: Remembered[Weight] = Remembered(made_of)
 
 def weight_of(project: Project) -> Weight:
     """Return what of a project answers its arms; the same object as long as nothing it depends on changes."""
+    return _latest(project)
+
+
+def _of(project: Project) -> Weight:
     if isinstance(project.weight, Weight):
         return project.weight
     arms = project.graphs["arms"]
@@ -84,6 +89,9 @@ def weight_of(project: Project) -> Weight:
     body = tuple(tuple(sorted(project.graphs[layer].weights.items())) for layer in ("body", "head"))
     depends = (project.base, strength, *body)
     return _known.of(project, depends, lambda: Weight(_rig(project, strength), {}, {}))
+
+
+_latest = Latest(_of)
 
 
 def _rig(project: Project, strength: float) -> WeightRig | None:
@@ -342,6 +350,9 @@ def weighs(project: Project) -> bool:
     return sways(project) or plants(project)
 
 
+_STILL = [0.0] * (2 * NUMBERS)
+
+
 def weighed(pose: Pose, plan: Plan, project: Project, times: Array, shown: Array | None = None) -> Pose:
     """Return composed poses `[N, J]` at `times [N]` in which feet stay planted and the body answers its arms;
     the very same arrays where nothing moves them. shown `[N]`: how much of what the plan does with arms is
@@ -366,6 +377,10 @@ def weighed(pose: Pose, plan: Plan, project: Project, times: Array, shown: Array
     busy = [n for n in range(len(times)) if feet[n] or moves_body(drives[n])]
     if not busy:
         return pose
+    if compiled(pose):
+        dials = [life.follow_through * part for part in parts], [life.shoulder_lift * part for part in parts]
+        whole = [drive or _STILL for drive in drives]
+        return carry_weight(pose, rig, feet, life.planted_feet, whole, *dials)
     joints, hips = list(rig.body.joints), rig.bends[0].place
     rotations, translations = np.array(pose.rotations), np.array(pose.translations)
     locals_, moved = rotations[busy][:, joints].tolist(), translations[busy][:, joints].tolist()

@@ -26,13 +26,14 @@ from metagraph.graph import anatomy, edits  # noqa: E402
 from metagraph.graph.model import LAYERS, Layer, Project  # noqa: E402
 from metagraph.motion import rotation  # noqa: E402
 from metagraph.motion.skeleton import Pose  # noqa: E402
-from metagraph.playback.composer import rig  # noqa: E402
+from metagraph.playback import loops  # noqa: E402
+from metagraph.playback.composer import playable, rig  # noqa: E402
 from metagraph.playback.crowd import Crowd  # noqa: E402
 from metagraph.playback.life.schedule import Schedule, schedule  # noqa: E402
 from metagraph.playback.life.track import LookAt, Speech, track_of  # noqa: E402
 from metagraph.playback.plan import Plan  # noqa: E402
 from metagraph.playback.planner import extend, make_plan  # noqa: E402
-from metagraph.playback.player import ease, playable, pose_at  # noqa: E402
+from metagraph.playback.player import ease, pose_at  # noqa: E402
 
 FAR = 1e7  # seconds between the plans of two characters on the one time line on which NumPy looks them all up
 
@@ -256,6 +257,56 @@ def lively(project: Project) -> None:
     row("an hour of life, drawn at once", hour)
 
 
+def one_character(project: Project, plan: Plan) -> None:
+    """A pose and where its joints are, at one time after the other as a preview asks, and at any: NumPy and
+    the compiled loops in turn, the processor's microseconds.
+    """
+    loops.load()
+    modules = [(x, x.now) for x in loops.LOOPS]
+    drawn = np.random.default_rng(1).uniform(0, 120, 400)
+    print("\none character, the processor's us: NumPy, compiled loops")
+    for words, times, alive in (
+        ("pose_at without life, any time", drawn, False),
+        ("pose_at without life, 60 a second", np.arange(400) / 60, False),
+        ("pose_at with life and weight, any time", drawn, True),
+        ("pose_at with life and weight, 60 a second", np.arange(400) / 60, True),
+    ):
+        taken: tuple[list[int], list[int]] = ([], [])
+        after: tuple[list[int], list[int]] = ([], [])
+        for begin in range(0, len(times), 50):
+            for side in (0, 1):
+                for x, module in modules:
+                    x.now = module if side else None
+                pose_at(plan, project, float(times[begin]), alive)
+                for time_ in times[begin : begin + 50].tolist():
+                    start = time.thread_time_ns()
+                    pose = pose_at(plan, project, time_, alive)
+                    done = time.thread_time_ns()
+                    project.skeleton.globals(pose)  # type: ignore[union-attr]
+                    taken[side].append(done - start)
+                    after[side].append(time.thread_time_ns() - done)
+        row(words, [n / 1e3 for n in taken[0]], f"{statistics.median(taken[1]) / 1e3:9.1f}")
+        row(
+            "  and Skeleton.globals", [n / 1e3 for n in after[0]], f"{statistics.median(after[1]) / 1e3:9.1f}"
+        )
+    minute = np.arange(3600) / 60
+    for alive in (False, True):
+        whole: list[float] = []
+        for side in (0, 1):
+            for x, module in modules:
+                x.now = module if side else None
+            start = time.thread_time_ns()
+            pose_at(plan, project, minute, alive)
+            whole.append((time.thread_time_ns() - start) / 3.6e6)
+        row(
+            f"one minute at 60 fps, a frame, {'alive' if alive else 'without life'}",
+            whole[:1],
+            f"{whole[1]:9.1f}",
+        )
+    for x, _ in modules:
+        x.now = None
+
+
 def main() -> None:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
     sample = open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project
@@ -292,6 +343,7 @@ def main() -> None:
         "the same, one minute at 60 fps, a frame",
         [clock(lambda: pose_at(hour, sample, minute, alive=False)) / 3600 for _ in range(3)],
     )
+    one_character(sample, make_plan(sample, 120))
     lively(sample)
 
     plans = [make_plan(sample, 60, seed=seed) for seed in range(count)]

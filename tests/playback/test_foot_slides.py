@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from metagraph.graph.model import Project
+from metagraph.playback.composer import playable
 from metagraph.playback.foot_slides import (
     RATE,
     SLIDES,
@@ -19,7 +20,7 @@ from metagraph.playback.foot_slides import (
     worst_slide,
 )
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import playable, pose_at
+from metagraph.playback.player import pose_at
 
 
 def moved(sample: Project, way) -> FeetSeen:

@@ -18,7 +18,7 @@ from app.stage.playback_source import Shown
 from app.widgets.vocabulary import word
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
-from metagraph.playback.player import playable
+from metagraph.playback.composer import playable
 from preview.figure import Figure
 from preview.scene import Actor
 

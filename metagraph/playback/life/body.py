@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from metagraph.graph import anatomy
 from metagraph.graph.face import SIDES, FaceRig, axes_of, find_face, made_of
 from metagraph.graph.model import Project
-from metagraph.graph.remembered import Remembered
+from metagraph.graph.remembered import Latest, Remembered
 from metagraph.motion import rotation
 from metagraph.motion.joint_map import known_roles
 from metagraph.motion.skeleton import Skeleton
@@ -120,9 +120,16 @@ def body_of(project: Project) -> Body:
     """Return the body of a project with a skeleton; the same object as long as nothing it depends on
     changes.
     """
+    return _latest(project)
+
+
+def _of(project: Project) -> Body:
     if isinstance(project.body, Body):
         return project.body
     return _known.of(project, project.base, lambda: _find(project))
+
+
+_latest = Latest(_of)
 
 
 def _vector(values: Any) -> Vector:
