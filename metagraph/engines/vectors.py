@@ -22,6 +22,7 @@ from metagraph.engines.script import cases
 from metagraph.engines.script_boundaries import boundary_cases
 from metagraph.engines.script_parts import Case, ScriptStep
 from metagraph.engines.script_sounds import heard, streamed
+from metagraph.engines.script_talk import talk_of, talked
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.graph.model import LAYERS, Project
@@ -94,6 +95,7 @@ def write_vectors(export: Path, chosen: Iterable[Case] | None = None) -> Path:
         "heard": [
             {"rate": rate, "pieces": pieces, "marks": heard(rate, pieces)} for rate, pieces in streamed()
         ],
+        "talked": talked(),
     }
     lines = ",\n".join(json.dumps(case, ensure_ascii=False, separators=(",", ":")) for case in found)
     text = json.dumps(head, ensure_ascii=False)[:-1] + f', "cases": [\n{lines}\n]}}\n'
@@ -309,6 +311,10 @@ def check_vectors(folder: Path, project: Project | None = None) -> Outcome:
     for n, sound in enumerate(data.get("heard", ())):
         wrong = _unlike(heard(sound["rate"], sound["pieces"]), sound["marks"], f"heard[{n}]")
         out.failures += [("heard", what) for what in wrong]
+    for n, row in enumerate(data.get("talked", ())):
+        found = talk_of(row)
+        wrong = _unlike(found, {name: row[name] for name in found}, f"talked[{n}]")
+        out.failures += [("talked", what) for what in wrong]
     for case in data["cases"]:
         wrong = differences(project, case)
         out.failures += [(case["name"], what) for what in wrong]

@@ -33,6 +33,7 @@ from metagraph.speech.word_gestures import (
     gesture_asks,
     proposed_for,
     sentence_end,
+    telling,
 )
 
 START = 0.35  # seconds before a sentence begins, so that a hand can be where its first stroke needs it
@@ -178,7 +179,7 @@ class TextStream:
         out: list[dict[str, Any]] = []
         while (end := sentence_end(ALPHABET, self._text, over)) > 0:
             said, self._text = self._text[:end].strip(), self._text[end:]
-            if any(letter.isalnum() for letter in said):
+            if telling(ALPHABET, said):
                 out += self._said(said, now)
         return out
 

@@ -143,23 +143,28 @@ def words_of(
     return out
 
 
-def _in_word(alphabet: Alphabet, letter: str) -> bool:
+def _is_letter(alphabet: Alphabet, letter: str) -> bool:
     kind = alphabet.kind(letter)
     return kind == "syllable" or kind == "letter"
+
+
+def telling(alphabet: Alphabet, letters: Sequence[str]) -> bool:
+    """Whether there are words among letters, so that there is something to say."""
+    return any(_is_letter(alphabet, letter) for letter in letters)
 
 
 def _split(alphabet: Alphabet, letters: Sequence[str]) -> list[SplitWord]:
     out: list[SplitWord] = []
     at, count = 0, len(letters)
     while at < count:
-        if not _in_word(alphabet, letters[at]):
+        if not _is_letter(alphabet, letters[at]):
             at += 1
             continue
         first = at
         while at < count:
-            goes_on = _in_word(alphabet, letters[at])
+            goes_on = _is_letter(alphabet, letters[at])
             if not goes_on and letters[at] in INSIDE and at + 1 < count:
-                goes_on = _in_word(alphabet, letters[at + 1])
+                goes_on = _is_letter(alphabet, letters[at + 1])
             if not goes_on:
                 break
             at += 1
@@ -197,8 +202,8 @@ def proposed_for(
             proposes = True
         if word.mark == "" and n + 1 < len(words):
             continue
-        telling = [w for w in clause if w.plain not in small]
-        last = telling[len(telling) - 1] if len(telling) > 0 else clause[len(clause) - 1]
+        large = [w for w in clause if w.plain not in small]
+        last = large[len(large) - 1] if len(large) > 0 else clause[len(clause) - 1]
         if word.mark == "?" or word.mark == "？":
             every.extend(_of(lexicon.question, last, arms, head))
         elif word.mark == "!" or word.mark == "！":
@@ -207,7 +212,8 @@ def proposed_for(
             every.extend(_of(lexicon.clause, last, arms, head))
         clause = []
         proposes = False
-    return sorted(_apart(every), key=lambda one: one.at)
+    kept = _spaced(every)
+    return sorted(kept, key=lambda one: one.at)
 
 
 def _fitting(lexicon: GestureWords, words: Sequence[TextWord], n: int) -> tuple[GestureRule, int]:
@@ -223,12 +229,12 @@ def _fitting(lexicon: GestureWords, words: Sequence[TextWord], n: int) -> tuple[
     return best, longest
 
 
-def _says(words: Sequence[TextWord], n: int, parts: Sequence[str]) -> bool:
+def _says(words: Sequence[TextWord], first: int, parts: Sequence[str]) -> bool:
     """Whether a phrase is said from a word on, and not over a pause."""
-    if n + len(parts) > len(words):
+    if first + len(parts) > len(words):
         return False
     for k, part in enumerate(parts):
-        if words[n + k].plain != part or (k + 1 < len(parts) and words[n + k].mark != ""):
+        if words[first + k].plain != part or (k + 1 < len(parts) and words[first + k].mark != ""):
             return False
     return True
 
@@ -245,7 +251,7 @@ def _of(rule: GestureRule, word: TextWord, arms: AbstractSet[str], head: bool) -
     return out
 
 
-def _apart(every: Sequence[ProposedGesture]) -> list[ProposedGesture]:
+def _spaced(every: Sequence[ProposedGesture]) -> list[ProposedGesture]:
     """Leave out what is too near to something stronger of its layer; of equals the earlier stays. The same
     tag twice in a row needs more room.
     """

@@ -545,6 +545,7 @@ def test_the_node_moves_a_skeletons_bones(game: Path) -> None:
     assert out["began"] >= 1
     assert out["answer"] in ("planned", "late")  # the line makes a gesture of its own
     assert out["broken"] == "refused"
+    assert out["said"] == ["said#1", 0, ["said#2", "said#3"], True, True, "", []]
 
 
 NODE = """extends SceneTree
@@ -556,6 +557,8 @@ var frames = 0
 var began = 0
 var asked
 var first
+var moved = 0.0
+var said
 
 func _init():
 	var data = parse_json(Node3.Shim.text_of(Node3.Shim.read_bytes("res://stick.json")))
@@ -577,7 +580,10 @@ func _init():
 	avatar.connect("began", self, "_on_began")
 	asked = avatar.gesture([], {"after": 0.5})
 	avatar.look(Vector3(1.0, 1.5, 2.0))
-	avatar.say("hello")
+	said = [avatar.say("hello"), avatar.say_piece("Hello").size(), avatar.say_piece(" there! No", true)]
+	said.append(avatar.say("hello", {"gestures": false}).begins_with("#"))
+	avatar.gestures = false
+	said.append(avatar.say("hello").begins_with("#"))
 	avatar.go("none such")
 	broken = Node3.new()
 	broken.json_path = "res://none.json"
@@ -595,13 +601,14 @@ func _iteration(_delta):
 	var local = skeleton.get_bone_rest(joint) * skeleton.get_bone_pose(joint)
 	if first == null:
 		first = local
+	moved = max(moved, local.basis.x.distance_to(first.basis.x))
 	if frames < 60:
 		return false
 	var d = Quat(local.basis).inverse() * pose.rotations[joint]
 	var out = {
-		bones = avatar._bones.size(), began = began, answer = avatar.answer(asked).state, broken = broken.answer("x").state,
+		said = said + [broken.say("x"), broken.say_piece("x", true)], bones = avatar._bones.size(), began = began, answer = avatar.answer(asked).state, broken = broken.answer("x").state,
 		apart = Vector3(d.x, d.y, d.z).length() + local.origin.distance_to(pose.translations[joint]),
-		moved = local.basis.x.distance_to(first.basis.x)
+		moved = moved
 	}
 	print("OUT " + to_json(out))
 	quit()
@@ -628,7 +635,7 @@ def test_the_readme_names_files_that_its_export_writes_and_calls_the_node_has(
     """Godot 4 is not here to run it: it is parsed, and what it names is looked up."""
     text = (ADDON.parent / "README.md").read_text(encoding="utf-8")
     examples = [block.split("```")[0] for block in text.split("```gdscript\n")[1:]]
-    assert len(examples) == 3
+    assert len(examples) == 4
     parser = pytest.importorskip("gdtoolkit.parser", reason="gdtoolkit is not here").parser
     for each in examples:
         parser.parse(each, gather_metadata=False)

@@ -714,6 +714,9 @@ public static class Scene
             Call(actor, "LateUpdate");
         }
         Answer unknown = actor.AnswerTo(id);
+        Console.WriteLine("pieces " + actor.SayPiece("Hello").Count + " " + string.Join(" ", actor.SayPiece(" there! No", true).ToArray()));
+        actor.gestures = false;
+        Console.WriteLine("plain " + (actor.Say("Hello there!") ?? "nothing"));
         if (graph == null)
         {
             Console.WriteLine(actor.enabled + " " + (id ?? "nothing") + " " + (unknown == null ? "nothing" : unknown.State));
@@ -773,13 +776,15 @@ def test_the_component_moves_joints_as_unity_shows_them(scene: Path) -> None:
     assert float(lines[-2]) == -1  # to the right in Unity is to the left in glTF
     assert lines[-1] == "mirrored"
     assert any(line.startswith("begin arms") for line in lines)
+    assert "pieces 0 said#2 said#3" in lines, "said#1 was said whole; a sentence is said once it is whole"
+    assert any(line.startswith("plain #") for line in lines), "without gestures it is a request as any other"
 
 
 def test_a_component_without_its_files_says_so_and_stays_quiet(scene: Path) -> None:
     done = mono(scene)
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.startswith("error: ")
-    assert done.stdout.splitlines()[-1] == "False nothing nothing"
+    assert done.stdout.splitlines()[-3:] == ["pieces 0 ", "plain nothing", "False nothing nothing"]
 
 
 SHARING = r"""
@@ -843,13 +848,14 @@ def test_characters_of_the_same_assets_read_them_once(scene: Path) -> None:
 
 def test_what_the_readme_shows_compiles(scene: Path) -> None:
     shown = [block.split("```")[0] for block in (RUNTIME / "README.md").read_text().split("```csharp")[1:]]
-    assert len(shown) == 4
+    assert len(shown) == 5
     source = scene.with_name("readme.cs")
     inner = (
         "public static class Shown { public static void Main() { float seconds = 0; "
         + shown[1]
         + shown[2]
         + shown[3]
+        + shown[4]
         + " System.Console.Write(pose); } }"
     )
     source.write_text("using UnityEngine; using System.IO; using Metagraph;\n" + shown[0] + inner)

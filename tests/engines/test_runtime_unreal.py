@@ -88,12 +88,15 @@ def test_space_is_changed_and_changed_back(played: Path) -> None:
 def test_the_component_plays_what_it_is_asked(played: Path) -> None:
     done = ran(played, "play", STICK / "stick.json")
     assert done.returncode == 0, done.stdout + done.stderr
-    before, answers, told = done.stdout.splitlines()
+    before, answers, told, texts = done.stdout.splitlines()
     assert before == "before refused"
     gesture, nonsense, unknown, said, look = answers.split()
     assert {gesture, said, look} <= {"planned", "late", "done"}
     assert (nonsense, unknown) == ("refused", "refused")
     assert told == "told 1 1 1"
+    whole, early, *pieces, plain = texts.split()
+    assert (whole, early, pieces) == ("said#1", "0", ["said#2", "said#3"])
+    assert plain.startswith("#"), "without gestures it is a request as any other"
 
 
 @needs_compiler

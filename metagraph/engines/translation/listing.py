@@ -12,8 +12,7 @@ RUNTIMES = Path(__file__).parents[1] / "runtimes"
 class Translated:
     """A Python module. word: of the file it becomes, in the style of the language. only: the parts that
     are translated, all where empty: the others stay native. more: parts that are translated to C++ alone,
-    which has nothing of its own yet. without: methods that stay native ("Cue.last"). languages: which it is
-    translated to, all where empty.
+    which has nothing of its own yet. without: methods that stay native ("Cue.last").
     """
 
     module: str
@@ -21,7 +20,6 @@ class Translated:
     only: tuple[str, ...] = ()
     more: tuple[str, ...] = ()
     without: tuple[str, ...] = ()
-    languages: tuple[str, ...] = ()
 
 
 LISTING = (
@@ -90,7 +88,7 @@ LISTING = (
     Translated("metagraph.playback.hearing", "hearing"),
     Translated("metagraph.playback.finding", "finding"),
     Translated("metagraph.playback.meaning", "meaning"),
-    Translated("metagraph.speech.word_gestures", "word_gestures", languages=("javascript",)),
+    Translated("metagraph.speech.word_gestures", "word_gestures"),
 )
 
 # Modules that each runtime has of its own, with what translated ones take from them.

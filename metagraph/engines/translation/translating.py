@@ -88,8 +88,6 @@ def printed(modules: Mapping[Translated, x.Module], native: Mapping[str, str]) -
     out = {}
     for one, module in modules.items():
         for language, place in PLACES.items():
-            if one.languages and language.LANGUAGE not in one.languages:
-                continue
             meant = tuple(p for p in module.parts if language.LANGUAGE == "cpp" or p.name not in one.more)
             printer = language(replace(module, parts=meant), known, record_of, constant_of)
             out[place(one.word)] = printer.text()

@@ -136,6 +136,11 @@ static int Play(UMetagraphAsset& asset) {
     std::cout << (begun > 0 && ended > 0 ? "told" : "not told") << " " << (mesh.Before == &component) << " "
               << (component.Pose()->Transforms.Num() == static_cast<int32>(asset.Graph()->Graph->joints.size())) << " "
               << (component.Describe().Contains(u"\"layers\"") ? 1 : 0) << "\n";
+    const int32 early = component.SayPiece(FString(u"Hello"), false).Num();
+    std::cout << FTCHARToUTF8(*said).Get() << " " << early;
+    for (const FString& id : component.SayPiece(FString(u" there! No"), true)) std::cout << " " << FTCHARToUTF8(*id).Get();
+    component.bGestures = false;
+    std::cout << " " << FTCHARToUTF8(*component.Say(FString(u"Hello there!"))).Get() << "\n";
     return 0;
 }
 

@@ -186,6 +186,34 @@ void run_case(const Ref<const Graph>& graph, const Json& one, const Json& tolera
     }
 }
 
+/// What comes of a text: its sentences, words and gestures.
+inline Json talk_of(const Json& row) {
+    const Ref<Alphabet>& alphabet = voice::alphabet();
+    const std::string& text = row.find("text")->text;
+    Json sentences = Json::list(), words = Json::list(), asks = Json::list();
+    List<std::string> letters = alphabet->letters(text);
+    while (const int end = word_gestures::sentence_end(alphabet, letters, true)) {
+        sentences.items.push_back(lang::joined(lang::part(letters, 0, end), ""));
+        letters = lang::part(letters, end);
+    }
+    List<Ref<ToldWord>> told;
+    for (const Json& one : row.find("told")->items) told.push_back(lang::made<ToldWord>(one.items[0].number, one.items[1].number));
+    std::optional<double> seconds;
+    if (!row.find("seconds")->empty()) seconds = row.find("seconds")->number;
+    const List<Ref<TextWord>> found = word_gestures::words_of(alphabet, text, told, seconds);
+    for (const auto& w : found) words.items.push_back(Json::list({w->text, w->plain, w->start, w->end, w->mark}));
+    const auto [lexicon, small] = Talk::lexicon_of(row.find("language")->text);
+    Set<std::string> arms;
+    for (const Json& tag : row.find("arms")->items) arms.insert(tag.text);
+    const auto made = word_gestures::proposed_for(
+        found, arms, row.find("head")->flag, lexicon, small, static_cast<std::uint32_t>(row.find("seed")->number)
+    );
+    for (const auto& ask : word_gestures::gesture_asks(made, row.find("at")->number)) {
+        asks.items.push_back(Json::list({ask->do_, ask->layer, Json::texts(ask->tags), ask->at, Json::maybe(ask->stroke), ask->late}));
+    }
+    return Json::object({{"sentences", sentences}, {"words", words}, {"asks", asks}});
+}
+
 /// Run the vectors of a folder.
 inline Verdict run(const std::string& folder) {
     Verdict out;
@@ -246,6 +274,17 @@ inline Verdict run(const std::string& folder) {
             }
             const std::string told = difference(found, *sound.find("marks"), tolerance.find("seconds")->number, "heard");
             if (!told.empty()) failed("heard", told);
+        }
+        done(before);
+    }
+    if (vectors.find("talked") != nullptr) {
+        before = out.failures.size();
+        for (const Json& row : vectors.find("talked")->items) {
+            const Json wanted = Json::object({
+                {"sentences", *row.find("sentences")}, {"words", *row.find("words")}, {"asks", *row.find("asks")},
+            });
+            const std::string told = difference(talk_of(row), wanted, tolerance.find("seconds")->number, "talked");
+            if (!told.empty()) failed("talked", told);
         }
         done(before);
     }

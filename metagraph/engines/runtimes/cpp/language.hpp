@@ -281,10 +281,55 @@ inline std::tuple<std::string, std::string, std::string> parted_last(const std::
     if (place == std::string::npos) return {"", "", text};
     return {text.substr(0, place), by, text.substr(place + by.size())};
 }
-/// A text in small letters, as far as they are English.
-inline std::string lowered(std::string text) {
-    for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    return text;
+/// The small letter of a code point: Latin, Greek, Cyrillic and Armenian; others stay.
+inline std::uint32_t small(std::uint32_t c) {
+    auto within = [c](std::uint32_t first, std::uint32_t last) { return c >= first && c <= last; };
+    if (within('A', 'Z') || (within(0xC0, 0xDE) && c != 0xD7) || (within(0x391, 0x3AB) && c != 0x3A2) || within(0x410, 0x42F)) return c + 32;
+    if (c == 0x130) return 'i';
+    if (c == 0x178) return 0xFF;
+    if (c == 0x1E9E) return 0xDF;
+    if (c == 0x386) return 0x3AC;
+    if (within(0x388, 0x38A)) return c + 37;
+    if (c == 0x38C) return 0x3CC;
+    if (c == 0x38E || c == 0x38F) return c + 63;
+    if (c == 0x1A0 || c == 0x1AF) return c + 1;
+    if (within(0x400, 0x40F)) return c + 80;
+    if (within(0x531, 0x556)) return c + 48;
+    const bool even_is_large = within(0x100, 0x137) || within(0x14A, 0x177) || within(0x1DE, 0x1EF) || within(0x1F8, 0x21F) || within(0x222, 0x233)
+        || within(0x460, 0x481) || within(0x48A, 0x4BF) || within(0x4D0, 0x52F) || within(0x1E00, 0x1E95) || within(0x1EA0, 0x1EFF);
+    const bool odd_is_large = within(0x139, 0x148) || within(0x179, 0x17E) || within(0x1CD, 0x1DC) || within(0x4C1, 0x4CE);
+    return (even_is_large && c % 2 == 0) || (odd_is_large && c % 2 == 1) ? c + 1 : c;
+}
+/// A text in small letters; bytes that are no UTF-8 stay.
+inline std::string lowered(const std::string& text) {
+    std::string out;
+    for (std::size_t n = 0; n < text.size(); n++) {
+        const auto first = static_cast<unsigned char>(text[n]);
+        const std::size_t more = first < 0xC2 || first > 0xEF ? 0 : first < 0xE0 ? 1 : 2; // none beyond 65535 that matter
+        std::uint32_t code = more == 0 ? first : first & (0x3Fu >> more);
+        bool whole = n + more < text.size();
+        for (std::size_t k = 1; whole && k <= more; k++) {
+            whole = (static_cast<unsigned char>(text[n + k]) & 0xC0) == 0x80;
+            code = (code << 6) | (static_cast<unsigned char>(text[n + k]) & 0x3Fu);
+        }
+        if (!whole || (more == 0 && first >= 0x80)) {
+            out += text[n];
+            continue;
+        }
+        const std::uint32_t found = small(code);
+        if (found < 0x80) {
+            out += static_cast<char>(found);
+        } else if (found < 0x800) {
+            out += static_cast<char>(0xC0 | (found >> 6));
+            out += static_cast<char>(0x80 | (found & 0x3F));
+        } else {
+            out += static_cast<char>(0xE0 | (found >> 12));
+            out += static_cast<char>(0x80 | ((found >> 6) & 0x3F));
+            out += static_cast<char>(0x80 | (found & 0x3F));
+        }
+        n += more;
+    }
+    return out;
 }
 inline bool digits(const std::string& text) {
     return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;

@@ -3,3 +3,4 @@
 
 #include "character.hpp"
 #include "loading.hpp"
+#include "talk.hpp"

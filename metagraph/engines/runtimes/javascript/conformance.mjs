@@ -4,7 +4,10 @@
  */
 
 import { LAYERS, StreamedVoice, describe, emptyPlan, hear, key32, keyOf, load, morphsAt, poseAt, since } from "./index.js";
+import { ALPHABET } from "./alphabet.js";
 import { positions } from "./rotation.js";
+import { lexiconOf } from "./talk.js";
+import { ToldWord, gestureAsks, proposedFor, sentenceEnd, wordsOf } from "./word_gestures.js";
 
 /**
  * @param {object} vectors the content of vectors.json @param {string} exportJson @param {Uint8Array | ArrayBuffer} glbBytes
@@ -39,8 +42,34 @@ export function runVectors(vectors, exportJson, glbBytes) {
       }
     });
   }
+  if (vectors.talked) {
+    run("talked", (fail) => {
+      vectors.talked.forEach((row, n) => {
+        const { sentences, words, asks } = row;
+        compare(`talked[${n}]`, talkOf(row), { sentences, words, asks }, vectors.tolerance.seconds, fail);
+      });
+    });
+  }
   for (const each of vectors.cases) run(each.name, (fail) => runCase(graph, each, vectors.tolerance, fail));
   return { passed, failures };
+}
+
+/** What comes of a text: its sentences, words and gestures. */
+function talkOf({ language, text, seconds, told, seed, at, arms, head }) {
+  const sentences = [];
+  let letters = ALPHABET.letters(text);
+  for (let end = sentenceEnd(ALPHABET, letters, true); end > 0; end = sentenceEnd(ALPHABET, letters, true)) {
+    sentences.push(letters.slice(0, end).join(""));
+    letters = letters.slice(end);
+  }
+  const words = wordsOf(ALPHABET, text, told.map(([start, end]) => new ToldWord(start, end)), seconds);
+  const { lexicon, small } = lexiconOf(language);
+  const asks = gestureAsks(proposedFor(words, new Set(arms), head, lexicon, small, seed), at);
+  return {
+    sentences,
+    words: words.map((w) => [w.text, w.plain, w.start, w.end, w.mark]),
+    asks: asks.map((ask) => [ask.do, ask.layer, ask.tags, ask.at, ask.stroke, ask.late]),
+  };
 }
 
 function runCase(graph, { seed, idle, stances, steps, plan: expected, life, poses }, tolerance, fail) {
@@ -142,7 +171,7 @@ if (typeof process !== "undefined" && process.argv[1] && import.meta.url.endsWit
     const json = readFileSync(join(folder, vectors.export), "utf8");
     const { passed, failures } = runVectors(vectors, json, readFileSync(join(folder, JSON.parse(json).glb)));
     for (const { case: name, what } of failures) console.log(`${folder}: ${name}: ${what}`);
-    console.log(`${folder}: ${passed} of ${vectors.cases.length + 1 + ("described" in vectors) + ("heard" in vectors)} cases pass`);
+    console.log(`${folder}: ${passed} of ${vectors.cases.length + 1 + ("described" in vectors) + ("heard" in vectors) + ("talked" in vectors)} cases pass`);
     failed += failures.length;
   }
   process.exit(failed ? 1 : 0);

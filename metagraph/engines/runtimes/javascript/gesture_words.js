@@ -26,7 +26,7 @@ export const GESTURE_WORDS = {
       {"words": ["idee", "stell dir vor", "stellen sie sich vor", "plötzlich", "was wäre wenn", "ich weiß"], "tags": ["idea", "explain"], "strength": 1.9},
       {"words": ["weil", "damit", "das heißt", "zum beispiel", "mit anderen worten", "deshalb", "darum", "der punkt ist", "im grunde", "siehst du", "sehen sie"], "tags": ["explain", "beat"], "strength": 1.4},
       {"words": ["sehr", "wirklich", "muss", "müssen", "immer", "meisten", "nur", "wichtig", "wichtige", "äußerst", "besonders", "unbedingt", "brauchen", "brauche"], "tags": ["emphasis", "beat"], "strength": 1.3},
-      {"words": ["ja klar", "von wegen", "sogenannte", "sogenannten", "als ob"], "tags": ["irony", "dismissive"], "strength": 2.3},
+      {"words": ["ja klar", "von wegen", "sogenannte", "sogenannten", "als ob"], "tags": ["irony", "dismissive"], "strength": 2.3}
     ],
     question: {"tags": ["question", "open"], "strength": 1.7},
     exclamation: {"tags": ["emphasis", "beat"], "strength": 1.4},
@@ -54,7 +54,7 @@ export const GESTURE_WORDS = {
       {"words": ["idea", "imagine", "suddenly", "what if", "i know"], "tags": ["idea", "explain"], "strength": 1.9},
       {"words": ["because", "so that", "which means", "for example", "in other words", "that is why", "the point is", "you see", "basically"], "tags": ["explain", "beat"], "strength": 1.4},
       {"words": ["very", "really", "must", "always", "most", "only", "important", "extremely", "especially", "need"], "tags": ["emphasis", "beat"], "strength": 1.3},
-      {"words": ["yeah right", "as if", "so called"], "tags": ["irony", "dismissive"], "strength": 2.3},
+      {"words": ["yeah right", "as if", "so called"], "tags": ["irony", "dismissive"], "strength": 2.3}
     ],
     question: {"tags": ["question", "open"], "strength": 1.7},
     exclamation: {"tags": ["emphasis", "beat"], "strength": 1.4},
@@ -82,7 +82,7 @@ export const GESTURE_WORDS = {
       {"words": ["idea", "imagina", "imagine", "imagínate", "de repente", "y si", "ya sé"], "tags": ["idea", "explain"], "strength": 1.9},
       {"words": ["porque", "para que", "es decir", "o sea", "por ejemplo", "en otras palabras", "por eso", "la cuestión es", "el caso es", "ya ves", "básicamente"], "tags": ["explain", "beat"], "strength": 1.4},
       {"words": ["muy", "realmente", "debe", "debo", "siempre", "más", "solo", "sólo", "importante", "importantes", "extremadamente", "sobre todo", "especialmente", "necesito", "hay que"], "tags": ["emphasis", "beat"], "strength": 1.3},
-      {"words": ["sí claro", "como si", "supuestamente", "supuesto"], "tags": ["irony", "dismissive"], "strength": 2.3},
+      {"words": ["sí claro", "como si", "supuestamente", "supuesto"], "tags": ["irony", "dismissive"], "strength": 2.3}
     ],
     question: {"tags": ["question", "open"], "strength": 1.7},
     exclamation: {"tags": ["emphasis", "beat"], "strength": 1.4},
@@ -110,7 +110,7 @@ export const GESTURE_WORDS = {
       {"words": ["idée", "imaginez", "imagine", "soudain", "tout à coup", "et si", "je sais"], "tags": ["idea", "explain"], "strength": 1.9},
       {"words": ["parce que", "car", "afin que", "pour que", "c'est-à-dire", "par exemple", "autrement dit", "c'est pourquoi", "le fait est", "vous voyez", "tu vois", "en fait"], "tags": ["explain", "beat"], "strength": 1.4},
       {"words": ["très", "vraiment", "doit", "dois", "faut", "il faut", "toujours", "seulement", "important", "importante", "extrêmement", "surtout", "besoin"], "tags": ["emphasis", "beat"], "strength": 1.3},
-      {"words": ["c'est ça oui", "soi-disant", "comme si", "mais bien sûr"], "tags": ["irony", "dismissive"], "strength": 2.3},
+      {"words": ["c'est ça oui", "soi-disant", "comme si", "mais bien sûr"], "tags": ["irony", "dismissive"], "strength": 2.3}
     ],
     question: {"tags": ["question", "open"], "strength": 1.7},
     exclamation: {"tags": ["emphasis", "beat"], "strength": 1.4},

@@ -3,7 +3,7 @@
 import { ALPHABET } from "./alphabet.js";
 import { GESTURE_WORDS } from "./gesture_words.js";
 import { readAloud } from "./graphemes.js";
-import { GestureRule, GestureWords, ToldWord, gestureAsks, proposedFor, sentenceEnd, wordsOf } from "./word_gestures.js";
+import { GestureRule, GestureWords, ToldWord, gestureAsks, proposedFor, sentenceEnd, telling, wordsOf } from "./word_gestures.js";
 
 const START = 0.35; // seconds before a text begins, so that a hand can be where its first stroke needs it
 const BETWEEN = 0.25; // seconds between two sentences
@@ -16,13 +16,10 @@ export class Talk {
    * that of the language ("en", "de-AT"), English where there is none. name: what ids begin with.
    */
   constructor(character, { language = "en", lexicon, seed = 1, name = "talk" } = {}) {
-    const code = language.toLowerCase().split("-")[0];
-    const given = lexicon ?? GESTURE_WORDS[code] ?? GESTURE_WORDS.en;
     this.character = character;
     this.seed = seed >>> 0;
     this.name = name;
-    this.lexicon = new GestureWords((given.rules ?? []).map(rule), code, rule(given.question), rule(given.exclamation), rule(given.clause));
-    this.small = new Set(given.small ?? (GESTURE_WORDS[code] ?? GESTURE_WORDS.en).small);
+    Object.assign(this, lexiconOf(language, lexicon));
     const gestures = (layer) => [...character.graph.layers[layer].actions.values()].filter((action) => action.kind === "gesture");
     this.arms = new Set(gestures("arms").flatMap((action) => action.tags));
     this.head = gestures("head").some((action) => action.tags.length > 0);
@@ -33,7 +30,7 @@ export class Talk {
 
   /**
    * Say a text, with gestures on its words. Options are those of the request `say`; `words` that are told with starts and ends tell when
-   * gestures come, else `duration`, else how long lips take. Returns the id of what is said and those of its gestures.
+   * gestures come, else `duration`, else how long lips take. Where it cannot be understood, its answer says why. Returns the id of what is said and those of its gestures.
    * @param {string} text @param {object} [options] @returns {{id: string, gestures: string[]}}
    */
   say(text, options = {}) {
@@ -42,6 +39,7 @@ export class Talk {
     const at = options.at ?? this.character.now + (options.after ?? START);
     const { after: _, ...rest } = options;
     this.character.ask({ ...rest, do: "say", id, text, at });
+    if (this.character.answer(id).state === "refused") return { id, gestures: [] };
     const told = times(options.words ?? []);
     this.free = at + (options.duration ?? told.at(-1)?.end ?? readAloud(ALPHABET, text)) + BETWEEN;
     const proposed = this.proposed(wordsOf(ALPHABET, text, told, options.duration ?? null));
@@ -71,9 +69,21 @@ export class Talk {
       if (end === 0) return out;
       const said = letters.slice(0, end).join("").trim();
       this.text = letters.slice(end).join("");
-      if (/[\p{L}\p{N}]/u.test(said)) out.push(this.say(said, { at: Math.max(this.free, this.character.now + START) }));
+      if (telling(ALPHABET, letters.slice(0, end))) out.push(this.say(said, { at: Math.max(this.free, this.character.now + START) }));
     }
   }
+}
+
+/**
+ * Return a language's lexicon and its words that say little by themselves. own: a lexicon as the files have them, instead.
+ * @param {string} language @param {object} [own]
+ */
+export function lexiconOf(language, own) {
+  const code = language.toLowerCase().split("-")[0];
+  const known = GESTURE_WORDS[code] ?? GESTURE_WORDS.en;
+  const { rules = [], question, exclamation, clause, small = known.small } = own ?? known;
+  const lexicon = new GestureWords(rules.map(rule), code, rule(question), rule(exclamation), rule(clause));
+  return { lexicon, small: new Set(small) };
 }
 
 /** @param {object | undefined} plain */

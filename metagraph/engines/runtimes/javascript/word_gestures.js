@@ -179,9 +179,19 @@ export function wordsOf(alphabet, text, told = [], seconds = null) {
  * @param {string} letter
  * @returns {boolean}
  */
-function _inWord(alphabet, letter) {
+function _isLetter(alphabet, letter) {
   const kind = alphabet.kind(letter);
   return kind === "syllable" || kind === "letter";
+}
+
+/**
+ * Whether there are words among letters, so that there is something to say.
+ * @param {Alphabet} alphabet
+ * @param {string[]} letters
+ * @returns {boolean}
+ */
+export function telling(alphabet, letters) {
+  return letters.some((letter) => _isLetter(alphabet, letter));
 }
 
 /**
@@ -194,15 +204,15 @@ function _split(alphabet, letters) {
   let at = 0;
   const count = letters.length;
   while (at < count) {
-    if (!_inWord(alphabet, letters[at])) {
+    if (!_isLetter(alphabet, letters[at])) {
       at += 1;
       continue;
     }
     const first = at;
     while (at < count) {
-      let goesOn = _inWord(alphabet, letters[at]);
+      let goesOn = _isLetter(alphabet, letters[at]);
       if (!goesOn && INSIDE.includes(letters[at]) && at + 1 < count) {
-        goesOn = _inWord(alphabet, letters[at + 1]);
+        goesOn = _isLetter(alphabet, letters[at + 1]);
       }
       if (!goesOn) {
         break;
@@ -249,8 +259,8 @@ export function proposedFor(words, arms, head, lexicon, small, seed) {
     if (word.mark === "" && n + 1 < words.length) {
       continue;
     }
-    const telling = clause.filter((w) => !small.has(w.plain));
-    const last = telling.length > 0 ? telling[telling.length - 1] : clause[clause.length - 1];
+    const large = clause.filter((w) => !small.has(w.plain));
+    const last = large.length > 0 ? large[large.length - 1] : clause[clause.length - 1];
     if (word.mark === "?" || word.mark === "？") {
       every.push(..._of(lexicon.question, last, arms, head));
     } else if (word.mark === "!" || word.mark === "！") {
@@ -261,7 +271,8 @@ export function proposedFor(words, arms, head, lexicon, small, seed) {
     clause = [];
     proposes = false;
   }
-  return sortedBy(_apart(every), (one) => one.at);
+  const kept = _spaced(every);
+  return sortedBy(kept, (one) => one.at);
 }
 
 /**
@@ -289,16 +300,16 @@ function _fitting(lexicon, words, n) {
 /**
  * Whether a phrase is said from a word on, and not over a pause.
  * @param {TextWord[]} words
- * @param {number} n
+ * @param {number} first
  * @param {string[]} parts
  * @returns {boolean}
  */
-function _says(words, n, parts) {
-  if (n + parts.length > words.length) {
+function _says(words, first, parts) {
+  if (first + parts.length > words.length) {
     return false;
   }
   for (const [k, part] of parts.entries()) {
-    if (words[n + k].plain !== part || (k + 1 < parts.length && words[n + k].mark !== "")) {
+    if (words[first + k].plain !== part || (k + 1 < parts.length && words[first + k].mark !== "")) {
       return false;
     }
   }
@@ -333,7 +344,7 @@ function _of(rule, word, arms, head) {
  * @param {ProposedGesture[]} every
  * @returns {ProposedGesture[]}
  */
-function _apart(every) {
+function _spaced(every) {
   const kept = [];
   for (const one of sortedBy(every, (one) => [-one.strength, one.at])) {
     if (!kept.some((other) => _inTheWay(one, other))) {

@@ -74,10 +74,43 @@ public static class Conformance
             }
             Compare(folder + ", heard", found, sound["marks"]);
         }
+        foreach (JsonObject row in vectors.Has("talked") ? List(vectors["talked"]) : new List<object>())
+        {
+            Compare(folder + ", talked", TalkOf(row), Fields("sentences", row["sentences"], "words", row["words"], "asks", row["asks"]));
+        }
         foreach (JsonObject one in List(vectors["cases"]))
         {
             Case(folder + ", " + (string)one["name"], graph, one);
         }
+    }
+
+    /// <summary>What comes of a text: its sentences, words and gestures.</summary>
+    private static object TalkOf(JsonObject row)
+    {
+        Alphabet alphabet = Alphabet.Common;
+        var sentences = new List<object>();
+        List<string> letters = alphabet.Letters((string)row["text"]);
+        for (int end = 1; end > 0;)
+        {
+            end = WordGesturesRules.SentenceEnd(alphabet, letters, true);
+            if (end > 0)
+            {
+                sentences.Add(string.Concat(letters.Take(end)));
+                letters.RemoveRange(0, end);
+            }
+        }
+        List<ToldWord> told = List(row["told"]).Select(one => new ToldWord(Number(List(one)[0]), Number(List(one)[1]))).ToList();
+        double? seconds = row["seconds"] == null ? (double?)null : Number(row["seconds"]);
+        List<TextWord> words = WordGesturesRules.WordsOf(alphabet, (string)row["text"], told, seconds);
+        var known = Talk.LexiconOf((string)row["language"]);
+        var arms = new HashSet<string>(List(row["arms"]).Cast<string>());
+        uint seed = (uint)Number(row["seed"]);
+        List<ProposedGesture> made = WordGesturesRules.ProposedFor(words, arms, (bool)row["head"], known.Item1, known.Item2, seed);
+        return Fields(
+            "sentences", sentences,
+            "words", words.Select(w => (object)Row(w.Text, w.Plain, w.Start, w.End, w.Mark)).ToList(),
+            "asks", WordGesturesRules.GestureAsks(made, Number(row["at"])).Select(ask => (object)Row(
+                ask.Do, ask.Layer, new List<object>(ask.Tags), ask.At, (object)ask.Stroke, ask.Late)).ToList());
     }
 
     private static void Case(string where, Graph graph, JsonObject one)

@@ -31,6 +31,10 @@ namespace Metagraph
         public bool idle = true;
         [Tooltip("Whether it breathes, looks and blinks")]
         public bool alive = true;
+        [Tooltip("Whether gestures go with the words it says")]
+        public bool gestures = true;
+        [Tooltip("Of the words that gestures go with: en, de, es, fr")]
+        public string language = "en";
         public ActionEvent begin = new ActionEvent();
         public ActionEvent end = new ActionEvent();
 
@@ -43,6 +47,7 @@ namespace Metagraph
 
         private readonly List<Shape> shapes = new List<Shape>();
         private Character character;
+        private Talk talk;
         private Transform[] joints;
         private double time;
 
@@ -62,6 +67,7 @@ namespace Metagraph
                 }
                 Graph graph = SharedGraphs.Of(export, glb != null ? (object)glb : glbPath, Load);
                 character = new Character(graph, new CharacterOptions { Seed = seed < 0 ? (uint?)null : (uint)seed, Idle = idle });
+                talk = new Talk(character, language, null, seed < 0 ? 1u : (uint)seed, "said#");
                 Bind(graph);
             }
             catch (Exception error) when (error is MetagraphException || error is IOException || error is UnauthorizedAccessException)
@@ -206,11 +212,27 @@ namespace Metagraph
             return Ask("{\"do\":\"place\",\"name\":" + Json.Quote(name) + ",\"point\":" + Point(world) + "}");
         }
 
-        /// <summary>Say a line of the project, by its id; or, where there is none of that id, these words.</summary>
+        /// <summary>
+        /// Say a line of the project, by its id; or, where there is none of that id, these words, with gestures that go with them unless
+        /// `gestures` is off.
+        /// </summary>
         public string Say(string lineOrText)
         {
             bool line = character != null && character.Graph.Lines.ContainsKey(lineOrText ?? "");
+            if (character != null && !line && gestures)
+            {
+                return talk.Say(lineOrText).Id;
+            }
             return Ask("{\"do\":\"say\",\"" + (line ? "line" : "text") + "\":" + Json.Quote(lineOrText) + "}");
+        }
+
+        /// <summary>
+        /// Say what comes in piece by piece, as a language model writes it: each sentence, with its gestures, when it is whole, after the
+        /// one before. over: whether the text ends here. Returns the ids of what it says by it.
+        /// </summary>
+        public List<string> SayPiece(string piece, bool over = false)
+        {
+            return talk == null ? new List<string>() : talk.Take(piece, over).ConvertAll(said => said.Id);
         }
 
         /// <summary>

@@ -17,6 +17,8 @@ const Pose = preload("core/pose.gd")
 const StreamedVoice = preload("core/streamed_voice.gd")
 const Util = preload("core/util.gd")
 const Turns = preload("core/turns.gd")
+const Talk = preload("core/talk.gd")
+const WordGestures = preload("core/word_gestures.gd")
 
 var _shim
 var _passed = 0
@@ -100,6 +102,11 @@ func _check(folder, only):
 		var apart = _unlike(marks, sound.marks, "heard", data.tolerance.seconds)
 		if apart != "":
 			_fail("heard", apart)
+	for row in data.get("talked", []):
+		var wanted = {"sentences": row.sentences, "words": row.words, "asks": row.asks}
+		var apart = _unlike(_talk_of(graph.alphabet, row), wanted, "talked", data.tolerance.seconds)
+		if apart != "":
+			_fail("talked", apart)
 	for case in data.cases:
 		if only != "" and case.name.find(only) < 0:
 			continue
@@ -108,6 +115,33 @@ func _check(folder, only):
 			_passed += 1
 		else:
 			_fail(case.name, wrong)
+
+
+# Returns what comes of a text: its sentences, words and gestures.
+func _talk_of(alphabet, row):
+	var sentences = []
+	var letters = alphabet.letters(row.text)
+	var end = WordGestures.sentence_end(alphabet, letters, true)
+	while end > 0:
+		sentences.append(Util.joined(Util.part(letters, 0, end), ""))
+		letters = Util.part(letters, end, letters.size())
+		end = WordGestures.sentence_end(alphabet, letters, true)
+	var told = []
+	for one in row.told:
+		told.append(WordGestures.ToldWord.new(one[0], one[1]))
+	var found = WordGestures.words_of(alphabet, row.text, told, row.seconds)
+	var both = Talk.lexicon_of(row.language)
+	var arms = {}
+	for tag in row.arms:
+		arms[tag] = true
+	var made = WordGestures.proposed_for(found, arms, row.head, both[0], both[1], int(row["seed"]))
+	var words = []
+	for w in found:
+		words.append([w.text, w.plain, w.start, w.end, w.mark])
+	var asks = []
+	for ask in WordGestures.gesture_asks(made, row.at):
+		asks.append([ask.do, ask.layer, ask.tags, ask.at, ask.stroke, ask.late])
+	return {"sentences": sentences, "words": words, "asks": asks}
 
 
 func _micros():

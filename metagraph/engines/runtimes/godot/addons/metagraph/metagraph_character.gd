@@ -13,6 +13,7 @@ signal ended(action: String, layer: String, meta: String)
 
 const Graph = preload("core/graph.gd")
 const Performer = preload("core/character.gd")
+const Talk = preload("core/talk.gd")
 const Bones = preload("core/bones.gd")
 const Shim = preload("core/shim4.gd")
 
@@ -26,9 +27,14 @@ const Shim = preload("core/shim4.gd")
 @export var idle := true
 ## Whether breathing, gaze, blinks and lips come on top.
 @export var alive := true
+## Whether gestures go with the words it says.
+@export var gestures := true
+## Of the words that gestures go with: en, de, es, fr.
+@export var language := "en"
 
 var graph  ## may be given before the node gets ready, so that characters share one
 var character
+var talk  ## what it says, with gestures
 
 var _skeleton: Skeleton3D
 var _bones := {}
@@ -50,6 +56,7 @@ func _ready() -> void:
 	if chance >= 0:
 		options["seed"] = chance
 	character = Performer.new(graph, options)
+	talk = Talk.new(character, {"language": language, "seed": chance if chance >= 0 else 1, "name": "said#"})
 	if _skeleton == null:
 		push_error("Metagraph: skeleton_path leads to no Skeleton3D; only requests and events are worked out")
 		return
@@ -120,10 +127,23 @@ func look(to, more := {}) -> String:
 	return _ask("look", {"to": [to.x, to.y, to.z] if to is Vector3 else to}, more)
 
 
-## Says a line of the project, by id, or else the text itself.
+## Says a line of the project, by id, or else the text itself, with gestures that go with its words unless `gestures` is off, of this
+## node or in `more`.
 func say(words: String, more := {}) -> String:
 	var known = graph != null and graph.error == "" and graph.lines.has(words)
+	if talk != null and not known and gestures and more.get("gestures", true):
+		return talk.say(words, more).id
 	return _ask("say", {"line" if known else "text": words}, more)
+
+
+## Says what comes in piece by piece, as a language model writes it: each sentence, with its gestures, when it is whole, after the one
+## before. over: whether the text ends here. Returns the ids of what it says by it.
+func say_piece(piece: String, over := false) -> Array:
+	var ids := []
+	if talk != null:
+		for said in talk.take(piece, over):
+			ids.append(said.id)
+	return ids
 
 
 ## Says a line whose sound comes in while it is said: with each call its next samples, -1..1; the lips do what is heard. An id is one

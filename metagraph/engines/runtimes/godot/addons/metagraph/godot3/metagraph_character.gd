@@ -6,6 +6,7 @@ signal ended(action, layer, meta)
 
 const Graph = preload("../core/graph.gd")
 const Performer = preload("../core/character.gd")
+const Talk = preload("../core/talk.gd")
 const Bones = preload("../core/bones.gd")
 const Shim = preload("../core/shim3.gd")
 
@@ -15,9 +16,12 @@ export(NodePath) var skeleton_path
 export(int) var chance = -1  # the project's seed
 export(bool) var idle = true
 export(bool) var alive = true
+export(bool) var gestures = true  # go with the words it says
+export(String) var language = "en"  # of those words
 
 var graph  # may be given before the node gets ready, so that characters share one
 var character
+var talk  # what it says, with gestures
 var _skeleton = null
 var _bones = {}
 var _faces = []
@@ -38,6 +42,7 @@ func _ready():
 	if chance >= 0:
 		options["seed"] = chance
 	character = Performer.new(graph, options)
+	talk = Talk.new(character, {"language": language, "seed": chance if chance >= 0 else 1, "name": "said#"})
 	if not _skeleton is Skeleton:
 		push_error("Metagraph: skeleton_path leads to no Skeleton; only requests and events are worked out")
 		_skeleton = null
@@ -101,7 +106,18 @@ func look(to, more = {}):
 
 func say(words, more = {}):
 	var known = graph != null and graph.error == "" and graph.lines.has(words)
+	if talk != null and not known and gestures and more.get("gestures", true):
+		return talk.say(words, more).id
 	return _ask("say", "line" if known else "text", words, more)
+
+
+# Says what comes in piece by piece: each sentence, with its gestures, when it is whole. Returns the ids of what it says by it.
+func say_piece(piece, over = false):
+	var ids = []
+	if talk != null:
+		for said in talk.take(piece, over):
+			ids.append(said.id)
+	return ids
 
 
 func say_sound(ident, samples, rate):

@@ -48,7 +48,11 @@ bool UMetagraphComponent::Begin()
 	{
 		Options.seed = static_cast<std::uint32_t>(Seed);
 	}
-	Character = MakeShared<FMetagraphCharacter>(Graph->Graph, Options);
+	metagraph::TalkOptions Words;
+	Words.language = MetagraphText::Plain(Language);
+	Words.seed = Options.seed.value_or(1);
+	Words.name = "said#";
+	Character = MakeShared<FMetagraphCharacter>(Graph->Graph, Options, Words);
 	Bones = MetagraphPoses::Bones(*Graph->Graph);
 	return true;
 }
@@ -108,7 +112,25 @@ TArray<FString> UMetagraphComponent::Hear(const TArray<FString>& Requests)
 
 FString UMetagraphComponent::Say(const FString& Text)
 {
-	return Begin() ? MetagraphText::Unreal(Character->Character.say(MetagraphText::Plain(Text))) : FString();
+	if (!Begin())
+	{
+		return FString();
+	}
+	const std::string Words = MetagraphText::Plain(Text);
+	return MetagraphText::Unreal(bGestures ? Character->Talk.say(Words).id : Character->Character.say(Words));
+}
+
+TArray<FString> UMetagraphComponent::SayPiece(const FString& Piece, bool bOver)
+{
+	TArray<FString> Ids;
+	if (Begin())
+	{
+		for (const metagraph::SaidText& Said : Character->Talk.take(MetagraphText::Plain(Piece), bOver))
+		{
+			Ids.Add(MetagraphText::Unreal(Said.id));
+		}
+	}
+	return Ids;
 }
 
 FString UMetagraphComponent::SayLine(const FString& Line)

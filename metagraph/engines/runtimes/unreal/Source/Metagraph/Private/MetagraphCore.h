@@ -22,15 +22,20 @@ struct FMetagraphGraph
 	metagraph::Ref<const metagraph::Graph> Graph;
 };
 
-/** A character of the core. */
+/** A character of the core, and what it says with gestures; the latter refers to the former, so it stays where it is. */
 struct FMetagraphCharacter
 {
 	metagraph::Character Character;
+	metagraph::Talk Talk;
 
-	FMetagraphCharacter(const metagraph::Ref<const metagraph::Graph>& Graph, const metagraph::CharacterOptions& Options)
-		: Character(Graph, Options)
+	FMetagraphCharacter(
+		const metagraph::Ref<const metagraph::Graph>& Graph, const metagraph::CharacterOptions& Options, const metagraph::TalkOptions& Words)
+		: Character(Graph, Options), Talk(Character, Words)
 	{
 	}
+
+	FMetagraphCharacter(const FMetagraphCharacter&) = delete;
+	FMetagraphCharacter& operator=(const FMetagraphCharacter&) = delete;
 };
 
 namespace MetagraphText

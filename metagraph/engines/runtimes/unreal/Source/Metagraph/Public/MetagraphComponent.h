@@ -72,6 +72,14 @@ public:
 	UPROPERTY(EditAnywhere, BlueprintReadWrite, Category = "Metagraph")
 	bool bAlive = true;
 
+	/** Whether gestures go with the words it says. */
+	UPROPERTY(EditAnywhere, BlueprintReadWrite, Category = "Metagraph")
+	bool bGestures = true;
+
+	/** Of the words that gestures go with: en, de, es, fr. */
+	UPROPERTY(EditAnywhere, BlueprintReadWrite, Category = "Metagraph")
+	FString Language = TEXT("en");
+
 	UPROPERTY(BlueprintAssignable, Category = "Metagraph")
 	FMetagraphHappened OnBegin;
 
@@ -86,9 +94,14 @@ public:
 	UFUNCTION(BlueprintCallable, Category = "Metagraph")
 	TArray<FString> Hear(const TArray<FString>& Requests);
 
-	/** Say words. */
+	/** Say words, with gestures that go with them unless bGestures is off. */
 	UFUNCTION(BlueprintCallable, Category = "Metagraph")
 	FString Say(const FString& Text);
+
+	/** Say what comes in piece by piece, as a language model writes it: each sentence, with its gestures, when it is whole, after the
+	 *  one before. bOver: whether the text ends here. Returns the ids of what it says by it. */
+	UFUNCTION(BlueprintCallable, Category = "Metagraph")
+	TArray<FString> SayPiece(const FString& Piece, bool bOver);
 
 	/** Say a line of the export, with what it asks for meanwhile. */
 	UFUNCTION(BlueprintCallable, Category = "Metagraph")

@@ -1,0 +1,83 @@
+"""What texts become: sentences, words with their times, and the gestures that go with them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from metagraph.playback.hashing import Bits
+from metagraph.playback.life.alphabet import ALPHABET
+from metagraph.speech import word_gestures
+from metagraph.speech.language_packs import languages
+from metagraph.speech.text_gestures import gesture_words
+from metagraph.speech.word_gestures import GestureAsk, ToldWord, gesture_asks, proposed_for, sentence_end
+
+# Language, text, seconds it takes where that is told, and whether a synthesiser tells when its words come.
+TEXTS: tuple[tuple[str, str, float | None, bool], ...] = (
+    ("en", "Hello! I don't know. You could go there, but first we need a plan?\nNo.", None, False),
+    ("en", "Yes, absolutely: it costs 3.5 times as much as the old one. It's huge", 9.0, False),
+    ("en", "On the one hand it rains a lot; on the other hand we stay here, which is nice.", None, True),
+    ("en", "no no no NO! never, never. i you i you ... ‘Really’? (No!)", None, True),
+    ("de", "Grüß Gott, ÄPFEL schmecken großartig! Ich weiß nicht, ob es stimmt. Oder?", None, False),
+    ("fr", "Bonjour ! Peut-être qu’il ne vient pas, ÉTÉ comme hiver. C’est énorme.", None, False),
+    ("es", "¡Hola! ¿Cómo está usted? No sé; tal vez mañana, señor ÑANDÚ.", 6.25, False),
+    ("en", "", None, False),
+    ("en", "日本語です。はい！ no、 …?!", None, False),
+)
+
+
+def talked() -> list[dict[str, Any]]:
+    """Return texts with what comes of them, as plain data: for arms that can do all that a lexicon proposes,
+    for those that only beat, and with a head that does not move.
+    """
+    out: list[dict[str, Any]] = []
+    for n, (language, text, seconds, told) in enumerate(TEXTS):
+        lexicon = gesture_words(language)
+        every = (lexicon.question, lexicon.exclamation, lexicon.clause, *lexicon.rules)
+        arms = ["beat"] if n % 4 == 3 else sorted({tag for rule in every for tag in rule.tags})
+        words = word_gestures.words_of(ALPHABET, text)
+        times = [[0.25 * k, 0.25 * k + 0.125] for k in range(len(words))][:-1] if told else []
+        row: dict[str, Any] = {"language": language, "text": text, "seconds": seconds, "told": times}
+        row |= {"seed": 0xFFFFFFFF - 3 * n, "at": 0.5 * n, "arms": arms, "head": n % 3 != 2}
+        out.append({**row, **talk_of(row)})
+    return out
+
+
+def talk_of(row: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what comes of a text: "sentences", "words" (each its text, in small letters, start, end, the
+    mark behind it) and "asks" (do, layer, tags, at, stroke, late).
+    """
+    pack = languages().get(row["language"])
+    words = word_gestures.words_of(
+        ALPHABET, row["text"], [ToldWord(start, end) for start, end in row["told"]], row["seconds"]
+    )
+    made = proposed_for(
+        words,
+        set(row["arms"]),
+        row["head"],
+        gesture_words(row["language"]),
+        set(pack.small) if pack is not None else set(),
+        Bits(row["seed"]),
+    )
+    return {
+        "sentences": _sentences(ALPHABET.letters(row["text"])),
+        "words": [[w.text, w.plain, _time(w.start), _time(w.end), w.mark] for w in words],
+        "asks": [_ask(ask) for ask in gesture_asks(made, row["at"])],
+    }
+
+
+def _sentences(letters: Sequence[str]) -> list[str]:
+    out: list[str] = []
+    while (end := sentence_end(ALPHABET, letters, True)) > 0:
+        out.append("".join(letters[:end]))
+        letters = letters[end:]
+    return out
+
+
+def _ask(ask: GestureAsk) -> list[Any]:
+    stroke = None if ask.stroke is None else _time(ask.stroke)
+    return [ask.do, ask.layer, list(ask.tags), _time(ask.at), stroke, _time(ask.late)]
+
+
+def _time(seconds: float) -> float:
+    return round(float(seconds), 7)
