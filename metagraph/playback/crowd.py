@@ -274,7 +274,7 @@ class _Tables:
     def _mask(self, action: Action) -> int:
         mask = anatomy.mask(self.project, action)
         shown = mask[self.reach.joints] if mask is not None else None
-        if shown is None or shown.all():
+        if shown is None or (shown == 1).all():
             return -1
         if shown.tobytes() not in self.mask_of:
             self.mask_of[shown.tobytes()] = len(self.masks)

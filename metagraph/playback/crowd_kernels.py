@@ -67,6 +67,25 @@ def _mix(a: Array, b: Array, weight: Number) -> None:
 
 
 @_compiled
+def _keep_to(shown: Array, stance: Array, moved: Array) -> None:
+    """Let joints of `shown`, in place, go only as far, `moved [16]` 0..1, from their stance."""
+    for i in range(LANES):
+        w = moved[i]
+        if w == 1:
+            continue
+        dot, shown_sq, stance_sq = np.float32(0), np.float32(0), np.float32(0)
+        for k in range(i, 4 * LANES, LANES):
+            dot += shown[k] * stance[k]
+            shown_sq += shown[k] * shown[k]
+            stance_sq += stance[k] * stance[k]
+        u = w / np.sqrt(max(shown_sq, np.float32(1e-20)))
+        v = (np.float32(1) - w) / np.sqrt(max(stance_sq, np.float32(1e-20)))
+        u = -u if dot < 0 else u
+        for k in range(i, 4 * LANES, LANES):
+            shown[k] = stance[k] * v + shown[k] * u
+
+
+@_compiled
 def _append(a: Array, b: Array) -> None:
     """Multiply `a` in place by `b` from the right."""
     for i in range(LANES):
@@ -256,9 +275,9 @@ def add_layer(
     `out_t [C, J, 3]`.
 
     turns `[rows, b, 64]`: every clip's frames; blocks `[b]`: which of the B blocks they are. ways `[rows, m,
-    3]` of joints `movers [m]`. weights `[b, 16]`. masks `[K, b, 16]`, mover_masks `[K, m]`: 0 where a masked
-    action leaves a joint to its stance. scales `[2, b, 16]`, mover_scales `[2, m]`: which turn farther, and
-    which less far, where a cue is larger or smaller than made.
+    3]` of joints `movers [m]`. weights `[b, 16]`. masks `[K, b, 16]`, mover_masks `[K, m]`: how far a masked
+    action moves a joint from its stance, 0..1. scales `[2, b, 16]`, mover_scales `[2, m]`: which turn
+    farther, and which less far, where a cue is larger or smaller than made.
     """
     shown, stance, other = (
         np.empty(4 * LANES, np.float32),
@@ -316,18 +335,15 @@ def add_layer(
                     turned[:] = scales[way, b]
                     _extend(shown, stance, extent, turned, scratch)
                 if mask >= 0:
-                    moves = masks[mask, b]
-                    for k in range(4):
-                        for i in range(LANES):
-                            shown[k * LANES + i] = (
-                                shown[k * LANES + i] if moves[i] > 0 else stance[k * LANES + i]
-                            )
+                    _keep_to(shown, stance, masks[mask, b])
             if weighed:
                 _power(result, weights[b])
             _append(out[c, blocks[b]], result)
 
         for m in range(len(movers)):
-            moves_m = playing and (mask < 0 or mover_masks[mask, m] > 0)
+            moves_m = np.float32(1 if playing else 0)
+            if mask >= 0:
+                moves_m = mover_masks[mask, m]
             for axis in range(3):
                 t = np.float32(0)
                 if resting:
@@ -335,11 +351,12 @@ def add_layer(
                     if fade < 1:
                         t = t * fade + _loop_way(ways, before, m, axis) * (np.float32(1) - fade)
                 under = t
-                if moves_m:
+                if moves_m > 0:
                     away = _way(ways, spot, m, axis)
                     t = away + (t - _way(ways, edge, m, axis)) * lead if blending else away
                     if extent != 1:
                         t = under + (t - under) * np.float32(1 + (extent - 1) * mover_scales[way, m])
+                    t = under + (t - under) * moves_m if moves_m < 1 else t
                 out_t[c, movers[m], axis] += t * mover_weights[m]
 
 
