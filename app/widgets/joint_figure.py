@@ -108,6 +108,7 @@ class JointFigure(QWidget):
             words = number(weight)
             box = QRectF(painter.fontMetrics().boundingRect(words))
             box.moveCenter(QPointF(places[joint][0] + 10 + box.width() / 2, places[joint][1]))
+            box.moveRight(min(box.right(), self.width() - 2.0))
             if joint == self._under or not any(box.intersects(other) for other in taken):
                 painter.fillRect(box, QColor(self._look.panel))
                 painter.drawText(box, Qt.AlignmentFlag.AlignCenter, words)

@@ -46,6 +46,7 @@ def joint_tree(tree: QTreeWidget, project: Project) -> dict[str, QTreeWidgetItem
         assert skeleton is not None
         parent = skeleton.parents[i]
         item = QTreeWidgetItem([name])
+        item.setToolTip(0, name)
         item.setData(0, JOINT, name)
         if parent >= 0:
             items[skeleton.names[parent]].addChild(item)
