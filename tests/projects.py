@@ -164,6 +164,7 @@ def _update(draw: Any, project: Project) -> Project:
                 "limb": st.sampled_from(LIMBS),
                 "tags": st.lists(words, max_size=3).map(tuple),
                 "joints": st.lists(st.sampled_from(SKELETON.names), max_size=2).map(tuple),
+                "joint_weights": st.sampled_from([(), (("Head", 0.25),), (("Head", 0.5), ("Hips", 0.75))]),
                 "timing": st.fixed_dictionaries(
                     {},
                     optional={
@@ -309,7 +310,12 @@ def _manual(draw: Any, project: Project) -> Project:
             "limb": draw(st.sampled_from(LIMBS)),
         }
         return manual_edits.update_states(
-            project, some, name=draw(names), joints=draw(st.sampled_from([(), ("Head",)])), **fields
+            project,
+            some,
+            name=draw(names),
+            joints=draw(st.sampled_from([(), ("Head",)])),
+            joint_weights=draw(st.sampled_from([(), (("Head", 0.25),)])),
+            **fields,
         )
     if step == 4:
         condition = {

@@ -6,12 +6,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from itertools import groupby
 from typing import Literal
 
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QMenu, QMenuBar, QWidget
 
 from app import faults
+from app.shell.mnemonics import distinct
 from app.translation import tr, tr_noop
 
 Standard = QKeySequence.StandardKey
@@ -84,6 +86,7 @@ class Actions:
 
     def __init__(self, parent: QWidget, commands: Iterable[Command], mode: Callable[[], str]) -> None:
         self.commands = _in_order(tuple(commands))
+        self._by_menu = [tuple(group) for _, group in groupby(self.commands, lambda command: command.menu)]
         self.allowed: Callable[[Command], bool] | None = None
         self._mode = mode
         self.by_id: dict[str, QAction] = {}
@@ -124,9 +127,11 @@ class Actions:
         """Make the menus."""
         menus: dict[str, QMenu] = {}
         group = ""
+        names = list(dict.fromkeys(command.menu for command in self.commands))
+        titles = dict(zip(names, distinct(tuple(tr(name) for name in names)), strict=True))
         for command in self.commands:
             if command.menu not in menus:
-                menus[command.menu] = bar.addMenu(tr(command.menu))
+                menus[command.menu] = bar.addMenu(titles[command.menu])
             elif command.group != group:
                 menus[command.menu].addSeparator()
             group = command.group
@@ -144,10 +149,11 @@ class Actions:
             action.setEnabled(allowed and (command.enabled is None or command.enabled()))
             if command.checked is not None:
                 action.setChecked(command.checked())
-            if not isinstance(command.text, str):
-                action.setText(command.words)
             if command.visible is not None:
                 action.setVisible(command.visible())
+        for commands in self._by_menu:
+            for command, text in zip(commands, distinct(tuple(c.words for c in commands)), strict=True):
+                self.by_id[command.id].setText(text)
 
 
 def _in_order(commands: tuple[Command, ...]) -> tuple[Command, ...]:

@@ -406,11 +406,12 @@ def extended(
 
 def _alike(a: Action, b: Action) -> bool:
     """Whether curves of one hold for the other: all that its timing moves is where it is blended."""
-    return (a.clip, a.stance, a.end_stance, a.limb, a.joints, a.kind) == (
+    return (a.clip, a.stance, a.end_stance, a.limb, a.joints, a.joint_weights, a.kind) == (
         b.clip,
         b.stance,
         b.end_stance,
         b.limb,
         b.joints,
+        b.joint_weights,
         b.kind,
     ) and (a.kind != "stance" or a.timing.start == b.timing.start)

@@ -32,12 +32,13 @@ SPACINGS = (0.05, 0.1, 0.2, 0.5)  # seconds
 
 @dataclass(frozen=True)
 class Watched:
-    """feet: which foot is held, steps or is lifted, and slides. stance: a ghost in the stance underneath.
-    before, after: how many ghosts there are of other moments, spacing seconds apart. light, background: by
-    the names of `preview.looks`.
+    """feet: which foot is held, steps or is lifted, and slides. hands: which are kept in contact. stance: a
+    ghost in the stance underneath. before, after: how many ghosts there are of other moments, spacing seconds
+    apart. light, background: by the names of `preview.looks`.
     """
 
     feet: bool = False
+    hands: bool = False
     stance: bool = False
     before: int = 0
     after: int = 0

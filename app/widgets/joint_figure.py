@@ -1,12 +1,15 @@
-"""A skeleton's joints as a figure seen from the front: clicked, or circled by a drag, to say which move."""
+"""A skeleton's joints as a figure seen from the front: clicked, or circled by a drag, to say which move, and
+how far.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Collection
+import math
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QHelpEvent, QMouseEvent, QPainter, QPaintEvent, QPen
+from PySide6.QtGui import QColor, QFont, QHelpEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QWheelEvent
 from PySide6.QtWidgets import QToolTip, QWidget
 
 from app.look.theme import theme
@@ -14,21 +17,25 @@ from app.translation import tr
 from metagraph.motion.skeleton import Skeleton
 
 MARGIN, LEAST, MOST, NEAR = 18.0, 2.5, 6.0, 11.0  # pixels
+NUMBERS = 8.0  # points
 
 
 class JointFigure(QWidget):
     """clicked: the joint that was clicked. circled: the joints within a drag's rectangle, and whether they
-    are to move: by the left button, or, with Alt or the right one, not.
+    are to move: by the left button, or, with Alt or the right one, not. turned: the joint under the pointer,
+    "" where there is none, and by how many notches the wheel was turned there.
     """
 
     clicked = Signal(str)
     circled = Signal(object, bool)
+    turned = Signal(str, int)
 
     def __init__(self, skeleton: Skeleton, look: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._skeleton, self._look = skeleton, theme(look)
         self._seen = front(skeleton)
-        self._moving: frozenset[str] = frozenset()
+        self._weights: Mapping[str, float] = {}
+        self._wheel = 0  # eighths of a degree that are no whole notch yet
         self._under: int | None = None  # the joint under the pointer
         self._from: QPointF | None = None  # where a drag began
         self._to = QPointF()
@@ -39,9 +46,9 @@ class JointFigure(QWidget):
     def sizeHint(self) -> QSize:
         return QSize(300, 480)
 
-    def show_moving(self, joints: Collection[str]) -> None:
-        """Show which joints move."""
-        self._moving = frozenset(joints)
+    def show_weights(self, weights: Mapping[str, float]) -> None:
+        """Show how far joints move, 0..1; not at all those that are not named."""
+        self._weights = dict(weights)
         self.update()
 
     def place_of(self, joint: str) -> QPointF:
@@ -66,26 +73,46 @@ class JointFigure(QWidget):
         places, skeleton, t = self._places(), self._skeleton, self._look
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        moving = [name in self._moving for name in skeleton.names]
+        weights = [self._weights.get(name, 0.0) for name in skeleton.names]
+        moving = [weight > 0 for weight in weights]
         strong, weak = t.fill("gesture"), QColor(t.line)
+        shades = [_between(QColor(t.panel), strong, weight) for weight in weights]
         for on in (False, True):  # what moves is drawn over what does not
-            painter.setPen(
-                QPen(strong if on else weak, 5 if on else 3, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap)
-            )
             for joint, parent in enumerate(skeleton.parents):
                 if parent >= 0 and moving[joint] is on:
+                    line = _between(weak, strong, weights[joint]) if on else weak
+                    round_cap = Qt.PenCapStyle.RoundCap
+                    painter.setPen(QPen(line, 5 if on else 3, Qt.PenStyle.SolidLine, round_cap))
                     painter.drawLine(QPointF(*places[parent]), QPointF(*places[joint]))
         for joint, radius in enumerate(self._radii(places)):
             chosen = joint == self._under
             painter.setPen(QPen(QColor(t.text), 2 if chosen else 1))
             # Filled or hollow, so that no colour is needed to tell.
-            painter.setBrush(strong if moving[joint] else QColor(t.panel))
+            painter.setBrush(shades[joint])
             painter.drawEllipse(QPointF(*places[joint]), radius + 2 * chosen, radius + 2 * chosen)
+        self._write_numbers(painter, places, weights)
         if self._from is not None and (self._to - self._from).manhattanLength() > 4:
             painter.setPen(QPen(QColor(t.text), 1, Qt.PenStyle.DashLine))
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawRect(QRectF(self._from, self._to).normalized())
         painter.end()
+
+    def _write_numbers(self, painter: QPainter, places: np.ndarray, weights: Sequence[float]) -> None:
+        """Write how far joints move beside those that move in part, wherever there is room."""
+        painter.setFont(QFont(self.font().family(), int(NUMBERS)))
+        painter.setPen(QColor(self._look.text))
+        taken: list[QRectF] = []
+        for joint, weight in enumerate(weights):
+            if not 0 < weight < 1:
+                continue
+            words = number(weight)
+            box = QRectF(painter.fontMetrics().boundingRect(words))
+            box.moveCenter(QPointF(places[joint][0] + 10 + box.width() / 2, places[joint][1]))
+            box.moveRight(min(box.right(), self.width() - 2.0))
+            if joint == self._under or not any(box.intersects(other) for other in taken):
+                painter.fillRect(box, QColor(self._look.panel))
+                painter.drawText(box, Qt.AlignmentFlag.AlignCenter, words)
+                taken.append(box)
 
     def _radii(self, places: np.ndarray) -> np.ndarray:
         """Return how large joints are drawn: smaller where they are close together, as in hands."""
@@ -125,6 +152,14 @@ class JointFigure(QWidget):
             self.circled.emit(tuple(inside), not off)
         self.update()
 
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        self._wheel += event.angleDelta().y()
+        notches, self._wheel = int(self._wheel / 120), int(math.fmod(self._wheel, 120))
+        joint = self._joint_at(event.position())
+        if notches:
+            self.turned.emit(self._skeleton.names[joint] if joint is not None else "", notches)
+        event.accept()
+
     def leaveEvent(self, event: QEvent) -> None:
         self._under = None
         self.update()
@@ -132,11 +167,24 @@ class JointFigure(QWidget):
     def event(self, event: QEvent) -> bool:
         if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
             joint = self._joint_at(QPointF(event.pos()))
-            QToolTip.showText(
-                event.globalPos(), self._skeleton.names[joint] if joint is not None else "", self
-            )
+            name = self._skeleton.names[joint] if joint is not None else ""
+            words = f"{name}  {number(self._weights.get(name, 0.0))}" if name else ""
+            QToolTip.showText(event.globalPos(), words, self)
             return True
         return super().event(event)
+
+
+def number(weight: float) -> str:
+    """Return a weight as it is shown, such as 0.25, and 1."""
+    return f"{weight:.2f}".rstrip("0").rstrip(".")
+
+
+def _between(low: QColor, high: QColor, share: float) -> QColor:
+    return QColor.fromRgbF(
+        low.redF() + (high.redF() - low.redF()) * share,
+        low.greenF() + (high.greenF() - low.greenF()) * share,
+        low.blueF() + (high.blueF() - low.blueF()) * share,
+    )
 
 
 def front(skeleton: Skeleton) -> np.ndarray:

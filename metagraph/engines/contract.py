@@ -106,7 +106,8 @@ class ExportedAction(Struct, forbid_unknown_fields=True):
     stroke_end, relax as the user set them, null where found. cooldown: seconds in which it is not drawn
     again; spacing: how many others come between, null as never_twice says. vigour: how fast its hands, head
     or trunk move beside the median of the layer's actions of its kind, -1 half as fast .. 1 twice as fast.
-    contacts: where its hands stay.
+    contacts: where its hands stay. joint_weights: how far joints move that move in part; 1 those it does not
+    name.
     """
 
     id: Id
@@ -133,6 +134,7 @@ class ExportedAction(Struct, forbid_unknown_fields=True):
     spacing: Annotated[int, Meta(ge=0, le=1000)] | None = None
     contacts: list[ExportedContact] = []
     vigour: Annotated[float, Meta(ge=-1, le=1)] = 0.0
+    joint_weights: dict[str, Annotated[float, Meta(gt=0, le=1)]] = {}
 
 
 class Transition(Struct, rename={"source": "from", "target": "to"}, forbid_unknown_fields=True):

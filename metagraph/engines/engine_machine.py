@@ -26,6 +26,7 @@ from metagraph.graph.model import LAYERS, REACH, Action, Layer, MetaGraph, Proje
 from metagraph.motion.character_mesh import Character
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import unique_names
+from metagraph.playback.player import keep_to
 
 Array = NDArray[Any]
 
@@ -201,9 +202,13 @@ def _animation(project: Project, machine: Machine, state: State) -> Clip:
     rotations, translations = np.array(pose.rotations), np.array(pose.translations)
     mask = anatomy.mask(project, state.action)
     if mask is not None and loop is not None:
-        still = np.flatnonzero(mask == 0)
         stance = loop.pose_at(project.span(rest)[0])
-        rotations[:, still], translations[:, still] = stance.rotations[still], stance.translations[still]
+        shape = rotations.shape[:-1]
+        rests = (
+            np.broadcast_to(stance.rotations, (*shape, 4)),
+            np.broadcast_to(stance.translations, (*shape, 3)),
+        )
+        keep_to((rotations, translations), rests, mask)
     moved = np.flatnonzero(np.abs(translations - anatomy.base_pose(project).translations).max((0, 2)) > 1e-6)
     translated = tuple(sorted({0, *moved.tolist()}))
     fps = (frames - 1) / max(end - start, 1e-3) if end > start else clip.fps

@@ -417,6 +417,7 @@ def _action(project: Project, action: Action) -> c.ExportedAction:
         action.spacing,
         contacts_of(action),
         vigour(project, action),
+        dict(action.joint_weights),
     )
 
 

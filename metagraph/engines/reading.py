@@ -266,6 +266,7 @@ def _graph(layer: Layer, data: c.ExportedLayer, resolved: bool) -> MetaGraph:
             a.cooldown,
             a.spacing,
             read_contacts(a.contacts),
+            tuple((joint, weight) for joint, weight in a.joint_weights.items() if weight < 1),
         )
     if unknown := [part for part in data.own_weights if part not in data.weights]:
         raise DataError(f"{where}.own_weights", f"weights say nothing of '{unknown[0]}'")

@@ -23,6 +23,8 @@ from metagraph.formats.fields import (
     floats,
     get,
     items,
+    joint_weights_data,
+    joint_weights_from,
     known,
     number,
     one_of,
@@ -70,7 +72,8 @@ FORMAT = 1  # of the project file; older ones are upgraded when read
 
 def action_data(action: Action) -> Data:
     """Return an action; its timing's fields stand beside its own. The layer is said by where it is."""
-    out = {**sparse(action, ("timing", "layer", "contacts")), **sparse(action.timing)}
+    out = {**sparse(action, ("timing", "layer", "joint_weights", "contacts")), **sparse(action.timing)}
+    out |= joint_weights_data(action.joint_weights)
     if action.contacts:
         out["contacts"] = contacts_data(action.contacts)
     return out
@@ -250,14 +253,15 @@ _PROJECT_FIELDS = ({f.name for f in fields(Project)} | {"metagraph", "layers"}) 
 
 def action_from(data: Data, layer: Layer, where: str) -> Action:
     known(data, _ACTION_FIELDS, where)
-    values = fill(Action, data, where, ("timing", "layer", "contacts"))
+    values = fill(Action, data, where, ("timing", "layer", "joint_weights", "contacts"))
     for key in ("id", "clip", "kind", "stance", "name"):
         if key not in values:
             raise DataError(f"{where}.{key}", "is missing")
     one_of(values["kind"], KINDS, f"{where}.kind")
     one_of(values.get("limb", "both"), LIMBS, f"{where}.limb")
     contacts = contacts_from(data, where)
-    return Action(layer=layer, timing=Timing(**fill(Timing, data, where)), contacts=contacts, **values)
+    timing, weights = Timing(**fill(Timing, data, where)), joint_weights_from(data, where)
+    return Action(layer=layer, timing=timing, contacts=contacts, joint_weights=weights, **values)
 
 
 def _clip_from(data: Data, where: str) -> ClipEntry:

@@ -4,7 +4,7 @@ that names the place.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import MISSING, fields
 from functools import cache
 from typing import Any
@@ -200,6 +200,29 @@ def floats(values: list[Any], count: int, where: str, largest: float = LARGEST) 
     if not len(numbers) == len(values) == count:
         raise DataError(where, f"should be {count} numbers")
     return [float(x) for x in values]
+
+
+def joint_weights_data(weights: Iterable[tuple[str, float]]) -> Data:
+    """Return how far joints move, by name; nothing where all move wholly."""
+    found = {name: number(weight) for name, weight in weights}
+    return {"joint_weights": found} if found else {}
+
+
+def joint_weights_from(data: Data, where: str) -> tuple[tuple[str, float], ...]:
+    """Return how far joints move, (name, above 0 and below 1). Raises DataError."""
+    told = get(data, "joint_weights", dict, where, {})
+    out = []
+    for name in told:
+        weight = get(told, name, float, f"{where}.joint_weights")
+        if not 0 < weight <= 1:
+            raise DataError(
+                f"{where}.joint_weights.{name}",
+                f"should be above 0 and at most 1, found {weight:g}; a joint that is not to move is left out "
+                "of `joints`",
+            )
+        if weight < 1:
+            out.append((name, weight))
+    return tuple(out)
 
 
 def texts(data: Data, key: str) -> tuple[str, ...]:

@@ -5,7 +5,18 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
-from metagraph.formats.fields import Data, DataError, fill, items, known, number, one_of, sparse
+from metagraph.formats.fields import (
+    Data,
+    DataError,
+    fill,
+    items,
+    joint_weights_data,
+    joint_weights_from,
+    known,
+    number,
+    one_of,
+    sparse,
+)
 from metagraph.graph.manual import ANY, WHENS, Alias, Condition, Link, Manual, State
 from metagraph.graph.words import LIMBS, Layer
 
@@ -15,7 +26,7 @@ _LINK_FIELDS = ({f.name for f in fields(Link)} | {f.name for f in fields(Conditi
 
 
 def state_data(state: State) -> Data:
-    return sparse(state, ("layer",))
+    return {**sparse(state, ("layer", "joint_weights")), **joint_weights_data(state.joint_weights)}
 
 
 def alias_data(alias: Alias) -> Data:
@@ -49,9 +60,10 @@ def manual_from(layer: Layer, data: Any, ids: set[str]) -> Manual:
     states: dict[str, State] = {}
     for place, item in items(data, "states", where, ids):
         known(item, _STATE_FIELDS, place)
-        values = _with(State, item, place, ("id", "clip", "name"), ("layer",))
+        values = _with(State, item, place, ("id", "clip", "name"), ("layer", "joint_weights"))
         one_of(values.get("limb", "both"), LIMBS, f"{place}.limb")
-        states[item["id"]] = State(layer=layer, **values)
+        weights = joint_weights_from(item, place)
+        states[item["id"]] = State(layer=layer, joint_weights=weights, **values)
     aliases: dict[str, Alias] = {}
     for place, item in items(data, "aliases", where, ids):
         known(item, _ALIAS_FIELDS, place)

@@ -4,13 +4,14 @@ pose.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.graph.manual import State
 from metagraph.graph.model import Action, Part, Project
 from metagraph.motion.roles import body_parts, find_roles, joint_sides
 from metagraph.motion.skeleton import Pose, Skeleton
@@ -65,21 +66,83 @@ def sides(project: Project) -> tuple[str, ...]:
 
 
 def mask(project: Project, action: Action) -> Array | None:
-    """Return `[J]` float32, 1 where the action moves a joint and 0 where its stance shows; None when it moves
-    all.
+    """Return `[J]` float32, 1 where the action moves a joint, 0 where its stance shows, and between where it
+    moves it in part; None when it moves all of all.
 
     A one-armed action leaves the other arm alone; `joints`, if any, names the only joints it moves.
     """
-    if project.skeleton is None or (action.limb == "both" and not action.joints):
+    if project.skeleton is None or not (action.limb != "both" or action.joints or action.joint_weights):
         return None
-    return _mask(project.skeleton, parts(project), sides(project), action.limb, action.joints)
+    return _mask(
+        project.skeleton,
+        parts(project),
+        sides(project),
+        action.limb,
+        action.joints,
+        action.joint_weights,
+    )
+
+
+def masked_by(skeleton: Skeleton, weights: Mapping[str, float]) -> dict[str, Any]:
+    """Return an action's `joints` and `joint_weights` for weights 0..1 of joints by name, 1 for those not
+    named; both empty where it moves all of all.
+    """
+    of = {name: min(1.0, max(0.0, round(weights.get(name, 1.0), 3))) for name in skeleton.names}
+    moving = tuple(name for name, weight in of.items() if weight > 0)
+    return {
+        "joints": moving if len(moving) < len(of) else (),
+        "joint_weights": tuple((name, weight) for name, weight in of.items() if 0 < weight < 1),
+    }
+
+
+def soft_edge(
+    skeleton: Skeleton, part: Sequence[Part], weights: Mapping[str, float], over: int
+) -> dict[str, float]:
+    """Return weights of joints 0..1 that rise evenly over so many joints, 1 or more, where a mask begins: at
+    joints that move on one that does not, and at the foot of the spine; over fewer where fewer follow.
+
+    Engines call it the depth of a blend: over three joints of a spine, 0.25, 0.5 and 0.75. Legs keep what
+    they have, and so does what hangs on joints that do not move.
+    """
+    moves = [weights.get(name, 1.0) > 0 for name in skeleton.names]
+    below: dict[int, tuple[int, int]] = {}  # joint -> where the mask it is in begins, and how far below that
+    for joint, parent in enumerate(skeleton.parents.tolist()):
+        if not moves[joint] or part[joint] == "legs":
+            continue
+        foot = part[joint] == "spine" and (parent < 0 or part[parent] == "legs")
+        if parent in below:
+            below[joint] = below[parent][0], below[parent][1] + 1
+        elif foot or (parent >= 0 and not moves[parent]):
+            below[joint] = joint, 0
+    deepest: dict[int, int] = {}
+    for begin, steps in below.values():
+        deepest[begin] = max(steps, deepest.get(begin, 0))
+    out = dict(weights)
+    for joint, (begin, steps) in below.items():
+        out[skeleton.names[joint]] = min(1.0, (steps + 1) / (min(over, deepest[begin]) + 1))
+    return out
+
+
+def unknown_joints(skeleton: Skeleton | None, of: Action | State) -> list[str]:
+    """Return the joints that a mask names and the skeleton does not have; none without a skeleton."""
+    if skeleton is None:
+        return []
+    return [name for name in (*of.joints, *(name for name, _ in of.joint_weights)) if name not in skeleton]
 
 
 @lru_cache(maxsize=4096)
 def _mask(
-    skeleton: Skeleton, part: tuple[Part, ...], side: tuple[str, ...], limb: str, joints: tuple[str, ...]
+    skeleton: Skeleton,
+    part: tuple[Part, ...],
+    side: tuple[str, ...],
+    limb: str,
+    joints: tuple[str, ...],
+    weights: tuple[tuple[str, float], ...],
 ) -> Array:
     out = np.ones(len(skeleton), np.float32)
+    for name, weight in weights:
+        if name in skeleton:
+            out[skeleton.index(name)] = min(1.0, max(0.0, weight))
     if limb != "both":
         other = "right" if limb == "left" else "left"
         out[[i for i in range(len(out)) if part[i] == "arms" and side[i] == other]] = 0

@@ -19,7 +19,7 @@ PROPERTIES: Mapping[str, tuple[str, ...]] = {
     "exit": ("timing.earliest_exit",),
     "phases": ("timing.ready", "timing.stroke", "timing.stroke_end", "timing.relax"),
     "limb": ("limb",),
-    "joints": ("joints",),
+    "joints": ("joints", "joint_weights"),
     "tags": ("tags",),
     "likelihood": ("likelihood",),
     "variation": ("cooldown", "spacing"),

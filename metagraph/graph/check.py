@@ -265,7 +265,7 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
             f"has the likelihood {action.likelihood:g} and can never be chosen",
             "Set it above 0.",
         )
-    if project.skeleton is not None and (unknown := [j for j in action.joints if j not in project.skeleton]):
+    if unknown := anatomy.unknown_joints(project.skeleton, action):
         yield at(
             "error",
             "mask",

@@ -39,7 +39,8 @@ class State:
     """One use of a clip. start, end: the part that plays, seconds of the clip; `end` None is the clip's end.
 
     loop: it repeats; else it holds its last frame. limb, joints: the only ones it moves (`joints` empty:
-    all). x, y: where its left upper corner stands in the editor.
+    all); joint_weights: how far those that move in part, as an action's. x, y: where its left upper corner
+    stands in the editor.
     """
 
     id: str
@@ -53,6 +54,7 @@ class State:
     joints: tuple[str, ...] = ()
     x: float = 0.0
     y: float = 0.0
+    joint_weights: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from metagraph.graph import anatomy
 from metagraph.graph.manual import ANY, Alias, Link, Manual, State
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.problem import Problem, Severity
@@ -93,7 +94,7 @@ def _state(
     elif end <= state.start and entry.frames > 1:
         message = f"ends at {end:.2f} s, not after its start at {state.start:.2f} s"
         yield at("error", "empty", message, "Move its end behind its start.")
-    if project.skeleton is not None and (unknown := [j for j in state.joints if j not in project.skeleton]):
+    if unknown := anatomy.unknown_joints(project.skeleton, state):
         message = f"moves joint '{unknown[0]}', which the skeleton does not have"
         yield at("error", "mask", message, "Correct its joints.")
 

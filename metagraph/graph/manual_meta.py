@@ -105,6 +105,7 @@ def _graph(project: Project, manual: Manual) -> tuple[MetaGraph, Mapping[str, st
             state.joints,
             _tags(manual, state),
             _likelihood(manual, state, kind),
+            joint_weights=state.joint_weights,
         )
     begin = of.get(manual.start or "")
     if begin is None and manual.start is not None:  # a start that is no loop leads to one

@@ -113,7 +113,10 @@ def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
             end_stance=end,
             limb=_OTHER[action.limb],
             tags=tuple(dict.fromkeys(swap_sides(tag) for tag in action.tags)),
-            joints=_joints_twin(project, action.joints),
+            joints=tuple(_joint_twin(project, name) for name in action.joints),
+            joint_weights=tuple(
+                (_joint_twin(project, name), weight) for name, weight in action.joint_weights
+            ),
             contacts=(),
         )
         project = project.with_graph(graph.with_actions({twin.id: twin}), next_id=project.next_id + 1)
@@ -146,16 +149,12 @@ def _stance_twin(project: Project, ident: str) -> str:
     return next((s.id for s in stances if s.name == wanted), ident)
 
 
-def _joints_twin(project: Project, joints: tuple[str, ...]) -> tuple[str, ...]:
+def _joint_twin(project: Project, name: str) -> str:
     skeleton = project.skeleton
-    if skeleton is None or not joints:
-        return joints
-    twins = pairs_of(skeleton, anatomy.roles(project))
-    out = []
-    for name in joints:
-        twin = twins[skeleton.index(name)] if name in skeleton else -1
-        out.append(skeleton.names[twin] if twin >= 0 else name)
-    return tuple(out)
+    if skeleton is None or name not in skeleton:
+        return name
+    twin = pairs_of(skeleton, anatomy.roles(project))[skeleton.index(name)]
+    return skeleton.names[twin] if twin >= 0 else name
 
 
 def _faces_differ(clip: Clip, twin: Clip) -> bool:

@@ -93,10 +93,11 @@ class Action:
 
     stance: id of the stance it starts from (for kind "stance", the stance whose loop it is). end_stance: only
     for transitions. limb: which arm it needs; the other keeps to the stance. joints: names of the only joints
-    it moves; empty means all. tags: free words, "positive" and "negative" among them. likelihood: relative, >
-    0. cooldown: seconds after it has ended in which it is not drawn again. spacing: how many other actions of
-    its kind and stance are drawn before it may be drawn again; None as the settings' never_twice says.
-    contacts: where its hands stay on the body.
+    it moves; empty means all. joint_weights: how far those move that move in part, (name, above 0 and below
+    1); the rest of the way they keep to the stance. tags: free words, "positive" and "negative" among them.
+    likelihood: relative, > 0. cooldown: seconds after it has ended in which it is not drawn again. spacing:
+    how many other actions of its kind and stance are drawn before it may be drawn again; None as the
+    settings' never_twice says. contacts: where its hands stay on the body.
     """
 
     id: str
@@ -114,6 +115,7 @@ class Action:
     cooldown: float = 0.0
     spacing: int | None = None
     contacts: tuple[ContactSpan, ...] = ()
+    joint_weights: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

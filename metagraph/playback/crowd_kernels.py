@@ -27,8 +27,8 @@ Loop = tuple[
 
 AT_ONCE = 32  # characters: their blocks stay in a processor's cache
 # Rows of a layer's `lanes [3 + K, b, 16]` and `mover_lanes [3 + K, m]`: which joints turn farther, and which
-# less far, where a cue is larger or smaller than made; the layer's weights on them; and K masks, 0 where an
-# action leaves a joint to its stance.
+# less far, where a cue is larger or smaller than made; the layer's weights on them; and K masks, how far
+# an action moves a joint from its stance, 0..1.
 WIDER, NARROWER, WEIGHT, WEIGHED, MASKS = range(5)
 
 _OPTIONS: dict[str, Any] = {
@@ -73,6 +73,25 @@ def _mix(a: Array, b: Array, weight: Number) -> None:
         a[LANES + i] = a[LANES + i] * v + b[LANES + i] * u
         a[2 * LANES + i] = a[2 * LANES + i] * v + b[2 * LANES + i] * u
         a[3 * LANES + i] = a[3 * LANES + i] * v + b[3 * LANES + i] * u
+
+
+@_compiled
+def _keep_to(shown: Array, stance: Array, moved: Array) -> None:
+    """Let joints of `shown`, in place, go only as far, `moved [16]` 0..1, from their stance."""
+    for i in range(LANES):
+        w = moved[i]
+        if w == 1:
+            continue
+        dot, shown_sq, stance_sq = np.float32(0), np.float32(0), np.float32(0)
+        for k in range(i, 4 * LANES, LANES):
+            dot += shown[k] * stance[k]
+            shown_sq += shown[k] * shown[k]
+            stance_sq += stance[k] * stance[k]
+        u = w / np.sqrt(max(shown_sq, np.float32(1e-20)))
+        v = (np.float32(1) - w) / np.sqrt(max(stance_sq, np.float32(1e-20)))
+        u = -u if dot < 0 else u
+        for k in range(i, 4 * LANES, LANES):
+            shown[k] = stance[k] * v + shown[k] * u
 
 
 @_compiled
@@ -300,18 +319,15 @@ def _add_layer(
                     turned[:] = lanes[way, b]
                     _extend(shown, stance, extent, turned, spare)
                 if mask >= 0:
-                    moves = lanes[MASKS + mask, b]
-                    for k in range(4):
-                        for i in range(LANES):
-                            shown[k * LANES + i] = (
-                                shown[k * LANES + i] if moves[i] > 0 else stance[k * LANES + i]
-                            )
+                    _keep_to(shown, stance, lanes[MASKS + mask, b])
             if lanes[WEIGHED, b, 0] > 0:
                 _power(result, lanes[WEIGHT, b])
             _append(out[c - first, blocks[b]], result)
 
         for m in range(len(movers)):
-            moves_m = playing and (mask < 0 or mover_lanes[MASKS + mask, m] > 0)
+            moves_m = np.float32(1 if playing else 0)
+            if mask >= 0:
+                moves_m = mover_lanes[MASKS + mask, m]
             for axis in range(3):
                 t = np.float32(0)
                 if resting:
@@ -319,11 +335,12 @@ def _add_layer(
                     if fade < 1:
                         t = t * fade + _loop_way(ways, before, m, axis) * (np.float32(1) - fade)
                 under = t
-                if moves_m:
+                if moves_m > 0:
                     away = _way(ways, spot, m, axis)
                     t = away + (t - _way(ways, edge, m, axis)) * lead if blending else away
                     if extent != 1:
                         t = under + (t - under) * np.float32(1 + (extent - 1) * mover_lanes[way, m])
+                    t = under + (t - under) * moves_m if moves_m < 1 else t
                 out_t[c, movers[m], axis] += t * mover_lanes[WEIGHT, m]
 
 

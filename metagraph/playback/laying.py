@@ -204,7 +204,7 @@ def _lay(clips: _Clips, frame: ComposerRig, project: Project, lines: Sequence[Li
     def mask(action: Action) -> int:
         found = anatomy.mask(project, action)
         shown = found[joints] if found is not None else None
-        if shown is None or shown.all():
+        if shown is None or (shown == 1).all():
             return -1
         key = shown.tobytes()
         if key not in mask_of:

@@ -29,7 +29,7 @@ from metagraph.playback.life.evaluate import enliven, face_weights
 from metagraph.playback.life.schedule import Schedule, schedule
 from metagraph.playback.life.track import Track
 from metagraph.playback.plan import Cue, LayerPlan, Plan, Report
-from metagraph.playback.player import Sample, add_life, ease, mix, sample
+from metagraph.playback.player import Sample, add_life, ease, keep_to, mix, sample
 
 Array = NDArray[Any]
 LEAST = 1 / 30  # seconds a state plays at least: links in a circle without length take their time
@@ -122,6 +122,7 @@ def action_of(state: State) -> Action:
         timing=timing,
         limb=state.limb,
         joints=state.joints,
+        joint_weights=state.joint_weights,
     )
 
 
@@ -343,9 +344,8 @@ def _offsets(turn: Played, project: Project, ground: Ground, reach: Reach, times
     shown = sample(ground, reach, motion, clip_seconds(project, turn, times))
     mask = anatomy.mask(project, turn.action)
     if mask is not None:
-        still = np.flatnonzero(mask[reach.joints] == 0)
-        shown[0][:, still] = (0, 0, 0, 1)
-        shown[1][:, still] = 0
+        none = rotation.identity(shown[0].shape[:-1], np.float32), np.zeros_like(shown[1])
+        keep_to(shown, none, mask[reach.joints])
     return shown
 
 

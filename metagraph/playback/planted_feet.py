@@ -60,7 +60,8 @@ def foot_goals(
             return []
         return _stance(project, tracks, height, plan, place, time)
     track = tracks.get(cue.action.id)
-    if track is None or len(track.rows) == 0 or len(cue.action.joints) > 0:
+    masked = len(cue.action.joints) > 0 or len(cue.action.joint_weights) > 0
+    if track is None or len(track.rows) == 0 or masked:
         return []
     came = cue.start + _entering(track, cue)
     goes = cue.end - _leaving(track, cue)

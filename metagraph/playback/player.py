@@ -194,8 +194,8 @@ def _together(
         return _stance(plan, project, ground, reach, times, current, fading)
     shown = sample(ground, reach, motion, cue.clip_seconds(times))
     mask = anatomy.mask(project, cue.action)
-    still = np.flatnonzero(mask[reach.joints] == 0) if mask is not None else ()
-    if phase == _FULL and len(still) == 0 and cue.extent == 1:
+    moved = None if mask is None or (mask[reach.joints] == 1).all() else mask[reach.joints]
+    if phase == _FULL and moved is None and cue.extent == 1:
         return shown
     stance = _stance(plan, project, ground, reach, times, current, fading)
     if phase != _FULL:
@@ -205,9 +205,23 @@ def _together(
         )
     if cue.extent != 1:
         shown = _extended(shown, stance, cue.extent, anatomy.scales(project)[:, reach.joints])
-    for part, rest in zip(shown, stance, strict=True):
-        part[:, still] = rest[:, still]
+    if moved is not None:
+        keep_to(shown, stance, moved)
     return shown
+
+
+def keep_to(shown: Sample, rest: Sample, moved: Array) -> None:
+    """Change a sample in place where joints move only in part, or not at all: how far, `moved [n]` 0..1, they
+    go from where they rest to where they are shown.
+    """
+    still, soft = np.flatnonzero(moved == 0), np.flatnonzero((moved > 0) & (moved < 1))
+    for part, other in zip(shown, rest, strict=True):
+        part[:, still] = other[:, still]
+    if len(soft) == 0:
+        return
+    weight = np.broadcast_to(moved[soft], (len(shown[0]), len(soft)))
+    shown[0][:, soft] = rotation.nlerp(rest[0][:, soft], shown[0][:, soft], weight)
+    shown[1][:, soft] = rest[1][:, soft] + (shown[1][:, soft] - rest[1][:, soft]) * weight[..., None]
 
 
 def _extended(shown: Sample, stance: Sample, extent: float, scales: Array) -> Sample:

@@ -517,7 +517,9 @@ class Performer:
             # The loop begins anew under the action, so that the action's last pose meets the loop's first.
             # Where the action leaves joints alone the change shows, and takes its time: a transition all of
             # its own.
-            partial = cue.action.limb != "both" or len(cue.action.joints) > 0
+            partial = (
+                cue.action.limb != "both" or len(cue.action.joints) > 0 or len(cue.action.joint_weights) > 0
+            )
             begin = cue.start + cue.blend_in
             until = cue.end - cue.blend_out
             fade = max(0.0, until - begin)

@@ -255,6 +255,7 @@ def stick(
         "gesture",
         s_stand,
         m.clip("bow", 17, 1.8, stand, None, (*TRUNK, *HEAD), 0.5),
+        joint_weights=(("Hips", 0.5), ("Spine", 0.25), ("Chest", 0.75)),
         tags=("positive",),
     )
     b.act("body", "gesture", s_lean, m.clip("rock", 18, 1.2, lean, None, TRUNK, 0.4))
@@ -338,6 +339,7 @@ def stick(
         s_sides,
         m.clip("beat", 34, 1.0, sides, None, ARMS),
         joints=("RightLowerArm", "RightHand"),
+        joint_weights=(("RightLowerArm", 0.25),),
         cooldown=6.0,
         spacing=2,
     )

@@ -916,7 +916,7 @@ MUTATIONS = [
     ),
     (
         "pose.js",
-        "for (let s = 0; s < action.still.length; s++) {",
+        "for (let s = 0; s < action.partly.length; s++) {",
         "for (let s = 0; s < 0; s++) {",
         "the other arm of a one-armed action",
     ),

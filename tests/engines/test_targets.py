@@ -20,9 +20,10 @@ from metagraph.engines.targets.target import Report
 from metagraph.formats.bvh import read_bvh
 from metagraph.formats.gltf import read_gltf_clips
 from metagraph.graph import edits
-from metagraph.graph.anatomy import base_pose
+from metagraph.graph.anatomy import base_pose, roles
 from metagraph.graph.expand import chain, connections, ends_in
 from metagraph.graph.model import LAYERS, Project
+from metagraph.motion import rotation
 from metagraph.playback.bml import read_bml
 from metagraph.playback.planner import make_plan
 from metagraph.playback.player import pose_at
@@ -169,6 +170,30 @@ def test_animations_are_the_parts_that_play_on_nodes_that_stand_in_the_base_pose
     for place, joint in enumerate(sample.skeleton.names):
         assert np.allclose(nodes[joint]["rotation"], base.rotations[place], atol=1e-6)
     assert [c.name for c in read_gltf_clips(path)] == [c.name for c in made]
+
+
+def test_an_animation_of_an_action_that_moves_a_joint_in_part_has_it_as_far_from_how_its_stance_begins(
+    sample: Project,
+) -> None:
+    action = next(
+        a for a in sample.graphs["arms"].actions.values() if a.kind == "gesture" and a.limb == "both"
+    )
+    skeleton = sample.skeleton
+    assert skeleton is not None
+    joint = roles(sample)["right_upper_arm"]
+    soft = edits.update_actions(sample, [action.id], joint_weights=((skeleton.names[joint], 0.5),))
+    built = machines(sample)
+    place = [s.action.id for m in built for s in m.states].index(action.id)
+    whole = animations(sample, built)[place].rotations[:, joint]
+    half = animations(soft, machines(soft))[place].rotations[:, joint]
+    loop = next(iter(sample.graphs["arms"].of(action.stance, "stance")))
+    motion = sample.clips[loop.clip].motion
+    assert motion is not None
+    rest = motion.pose_at(sample.span(loop)[0]).rotations[joint]
+    far, gone = rotation.angle_between(rest, whole), rotation.angle_between(rest, half)
+    assert far.max() > 0.1 and np.allclose(gone, far / 2, atol=1e-3)
+    told = registry.losses(soft, "unity-controller")
+    assert any(words.startswith("soft weights of joints in 1 actions") for words in told)
 
 
 # --- engines

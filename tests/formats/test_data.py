@@ -68,6 +68,16 @@ def test_times_are_rounded_to_a_microsecond_but_nothing_becomes_zero() -> None:
     assert (action["start"], action["end"], action["likelihood"]) == (0.3, 0.333333, 1.23457e-9)
 
 
+def test_only_weights_of_joints_that_move_in_part_are_written_and_come_back() -> None:
+    project = edits.update_actions(small(), ["a9"], joint_weights=(("Head", 0.25), ("Hips", 1 / 3)))
+    data = to_data(project)
+    first, soft = (data["layers"]["arms"]["actions"][n] for n in (0, 2))
+    assert "joint_weights" not in first and soft["joint_weights"] == {"Head": 0.25, "Hips": 0.333333}
+    soft["joint_weights"]["Tail"] = 1
+    back = from_data(data).action("a9")
+    assert back is not None and back.joint_weights == (("Head", 0.25), ("Hips", 0.333333))
+
+
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), 1e300])
 def test_a_number_that_could_not_be_read_back_is_not_written(value: float) -> None:
     project = edits.update_actions(small(), ["a9"], likelihood=value)
@@ -192,6 +202,15 @@ WRONG: list[tuple[tuple[Any, ...], Any, str]] = [
         "lengths should be 2 numbers",
     ),
     (("skeleton", 0, "parent"), "Head", "'Head' does not come before joint 'Hips'"),
+    (("layers", "arms", "actions", 2, "joint_weights"), [], "joint_weights should be fields"),
+    (("layers", "arms", "actions", 2, "joint_weights"), {"Head": "half"}, "joint_weights.Head should be a"),
+    (("layers", "arms", "actions", 2, "joint_weights"), {"Head": 0}, "joint_weights.Head should be above 0"),
+    (("layers", "arms", "actions", 2, "joint_weights"), {"Head": 1.5}, "and at most 1, found 1.5"),
+    (
+        ("manual", "arms", "states", 0, "joint_weights"),
+        {"Head": -1},
+        r"states\[0\].joint_weights.Head should",
+    ),
     (("skeleton", 1, "name"), "Hips", "'Hips' is used twice"),
     (("skeleton", 1, "at"), [0, 1], r"skeleton\[1\].at should be 3 numbers"),
     (("skeleton", 1, "at"), [0, 1, 1e300], "should be 3 numbers"),

@@ -10,6 +10,7 @@ import pytest
 
 from metagraph.graph import anatomy, edits
 from metagraph.graph.model import BasePose, Project
+from metagraph.motion.skeleton import Skeleton
 
 
 def test_a_project_without_clips_has_no_anatomy() -> None:
@@ -48,6 +49,68 @@ def test_named_joints_are_the_only_ones_moved(toy: Any) -> None:
     project = edits.update_actions(project, [ident], joints=("LeftHand", "RightHand", "Nowhere"))
     mask = anatomy.mask(project, project.action(ident))
     assert {project.skeleton.names[i] for i in np.flatnonzero(mask)} == {"LeftHand"}
+
+
+def test_joints_move_as_far_as_their_weights_say_where_the_action_moves_them_at_all(toy: Any) -> None:
+    project = toy.project()
+    ident = toy.id(project, "rest beat lf")
+    weights = (("Head", 0.25), ("RightHand", 0.5), ("LeftHand", 0.5), ("Nowhere", 0.5))
+    project = edits.update_actions(project, [ident], joints=("Head", "RightHand"), joint_weights=weights)
+    mask = anatomy.mask(project, project.action(ident))
+    found = {project.skeleton.names[i]: float(mask[i]) for i in np.flatnonzero(mask)}
+    assert found == {"Head": 0.25}, "one hand is the other arm's, the other is not among its joints"
+    assert anatomy.unknown_joints(project.skeleton, project.action(ident)) == ["Nowhere"]
+    assert anatomy.unknown_joints(None, project.action(ident)) == []
+
+
+def test_a_mask_is_told_by_what_does_not_move_wholly(toy: Any) -> None:
+    project = toy.project()
+    skeleton = project.skeleton
+    assert anatomy.masked_by(skeleton, {}) == {"joints": (), "joint_weights": ()}
+    soft = anatomy.masked_by(skeleton, {"Head": 0.25, "Neck": 1.0, "Nowhere": 0.5})
+    assert soft == {"joints": (), "joint_weights": (("Head", 0.25),)}
+    hard = anatomy.masked_by(skeleton, {"Head": 0.0, "Neck": -3.0, "LeftHand": 7.0})
+    assert hard["joint_weights"] == () and set(skeleton.names) - {*hard["joints"]} == {"Head", "Neck"}
+    ident = toy.id(project, "rest long")
+    placed = edits.update_actions(project, [ident], **anatomy.masked_by(skeleton, {"Head": 0.5, "Neck": 0}))
+    mask = anatomy.mask(placed, placed.action(ident))
+    assert mask[skeleton.index("Head")] == 0.5 and mask[skeleton.index("Neck")] == 0 and (mask == 1).sum() > 5
+
+
+def chained(*parts: str) -> tuple[Skeleton, tuple[Any, ...]]:
+    """Hips, and on them a chain of joints of these parts, and a leg."""
+    names = ("Hips", "Leg", *(f"{part}{n}" for n, part in enumerate(parts)))
+    parents = np.array([-1, 0, 0, *range(2, len(names) - 1)])
+    count = len(names)
+    skeleton = Skeleton(names, parents, np.tile([0.0, 0, 0, 1], (count, 1)), np.zeros((count, 3)))
+    return skeleton, ("legs", "legs", *parts)
+
+
+def test_a_soft_edge_rises_over_the_spine_and_leaves_the_legs() -> None:
+    skeleton, parts = chained("spine", "spine", "spine", "head", "head")
+    found = anatomy.soft_edge(skeleton, parts, dict.fromkeys(skeleton.names, 1.0), 3)
+    assert [*found.values()] == [1, 1, 0.25, 0.5, 0.75, 1, 1]
+    again = anatomy.soft_edge(skeleton, parts, found, 1)
+    assert [*again.values()] == [1, 1, 0.5, 1, 1, 1, 1], "a second one takes the place of the first"
+
+
+def test_a_soft_edge_begins_where_the_mask_does_and_is_no_longer_than_the_chain() -> None:
+    skeleton, parts = chained("spine", "spine", "arms", "arms", "arms")
+    weights = {name: float(name.startswith("arms")) for name in skeleton.names}
+    assert [*anatomy.soft_edge(skeleton, parts, weights, 9).values()] == [
+        0, 0, 0, 0, pytest.approx(1 / 3), pytest.approx(2 / 3), 1,
+    ]  # fmt: skip
+    only = {name: float(name == "arms4") for name in skeleton.names}
+    alone = anatomy.soft_edge(skeleton, parts, {**only, "arms3": 1.0}, 2)
+    assert alone["arms3"] == 0.5 and alone["arms4"] == 1
+
+
+def test_a_mask_of_one_joint_or_of_none_has_no_soft_edge() -> None:
+    skeleton, parts = chained("spine", "head")
+    one = {name: float(name == "head1") for name in skeleton.names}
+    assert anatomy.soft_edge(skeleton, parts, one, 3) == one
+    none = dict.fromkeys(skeleton.names, 0.0)
+    assert anatomy.soft_edge(skeleton, parts, none, 3) == none
 
 
 def test_the_base_pose_is_a_frame_of_a_clip_kept_inside_it(toy: Any) -> None:

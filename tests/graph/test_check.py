@@ -230,6 +230,8 @@ def test_mask(healthy: Project, toy: Any) -> None:
             edits.update_actions(healthy, [toy.id(healthy, "far beat")], joints=("Head", "Tail")), "mask"
         ).message
     )
+    soft = edits.update_actions(healthy, [toy.id(healthy, "far beat")], joint_weights=(("Fin", 0.5),))
+    assert "'Fin'" in only(soft, "mask").message
 
 
 def test_lost_clip(healthy: Project, toy: Any) -> None:

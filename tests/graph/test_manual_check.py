@@ -56,6 +56,7 @@ WRONG: list[tuple[str, Callable[[Project], Project]]] = [
     ("trim", lambda p: m.update_states(p, ["m5"], start=float("nan"))),
     ("empty", lambda p: m.update_states(p, ["m5"], start=0.8, end=0.5)),
     ("mask", lambda p: m.update_states(p, ["m5"], joints=("Tail",))),
+    ("mask", lambda p: m.update_states(p, ["m5"], joint_weights=(("Tail", 0.5),))),
     ("lost-clip", lambda p: replace(p, clips={i: e for i, e in p.clips.items() if i != "c2"})),
     ("file-missing", lambda p: replace(p, clips={**p.clips, "c2": replace(p.clips["c2"], motion=None)})),
     ("weight", lambda p: m.update_links(p, ["l6"], condition={"weight": 0.0})),

@@ -100,6 +100,7 @@ def test_a_twin_stands_beside_its_original_with_sides_exchanged(toy: Any) -> Non
         tags=("greeting", "right hand"),
         likelihood=2.5,
         joints=("RightUpperArm", "RightHand", "Head"),
+        joint_weights=(("RightUpperArm", 0.5), ("Head", 0.25)),
         cooldown=3.0,
     )
     project = edits.update_actions(project, [ident], timing={"start": 0.1, "stroke": 0.5, "blend_in": 0.05})
@@ -115,6 +116,7 @@ def test_a_twin_stands_beside_its_original_with_sides_exchanged(toy: Any) -> Non
         limb="left",
         tags=("greeting", "left hand"),
         joints=("LeftUpperArm", "LeftHand", "Head"),
+        joint_weights=(("LeftUpperArm", 0.5), ("Head", 0.25)),
     )
     assert after.clips[twin.clip].name == "rest wave lf" and twin.id not in {a.id for a in project.actions()}
     assert after.next_id > project.next_id

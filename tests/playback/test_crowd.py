@@ -60,6 +60,9 @@ def test_weights_masks_seams_early_exits_and_missing_clips_agree_too(toy: Any) -
         project, [toy.id(project, "rest long")], timing={"earliest_exit": 0.5, "blend_out": 0.3}
     )
     project = edits.update_actions(project, [toy.id(project, "rest scratch")], joints=("Head", "LeftHand"))
+    soft = (("Head", 0.25), ("LeftUpperArm", 0.5), ("Spine", 0.75), ("Hips", 0.3))
+    for name in ("rest beat lf", "rest wave rt", "rest scratch"):
+        project = edits.update_actions(project, [toy.id(project, name)], joint_weights=soft)
     project = edits.set_weight(edits.set_weight(project, "arms", "arms", 0.5), "arms", "legs", 1.7)
     missing = project.action(toy.id(project, "rest short")).clip
     project = replace(project, clips={**project.clips, missing: replace(project.clips[missing], motion=None)})

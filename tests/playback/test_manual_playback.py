@@ -247,6 +247,18 @@ def test_joints_that_a_state_does_not_move_stay_in_the_base_pose(drawn: Any) -> 
     assert float(rotation.angle_between(pose.rotations[right], base.rotations[right])) > 0.2
 
 
+def test_a_joint_that_a_state_moves_in_part_goes_so_far_from_the_base_pose(drawn: Any) -> None:
+    project, ids = drawn(start="rest wave rt", loops=())
+    base, whole = alone(project, "rest loop", 0.0), manual_pose_at(make_manual_plan(project, 5), project, 0.6)
+    soft = m.update_states(project, [ids["rest wave rt"]], joint_weights=(("RightUpperArm", 0.5),))
+    pose = manual_pose_at(make_manual_plan(soft, 5), soft, 0.6)
+    arm = project.skeleton.index("RightUpperArm")  # type: ignore[union-attr]
+    far = rotation.angle_between(base.rotations[arm], whole.rotations[arm])
+    assert rotation.angle_between(base.rotations[arm], pose.rotations[arm]) == pytest.approx(
+        far / 2, abs=1e-4
+    )
+
+
 def test_a_missing_clip_plays_the_base_pose(drawn: Any) -> None:
     project, _ids = drawn(start="rest wave rt", loops=())
     clips = {i: replace(e, motion=None) if e.name == "rest wave rt" else e for i, e in project.clips.items()}

@@ -16,7 +16,7 @@ from metagraph.motion import rotation
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.plan import LayerPlan, MetaRequest, Plan, Rest
 from metagraph.playback.planner import make_plan
-from metagraph.playback.player import cue_weight, ease, loop_seconds, morphs_at, pose_at
+from metagraph.playback.player import cue_weight, ease, keep_to, loop_seconds, morphs_at, pose_at
 
 
 def clip_pose_at(project, action, seconds):
@@ -192,6 +192,42 @@ def test_named_joints_are_the_only_ones_that_move(project: Project, toy: Any) ->
         > 1e-3
     )
     assert [project.skeleton.names[j] for j in np.flatnonzero(moved)] == ["RightUpperArm"]
+
+
+@pytest.mark.parametrize("weight", [0.25, 0.5, 0.75])
+def test_a_soft_joint_goes_as_far_from_its_stance_as_its_weight_says(
+    project: Project, toy: Any, weight: float
+) -> None:
+    ident, joint = toy.id(project, "rest long"), project.skeleton.index("LeftUpperArm")
+    soft = edits.update_actions(project, [ident], joint_weights=(("LeftUpperArm", weight),))
+    plan = shown(project, toy, "rest long")
+    cue = replace(plan.layers["arms"].cues[0], action=soft.action(ident))
+    partly = Plan(plan.seed, plan.end, {**plan.layers, "arms": replace(plan.layers["arms"], cues=(cue,))})
+    resting = Plan(plan.seed, plan.end, {**plan.layers, "arms": replace(plan.layers["arms"], cues=())})
+    times = np.linspace(cue.start, cue.end, 40)  # blends, too
+    whole, rest = pose_at(plan, project, times), pose_at(resting, project, times)
+    found = pose_at(partly, soft, times)
+    far = rotation.angle_between(rest.rotations[:, joint], whole.rotations[:, joint])
+    gone = rotation.angle_between(rest.rotations[:, joint], found.rotations[:, joint])
+    expected = rotation.nlerp(rest.rotations[:, joint], whole.rotations[:, joint], np.full(40, weight))
+    assert far.max() > 0.3 and np.allclose(
+        gone, rotation.angle_between(rest.rotations[:, joint], expected), atol=1e-5
+    )
+    others = np.delete(np.arange(len(project.skeleton)), joint)
+    assert np.array_equal(found.rotations[:, others], whole.rotations[:, others])
+
+
+def test_a_soft_joint_that_turns_halfway_round_takes_the_shorter_way_and_stays_a_rotation() -> None:
+    stance = (np.tile(np.float32([0, 0, 0, 1]), (1, 2, 1)), np.zeros((1, 2, 3), np.float32))
+    turned = np.float32([[[0, 0, 1, 0], [0, 0, -0.6, -0.8]]])
+    shown_ = (turned.copy(), np.ones((1, 2, 3), np.float32))
+    keep_to(shown_, stance, np.float32([0.5, 0.5]))
+    assert np.allclose(np.linalg.norm(shown_[0], axis=-1), 1)
+    assert np.allclose(rotation.angle_between(shown_[0][0, 0], stance[0][0, 0]), np.pi / 2)
+    assert rotation.angle_between(shown_[0][0, 1], stance[0][0, 1]) < rotation.angle_between(
+        turned[0, 1], stance[0][0, 1]
+    )
+    assert np.allclose(shown_[1], 0.5)
 
 
 # --- blends and seams

@@ -12,6 +12,7 @@ from PySide6.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QWidget
 
 from app.features.character.over_view import lie_over
+from app.features.character.plates import draw_plate
 from app.look.theme import Theme, theme
 from app.translation import tr
 from metagraph.playback.foot_slides import RATE, SLIDES, FeetSeen, FeetWatch, FootState, worst_slide
@@ -120,7 +121,8 @@ class FootMarks(QWidget):
             draw_mark(painter, look, place, FootState(int(seen.states[n, side])), slides)
             if slides:
                 words = f"{seen.slides[n, side] * 1000:.0f} mm/s"
-                plate(painter, look, QPointF(x + (-1 if x < self.width() / 2 else 1) * 46, y + BELOW), words)
+                beside = QPointF(x + (-1 if x < self.width() / 2 else 1) * 46, y + BELOW)
+                draw_plate(painter, look, beside, words)
 
 
 class FootLine(QWidget):
@@ -238,17 +240,3 @@ def draw_mark(painter: QPainter, look: Theme, at: QPointF, state: FootState, sli
             painter.drawEllipse(at, s, s * 0.8)
         else:
             painter.drawPolygon(QPolygonF([at + QPointF(x, y) for x, y in points]))
-
-
-def plate(painter: QPainter, look: Theme, at: QPointF, words: str) -> None:
-    """Draw words on a plate about a place."""
-    size = painter.fontMetrics().boundingRect(words)
-    room = QRectF(0, 0, size.width() + 10, size.height() + 4)
-    room.moveCenter(at)
-    back = QColor(look.card)
-    back.setAlphaF(0.9)
-    painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(back)
-    painter.drawRoundedRect(room, 4, 4)
-    painter.setPen(QColor(look.text))
-    painter.drawText(room, Qt.AlignmentFlag.AlignCenter, words)

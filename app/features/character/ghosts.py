@@ -8,11 +8,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import QRectF, Qt
+from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QWidget
 
 from app.features.character.over_view import lie_over
+from app.features.character.plates import draw_plate
 from app.look.theme import theme
 from app.stage.playback_source import Shown
 from app.widgets.vocabulary import word
@@ -162,21 +163,8 @@ class Ghosts(QWidget):
             ]
             if not np.isfinite((x, y)).all():
                 continue
-            size = painter.fontMetrics().boundingRect(words)
-            plate = QRectF(
-                x - size.width() / 2 - 5, y - size.height() - 4, size.width() + 10, size.height() + 2
-            )
-            plate.moveTop(max(4.0, plate.top()))
-            while any(plate.intersects(other) for other in taken):  # one above the other where heads are
-                plate.translate(0.0, plate.height() + 2)
-            taken.append(plate)
-            color = QColor(look.card)
-            color.setAlphaF(0.85)
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(color)
-            painter.drawRoundedRect(plate, 4, 4)
-            painter.setPen(QColor(look.text))
-            painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, words)
+            high = painter.fontMetrics().height() / 2
+            taken.append(draw_plate(painter, look, QPointF(x, y - high), words, taken))  # heads are near
         painter.end()
 
 

@@ -28,6 +28,7 @@ SIDES: dict[str, tuple[float, float]] = {  # yaw and pitch, degrees
 }  # fmt: skip
 ROUND = 8.0  # seconds of a turn of the turntable
 TURN = 33  # milliseconds between its steps
+DARKEST = 0.35  # of its colour, a joint that hardly moves
 HANDS = 0.16  # metres round the hands that are in the picture
 
 
@@ -119,12 +120,17 @@ class Looking(QObject):
 
 
 def mask_marks(performance: Performance, session: Session) -> dict[int, tuple[float, float, float]]:
-    """Point out the joints of the selected action's mask, each in its kind's colour."""
+    """Point out the joints of the selected action's mask, each in its kind's colour, the darker the less far
+    it moves.
+    """
     project = performance.document.project
     actions = session.selection.selected_actions()
-    if len(actions) != 1 or not actions[0].joints or project.skeleton is None:
+    if len(actions) != 1 or project.skeleton is None or not (actions[0].joints or actions[0].joint_weights):
         return {}
     moved = anatomy.mask(project, actions[0])
     color = theme(session.look.name).fill(actions[0].kind)
-    rgb = color.redF(), color.greenF(), color.blueF()
-    return {} if moved is None else {int(j): rgb for j in np.flatnonzero(moved)}
+    rgb = np.array([color.redF(), color.greenF(), color.blueF()])
+    if moved is None:
+        return {}
+    shades = {int(j): rgb * (DARKEST + (1 - DARKEST) * moved[j]) for j in np.flatnonzero(moved)}
+    return {joint: (float(r), float(g), float(b)) for joint, (r, g, b) in shades.items()}

@@ -15,12 +15,15 @@ if TYPE_CHECKING:
     from app.features.character.character_panel import PreviewPanel
     from app.features.character.foot_marks import FootMarks
     from app.features.character.ghosts import Ghosts
+    from app.features.character.hand_marks import HandMarks
     from preview.figure import Figure
     from preview.scene import Actor
 
 
 class Overlays:
-    """The marks of feet and the ghosts of a preview panel. Until they are wanted they are not even read."""
+    """The marks of feet and hands and the ghosts of a preview panel. Until they are wanted they are not even
+    read.
+    """
 
     def __init__(self, panel: PreviewPanel) -> None:
         self.panel = panel
@@ -29,6 +32,8 @@ class Overlays:
     def _chosen(self) -> None:
         if self.panel.session.watch.now.feet:
             _ = self.feet
+        if self.panel.session.watch.now.hands:
+            _ = self.hands
         self.panel.view.update()
 
     def begin(self) -> None:
@@ -44,6 +49,12 @@ class Overlays:
         assert isinstance(layout, QVBoxLayout)
         layout.insertWidget(1, made.line)  # directly below the view
         return made
+
+    @cached_property
+    def hands(self) -> HandMarks:
+        from app.features.character.hand_marks import HandMarks
+
+        return HandMarks(self.panel)
 
     @cached_property
     def ghosts(self) -> Ghosts:

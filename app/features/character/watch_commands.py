@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from app.features.character.reference import Reference
 
 SHOWN = (
-    ("feet", "next_slide", "trails", "bones"),
+    ("feet", "hands_touch", "next_slide", "trails", "bones"),
     ("stance_ghost", "onion", "onion_skin"),
     ("two_views", "four_views"),
     ("light", "background"),
@@ -51,6 +51,17 @@ def watch_commands(shell: Shell, preview: Callable[[], PreviewPanel]) -> tuple[C
             ("Shift+G",),
             checked=lambda: watch.now.feet,
             tip=tr("Which foot is held (square), steps (diamond), is lifted (circle), and slides (triangle)"),
+            study=True,
+        ),
+        Command(
+            "hands_touch",
+            view,
+            "watch",
+            tr("&Contacts of the hands"),
+            lambda: watch.set(hands=not watch.now.hands),
+            ("Shift+J",),
+            checked=lambda: watch.now.hands,
+            tip=tr("Where hands are kept: there (square), on the way (diamond), not reached (triangle)"),
             study=True,
         ),
         Command(

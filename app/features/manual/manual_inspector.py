@@ -296,10 +296,8 @@ class Inspector(QScrollArea):
         self.first.show_value(common([round(a, 4) for a, _ in spans]))
         self.last.show_value(common([round(b, 4) for _, b in spans]))
         self.limb.show_limb(common([s.limb for s in states]))
-        joints = common([s.joints for s in states])
-        self.joints.setText(
-            MIXED if joints is Mixed else tr("{joints} joints…", joints=len(joints)) if joints else tr("All…")
-        )
+        masks = common([(s.joints, s.joint_weights) for s in states])
+        self.joints.setText(MIXED if masks is Mixed else _moved(*masks))
         self.joints.setEnabled(project.skeleton is not None)
         self.layer.setText(tr(first.layer))
         start = self.canvas.scene().manual.start
@@ -437,3 +435,9 @@ def _check(value: Any) -> Qt.CheckState:
     if value is Mixed:
         return Qt.CheckState.PartiallyChecked
     return Qt.CheckState.Checked if value else Qt.CheckState.Unchecked
+
+
+def _moved(joints: tuple[str, ...], weights: tuple[tuple[str, float], ...]) -> str:
+    """Say how many joints a state moves, and how many in part."""
+    words = tr("{joints} joints…", joints=len(joints)) if joints else tr("All…")
+    return f"{words} {tr('{soft} in part', soft=len(weights))}" if weights else words

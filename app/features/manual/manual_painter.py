@@ -375,6 +375,8 @@ def facts(project: Project, state: State) -> str:
         words.append(tr(state.limb))
     if state.joints:
         words.append(tr("{joints} joints", joints=len(state.joints)))
+    if state.joint_weights:
+        words.append(tr("{soft} in part", soft=len(state.joint_weights)))
     return "  ".join(words)
 
 

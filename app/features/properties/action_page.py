@@ -174,14 +174,8 @@ class ActionPage(Halves):
         self.likelihood.show_value(common([a.likelihood for a in actions]))
         self.variation.show_actions(project, actions)
         self._fill_stances(actions, kind)
-        masks = common([a.joints for a in actions])
-        self.joints.setText(
-            MIXED
-            if masks is Mixed
-            else tr("{count} joints only", count=len(masks))
-            if masks
-            else tr("all its layer reaches")
-        )
+        masks = common([(a.joints, a.joint_weights) for a in actions])
+        self.joints.setText(MIXED if masks is Mixed else _moved(*masks))
         self.joints.setEnabled(project.skeleton is not None)
         self._show_trouble()
 
@@ -273,3 +267,9 @@ class ActionPage(Halves):
         from app.widgets.joint_mask import MaskDialog
 
         MaskDialog(self.document, self.session, self).open()
+
+
+def _moved(joints: tuple[str, ...], weights: tuple[tuple[str, float], ...]) -> str:
+    """Say which joints an action moves, and how many in part."""
+    words = tr("{count} joints only", count=len(joints)) if joints else tr("all its layer reaches")
+    return f"{words}, {tr('{soft} in part', soft=len(weights))}" if weights else words

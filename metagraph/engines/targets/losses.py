@@ -23,7 +23,11 @@ def _ways(project: Project) -> int:
 
 
 def _masked(project: Project) -> int:
-    return sum(1 for a in project.actions() if a.limb != "both" or a.joints)
+    return sum(1 for a in project.actions() if a.limb != "both" or a.joints or a.joint_weights)
+
+
+def _soft(project: Project) -> int:
+    return sum(1 for a in project.actions() if a.joint_weights)
 
 
 def _seams(project: Project) -> int:
@@ -51,6 +55,11 @@ MACHINE: tuple[Loss, ...] = (
         "{n} actions that move part of their layer hold the rest as their stance begins, instead of letting "
         "it play on",
         _masked,
+    ),
+    Loss(
+        "soft weights of joints in {n} actions are part of their clips, as far from how the stance begins, "
+        "and cannot be changed there",
+        _soft,
     ),
     Loss("{n} loops that play with a seam jump where they repeat", _seams),
 )

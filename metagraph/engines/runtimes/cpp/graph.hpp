@@ -31,14 +31,14 @@ struct Offsets {
     List<int> moved;
 };
 
-/// An action with what it shows. motion, offsets: none where its clip is missing. still: places in the layer's reach of
-/// joints that show the stance throughout.
+/// An action with what it shows. motion, offsets: none where its clip is missing. partly: places in the layer's reach of
+/// joints that it does not move wholly, and how far it does, 0..1.
 struct PlacedAction : Action {
     explicit PlacedAction(Action action) : Action(std::move(action)) {}
 
     Ref<Motion> motion;
     Ref<Offsets> offsets;
-    List<int> still;
+    List<std::pair<int, double>> partly;
 };
 
 /// How a layer reaches the joints: their places [n], and its weights on them. strength: how much of the arms it moves, 0..1.

@@ -104,6 +104,14 @@ inline Ref<Markov> read_markov(const std::string& layer, const Node& json) {
 /// How long clips are, by id.
 using Lengths = Map<std::string, double>;
 
+/// Return how far joints move that an action moves in part.
+inline List<std::tuple<std::string, double>> read_joint_weights(const Node& json) {
+    List<std::tuple<std::string, double>> out;
+    if (json.empty()) return out;
+    for (const auto& [joint, weight] : json.fields()) out.emplace_back(joint, weight.within(0, 1));
+    return out;
+}
+
 /// Return an action, and when it plays and its phases.
 inline std::pair<Ref<PlacedAction>, Ref<Phases>> read_action(const std::string& layer, const Node& json, const Lengths& clips) {
     const std::string clip = json["clip"].text();
@@ -123,7 +131,7 @@ inline std::pair<Ref<PlacedAction>, Ref<Phases>> read_action(const std::string& 
         json["limb"].one_of(graph::LIMBS), json["joints"].texts(), json["tags"].texts(), json["likelihood"].within(0, 1e15),
         json.maybe("cooldown").within_or(0, 1e9, 0),
         spacing.empty() ? std::nullopt : std::optional<int>(spacing.count(0, 1000)),
-        touching.empty() ? List<Ref<ContactSpan>>{} : contacts::read(touching)
+        touching.empty() ? List<Ref<ContactSpan>>{} : contacts::read(touching), read_joint_weights(json.maybe("joint_weights"))
     );
     // Where none are told, all of them are at the stroke, and that is halfway unless it was set.
     const double told = std::clamp(stroke.value_or((start + end) / 2), start, end);
@@ -136,15 +144,20 @@ inline std::pair<Ref<PlacedAction>, Ref<Phases>> read_action(const std::string& 
     };
 }
 
-/// Places in a layer's reach of joints that an action leaves to the stance: the other arm, or all that it does not name.
-inline List<int> still(const Graph& graph, const LayerGraph& layer, const Action& action) {
+/// Places in a layer's reach of joints that an action does not move wholly, and how far it does, 0..1: 0 the other arm, and all that
+/// it does not name.
+inline List<std::pair<int, double>> partly(const Graph& graph, const LayerGraph& layer, const Action& action) {
     const std::string other = action.limb == "left" ? "right" : action.limb == "right" ? "left" : "";
-    List<int> out;
+    List<std::pair<int, double>> out;
     for (int n = 0; n < lang::len(layer.reach); n++) {
         const int joint = lang::at(layer.reach, n);
         const bool arm = lang::at(graph.parts, joint) == "arms" && lang::at(graph.sides, joint) == other;
         const bool masked = !action.joints.empty() && !lang::contains(action.joints, lang::at(graph.joints, joint));
-        if (arm || masked) out.push_back(n);
+        double weight = arm || masked ? 0 : 1;
+        for (const auto& [name, told] : action.joint_weights) {
+            if (weight > 0 && name == lang::at(graph.joints, joint)) weight = told;
+        }
+        if (weight < 1) out.emplace_back(n, weight);
     }
     return out;
 }
@@ -177,7 +190,7 @@ inline Ref<LayerGraph> read_layer(
         if (phases.find(action->id) != nullptr) one["id"].wrong("is used twice");
         phases[action->id] = own;
         vigours[action->id] = one.maybe("vigour").within_or(-1, 1, 0);
-        action->still = still(graph, *out, *action);
+        action->partly = partly(graph, *out, *action);
         out->kinds.insert(action->kind);
         actions.push_back(action);
     }

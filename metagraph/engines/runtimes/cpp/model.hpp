@@ -63,10 +63,11 @@ struct Timing {
 ///
 /// stance: id of the stance it starts from (for kind "stance", the stance whose loop it is). end_stance: only for
 /// transitions. limb: which arm it needs; the other keeps to the stance. joints: names of the only joints it moves;
-/// empty means all. tags: free words, "positive" and "negative" among them. likelihood: relative, > 0. cooldown:
-/// seconds after it has ended in which it is not drawn again. spacing: how many other actions of its kind and stance
-/// are drawn before it may be drawn again; None as the settings' never_twice says. contacts: where its hands stay on
-/// the body.
+/// empty means all. joint_weights: how far those move that move in part, (name, above 0 and below 1); the rest of the
+/// way they keep to the stance. tags: free words, "positive" and "negative" among them. likelihood: relative, > 0.
+/// cooldown: seconds after it has ended in which it is not drawn again. spacing: how many other actions of its kind and
+/// stance are drawn before it may be drawn again; None as the settings' never_twice says. contacts: where its hands
+/// stay on the body.
 struct Action {
     std::string id;
     std::string clip;
@@ -83,6 +84,7 @@ struct Action {
     double cooldown;
     std::optional<int> spacing;
     List<Ref<ContactSpan>> contacts;
+    List<std::tuple<std::string, double>> joint_weights;
 
     Action(
         std::string id_,
@@ -99,7 +101,8 @@ struct Action {
         double likelihood_ = 1.0,
         double cooldown_ = 0.0,
         std::optional<int> spacing_ = std::nullopt,
-        List<Ref<ContactSpan>> contacts_ = List<Ref<ContactSpan>>{}
+        List<Ref<ContactSpan>> contacts_ = List<Ref<ContactSpan>>{},
+        List<std::tuple<std::string, double>> joint_weights_ = List<std::tuple<std::string, double>>{}
     )
         : id(std::move(id_)),
             clip(std::move(clip_)),
@@ -115,7 +118,8 @@ struct Action {
             likelihood(likelihood_),
             cooldown(cooldown_),
             spacing(spacing_),
-            contacts(std::move(contacts_)) {}
+            contacts(std::move(contacts_)),
+            joint_weights(std::move(joint_weights_)) {}
 };
 
 struct Stance {

@@ -109,7 +109,8 @@ inline List<Ref<FootGoal>> foot_goals(
         return planted_feet::_stance(project, tracks, height, plan, place, time);
     }
     Ref<FootTrack> track = lang::get(tracks, cue->action->id);
-    if (track == nullptr || lang::len(track->rows) == 0 || lang::len(cue->action->joints) > 0) {
+    bool masked = lang::len(cue->action->joints) > 0 || lang::len(cue->action->joint_weights) > 0;
+    if (track == nullptr || lang::len(track->rows) == 0 || masked) {
         return List<Ref<FootGoal>>{};
     }
     double came = cue->start + planted_feet::_entering(track, cue);

@@ -222,7 +222,7 @@ private:
         sample(action, pose::clip_seconds(*cue, time), shown_, count);
         const bool entering = time < cue->start + cue->blend_in;
         const bool blending = entering || time >= cue->end - cue->blend_out;
-        if (!blending && action.still.empty() && cue->extent == 1) return shown_;
+        if (!blending && action.partly.empty() && cue->extent == 1) return shown_;
         stance(layer, time, count);
         if (blending) {
             // Lead the clip in from, or out to, its stance: add what the stance differs from the clip's pose at that edge. A
@@ -236,7 +236,12 @@ private:
             }
         }
         if (cue->extent != 1) extend(cue->extent, graph_->layer(action.layer).reach);
-        for (const int place : action.still) lang::at(shown_, place) = lang::at(stance_, place);
+        for (const auto& [place, weight] : action.partly) {
+            Joined& joint = lang::at(shown_, place);
+            const Joined& rest = lang::at(stance_, place);
+            joint.rotation = rotation::nlerp(rest.rotation, joint.rotation, weight);
+            joint.translation = rest.translation + (joint.translation - rest.translation) * weight;
+        }
         return shown_;
     }
 

@@ -959,7 +959,9 @@ inline void Performer::_keep(const Ref<Cue>& cue) {
         // The loop begins anew under the action, so that the action's last pose meets the loop's first.
         // Where the action leaves joints alone the change shows, and takes its time: a transition all of
         // its own.
-        bool partial = cue->action->limb != "both" || lang::len(cue->action->joints) > 0;
+        bool partial = cue->action->limb != "both"
+            || lang::len(cue->action->joints) > 0
+            || lang::len(cue->action->joint_weights) > 0;
         double begin = cue->start + cue->blend_in;
         double until = cue->end - cue->blend_out;
         double fade = std::max(0.0, until - begin);

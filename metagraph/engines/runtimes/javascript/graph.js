@@ -158,7 +158,7 @@ export class LayerGraph {
 
   /**
    * Return an action: times of its clip in seconds, `phases` of them, `motion` (null where its clip is missing), `offsets` of the
-   * motion from the base pose, and `still`, the places in the reach of joints that show the stance throughout.
+   * motion from the base pose, and `partly`, the places in the reach of joints that it does not move wholly, each with how far it does, 0..1.
    */
   action(data, joints, durations, graph, offsets) {
     const { id, name, clip, kind, stance, limb } = data;
@@ -173,16 +173,19 @@ export class LayerGraph {
     if (motion && !offsets.has(clip)) offsets.set(clip, offsetsOf(motion, this.reach, graph));
     const other = { left: "right", right: "left" }[limb];
     const masked = (joint) => data.joints.length > 0 && !data.joints.includes(joint.name);
-    const stays = (joint) => (joint.part === "arms" && joint.side === other) || masked(joint);
+    const weights = Object.entries(data.joint_weights ?? {}).map(([joint, w]) => [joint, inRange(w, 0, 1, `action ${id}'s joint weight`)]);
+    const weightOf = new Map(weights);
+    const moves = (joint) => ((joint.part === "arms" && joint.side === other) || masked(joint) ? 0 : weightOf.get(joint.name) ?? 1);
+    const partly = Array.from(this.reach, (joint, place) => [place, moves(joints[joint])]).filter(([, weight]) => weight < 1);
     return {
       id, name, clip, kind, layer: this.layer, stance, limb, likelihood: number("likelihood"), start, end, motion,
-      tags: data.tags, joints: data.joints, contacts: readContacts(data.contacts),
+      tags: data.tags, joints: data.joints, jointWeights: weights, contacts: readContacts(data.contacts),
       endStance: data.end_stance ?? null,
       timing: new Timing(start, end, number("blend_in"), number("blend_out"), kind === "stance", data.earliest_exit ?? null),
       phases: new Phases(start, ready, stroke, strokeEnd, relax, end), cooldown: number("cooldown", 0), spacing: data.spacing ?? null,
       vigour: inRange(data.vigour ?? 0, -1, 1, `action ${id}'s vigour`),
       offsets: offsets.get(clip) ?? null,
-      still: Int32Array.from(this.reach.keys()).filter((place) => stays(joints[this.reach[place]])),
+      partly,
     };
   }
 }

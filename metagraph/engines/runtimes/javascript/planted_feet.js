@@ -62,7 +62,8 @@ export function footGoals(project, tracks, height, plan, cue, place, time) {
     return _stance(project, tracks, height, plan, place, time);
   }
   const track = tracks.get(cue.action.id) ?? null;
-  if (track === null || track.rows.length === 0 || cue.action.joints.length > 0) {
+  const masked = cue.action.joints.length > 0 || cue.action.jointWeights.length > 0;
+  if (track === null || track.rows.length === 0 || masked) {
     return [];
   }
   const came = cue.start + _entering(track, cue);

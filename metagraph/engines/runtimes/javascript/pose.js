@@ -160,7 +160,7 @@ export class Player {
     sample(action, clipSeconds(cue, time), shown, count);
     const entering = time < cue.start + cue.blendIn;
     const blending = entering || time >= cue.end - cue.blendOut;
-    if (!blending && !action.still.length && cue.extent === 1) return shown;
+    if (!blending && !action.partly.length && cue.extent === 1) return shown;
     this.stance(n, layer, time, count);
     if (blending) {
       // Lead the clip in from, or out to, its stance: add what the stance differs from the clip's pose at that edge. A crossfade
@@ -179,10 +179,16 @@ export class Player {
       for (let k = 0; k < 3 * count; k++) shown.translations[k] += weight * (stance.translations[k] - other.translations[k]);
     }
     if (cue.extent !== 1) this.extend(cue.extent, this.graph.layers[LAYERS[n]], count);
-    for (let s = 0; s < action.still.length; s++) {
-      const i = action.still[s];
-      for (let k = 0; k < 4; k++) shown.rotations[4 * i + k] = stance.rotations[4 * i + k];
-      for (let k = 0; k < 3; k++) shown.translations[3 * i + k] = stance.translations[3 * i + k];
+    for (let s = 0; s < action.partly.length; s++) {
+      const [i, moved] = action.partly[s];
+      let along = 0;
+      for (let q = 4 * i; q < 4 * i + 4; q++) along += shown.rotations[q] * stance.rotations[q];
+      const w = along < 0 ? -moved : moved;
+      for (let q = 4 * i; q < 4 * i + 4; q++) shown.rotations[q] = (1 - moved) * stance.rotations[q] + w * shown.rotations[q];
+      normalize(shown.rotations, 4 * i);
+      for (let k = 3 * i; k < 3 * i + 3; k++) {
+        shown.translations[k] = stance.translations[k] + moved * (shown.translations[k] - stance.translations[k]);
+      }
     }
     return shown;
   }

@@ -628,7 +628,7 @@ export class Performer {
       // The loop begins anew under the action, so that the action's last pose meets the loop's first.
       // Where the action leaves joints alone the change shows, and takes its time: a transition all of
       // its own.
-      const partial = cue.action.limb !== "both" || cue.action.joints.length > 0;
+      const partial = cue.action.limb !== "both" || cue.action.joints.length > 0 || cue.action.jointWeights.length > 0;
       let begin = cue.start + cue.blendIn;
       const until = cue.end - cue.blendOut;
       let fade = Math.max(0, until - begin);

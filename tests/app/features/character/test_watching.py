@@ -11,6 +11,7 @@ from PySide6.QtTest import QTest
 
 from app.features.character.foot_marks import FootState, runs, slide_words
 from app.stage.watch import Watch
+from metagraph.playback.contacts import contact_rig, goals_at
 from metagraph.playback.foot_slides import RATE
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -63,6 +64,48 @@ def test_feet_are_marked_by_a_key_and_one_that_slides_says_how_fast_and_when(sho
     assert feet.isHidden() and feet.line.isHidden() and drive.preview.view.grab().toImage() != plain
 
 
+def touching(drive, weight: float):
+    """Go to a moment of the sample at which a hand is so far, at least, in contact; return the contacts."""
+    shown = drive.performance.shown
+    rig = contact_rig(shown.project)
+    drive.session.transport.set_playing(False)
+    times = np.arange(0.0, shown.length, 0.05)
+
+    def touches(at: float) -> bool:
+        return any(g.weight >= weight for g in goals_at(shown.moving, shown.project, rig, at))
+
+    drive.session.transport.seek(next(float(t) for t in times if touches(float(t))))
+    marks = drive.preview.overlays.hands
+    # The picture of that moment has its hands where they should be.
+    drive.wait(lambda: any(t.weight >= weight and not t.missed for t in marks.touches()))
+    return marks.touches()
+
+
+def test_hands_in_contact_are_marked_by_a_key_and_said(shown):
+    drive, marks = shown, shown.preview.overlays.hands
+    touches = touching(drive, 0.995)
+    held = next(t for t in touches if t.held)
+    assert marks.isHidden()
+    plain = drive.preview.view.grab().toImage()
+    drive.key(Qt.Key.Key_J, Qt.KeyboardModifier.ShiftModifier)
+    assert drive.shell.actions["hands_touch"].isChecked() and marks.isVisible()
+    joint = drive.performance.shown.skeleton.names[held.to]
+    drive.wait(lambda: joint in marks.accessibleDescription())
+    assert drive.preview.view.grab().toImage() != plain
+    drive.key(Qt.Key.Key_J, Qt.KeyboardModifier.ShiftModifier)
+    assert marks.isHidden()
+
+
+def test_a_clip_looked_at_alone_has_the_contacts_of_what_uses_it(shown):
+    action = next(a for a in shown.document.project.actions() if a.contacts)
+    shown.session.transport.show_clip(action.clip)
+    shown.wait(lambda: shown.performance.shown.clip == action.clip)
+    shown.session.transport.set_playing(False)
+    span = action.contacts[0]
+    shown.session.transport.seek((span.start + span.end) / 2)
+    shown.wait(lambda: bool(shown.preview.overlays.hands.touches()))
+
+
 def test_no_event_composes_more_than_a_few_poses(shown):
     feet = shown.preview.overlays.feet
     shown.session.transport.set_playing(False)
@@ -76,7 +119,7 @@ def test_no_event_composes_more_than_a_few_poses(shown):
     assert max(asked) <= 12 and sum(asked) < 2 * 3 * RATE
 
 
-@pytest.mark.parametrize("command", ["feet", "stance_ghost", "onion", "trails"])
+@pytest.mark.parametrize("command", ["feet", "hands_touch", "stance_ghost", "onion", "trails"])
 def test_what_lies_over_the_picture_does_not_draw_it_again_and_again(shown, command):
     shown.session.transport.set_playing(False)
     shown.session.transport.seek(6.0)

@@ -22,7 +22,7 @@ namespace Metagraph
 
     /// <summary>
     /// One use of a clip. Start, End: the part that plays, clip seconds. Blends lie inside it; of a stance, the blend in is the overlap
-    /// at its loop's seam. Mask: for each joint whether it moves it, null where it moves all.
+    /// at its loop's seam. Mask: for each joint how far it moves it, 0..1, null where it moves all of all.
     /// </summary>
     public sealed class GraphAction
     {
@@ -32,9 +32,10 @@ namespace Metagraph
         public Timing Timing;
         public int? Spacing;
         public List<string> Joints = new List<string>(), Tags = new List<string>();
+        public Dictionary<string, double> JointWeights = new Dictionary<string, double>();
         public List<ContactSpan> Contacts = new List<ContactSpan>();
         public Phases Phases;
-        public bool[] Mask;
+        public double[] Mask;
 
         public double Length
         {

@@ -214,21 +214,32 @@ namespace Metagraph
                 phases = new[] { stroke, stroke, stroke, stroke };
             }
             action.Phases = new Phases(action.Start, phases[0], phases[1], phases[2], phases[3], action.End);
+            if (json.Maybe("joint_weights", out found))
+            {
+                foreach (string joint in found.Names)
+                {
+                    action.JointWeights[joint] = found[joint].Within(0, 1);
+                }
+            }
             action.Mask = Mask(action);
             return action;
         }
 
-        /// <summary>A one-armed action leaves the other arm alone; `Joints`, if any, names the only joints it moves.</summary>
-        private bool[] Mask(GraphAction action)
+        /// <summary>A one-armed action leaves the other arm alone; `Joints`, if any, names the only joints it moves, and `JointWeights` how far.</summary>
+        private double[] Mask(GraphAction action)
         {
-            if (action.Limb == "both" && action.Joints.Count == 0)
+            if (action.Limb == "both" && action.Joints.Count == 0 && action.JointWeights.Count == 0)
             {
                 return null;
             }
             string other = action.Limb == "left" ? "right" : "left";
             return Array.ConvertAll(Joints, joint =>
-                !(action.Limb != "both" && joint.Part == "arms" && joint.Side == other)
-                && (action.Joints.Count == 0 || action.Joints.Contains(joint.Name)));
+            {
+                bool moves = !(action.Limb != "both" && joint.Part == "arms" && joint.Side == other)
+                    && (action.Joints.Count == 0 || action.Joints.Contains(joint.Name));
+                double weight;
+                return !moves ? 0.0 : action.JointWeights.TryGetValue(joint.Name, out weight) ? weight : 1.0;
+            });
         }
 
         private static Markov ReadMarkov(string layer, Node json)

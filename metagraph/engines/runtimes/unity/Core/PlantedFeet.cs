@@ -62,7 +62,8 @@ namespace Metagraph
                 return Stance(project, tracks, height, plan, place, time);
             }
             var track = PlainMaps.Get(tracks, cue.Action.Id);
-            if (track == null || track.Rows.Count == 0 || cue.Action.Joints.Count > 0)
+            var masked = cue.Action.Joints.Count > 0 || cue.Action.JointWeights.Count > 0;
+            if (track == null || track.Rows.Count == 0 || masked)
             {
                 return new List<FootGoal>();
             }

@@ -151,7 +151,7 @@ namespace Metagraph
             }
             Show(motion, cue.ClipSeconds(time), reach, shown);
             bool entering = time < cue.Start + cue.BlendIn, leaving = time >= cue.End - cue.BlendOut;
-            bool[] mask = cue.Action.Mask;
+            double[] mask = cue.Action.Mask;
             if (!entering && !leaving && mask == null && cue.Extent == 1)
             {
                 return shown;
@@ -174,10 +174,10 @@ namespace Metagraph
             }
             foreach (int j in reach)
             {
-                if (mask != null && !mask[j])
+                if (mask != null && mask[j] < 1)
                 {
-                    shown.Turns[j] = stance.Turns[j];
-                    shown.Moves[j] = stance.Moves[j];
+                    shown.Turns[j] = Quat.Nlerp(stance.Turns[j], shown.Turns[j], mask[j]);
+                    shown.Moves[j] = stance.Moves[j] + (shown.Moves[j] - stance.Moves[j]) * mask[j];
                 }
             }
             return shown;

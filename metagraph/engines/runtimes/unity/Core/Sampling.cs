@@ -791,7 +791,7 @@ namespace Metagraph
                 // The loop begins anew under the action, so that the action's last pose meets the loop's first.
                 // Where the action leaves joints alone the change shows, and takes its time: a transition all of
                 // its own.
-                var partial = cue.Action.Limb != "both" || cue.Action.Joints.Count > 0;
+                var partial = cue.Action.Limb != "both" || cue.Action.Joints.Count > 0 || cue.Action.JointWeights.Count > 0;
                 var begin = cue.Start + cue.BlendIn;
                 var until = cue.End - cue.BlendOut;
                 var fade = Math.Max(0.0, until - begin);

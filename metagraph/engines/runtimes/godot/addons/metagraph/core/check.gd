@@ -16,7 +16,8 @@ const STANCE = {id = "text", name = "text"}
 const ACTION = {
 	id = "text", name = "text", clip = "text", kind = "text", stance = "text", end_stance = "text?", start = "number", end = "number",
 	blend_in = "number", blend_out = "number", earliest_exit = "number?", stroke = "number?", limb = "text", joints = "list", tags = "list",
-	likelihood = "number", phases = "list?", cooldown = "number?", spacing = "number?", contacts = "list?", vigour = "number?"
+	likelihood = "number", phases = "list?", cooldown = "number?", spacing = "number?", contacts = "list?", vigour = "number?",
+	joint_weights = "record?"
 }
 const MARKOV = {
 	states = "list", matrix = "list", gap = "number", positive = "number", negative = "number", tags = "list?", lengths = "list?", modes = "list?"

@@ -136,7 +136,8 @@ func _read_layer(layer, data):
 		action.cooldown = 0.0 if each.cooldown == null else each.cooldown
 		action.vigour = 0.0 if each.vigour == null else each.vigour
 		action.contacts = Contacts.read(each.contacts)
-		action.still = _still(action)
+		action.joint_weights = {} if each.joint_weights == null else each.joint_weights
+		action.partly = _partly(action)
 		found.add(action)
 	var own = data.markov
 	found.markov = Model.Markov.new(
@@ -150,16 +151,18 @@ func _read_layer(layer, data):
 	layers[layer] = found
 
 
-# Returns {joint: true} of the joints an action leaves to its stance; null where it moves all.
-func _still(action):
-	if action.limb == "both" and action.joints.size() == 0:
+# Returns {joint: how far it moves} of the joints that an action does not move wholly; null where it moves all of all.
+func _partly(action):
+	if action.limb == "both" and action.joints.size() == 0 and action.joint_weights.size() == 0:
 		return null
 	var other = "right" if action.limb == "left" else "left"
 	var out = {}
 	for joint in range(names.size()):
 		var far = action.limb != "both" and parts[joint] == "arms" and sides[joint] == other
 		if far or (action.joints.size() > 0 and not action.joints.has(names[joint])):
-			out[joint] = true
+			out[joint] = 0.0
+		elif action.joint_weights.has(names[joint]):
+			out[joint] = Util.within(action.joint_weights[names[joint]], 0.0, 1.0)
 	return out
 
 

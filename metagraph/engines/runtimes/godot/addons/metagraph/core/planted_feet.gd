@@ -44,7 +44,8 @@ static func foot_goals(project, tracks, height, plan, cue, place, time):
 			return []
 		return _stance(project, tracks, height, plan, place, time)
 	var track = tracks.get(cue.action.id)
-	if track == null or track.rows.size() == 0 or cue.action.joints.size() > 0:
+	var masked = cue.action.joints.size() > 0 or cue.action.joint_weights.size() > 0
+	if track == null or track.rows.size() == 0 or masked:
 		return []
 	var came = cue.start + _entering(track, cue)
 	var goes = cue.end - _leaving(track, cue)

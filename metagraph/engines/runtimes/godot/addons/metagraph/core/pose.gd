@@ -122,8 +122,8 @@ static func _layer(graph, plan, time):
 	var shown = _sample(clip, clip_seconds(cue, time))
 	var entering = time < cue.start + cue.blend_in
 	var blending = entering or time >= cue.end - cue.blend_out
-	var still = cue.action.still
-	if not blending and still == null and cue.extent == 1:
+	var partly = cue.action.partly
+	if not blending and partly == null and cue.extent == 1:
 		return shown
 	var stance = _stance(graph, plan, time)
 	var out = {turns = shown.turns.duplicate(), shifts = shown.shifts.duplicate()}
@@ -140,13 +140,12 @@ static func _layer(graph, plan, time):
 			out.shifts[joint] = out.shifts.get(joint, Vector3()) - edge.shifts[joint] * weight
 	if cue.extent != 1:
 		_extend(graph, plan.layer, out, stance, cue.extent)
-	if still != null:
-		for joint in still:
-			out.turns[joint] = stance.turns[joint]
-			if stance.shifts.has(joint):
-				out.shifts[joint] = stance.shifts[joint]
-			else:
-				out.shifts.erase(joint)
+	if partly != null:
+		for joint in partly:
+			out.turns[joint] = Turns.nlerp(stance.turns[joint], out.turns[joint], partly[joint])
+			if stance.shifts.has(joint) or out.shifts.has(joint):
+				var rest = stance.shifts.get(joint, Vector3())
+				out.shifts[joint] = rest + (out.shifts.get(joint, Vector3()) - rest) * partly[joint]
 	return out
 
 

@@ -620,7 +620,7 @@ class Performer:
 			# The loop begins anew under the action, so that the action's last pose meets the loop's first.
 			# Where the action leaves joints alone the change shows, and takes its time: a transition all of
 			# its own.
-			var partial = cue.action.limb != "both" or cue.action.joints.size() > 0
+			var partial = cue.action.limb != "both" or cue.action.joints.size() > 0 or cue.action.joint_weights.size() > 0
 			var begin = cue.start + cue.blend_in
 			var until = cue.end - cue.blend_out
 			var fade = Util.most(0.0, until - begin)

@@ -1,0 +1,35 @@
+"""Words on plates over the picture of the character."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QPainter
+
+from app.look.theme import Theme
+
+ROUND = 4.0  # pixels, of corners and above the highest
+
+
+def draw_plate(
+    painter: QPainter, look: Theme, at: QPointF, words: str, taken: Iterable[QRectF] = ()
+) -> QRectF:
+    """Draw words on a plate about a place; below what is taken, where it would cover that. Return where it
+    is.
+    """
+    size = painter.fontMetrics().boundingRect(words)
+    room = QRectF(0, 0, size.width() + 10, size.height() + 4)
+    room.moveCenter(at)
+    room.moveTop(max(ROUND, room.top()))
+    others = [*taken]
+    while any(room.intersects(other) for other in others):
+        room.translate(0.0, room.height() + 2)
+    back = QColor(look.card)
+    back.setAlphaF(0.9)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(back)
+    painter.drawRoundedRect(room, ROUND, ROUND)
+    painter.setPen(QColor(look.text))
+    painter.drawText(room, Qt.AlignmentFlag.AlignCenter, words)
+    return room
