@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from app.cli.command_output import opened, performance_arguments, say, staged
+from app.look.names import node_names
 from app.stage.playback_source import ASIDE, Shown, alone
 from metagraph.graph.model import Layer, Project
 from metagraph.motion.clip import Clip
@@ -397,10 +398,15 @@ def bake_to(out: Path, shown: Shown, seconds: float, fps: float, folder: Path, s
 
 
 def _doing(shown: Shown, seconds: float) -> str:
-    """Return what is played; of who moves with a clip instead of the plan what the plan has left to say."""
+    """Return what is played, as its node calls it; of who moves with a clip instead of the plan what the plan
+    has left to say.
+    """
     layers: tuple[Layer, ...] = ("arms", "head", "body")
     if shown.motion is not None:
         layers = ("body",) if shown.project.clips[shown.motion].made_by else ()
     lanes = shown.plan.layers
     cue = next((cue for n in layers if (cue := lanes[n].cue_at(seconds)) is not None), None)
-    return cue.action.name if cue is not None else ""
+    if cue is None:
+        return ""
+    action = cue.action
+    return node_names(shown.project, action.layer, action.stance, action.kind).get(action.id, action.name)

@@ -1,0 +1,48 @@
+"""`metagraph render`: what is written under the pictures of a contact sheet."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.cli import render_command
+from app.cli.render_command import draw_to, figure_of
+from app.project.files import SAMPLE
+from app.project.opening import open_whole
+from app.stage.playback_source import Shown
+from metagraph.playback.planner import make_plan
+
+
+@pytest.fixture(scope="module")
+def project():
+    """The sample, all its actions' names with one beginning that says nothing."""
+    project = open_whole(SAMPLE).project
+    for graph in list(project.graphs.values()):
+        actions = {i: replace(a, name=f"ChrLong@Idle01_{a.name}") for i, a in graph.actions.items()}
+        project = project.with_graph(replace(graph, actions=actions))
+    return project
+
+
+@pytest.mark.gl
+def test_actions_are_called_as_their_node_calls_them(project, tmp_path, monkeypatch):
+    under = []
+
+    def contact_sheet(images, columns, labels=(), *others):
+        under.extend(labels)
+        return np.zeros((4, 4, 4), np.uint8)
+
+    monkeypatch.setattr("preview.sheet.contact_sheet", contact_sheet)
+    shown = Shown(project, make_plan(project, 10.0), 10.0)
+    draw_to(
+        tmp_path / "sheet.png", [(figure_of(project, SAMPLE.parent), shown)], 10.0, (96, 72), 30, 16, "dark"
+    )
+    assert len(under) == 16 and under[0].startswith("0.00 s")
+    named = [words for words in under if words.partition(" s")[2].strip()]
+    assert named and not any("ChrLong" in words for words in named)
+
+
+def test_where_nothing_is_played_only_the_time_is_told(project):
+    plan = make_plan(project, 1.0, idle=False)
+    assert render_command._doing(Shown(project, plan, 1.0), 0.5) == ""
