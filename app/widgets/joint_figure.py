@@ -15,6 +15,7 @@ from PySide6.QtWidgets import QToolTip, QWidget
 from app.look.theme import theme
 from app.translation import tr
 from metagraph.motion.skeleton import Skeleton
+from preview.joints import is_control
 
 MARGIN, LEAST, MOST, NEAR = 18.0, 2.5, 6.0, 11.0  # pixels
 NUMBERS = 8.0  # points
@@ -34,6 +35,7 @@ class JointFigure(QWidget):
         super().__init__(parent)
         self._skeleton, self._look = skeleton, theme(look)
         self._seen = front(skeleton)
+        self._helpers = [is_control(name) for name in skeleton.names]  # no bone leads to them
         self._weights: Mapping[str, float] = {}
         self._wheel = 0  # eighths of a degree that are no whole notch yet
         self._under: int | None = None  # the joint under the pointer
@@ -81,8 +83,8 @@ class JointFigure(QWidget):
             for joint, parent in enumerate(skeleton.parents):
                 if parent >= 0 and moving[joint] is on:
                     line = _between(weak, strong, weights[joint]) if on else weak
-                    round_cap = Qt.PenCapStyle.RoundCap
-                    painter.setPen(QPen(line, 5 if on else 3, Qt.PenStyle.SolidLine, round_cap))
+                    pen = QPen(line, 5 if on else 3, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap)
+                    painter.setPen(QPen(line, 1, Qt.PenStyle.DotLine) if self._helpers[joint] else pen)
                     painter.drawLine(QPointF(*places[parent]), QPointF(*places[joint]))
         for joint, radius in enumerate(self._radii(places)):
             chosen = joint == self._under
@@ -118,7 +120,7 @@ class JointFigure(QWidget):
         """Return how large joints are drawn: smaller where they are close together, as in hands."""
         away = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1))
         away[away < 1e-6] = np.inf  # the same place: one covers the other
-        return np.clip(away.min(1) / 2.5, LEAST, MOST)
+        return np.clip(away.min(1) / 2.5, LEAST, np.where(self._helpers, LEAST, MOST))
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         self._from = self._to = event.position()

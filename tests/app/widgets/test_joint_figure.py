@@ -179,3 +179,21 @@ def test_a_skeleton_without_extent_is_drawn(qapp):
     figure = JointFigure(point, "dark")
     figure.resize(100, 100)
     assert not figure.grab().isNull() and figure.place_of("a").x() == 50
+
+
+def test_only_a_dotted_line_leads_to_a_rigs_helpers(qtbot):
+    offsets = np.array([[0, 1.0, 0], [0, 0.5, 0], [0.4, 0, 0]])
+    inked = []
+    for name in ("arm", "control-arm-ik"):
+        parents, turns = np.array([-1, 0, 0]), np.tile([0.0, 0, 0, 1], (3, 1))
+        skeleton = Skeleton(("hips", "spine", name), parents, turns, offsets)
+        figure = JointFigure(skeleton, "dark")
+        qtbot.addWidget(figure)
+        figure.resize(300, 300)
+        figure.show_weights({})
+        picture = figure.grab().toImage()
+        start, end = figure.place_of(skeleton.names[0]), figure.place_of(skeleton.names[2])
+        middle = [start + (end - start) * share for share in np.linspace(0.3, 0.7, 40)]
+        empty = picture.pixel(2, 2)
+        inked.append(sum(picture.pixel(at.toPoint()) != empty for at in middle))
+    assert inked[0] == 40 > inked[1] > 0
