@@ -67,7 +67,7 @@ class Drawing:
         """
         loaded = self.store[mesh]
         self.store.shape(mesh, actor.morphs)
-        array = loaded.array(self.ctx, program, kind)
+        array = loaded.array(self.ctx, program, kind, actor.figure.rods if kind != "depth" else None)
         flags = moderngl.DEPTH_TEST | (
             moderngl.BLEND if actor.opacity < 1 and kind != "depth" else moderngl.NOTHING
         )
@@ -124,7 +124,9 @@ def set_uniforms(program: moderngl.Program, **values: Any) -> None:
         member: Any = program.get(name, None)
         if member is None:
             continue
-        if isinstance(value, np.ndarray) and value.shape == (4, 4):
+        if isinstance(value, np.ndarray) and value.ndim == 2 and value.shape != (4, 4):
+            member.write(np.ascontiguousarray(value, "<f4").tobytes())  # an array of vectors
+        elif isinstance(value, np.ndarray) and value.shape == (4, 4):
             member.write(np.ascontiguousarray(value.T, "<f4").tobytes())
         else:
             member.value = tuple(float(x) for x in value) if isinstance(value, (tuple, np.ndarray)) else value

@@ -16,6 +16,7 @@ from metagraph.motion.character_mesh import Character, Material, followers
 from metagraph.motion.skeleton import Skeleton
 from preview import joints as rules
 from preview.mesh import VERTEX, Batch, Mesh, ball, capsule, coarse, egg, pieces
+from preview.occlusion import Rods, main_matrices, rods
 
 Array = NDArray[Any]
 
@@ -55,6 +56,11 @@ class Figure:
     def coarse(self) -> Mesh:
         """The mesh for shadows and for figures small in the picture."""
         return coarse(self.mesh)
+
+    @cached_property
+    def rods(self) -> Rods | None:
+        """What keeps light from what; None for who is no person."""
+        return rods(self.skeleton, self.sources, self.mesh.vertices)
 
     def palette(self, rotations: Array, positions: Array) -> Array:
         """Return `[..., M, 3, 4]` float32: rest pose to posed, from global `rotations [..., J, 4]`,
@@ -111,11 +117,7 @@ class Figure:
         """
         _, rest = self.skeleton.globals(self.skeleton.rest)
         vertices = self.mesh.vertices
-        main = (
-            np.take_along_axis(vertices["bones"], vertices["weights"].argmax(1)[:, None], 1)[:, 0]
-            if len(vertices)
-            else np.zeros(0, int)
-        )
+        main = main_matrices(vertices) if len(vertices) else np.zeros(0, int)
         owner = self.sources[main]
         for joint in reversed(range(len(self.skeleton))):  # what is not drawn counts for the joint above
             if not self.drawn[joint]:

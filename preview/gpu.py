@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from metagraph.budgets import PICTURE_PIXELS
 from metagraph.pictures import picture_size
-from preview.mesh import Mesh, arranged
+from preview.mesh import VERTEX, Mesh, arranged
+from preview.occlusion import Rods
 from preview.scene import Actor
 
 Array = NDArray[Any]
@@ -43,14 +44,24 @@ class LoadedMesh:
     indices: moderngl.Buffer
     images: dict[bytes, moderngl.Texture]
     arrays: dict[int, moderngl.VertexArray] = field(default_factory=dict)
+    limbs: moderngl.Buffer | None = None
     morphs: bytes = b""
     idle: int = 0
 
-    def array(self, ctx: moderngl.Context, program: moderngl.Program, kind: str) -> moderngl.VertexArray:
-        """Return the vertex array for `program`; `kind` is depth, plain or textured."""
+    def array(
+        self, ctx: moderngl.Context, program: moderngl.Program, kind: str, rods: Rods | None = None
+    ) -> moderngl.VertexArray:
+        """Return the vertex array for `program`; `kind` is depth, plain or textured. rods: for a program that
+        asks for each vertex's limb.
+        """
         if program.glo not in self.arrays:
             layout, names = _LAYOUTS[kind]
-            content = [(self.positions, "3f", "in_position"), (self.vertices, layout, *names)]
+            content: list[Any] = [(self.positions, "3f", "in_position"), (self.vertices, layout, *names)]
+            if rods is not None and "in_limb" in program:
+                if self.limbs is None:
+                    held = np.frombuffer(self.vertices.read(), VERTEX)
+                    self.limbs = ctx.buffer(rods.of(held).tobytes())
+                content.append((self.limbs, "1u1", "in_limb"))
             self.arrays[program.glo] = ctx.vertex_array(program, content, self.indices)
         return self.arrays[program.glo]
 
@@ -59,8 +70,9 @@ class LoadedMesh:
             array.release()
         for texture in self.images.values():
             texture.release()
-        for buffer in (self.vertices, self.positions, self.indices):
-            buffer.release()
+        for buffer in (self.vertices, self.positions, self.indices, self.limbs):
+            if buffer is not None:
+                buffer.release()
 
 
 class Store:

@@ -130,6 +130,7 @@ class Renderer:
         for i in which:
             actor = frame.actors[i]
             cast = frame.light is not None and actor.opacity >= 1
+            rods = actor.figure.rods if cast and actor.count == 1 else None
             for kind in ("plain", "textured"):
                 if not any((b.image is not None) == (kind == "textured") for b in frame.meshes[i].batches):
                     continue
@@ -139,6 +140,7 @@ class Renderer:
                     ("MARKED", bool(actor.marks)),
                     ("SHADOWED", cast),
                     ("SUNK", sunk),
+                    ("OCCLUDED", rods is not None),
                 )
                 words = [w for w, on in flags if on]
                 head = "#version 330 core\n" + "".join(f"#define {w}\n" for w in words)
@@ -165,6 +167,9 @@ class Renderer:
                 )
                 if frame.light is not None:
                     set_uniforms(program, u_light=frame.light)
+                if rods is not None:
+                    starts, ends = rods.placed(self.store.palettes[i][0])
+                    set_uniforms(program, u_rod_starts=starts, u_rod_ends=ends)
                 contact = CONTACT if frame.floor and cast else 0.0
                 set_uniforms(program, u_near_ground=(contact, 1 / (CONTACT_HIGH * actor.figure.height)))
                 self._drawing.triangles(frame.meshes[i], actor, program, kind)

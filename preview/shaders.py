@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from preview.occlusion import FROM_END, FROM_START, LIMBS, OWN, ways
+
 # A triangle that covers the picture.
 COVER = """#version 330 core
 out vec2 v_at;
@@ -228,8 +230,36 @@ void main() { gl_Position = u_matrix * vec4(skin() * vec4(in_position, 1.0), 1.0
 )
 DEPTH = "#version 330 core\nvoid main() {}\n"
 
+_OCCLUSION = f"""
+#ifdef OCCLUDED
+const int RODS = {len(LIMBS)};
+const int WAYS[RODS * RODS] = int[RODS * RODS]({", ".join(str(way) for way in ways().ravel())});
+uniform vec4 u_rod_starts[RODS], u_rod_ends[RODS];  // with the radius; with 1 where there is such a limb
+in uint in_limb;
+out float v_open;
+// How much of the light round about comes here past the other limbs.
+float open_to(vec3 at, vec3 n) {{
+    float left = 1.0;
+    for (int c = 0; c < RODS; ++c) {{
+        int way = in_limb < uint(RODS) ? WAYS[int(in_limb) * RODS + c] : {OWN};
+        vec3 start = u_rod_starts[c].xyz, along = u_rod_ends[c].xyz - start;
+        float t = clamp(dot(at - start, along) / max(dot(along, along), 1e-9), 0.0, 1.0);
+        vec3 to = start + along * t - at;
+        float d = max(length(to), 1e-4), r = u_rod_starts[c].w;
+        float part = min(r * r / (d * d), 1.0) * clamp(dot(n, to) / d * 0.8 + 0.2, 0.0, 1.0);
+        part *= smoothstep(0.75, 1.1, d / max(r, 1e-4));  // within a rod nothing is told
+        float joined = way == {FROM_START} ? t : way == {FROM_END} ? 1.0 - t : 1.0;
+        part *= smoothstep(0.1, 0.6, joined);
+        left *= way == {OWN} ? 1.0 : 1.0 - 0.85 * part * u_rod_ends[c].w;
+    }}
+    return left;
+}}
+#endif
+"""
+
 BODY_VERTEX = (
     _SKIN
+    + _OCCLUSION
     + """
 uniform mat4 u_matrix;
 in vec3 in_normal;
@@ -256,6 +286,9 @@ void main() {
         v_mark += vec4(mark.rgb * texelFetch(u_marks, ivec2(int(in_bones[i]), u_marks_row), 0).a, mark.a);
     }
 #endif
+#ifdef OCCLUDED
+    v_open = open_to(v_world, normalize(v_normal));
+#endif
     gl_Position = u_matrix * vec4(v_world, 1.0);
 }
 """
@@ -275,6 +308,9 @@ in vec2 v_uv;
 in vec4 v_color;
 #ifdef MARKED
 in vec4 v_mark;
+#endif
+#ifdef OCCLUDED
+in float v_open;
 #endif
 out vec4 o_color;
 void main() {
@@ -302,6 +338,10 @@ void main() {
     vec3 fill = mix(u_below, u_above, up) * (1.0 - 0.25 * away);
     float under = max(0.0, 1.0 - v_world.y * u_near_ground.y);  // soles and hems are darker, above all beneath
     fill *= 1.0 - u_near_ground.x * under * under * (0.65 - 0.35 * n.y);
+#ifdef OCCLUDED
+    fill *= v_open;
+    light *= 0.6 + 0.4 * v_open;  // the lamp is large: its edges are hidden, too
+#endif
     fill += u_above * (0.22 * clamp(dot(n, v), 0.0, 1.0));  // a weak lamp beside the camera
     float edge = away * away;
     float rim = edge * edge * (0.35 + 0.65 * up);
