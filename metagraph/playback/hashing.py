@@ -40,7 +40,11 @@ def _absorbed(value: Bits, word: str) -> Bits:
 _kept = lru_cache(maxsize=512)(_absorbed)
 
 
-@lru_cache(maxsize=64)
 def begun(seed: Bits) -> Bits:
     """Return the hash before any word: the seed, mixed, xored into FNV's offset basis."""
+    return _seeded(seed)
+
+
+@lru_cache(maxsize=64)
+def _seeded(seed: Bits) -> Bits:
     return (OFFSET ^ mix(seed)) & _MASK
