@@ -5,6 +5,7 @@ anything.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -166,6 +167,7 @@ def _character(project: Project) -> Iterator[Problem]:
 
 def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
     layer = graph.layer
+    led_to = reachable(graph, graph.start or "")
     for stance in graph.stances.values():
 
         def at(
@@ -197,7 +199,7 @@ def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
                 f"stance '{stance.name}' cannot be left",
                 "Drop a clip on its transition node.",
             )
-        if graph.start in graph.stances and stance.id not in reachable(graph, graph.start or ""):
+        if graph.start in graph.stances and stance.id not in led_to:
             yield at(
                 "warning",
                 "unreachable",
@@ -258,7 +260,7 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
                 "ends in the stance it starts from",
                 "Choose another end stance, or make it a gesture.",
             )
-    if not (np.isfinite(action.likelihood) and action.likelihood > 0):
+    if not (isfinite(action.likelihood) and action.likelihood > 0):
         yield at(
             "error",
             "likelihood",
@@ -310,7 +312,7 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
         )
     for name, blend in (("in", timing.blend_in), ("out", timing.blend_out)):
         if not _sound(blend):
-            severity: Severity = "warning" if np.isfinite(blend) else "error"  # a negative one plays as none
+            severity: Severity = "warning" if isfinite(blend) else "error"  # a negative one plays as none
             yield at(
                 severity, "blend", f"blends {name} for {blend:g} s", f"Set its blend {name} to 0 s or more."
             )
@@ -325,7 +327,7 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
 
 
 def _sound(seconds: float) -> bool:
-    return bool(np.isfinite(seconds) and seconds >= 0)
+    return isfinite(seconds) and seconds >= 0
 
 
 def _ends(

@@ -66,7 +66,8 @@ from metagraph.playback.life.track import Speech
 from metagraph.playback.overlay import Overlay, overlaid
 from metagraph.playback.phases import phases
 from metagraph.playback.plan import Plan
-from metagraph.playback.running_plan import CUT, RECENT, RunningPlan
+from metagraph.playback.plan_head import RECENT
+from metagraph.playback.running_plan import CUT, RunningPlan
 from metagraph.playback.weight import LOOKS_BACK
 
 AGAIN = 0.25  # seconds for which a layer without room is not tried again

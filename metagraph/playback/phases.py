@@ -9,7 +9,7 @@ retracts from where it is farthest.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 from weakref import ref
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from metagraph.graph import anatomy
 from metagraph.graph.model import Action, Layer, MetaGraph, Project
+from metagraph.graph.remembered import Latest
 from metagraph.motion.clip import Clip
 from metagraph.playback.phase_times import Phases
 
@@ -83,7 +84,19 @@ def _within(own: float | None, found: float, start: float, end: float) -> float:
 
 def movers(project: Project, motion: Clip, layer: Layer, limb: str) -> tuple[tuple[int, ...], int]:
     """Return the joints that make the gesture and the joint they are seen from."""
-    roles = anatomy.roles(project) if motion.skeleton == project.skeleton else {}
+    if motion.skeleton != project.skeleton:
+        return _movers({}, motion, layer, limb)
+    known = _of_skeleton(project)
+    found = known.get((layer, limb))
+    if found is None:
+        found = known[layer, limb] = _movers(anatomy.roles(project), motion, layer, limb)
+    return found
+
+
+_of_skeleton: Latest[dict[tuple[Layer, str], tuple[tuple[int, ...], int]]] = Latest(lambda _: {})
+
+
+def _movers(roles: Mapping[str, int], motion: Clip, layer: Layer, limb: str) -> tuple[tuple[int, ...], int]:
     if layer == "arms":
         names: Sequence[str] = [f"{side}_hand" for side in ("left", "right") if limb in (side, "both")]
         ground: Sequence[str] = ("upper_chest", "chest", "spine", "hips")

@@ -15,6 +15,7 @@ from metagraph.playback.life.schedule import schedule
 from metagraph.playback.life.wanted import moods_of
 from metagraph.playback.mood import Moods, mood_at, stirs
 from metagraph.playback.plan import LayerPlan, MetaAction, MetaRequest, Plan, Report
+from metagraph.playback.plan_head import head_of, keep_head
 
 
 def make_plan(
@@ -58,25 +59,34 @@ def extend(
     layers: dict[Layer, LayerPlan] = {}
     reports: list[Report] = []
     moods = moods_of(project.life, plan.track)
+    head = head_of(project, plan, now, again)
+    told = plan.reports if head is None else plan.reports[head.reports :]
     for layer in LAYERS:
+        old = plan.layers[layer]
         if layer in leave:
-            layers[layer] = plan.layers[layer]
-            reports += [r for r in plan.reports if r.layer == layer and r.request not in again]
+            layers[layer] = old
+            reports += [r for r in told if r.layer == layer and r.request not in again]
             continue
         graph, chain = project.graphs[layer], markov.model(project, layer)
         stance = (stances or {}).get(layer)
         drafted = draft(
-            project, graph, chain if idle else None, {kind for _, kind in graph.index}, plan.layers[layer],
-            plan.reports, plan.seed, now, fresh, again, end, stance, moods,
+            project, graph, chain if idle else None, {kind for _, kind in graph.index},
+            old if head is None else head.rest(old), told, plan.seed, now, fresh, again, end, stance, moods,
         )  # fmt: skip
         metas = [m for m in drafted.placed if not m.written or _performed(chain, plan, layer, m, moods)]
-        layers[layer] = drafted.performed(metas, end)
+        made = drafted.performed(metas, end)
+        layers[layer] = made if head is None else head.whole(old, made)
         reports += drafted.reports
-    kept = tuple(r for r in plan.requests if r.id not in again)
+    kept = tuple(r for r in plan.requests if r.id not in again) if again else plan.requests
+    before = () if head is None else plan.reports[: head.reports]
     life = schedule(project.life, plan.track, project.voices, plan.seed, end, plan.life, now)
-    return Plan(
-        plan.seed, end, layers, tuple(sorted(reports, key=lambda r: r.at)), kept + fresh, plan.track, life
-    )
+    out = Plan(
+        plan.seed, end, layers, before + tuple(sorted(reports, key=lambda r: r.at)), kept + fresh,
+        plan.track, life,
+    )  # fmt: skip
+    if head is not None:
+        keep_head(out, head)
+    return out
 
 
 def _performed(chain: Markov, plan: Plan, layer: Layer, meta: MetaAction, moods: Moods) -> bool:

@@ -21,13 +21,13 @@ from metagraph.playback.hearing import owners
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.track import Item, track_of
 from metagraph.playback.plan import Cue, LayerPlan, MetaAction, MetaRequest, Plan, Report, Rest
+from metagraph.playback.plan_head import RECENT
 
 AHEAD = 20.0  # seconds of plan
 SLACK = 2.0  # seconds by which a plan may fall behind its horizon before it is extended
 REPLAYED = (
     10.0  # seconds planned at a time where nobody waits for an answer, beyond what a live session plans
 )
-RECENT = 30.0  # seconds of past that are planned on from; what lies before costs nothing
 CUT = 15.0  # seconds between two cuts
 LANES = ("modes", "moods", "breaths", "aversions", "saccades", "blinks", "swells", "emphases")
 

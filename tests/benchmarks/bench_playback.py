@@ -331,6 +331,11 @@ def main() -> None:
         "extend an hour's plan by a minute",
         [clock(lambda: extend(sample, hour, 3590, (), 3660)) for _ in range(7)],
     )
+    day = make_plan(sample, 36000)
+    row(
+        "extend a plan of ten hours by a minute",
+        [clock(lambda: extend(sample, day, 35990, (), 36060)) for _ in range(7)],
+    )
 
     times = np.random.default_rng(1).uniform(0, 3600, 400)
     pose_at(hour, sample, times, alive=False)
