@@ -545,7 +545,7 @@ def test_the_node_moves_a_skeletons_bones(game: Path) -> None:
     assert out["began"] >= 1
     assert out["answer"] in ("planned", "late")  # the line makes a gesture of its own
     assert out["broken"] == "refused"
-    assert out["said"] == ["said#1", 0, ["said#2", "said#3"], True, True, "", []]
+    assert out["said"] == [True, "said#1", 0, ["said#2", "said#3"], True, True, "", []], "lines have their own"
 
 
 NODE = """extends SceneTree
@@ -580,10 +580,11 @@ func _init():
 	avatar.connect("began", self, "_on_began")
 	asked = avatar.gesture([], {"after": 0.5})
 	avatar.look(Vector3(1.0, 1.5, 2.0))
-	said = [avatar.say("hello"), avatar.say_piece("Hello").size(), avatar.say_piece(" there! No", true)]
-	said.append(avatar.say("hello", {"gestures": false}).begins_with("#"))
+	said = [avatar.say("hello").begins_with("#"), avatar.say("no such line"), avatar.say_piece("Hello").size()]
+	said.append(avatar.say_piece(" there! No", true))
+	said.append(avatar.say("Hello you", {"gestures": false}).begins_with("#"))
 	avatar.gestures = false
-	said.append(avatar.say("hello").begins_with("#"))
+	said.append(avatar.say("Hello you").begins_with("#"))
 	avatar.go("none such")
 	broken = Node3.new()
 	broken.json_path = "res://none.json"

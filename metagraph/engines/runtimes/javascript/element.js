@@ -20,6 +20,7 @@ canvas { position: absolute; inset: 0; width: 100%; height: 100%; display: block
 p { position: absolute; inset: auto 12px 10px; margin: 0; font: 14px/1.4 system-ui, sans-serif; color: #888; pointer-events: none; white-space: pre-line; }
 p.wrong { color: #c8372d; inset: 40% 12px auto; text-align: center; }`;
 const LONGEST = 0.25; // seconds a frame moves on at most, after a page was hidden
+const PREPARING = 2; // milliseconds of a frame for motions that may play later
 
 const loaded = new Map(); // address -> what lies there: characters of one export share it
 
@@ -30,6 +31,7 @@ async function fetched(url) {
   return answer;
 }
 
+/** Return an export's files, its data, and `graph()`, which reads it once and tells what is wrong with it. */
 async function exported(url) {
   const text = await (await fetched(url)).text();
   let data = {};
@@ -39,7 +41,8 @@ async function exported(url) {
     load(text, new ArrayBuffer(0), url); // tells what is wrong
   }
   const bytes = await (await fetched(new URL(data.glb, url))).arrayBuffer();
-  return { graph: load(text, bytes, url), bytes, lines: data.lines ?? {} };
+  let graph = null;
+  return { bytes, data, graph: () => (graph ??= load(text, bytes, url)) };
 }
 
 export class MetagraphCharacter extends HTMLElement {
@@ -115,20 +118,25 @@ export class MetagraphCharacter extends HTMLElement {
     this.tell("Loading…");
     try {
       if (!loaded.has(url.href)) loaded.set(url.href, exported(url));
-      const { graph, bytes, lines } = await loaded.get(url.href);
-      if (this.opening !== opening) return;
+      loaded.get(url.href).catch(() => {}); // told where it is waited for
       const fresh = this.canvas.cloneNode(); // a canvas whose context was given back draws no more
       this.canvas.replaceWith(fresh);
       this.canvas = fresh;
-      const stage = (this.stage = new Stage(this.canvas, this.hasAttribute("controls")));
-      stage.view(this.getAttribute("camera") ?? "");
-      const chain = graph.body?.chain ?? [];
-      const scene = await stage.add(bytes, graph.joints[chain[chain.length - 1]]);
+      const stage = (this.stage = new Stage(this.canvas, this.hasAttribute("controls"))); // while the files come
+      const { bytes, data, graph: read } = await loaded.get(url.href);
       if (this.opening !== opening) return; // and the stage was given back
+      const chain = data.rig?.chain ?? [];
+      const shown = await stage.add(bytes, data.joints?.[chain[chain.length - 1]]?.name).catch((error) => ({ error }));
+      if (this.opening !== opening) return;
+      stage.view(this.getAttribute("camera") ?? "");
       this.paint();
+      if (!shown.error) stage.compile(); // the graphics card's part, while this one reads on
+      const graph = read(); // which says best what is wrong
+      if (shown.error) throw shown.error;
+      const scene = shown;
       const seed = this.hasAttribute("seed") ? Number(this.getAttribute("seed")) >>> 0 : undefined;
       this.object = new MetagraphObject(graph, scene, { seed, idle: this.getAttribute("idle") !== "off" });
-      this.sounds = new Sounds(lines, url);
+      this.sounds = new Sounds(data.lines ?? {}, url);
       const language = this.closest("[lang]")?.lang || "en";
       this.talk = new Talk(this.object.character, { language, seed: seed ?? 1, name: "said#" });
       if (this.hasAttribute("mood")) this.object.ask({ do: "mood", mood: this.getAttribute("mood") });
@@ -169,6 +177,7 @@ export class MetagraphCharacter extends HTMLElement {
     for (const happening of this.object.events()) this.dispatchEvent(new CustomEvent(happening.kind, { detail: happening }));
     if (this.drawn || first) this.stage.draw();
     if (first) performance.mark("first pose");
+    else this.character.graph.prepare(PREPARING);
     this.dispatchEvent(new CustomEvent("frame", { detail: delta }));
   }
 

@@ -36,8 +36,8 @@ export class Glb {
     this.animations = this.document.animations ?? [];
   }
 
-  /** Return an accessor's values as numbers, those of normalised integers from -1 to 1. @returns {Float32Array} */
-  values(index) {
+  /** Return where an accessor's values lie and how they are read. Throws GlbError for what is not read here, or not there. */
+  placed(index) {
     const accessor = this.document.accessors?.[index];
     const source = this.document.bufferViews?.[accessor?.bufferView];
     const [size, read, most] = COMPONENTS[accessor?.componentType] ?? [];
@@ -46,11 +46,16 @@ export class Glb {
     const begin = (source.byteOffset ?? 0) + (accessor.byteOffset ?? 0);
     const stride = source.byteStride ?? size * width;
     if (begin + (accessor.count - 1) * stride + size * width > this.binary.byteLength) throw new GlbError("is cut short");
-    const out = new Float32Array(accessor.count * width);
-    const scale = accessor.normalized ? most : 1;
+    return { begin, stride, size, width, read, count: accessor.count, normalized: accessor.normalized, scale: accessor.normalized ? most : 1 };
+  }
+
+  /** Return an accessor's values as numbers, those of normalised integers from -1 to 1. @returns {Float32Array} */
+  values(index) {
+    const { begin, stride, size, width, read, count, normalized, scale } = this.placed(index);
+    const out = new Float32Array(count * width);
     for (let n = 0; n < out.length; n++) {
       const at = begin + Math.floor(n / width) * stride + (n % width) * size;
-      out[n] = Math.max(this.binary[read](at, true) / scale, accessor.normalized ? -1 : -Infinity);
+      out[n] = Math.max(this.binary[read](at, true) / scale, normalized ? -1 : -Infinity);
     }
     return out;
   }
@@ -60,14 +65,28 @@ export class Glb {
     return this.nodes[node][path] ?? (path === "rotation" ? [0, 0, 0, 1] : [0, 0, 0]);
   }
 
-  /** Return the tracks of an animation: node, path, key times (seconds) and values. */
-  tracks(animation) {
-    return this.animations[animation].channels.map(({ sampler, target }) => {
-      const { input, output, interpolation = "LINEAR" } = this.animations[animation].samplers[sampler];
+  /** Return the channels of an animation, node and path, once all they need is there and of a kind that is read. */
+  checked(animation) {
+    const { channels, samplers } = this.animations[animation];
+    return channels.map(({ sampler, target }) => {
+      const { input, output, interpolation = "LINEAR" } = samplers[sampler] ?? {};
       if (interpolation === "CUBICSPLINE") throw new GlbError("has cubic animations; Metagraph writes linear ones");
-      const [times, values] = [this.values(input), this.values(output)];
-      return { node: target.node, path: target.path, times, values, steps: interpolation === "STEP" };
+      this.placed(input);
+      this.placed(output);
+      return { node: target.node, path: target.path };
     });
+  }
+
+  /** Return the tracks of an animation: node, path, key times (seconds) and values. @param {(target: object) => boolean} [wanted] */
+  tracks(animation, wanted = () => true) {
+    const { channels, samplers } = this.animations[animation];
+    return channels
+      .filter(({ target }) => wanted(target))
+      .map(({ sampler, target }) => {
+        const { input, output, interpolation } = samplers[sampler];
+        const [times, values] = [this.values(input), this.values(output)];
+        return { node: target.node, path: target.path, times, values, steps: interpolation === "STEP" };
+      });
   }
 
   /** Return the names of a mesh node's morph targets. */

@@ -2,20 +2,19 @@
 
 import { readContactRig, readContacts, strengthOf } from "./contacts.js";
 import { readBody } from "./life/body.js";
-import { Glb, GlbError, resample } from "./glb.js";
+import { Offsets, readClips } from "./clips.js";
+import { Glb, GlbError } from "./glb.js";
 import { hear } from "./hear.js";
 import { readLife } from "./life.js";
 import { Markov, Settings, Stance, Timing } from "./model.js";
 import { Phases } from "./phase_times.js";
 import { emptyPlan } from "./plan.js";
 import { morphsAt, poseAt } from "./pose.js";
-import { multiply } from "./rotation.js";
 import { Voices } from "./voice.js";
 import { readArmTracks, readFootTracks, readWeightRig } from "./weight.js";
 import { LAYERS, inRange } from "./words.js";
 
 export const FORMAT = 1; // the newest version of the export that is read here
-const MOVED = 1e-7; // metres below which a translation is none
 
 /** What cannot be loaded: which file, where in it, what is wrong, and what to do about it. */
 export class MetagraphError extends Error {
@@ -62,7 +61,7 @@ export function load(json, glb, file = "the export") {
 /** Plan and pose once, so that what does not fit together shows now rather than in a game's loop. */
 function tried(graph) {
   const plan = hear(graph, emptyPlan(graph.settings.seed), 0, [], 10);
-  for (const time of [0, 2.5, 5]) {
+  for (const time of [0]) {
     const { rotations, translations } = poseAt(graph, plan, time);
     const weights = Object.values(morphsAt(graph, plan, time));
     if (![...rotations, ...translations, ...weights].every(Number.isFinite)) throw new Error("its poses are no numbers");
@@ -94,11 +93,11 @@ export class Graph {
     this.points = new Map(Object.entries(data.points ?? {}));
     this.lines = new Map(Object.entries(data.lines ?? {}));
     this.voices = new Voices(data.voices);
+    this.unmade = []; // offsets that nobody has needed yet
     this.clips = readClips(data, glb, this.joints, this.problems);
     const durations = new Map(data.clips.map((clip) => [clip.id, (clip.frames - 1) / clip.fps]));
     const layerGraph = (layer) => new LayerGraph(layer, data.layers[layer], data.joints, durations, this);
     this.layers = Object.fromEntries(LAYERS.map((layer) => [layer, layerGraph(layer)]));
-    for (const clip of this.clips.values()) clip.rotations = clip.translations = null; // only offsets are played
     this.body = data.rig ? readBody(data.rig) : null;
     this.contactRig = readContactRig(data.contact_rig, this.joints);
     this.weightRig = readWeightRig(data.weight_rig, this.joints.length);
@@ -108,6 +107,16 @@ export class Graph {
     /** Names of all morph targets that anything here moves. */
     this.morphs = [...new Set([...own, ...(this.body?.face.morphs ?? []).map((morph) => morph.name)])];
     for (const clip of this.clips.values()) for (const morph of clip.morphs) morph.place = this.morphs.indexOf(morph.name);
+  }
+
+  /**
+   * Make motions that were not played yet, which otherwise is done when they first play, for so many milliseconds and one at least.
+   * Returns how many are left. @param {number} [milliseconds] all of them where it is left out
+   */
+  prepare(milliseconds = Infinity) {
+    const end = performance.now() + milliseconds;
+    while (this.unmade.length && void this.unmade.pop().value === undefined && performance.now() < end);
+    return this.unmade.length;
   }
 
   /** Return the seconds of its clip between which an action plays. */
@@ -170,7 +179,11 @@ export class LayerGraph {
     const told = Math.min(Math.max(data.stroke ?? (start + end) / 2, start), end);
     const [ready, stroke, strokeEnd, relax] = data.phases?.length === 4 ? data.phases : [told, told, told, told];
     const motion = graph.clips.get(clip) ?? null;
-    if (motion && !offsets.has(clip)) offsets.set(clip, offsetsOf(motion, this.reach, graph));
+    if (motion && !offsets.has(clip)) {
+      offsets.set(clip, new Offsets(motion, this.reach, graph));
+      graph.unmade.push(offsets.get(clip));
+    }
+    const held = offsets.get(clip) ?? null;
     const other = { left: "right", right: "left" }[limb];
     const masked = (joint) => data.joints.length > 0 && !data.joints.includes(joint.name);
     const weights = Object.entries(data.joint_weights ?? {}).map(([joint, w]) => [joint, inRange(w, 0, 1, `action ${id}'s joint weight`)]);
@@ -184,86 +197,13 @@ export class LayerGraph {
       timing: new Timing(start, end, number("blend_in"), number("blend_out"), kind === "stance", data.earliest_exit ?? null),
       phases: new Phases(start, ready, stroke, strokeEnd, relax, end), cooldown: number("cooldown", 0), spacing: data.spacing ?? null,
       vigour: inRange(data.vigour ?? 0, -1, 1, `action ${id}'s vigour`),
-      offsets: offsets.get(clip) ?? null,
+      /** Made when they are first needed; null where the clip is missing. */
+      get offsets() {
+        return held && (held.found ?? held.value);
+      },
       partly,
     };
   }
 }
 
 const NOTHING = [];
-
-/** Return clip id -> fps, frames, rotations [F, J, 4], translations [F, J, 3], morphs: name and weights [F]. */
-function readClips(data, glb, joints, problems) {
-  const nodes = joints.map((joint) => glb.nodes.findIndex((node) => node.name === joint));
-  if (nodes.every((node) => node < 0)) throw new GlbError("has none of the export's joints; it is another's");
-  nodes.forEach((node, n) => {
-    if (node < 0) problems.push(`the GLB has no joint '${joints[n]}'; it stays as in the rest pose`);
-  });
-  const rest = data.joints.map((joint, n) =>
-    nodes[n] < 0 ? joint : { translation: glb.own(nodes[n], "translation"), rotation: glb.own(nodes[n], "rotation") },
-  );
-  const out = new Map();
-  for (const { id, name, animation, fps, frames } of data.clips) {
-    inRange(fps, 1e-3, 1e6, `clip ${id}'s fps`);
-    inRange(frames, 1, 1e6, `clip ${id}'s frames`);
-    const place = glb.animations[animation]?.name === name ? animation : glb.animations.findIndex((found) => found.name === name);
-    if (place < 0) problems.push(`the GLB has no animation '${name}'; its actions show their stance`);
-    else out.set(id, { fps, frames, ...readClip(glb, glb.tracks(place), nodes, rest, frames, fps) });
-  }
-  return out;
-}
-
-function readClip(glb, tracks, nodes, rest, frames, fps) {
-  const still = (path) => rest.flatMap((joint) => joint[path]);
-  const [rotation, translation] = [still("rotation"), still("translation")];
-  const rotations = new Float32Array(frames * rotation.length);
-  const translations = new Float32Array(frames * translation.length);
-  for (let f = 0; f < frames; f++) {
-    rotations.set(rotation, f * rotation.length);
-    translations.set(translation, f * translation.length);
-  }
-  const joint = new Map(nodes.map((node, n) => [node, n]));
-  const morphs = [];
-  for (const track of tracks) {
-    const values = resample(track, frames, fps);
-    const width = values.length / frames;
-    if (track.path === "weights") {
-      const column = (n) => Float32Array.from({ length: frames }, (_, f) => values[f * width + n]);
-      glb.morphNames(track.node).forEach((name, n) => morphs.push({ name, place: -1, weights: column(n) }));
-    } else if (joint.has(track.node) && (track.path === "rotation" || track.path === "translation")) {
-      const out = track.path === "rotation" ? rotations : translations;
-      const at = (f) => (f * nodes.length + joint.get(track.node)) * width;
-      for (let f = 0; f < frames; f++) out.set(values.subarray(f * width, (f + 1) * width), at(f));
-    }
-  }
-  return { rotations, translations, morphs };
-}
-
-/**
- * Return a clip relative to the base pose, for the joints a layer reaches: rotations [F, n, 4], neighbours on the same side;
- * translations [F, m, 3] for the places `moved` [m] in the reach.
- */
-function offsetsOf({ frames, rotations, translations }, reach, graph) {
-  const { baseRotations: base, baseTranslations, joints } = graph;
-  const inverse = base.map((x, n) => (n % 4 === 3 ? x : -x));
-  const turned = new Float32Array(frames * reach.length * 4);
-  for (let f = 0, o = 0; f < frames; f++) {
-    for (let n = 0; n < reach.length; n++, o += 4) {
-      multiply(turned, o, inverse, 4 * reach[n], rotations, 4 * (f * joints.length + reach[n]));
-      const before = o - 4 * reach.length;
-      if (f === 0) continue;
-      let dot = 0;
-      for (let k = 0; k < 4; k++) dot += turned[o + k] * turned[before + k];
-      if (dot < 0) for (let k = 0; k < 4; k++) turned[o + k] *= -1;
-    }
-  }
-  const away = (f, n, k) => translations[3 * (f * joints.length + reach[n]) + k] - baseTranslations[3 * reach[n] + k];
-  const moves = (n) => {
-    for (let f = 0; f < frames; f++) for (let k = 0; k < 3; k++) if (Math.abs(away(f, n, k)) > MOVED) return true;
-    return false;
-  };
-  const moved = Int32Array.from(reach.keys()).filter(moves);
-  const shifted = new Float32Array(frames * moved.length * 3);
-  for (let f = 0, o = 0; f < frames; f++) for (const n of moved) for (let k = 0; k < 3; k++) shifted[o++] = away(f, n, k);
-  return { rotations: turned, translations: shifted, moved };
-}

@@ -39,6 +39,7 @@ export class Stage {
     this.sizes = new ResizeObserver(() => this.resize());
     this.sizes.observe(canvas);
     this.view("body");
+    this.filled = false; // whether there is somebody to draw
     this.resize();
   }
 
@@ -119,18 +120,22 @@ export class Stage {
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     if (!this.controls) this.view(this.framed);
-    this.draw();
+    if (this.filled) this.draw();
   }
 
   /** Add a GLB; return its scene. @param {ArrayBuffer} bytes @param {string} [head] name of the head's node */
   async add(bytes, head = "") {
-    const { scene } = await new GLTFLoader().parseAsync(bytes.slice(0), "");
+    const loader = new GLTFLoader();
+    loader.register(unanimated);
+    const { scene } = await loader.parseAsync(bytes, "");
     let drawn = false;
+    const meshes = new Map(); // by what their vertices are: parts of different materials share them
     scene.traverse((object) => {
       if ((object.userData.name ?? object.name) === head) this.head = object;
       if (!object.isMesh) return;
       drawn = object.castShadow = object.receiveShadow = true;
       object.frustumCulled = false; // its bounds are those of the rest pose
+      meshes.set(object.geometry.attributes.position, object);
     });
     this.scene.add(scene);
     if (!drawn) {
@@ -138,7 +143,10 @@ export class Stage {
       this.bones = new SkeletonHelper(scene);
       this.scene.add(this.bones);
     }
-    const bounds = new Box3().setFromObject(scene);
+    scene.updateMatrixWorld();
+    const bounds = new Box3();
+    for (const mesh of meshes.values()) bounds.union(new Box3().setFromBufferAttribute(mesh.geometry.attributes.position).applyMatrix4(mesh.matrixWorld));
+    this.filled = true;
     if (drawn && bounds.max.y - bounds.min.y > 0.1) this.bounds = bounds;
     this.view(this.framed);
     return scene;
@@ -151,6 +159,11 @@ export class Stage {
     const between = new Vector3(0, 1.4, 0).lerp(this.camera.position, 0.45);
     const ahead = new Plane().setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(new Vector3()), between);
     return this.ray.ray.intersectPlane(ahead, new Vector3())?.toArray() ?? null;
+  }
+
+  /** Begin to make the programs that draw what is there, without waiting for them. */
+  compile() {
+    this.renderer.compile(this.scene, this.camera);
   }
 
   draw() {
@@ -173,6 +186,12 @@ export class Stage {
     this.renderer.dispose();
     this.renderer.forceContextLoss();
   }
+}
+
+/** Leave out the animations of a GLB, which the character plays by itself: thousands of tracks that take long to make. */
+function unanimated(parser) {
+  delete parser.json.animations;
+  return { name: "METAGRAPH_unanimated" };
 }
 
 /** Return a texture that fades out from its middle, so that the floor has no edge. */
