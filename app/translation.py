@@ -2,7 +2,8 @@
 
 English stands in the code, inside `tr`; a language is a file of English texts and what stands in their place
 (`languages/de.json`), the form that translation services call flat JSON. What a language lacks is shown in
-English. It is chosen once, before the window is made; what the domain says of files and graphs is English.
+English. It is chosen once, before the window is made. What the domain says of files and graphs knows its
+templates (`metagraph.wording`) and is translated where it is shown.
 """
 
 from __future__ import annotations
@@ -11,6 +12,8 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+
+from metagraph.wording import reworded
 
 ENGLISH = "en"
 NAMES = {"en": "English", "de": "Deutsch"}  # languages by what they call themselves
@@ -25,6 +28,17 @@ def tr(text: str, **values: object) -> str:
     """
     found = _words.get(text, text)
     return found.format(**values) if values else found
+
+
+def tr_told(words: str) -> str:
+    """Return what the domain says in the language that was chosen, where it knows how it was made."""
+    return reworded(words, lambda template: _words.get(template, template)) if _words else words
+
+
+def tr_error(error: object) -> str:
+    """Return what an error says, in the language that was chosen."""
+    first = error.args[0] if isinstance(error, BaseException) and error.args else ""
+    return tr_told(first) if isinstance(first, str) and str(error) == first else str(error)
 
 
 def tr_noop(text: str) -> str:
