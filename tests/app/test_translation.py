@@ -13,6 +13,7 @@ import pytest
 
 import metagraph
 from app import translation
+from app.look.plural import many
 from app.translation import tr, tr_error, tr_told
 from metagraph.errors import FileError
 from metagraph.graph import edits
@@ -137,6 +138,18 @@ def test_errors_are_said_in_the_language_as_far_as_they_know_their_templates(eng
     assert tr_error(plain) == str(plain) == "a.bvh: it is odd."
     assert tr_error(OSError(2, "No such file")) == "[Errno 2] No such file"
     assert tr_error(ValueError()) == "" and tr_told("words of nobody") == "words of nobody"
+
+
+def test_what_was_said_is_known_in_english_for_logs(english: None) -> None:
+    assert translation.in_english(tr("Set base pose")) == "Set base pose"
+    translation.choose("de")
+    german = tr("Duplicate {clips}", clips=many(3, "clip"))
+    assert german != "Duplicate 3 clips" == translation.in_english(german)
+    assert translation.in_english("nobody said this") == "nobody said this"
+    for n in range(translation.REMEMBERED + 10):
+        tr("no such text {n}", n=n)
+    assert len(translation._english) == translation.REMEMBERED, "it does not grow for ever"
+    assert translation.in_english(german) == german
 
 
 def test_what_a_language_lacks_is_english(english: None) -> None:
