@@ -2,20 +2,27 @@
 
 English stands in the code, inside `tr`; a language is a file of English texts and what stands in their place
 (`languages/de.json`), the form that translation services call flat JSON. What a language lacks is shown in
-English. It is chosen once, before the window is made; what the domain says of files and graphs is English.
+English. It is chosen once, before the window is made. What the domain says of files and graphs knows its
+templates (`metagraph.wording`) and is translated where it is shown.
 """
 
 from __future__ import annotations
 
 import os
+from collections import OrderedDict
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from metagraph.wording import reworded
+
 ENGLISH = "en"
 NAMES = {"en": "English", "de": "Deutsch"}  # languages by what they call themselves
 
+REMEMBERED = 2048  # texts
+
 _words: Mapping[str, str] = {}
+_english: OrderedDict[str, str] = OrderedDict()  # what was lately shown, and what that is in English
 _language = ENGLISH
 
 
@@ -24,7 +31,36 @@ def tr(text: str, **values: object) -> str:
     it; without any, braces are braces.
     """
     found = _words.get(text, text)
-    return found.format(**values) if values else found
+    if not _words:
+        return found.format(**values) if values else found
+    shown = found.format(**values) if values else found
+    _english[shown] = text.format(**{k: _in_english(v) for k, v in values.items()}) if values else text
+    _english.move_to_end(shown)
+    if len(_english) > REMEMBERED:
+        _english.popitem(last=False)
+    return shown
+
+
+def in_english(text: str) -> str:
+    """Return what was lately said, by `tr`, in the language that was chosen, in English: for logs that are to
+    be read by others. A text that was not is returned as it is.
+    """
+    return _english.get(text, text)
+
+
+def _in_english(value: object) -> object:
+    return _english.get(value, value) if isinstance(value, str) else value
+
+
+def tr_told(words: str) -> str:
+    """Return what the domain says in the language that was chosen, where it knows how it was made."""
+    return reworded(words, lambda template: _words.get(template, template)) if _words else words
+
+
+def tr_error(error: object) -> str:
+    """Return what an error says, in the language that was chosen."""
+    first = error.args[0] if isinstance(error, BaseException) and error.args else ""
+    return tr_told(first) if isinstance(first, str) and str(error) == first else str(error)
 
 
 def tr_noop(text: str) -> str:
@@ -42,6 +78,7 @@ def choose(code: str) -> None:
     global _words, _language
     found = code if code in NAMES else ENGLISH
     _words, _language = words_of(found), found
+    _english.clear()
 
 
 def words_of(code: str) -> dict[str, str]:

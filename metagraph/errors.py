@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from metagraph.wording import told
+
 
 def shown(text: str) -> str:
     """Return text from a file fit for a message: one line, no control characters, not endless."""
+    if text.isprintable() and len(text) <= 400:
+        return text
     text = "".join(c if c.isprintable() else "\ufffd" for c in text)
     return text if len(text) <= 400 else f"{text[:400]} ..."
 
@@ -20,8 +24,12 @@ class FileError(Exception):
     def __init__(self, path: str | Path, cause: str, where: str = "", remedy: str = "") -> None:
         self.path, self.cause, self.where, self.remedy = Path(path), cause, where, remedy
         name = shown(self.path.name)  # a name may be bytes in no known encoding
-        place = f"{name}, {shown(where)}" if where else name
-        super().__init__(f"{place}: {shown(cause)}." + (f" {remedy}" if remedy else ""))
+        place = told("{file}, {where}", file=name, where=shown(where)) if where else name
+        words = "{place}: {cause}. {remedy}" if remedy else "{place}: {cause}."
+        super().__init__(told(words, place=place, cause=shown(cause), remedy=remedy))
+
+    def __str__(self) -> str:
+        return str(self.args[0])
 
     def __reduce__(self) -> tuple[type[FileError], tuple[Path, str, str, str]]:
         return type(self), (self.path, self.cause, self.where, self.remedy)

@@ -16,7 +16,7 @@ from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.project.opening import with_motion_of
 from app.project.writing import Writing, project_name
-from app.translation import tr
+from app.translation import in_english, tr
 from metagraph.errors import FileError
 from metagraph.formats.history import Step
 from metagraph.formats.journal import How, Journal, journal_path
@@ -37,6 +37,7 @@ class _Change(QUndoCommand):
         self, document: Document, text: str, before: Project, after: Project, merge: str | None
     ) -> None:
         super().__init__(text)
+        self.english = in_english(text)  # what logs call it
         self.document, self.before, self.after, self.merge = document, before, after, merge
         self.cancelled = False
         self._how: How = "done"

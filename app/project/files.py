@@ -23,7 +23,7 @@ from app.project.questions import ask_held, holder_words
 from app.project.recovering import Choice, ask_recover
 from app.project.saver import Saver
 from app.project.unsaved import Unsaved, not_steps
-from app.translation import tr
+from app.translation import tr, tr_error
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.history import Step
@@ -198,7 +198,7 @@ class Files(QObject):
         """Say what went wrong with a job."""
         if not (is_foreseen(error) or isinstance(error, WORDS)):
             return  # told already, with a report
-        QMessageBox.warning(self.window, "Metagraph", str(error))
+        QMessageBox.warning(self.window, "Metagraph", tr_error(error))
 
     # --- save
 
@@ -248,7 +248,7 @@ class Files(QObject):
         if self._asked_for is not None:
             self._asked_for.release()
             self._asked_for = None
-        QMessageBox.warning(self.window, tr("Not saved"), str(error))
+        QMessageBox.warning(self.window, tr("Not saved"), tr_error(error))
 
     def look_at_file(self) -> None:
         """Look whether the project file has changed on disk, and say so."""

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.translation import tr
+from app.translation import tr, tr_error
 from metagraph.budgets import LIST_FILE
 from metagraph.errors import FileError
 from metagraph.files import read_file
@@ -31,7 +31,7 @@ def read_patterns(path: Path) -> Patterns:
     except (UnicodeDecodeError, RecursionError):
         raise FileError(path, tr("it is not JSON"), tr("on reading name patterns"), REMEDY) from None
     except PatternsError as error:
-        raise FileError(path, str(error), tr("on reading name patterns"), REMEDY) from None
+        raise FileError(path, tr_error(error), tr("on reading name patterns"), REMEDY) from None
 
 
 def write_patterns(path: Path, patterns: Patterns) -> None:

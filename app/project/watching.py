@@ -18,7 +18,7 @@ from app.look.plural import clips_words
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.project.opening import take_over
-from app.translation import tr
+from app.translation import tr, tr_error
 from metagraph.formats.imports import Imported, import_files
 from metagraph.formats.store import Opened, load_returned
 from metagraph.graph.model import ClipEntry
@@ -139,7 +139,9 @@ class Watcher(QObject):
             if known is self._known:
                 self._taken(*read)
 
-        self.jobs.start(tr("Reading changed clips"), work, done, lambda error: self.told.emit(str(error)))
+        self.jobs.start(
+            tr("Reading changed clips"), work, done, lambda error: self.told.emit(tr_error(error))
+        )
 
     def _taken(self, result: Imported, returned: Opened | None) -> None:
         if returned is not None:

@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 from app import faults
 from app.look.theme import strengthen
 from app.project.document import Document, state_folder
-from app.translation import tr
+from app.translation import tr, tr_error
 from metagraph.errors import FileError
 from metagraph.formats.atomic import write_atomically
 
@@ -147,4 +147,4 @@ class FaultDialog(QDialog):
                 tr("Saved {name}. Send it to whoever gave you Metagraph.", name=Path(place).name)
             )
         except FileError as error:
-            self.sentence.setText(str(error))
+            self.sentence.setText(tr_error(error))

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QHBoxLayout, QInputDialog, QMenu, QMessageBox, QTo
 from app.shell.actions import Actions, Command
 from app.shell.workspace_keeper import Workspaces
 from app.shell.workspaces import WORKSPACES
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.making import make_widget
 from app.widgets.one_stop import OneStop
 
@@ -42,7 +42,7 @@ def commands(keeper: Callable[[], Workspaces], window: QWidget) -> tuple[Command
         try:
             do(name)
         except ValueError as error:
-            QMessageBox.warning(window, words, str(error))
+            QMessageBox.warning(window, words, tr_error(error))
 
     view, group = "&View", "workspaces"
     own = lambda: keeper().tab.own  # noqa: E731

@@ -28,7 +28,7 @@ from PySide6.QtGui import (
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QWidget
 
-from app.translation import tr
+from app.translation import tr, tr_error
 from preview.camera import Camera
 from preview.renderer import Renderer
 from preview.scene import DARK, Scene, Theme
@@ -164,7 +164,7 @@ class ImageView(CameraMouse, QWidget):
                 self._contexts.append(self._offscreen)
             except OpenGLError as error:
                 self._offscreen = False
-                self.failed.emit(str(error))
+                self.failed.emit(tr_error(error))
         painter = QPainter(self)
         if self._offscreen:
             scene = self._compose()  # which may move the camera

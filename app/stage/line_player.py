@@ -18,7 +18,7 @@ from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_error
 from metagraph.graph.model import Project
 from metagraph.graph.requests import Line
 
@@ -91,7 +91,7 @@ class Sound(QObject):
             return line_sounds(lines, folder)
 
         self.jobs.start(
-            tr("Reading sounds"), work, self._read, lambda error: self.told.emit(str(error)), quick=True
+            tr("Reading sounds"), work, self._read, lambda error: self.told.emit(tr_error(error)), quick=True
         )
 
     def _read(self, made: tuple[dict[str, np.ndarray], tuple[str, ...]]) -> None:
@@ -160,7 +160,7 @@ class Sound(QObject):
             Exception
         ) as error:  # the library has errors of its own, and OSError where PortAudio is missing
             self._silent = True
-            cause = str(error).splitlines()[0].rstrip(".")
+            cause = tr_error(error).splitlines()[0].rstrip(".")
             missing = (
                 isinstance(error, OSError) and "PortAudio" in cause
             )  # the library itself; an own kind of error otherwise

@@ -16,7 +16,7 @@ import msgspec
 from PySide6.QtCore import QElapsedTimer, QObject, Qt, QTimer, Signal
 
 from app.look.plural import many
-from app.translation import tr
+from app.translation import tr, tr_error
 from metagraph.generation.offered import offered
 from metagraph.graph.model import Project
 from metagraph.graph.requests import AnyRequest, Performance
@@ -134,14 +134,14 @@ class LiveStage(QObject):
             self.session.offer(TAKES, future.result())
         else:
             self.session.generating.graphs.pop(TAKES, None)
-            self.graph_error = str(error)
+            self.graph_error = tr_error(error)
 
     def _open(self, options: Options) -> None:
         try:
             self.relay = Relay(options)
             self.relay.start()
         except (LiveError, OSError) as error:
-            self.relay, self.error = None, str(error)
+            self.relay, self.error = None, tr_error(error)
             self.told.emit(self.words())
 
     def stop(self) -> None:

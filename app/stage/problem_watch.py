@@ -11,6 +11,7 @@ from app.project.jobs import Jobs
 from app.stage.compatibility_state import Compatibility, merged
 from app.stage.fixes import Fix, bridges_for
 from app.stage.session import Session
+from app.translation import tr_told
 from metagraph.graph.check import check
 from metagraph.graph.problem import Problem
 
@@ -78,6 +79,8 @@ class ProblemWatch(QObject):
         self.problems = merged(found, flags)
         self.fixes = {**flags, **self._bridges}
         self.misfits = {
-            p.action: f"{p.message}. {p.remedy}" for p in self.problems if p.action and p.severity != "hint"
+            p.action: f"{tr_told(p.message)}. {tr_told(p.remedy)}"
+            for p in self.problems
+            if p.action and p.severity != "hint"
         }
         self.changed.emit()

@@ -12,7 +12,7 @@ from app.look.plural import listed
 from app.project.document import Document
 from app.stage.live_control import LiveControl
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_error
 from metagraph.graph import performance_edits
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Project
@@ -185,7 +185,7 @@ class RequestEdits:
         try:
             self.document.edit(tr("Paste requests"), edit)
         except EditError as error:
-            self.document.failed.emit(f"{str(error)[:1].upper()}{str(error)[1:]}.")
+            self.document.failed.emit(f"{tr_error(error)[:1].upper()}{tr_error(error)[1:]}.")
             return
         self.session.onstage.set_performance(stage)
         self.session.transport.show_plan()

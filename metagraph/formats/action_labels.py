@@ -21,6 +21,7 @@ from metagraph.errors import FileError
 from metagraph.files import read_file
 from metagraph.graph.edits import EditError, add_stance, move_actions, place, update_actions
 from metagraph.graph.model import Kind, Layer, Limb, Project
+from metagraph.wording import told
 
 Name = Annotated[str, Meta(min_length=1, max_length=300)]
 Seconds = Annotated[float, Meta(ge=0, le=1e6)]
@@ -73,7 +74,7 @@ def read_labels(path: Path) -> tuple[LabelRow, ...]:
             path,
             message[:1].lower() + message[1:],
             where.strip("`") or "its content",
-            "docs/labels.md says what such a file holds.",
+            told("docs/labels.md says what such a file holds."),
         ) from None
 
 
@@ -98,13 +99,13 @@ def _applied(project: Project, row: LabelRow, fresh: Mapping[str, str]) -> Proje
     clip = fresh.get(row.clip) or next((e.id for e in project.clips.values() if e.name == row.clip), None)
     known = project.action(row.action) if row.action is not None else None
     if row.action is not None and known is None:
-        raise EditError(f"there is no action '{row.action}' in this project")
+        raise EditError(told("there is no action '{action}' in this project", action=row.action))
     if clip is None:
-        raise EditError(f"there is no clip '{row.clip}'")
+        raise EditError(told("there is no clip '{clip}'", clip=row.clip))
     layer = row.layer or (known.layer if known is not None else None)
     kind = row.kind or (known.kind if known is not None else None)
     if layer is None or kind is None:
-        raise EditError("a new action needs a kind and a layer")
+        raise EditError(told("a new action needs a kind and a layer"))
     stance = known.stance if known is not None and row.stance is None and layer == known.layer else None
     end = known.end_stance if known is not None and row.end_stance is None and layer == known.layer else None
     if row.stance is not None:
@@ -112,7 +113,7 @@ def _applied(project: Project, row: LabelRow, fresh: Mapping[str, str]) -> Proje
     if row.end_stance is not None:
         project, end = _stance(project, layer, row.end_stance)
     if stance is None:
-        raise EditError(f"it does not say which stance of the layer {layer} it is of")
+        raise EditError(told("it does not say which stance of the layer {layer} it is of", layer=told(layer)))
     if known is None:
         alike = project.graphs[layer].of(stance, kind)
         known = next((a for a in alike if a.name == (row.name or row.clip)), None)
@@ -131,7 +132,7 @@ def _stance(project: Project, layer: Layer, name: str) -> tuple[Project, str]:
         if found is not None:
             return project, found
         project = add_stance(project, layer, name)
-    raise EditError(f"'{name}' cannot be a stance's name")
+    raise EditError(told("'{name}' cannot be a stance's name", name=name))
 
 
 def _fields(row: LabelRow) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from typing import Any
 from metagraph.graph import edits
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import Action, Project, Timing
+from metagraph.wording import told
 
 # What can be pasted from one action to many: group -> the fields it stands for; those with a dot are of its
 # timing.
@@ -35,10 +36,16 @@ def paste(project: Project, source: str, targets: Collection[str], groups: Colle
     """
     given = project.action(source)
     if given is None:
-        raise EditError("the action to copy from is no longer in the project")
+        raise EditError(told("the action to copy from is no longer in the project"))
     unknown = [g for g in groups if g not in PROPERTIES]
     if unknown:
-        raise EditError(f"there is nothing called '{unknown[0]}' to paste; there are {', '.join(PROPERTIES)}")
+        raise EditError(
+            told(
+                "there is nothing called '{unknown}' to paste; there are {names}",
+                unknown=unknown[0],
+                names=", ".join(PROPERTIES),
+            )
+        )
     wanted = [field for group in groups for field in PROPERTIES[group]]
     changes = {
         i: _given(project, given, action, wanted)
@@ -103,8 +110,11 @@ def names_by_pattern(project: Project, actions: Sequence[str], pattern: str) -> 
             name = pattern.format(n=number, **words)
         except (KeyError, IndexError, ValueError, AttributeError):
             raise EditError(
-                f"'{pattern}' cannot be read; in braces there may be {', '.join(FIELDS)}, as in {{name}} "
-                f"{{n:02}}"
+                told(
+                    "'{pattern}' cannot be read; in braces there may be {names}, as in {{name}} {{n:02}}",
+                    pattern=pattern,
+                    names=", ".join(FIELDS),
+                )
             ) from None
         out[ident] = _named(name, pattern)
     return out
@@ -118,7 +128,7 @@ def names_replaced(
     be read, or names that would be empty.
     """
     if not find:
-        raise EditError("say what to look for")
+        raise EditError(told("say what to look for"))
     try:
         search = re.compile(find if regex else re.escape(find))
         out = {}
@@ -128,13 +138,13 @@ def names_replaced(
                 out[ident] = _named(search.sub(put if regex else put.replace("\\", r"\\"), action.name), put)
         return out
     except re.error as error:
-        raise EditError(f"'{find}' is no regular expression: {error}") from None
+        raise EditError(told("'{find}' is no regular expression: {error}", find=find, error=error)) from None
 
 
 def _named(name: str, origin: str) -> str:
     clean = " ".join(name.split())
     if not clean:
-        raise EditError(f"'{origin}' would leave a name empty")
+        raise EditError(told("'{origin}' would leave a name empty", origin=origin))
     return clean
 
 
@@ -150,7 +160,7 @@ def replace_clip(project: Project, actions: Collection[str], clip: str) -> Proje
     """
     entry = project.clips.get(clip)
     if entry is None:
-        raise EditError("that clip is not in the project")
+        raise EditError(told("that clip is not in the project"))
     changes: dict[str, dict[str, Any]] = {}
     for ident in actions:
         action = project.action(ident)

@@ -18,6 +18,7 @@ from metagraph.graph.model import KINDS, LAYERS, Action, Layer, MetaGraph, Proje
 from metagraph.graph.problem import Problem, Severity
 from metagraph.motion import rotation
 from metagraph.motion.features import pose_distance
+from metagraph.wording import told
 
 Array = NDArray[Any]
 
@@ -37,8 +38,8 @@ def check(project: Project) -> list[Problem]:
             Problem(
                 "hint",
                 "no-stance",
-                "nothing plays yet",
-                "Drop a resting clip on the middle of a layer to make its first stance.",
+                told("nothing plays yet"),
+                told("Drop a resting clip on the middle of a layer to make its first stance."),
             )
         )
     order = {"error": 0, "warning": 1, "hint": 2}
@@ -63,17 +64,21 @@ def _clips(project: Project) -> Iterator[Problem]:
             yield Problem(
                 "error" if used else "warning",
                 "file-missing",
-                f"the file of clip '{entry.name}' is missing ({entry.path})",
-                "Put the file back, or choose 'Find missing files' and show where it is now.",
+                told("the file of clip '{name}' is missing ({path})", name=entry.name, path=entry.path),
+                told("Put the file back, or choose 'Find missing files' and show where it is now."),
                 clip=entry.id,
             )
         elif project.skeleton is not None and entry.motion.skeleton != project.skeleton:
             yield Problem(
                 "error" if project.uses.get(entry.id) else "warning",
                 "other-skeleton",
-                f"clip '{entry.name}' has another skeleton ({len(entry.motion.skeleton)} joints, the project "
-                f"has {len(project.skeleton)})",
-                "Import its file again to retarget it, or remove it.",
+                told(
+                    "clip '{name}' has another skeleton ({count} joints, the project has {own})",
+                    name=entry.name,
+                    count=len(entry.motion.skeleton),
+                    own=len(project.skeleton),
+                ),
+                told("Import its file again to retarget it, or remove it."),
                 clip=entry.id,
             )
 
@@ -87,8 +92,8 @@ def _base(project: Project) -> Iterator[Problem]:
             yield Problem(
                 "error",
                 "base-missing",
-                "the clip of the base pose is missing",
-                "Choose another base pose.",
+                told("the clip of the base pose is missing"),
+                told("Choose another base pose."),
                 clip=project.base.clip,
             )
             return
@@ -97,8 +102,13 @@ def _base(project: Project) -> Iterator[Problem]:
             yield Problem(
                 "error",
                 "base-frame",
-                f"the base pose is frame {project.base.frame} of '{entry.name}', which ends at {last}",
-                "Choose a frame inside the clip.",
+                told(
+                    "the base pose is frame {frame} of '{name}', which ends at {last}",
+                    frame=project.base.frame,
+                    name=entry.name,
+                    last=last,
+                ),
+                told("Choose a frame inside the clip."),
                 clip=entry.id,
             )
     elif any(project.graphs[layer].actions for layer in LAYERS):
@@ -111,10 +121,14 @@ def _base(project: Project) -> Iterator[Problem]:
             yield Problem(
                 "warning",
                 "base-rest",
-                "the base pose is the skeleton's rest pose, far from how the character stands; layers will "
-                "add up to a twisted pose",
-                "Take the base pose from a frame with the hands at the sides: right-click a clip, 'Use this "
-                "frame as base pose'.",
+                told(
+                    "the base pose is the skeleton's rest pose, far from how the character stands; "
+                    "layers will add up to a twisted pose"
+                ),
+                told(
+                    "Take the base pose from a frame with the hands at the sides: right-click a clip, "
+                    "'Use this frame as base pose'."
+                ),
             )
     loop = _start_loop(project, "body")
     stance = _first_pose(project, loop)
@@ -129,13 +143,18 @@ def _base(project: Project) -> Iterator[Problem]:
     feet = [roles[r] for r in ("left_foot", "right_foot", "left_toes", "right_toes") if r in roles]
     lift = float(base_p[feet, 1].min() - stance_p[feet, 1].min()) if feet else 0.0
     if abs(lift) > FLOATS * height:
-        way = "above" if lift > 0 else "below"
+        way = told("above") if lift > 0 else told("below")
         yield Problem(
             "warning",
             "base-floats",
-            f"the base pose stands {abs(lift) * 100:.0f} cm {way} stance '{rests}'; the character will leave "
-            "the ground",
-            "Take the base pose from a clip in which the character stands as in its stances.",
+            told(
+                "the base pose stands {far:.0f} cm {way} stance '{rests}'; the character will "
+                "leave the ground",
+                far=abs(lift) * 100,
+                way=way,
+                rests=rests,
+            ),
+            told("Take the base pose from a clip in which the character stands as in its stances."),
             clip=project.base.clip,
         )
     hips = roles.get("hips", 0)
@@ -144,9 +163,13 @@ def _base(project: Project) -> Iterator[Problem]:
         yield Problem(
             "warning",
             "base-twisted",
-            f"the base pose's hips are turned {np.degrees(turn):.0f} degrees from stance '{rests}'; the "
-            "character will twist",
-            "Take the base pose from a clip facing the same way.",
+            told(
+                "the base pose's hips are turned {degrees:.0f} degrees from stance '{rests}'; the "
+                "character will twist",
+                degrees=np.degrees(turn),
+                rests=rests,
+            ),
+            told("Take the base pose from a clip facing the same way."),
             clip=project.base.clip,
         )
 
@@ -160,8 +183,8 @@ def _character(project: Project) -> Iterator[Problem]:
             yield Problem(
                 "warning",
                 "no-part",
-                f"no joint of the skeleton was recognised as {part}",
-                "Open 'Skeleton' and say which joints they are.",
+                told("no joint of the skeleton was recognised as {part}", part=told(part)),
+                told("Open 'Skeleton' and say which joints they are."),
             )
 
 
@@ -179,16 +202,20 @@ def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
             yield at(
                 "error",
                 "no-loop",
-                f"stance '{stance.name}' has no loop to rest in",
-                "Drop a resting clip on the middle node.",
+                told("stance '{name}' has no loop to rest in", name=stance.name),
+                told("Drop a resting clip on the middle node."),
             )
         for kind in KINDS[1:3]:
             if not graph.of(stance.id, kind):
                 yield at(
                     "hint",
                     f"no-{kind}s",
-                    f"stance '{stance.name}' has no {kind}s",
-                    f"Drop clips on its {kind} node.",
+                    told("stance '{name}' has no gestures", name=stance.name)
+                    if kind == "gesture"
+                    else told("stance '{name}' has no fidgets", name=stance.name),
+                    told("Drop clips on its node of gestures.")
+                    if kind == "gesture"
+                    else told("Drop clips on its node of fidgets."),
                 )
         if len(graph.stances) > 1 and not any(
             a.end_stance in graph.stances for a in graph.of(stance.id, "transition")
@@ -196,22 +223,22 @@ def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
             yield at(
                 "warning",
                 "dead-end",
-                f"stance '{stance.name}' cannot be left",
-                "Drop a clip on its transition node.",
+                told("stance '{name}' cannot be left", name=stance.name),
+                told("Drop a clip on its transition node."),
             )
         if graph.start in graph.stances and stance.id not in led_to:
             yield at(
                 "warning",
                 "unreachable",
-                f"stance '{stance.name}' cannot be reached",
-                "Drop a transition that ends in it on another stance.",
+                told("stance '{name}' cannot be reached", name=stance.name),
+                told("Drop a transition that ends in it on another stance."),
             )
     if graph.actions and graph.start not in graph.stances:
         yield Problem(
             "error",
             "no-start",
-            f"the {layer} layer has no stance to begin in",
-            "Choose a stance and 'Start here'.",
+            told("the {layer} layer has no stance to begin in", layer=told(layer)),
+            told("Choose a stance and 'Start here'."),
             layer,
         )
     for part, weight in graph.weights.items():
@@ -219,8 +246,13 @@ def _graph(project: Project, graph: MetaGraph) -> Iterator[Problem]:
             yield Problem(
                 "error",
                 "weight",
-                f"the {layer} layer's weight on {part} is {weight:g}",
-                "Set it between 0 and 2.",
+                told(
+                    "the {layer} layer's weight on {part} is {weight:g}",
+                    layer=told(layer),
+                    part=part,
+                    weight=weight,
+                ),
+                told("Set it between 0 and 2."),
                 layer,
             )
     for action in graph.actions.values():
@@ -232,7 +264,7 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
         return Problem(
             severity,
             code,
-            f"'{action.name}' {message}",
+            told("'{name}' {message}", name=action.name, message=message),
             remedy,
             graph.layer,
             action.stance,
@@ -245,41 +277,48 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
         yield at(
             "error",
             "lost-stance",
-            "belongs to a stance that is not there",
-            "Move it to a stance, or remove it.",
+            told("belongs to a stance that is not there"),
+            told("Move it to a stance, or remove it."),
         )
     if action.kind == "transition":
         if action.end_stance is None:
-            yield at("error", "no-end", "is a transition that ends nowhere", "Choose its end stance.")
+            yield at(
+                "error", "no-end", told("is a transition that ends nowhere"), told("Choose its end stance.")
+            )
         elif action.end_stance not in graph.stances:
-            yield at("error", "lost-end", "ends in a stance that is not there", "Choose another end stance.")
+            yield at(
+                "error",
+                "lost-end",
+                told("ends in a stance that is not there"),
+                told("Choose another end stance."),
+            )
         elif action.end_stance == action.stance:
             yield at(
                 "warning",
                 "circle",
-                "ends in the stance it starts from",
-                "Choose another end stance, or make it a gesture.",
+                told("ends in the stance it starts from"),
+                told("Choose another end stance, or make it a gesture."),
             )
     if not (isfinite(action.likelihood) and action.likelihood > 0):
         yield at(
             "error",
             "likelihood",
-            f"has the likelihood {action.likelihood:g} and can never be chosen",
-            "Set it above 0.",
+            told("has the likelihood {likelihood:g} and can never be chosen", likelihood=action.likelihood),
+            told("Set it above 0."),
         )
     if unknown := anatomy.unknown_joints(project.skeleton, action):
         yield at(
             "error",
             "mask",
-            f"moves joint '{unknown[0]}', which the skeleton does not have",
-            "Correct its joints.",
+            told("moves joint '{unknown}', which the skeleton does not have", unknown=unknown[0]),
+            told("Correct its joints."),
         )
     if entry is None:
         yield at(
             "error",
             "lost-clip",
-            "uses a clip that is not in the project",
-            "Remove it, or import the clip again.",
+            told("uses a clip that is not in the project"),
+            told("Remove it, or import the clip again."),
         )
         return
     end = entry.duration if timing.end is None else timing.end
@@ -289,15 +328,20 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
         yield at(
             "error",
             "trim",
-            f"plays {timing.start:.2f}-{end:.2f} s of a clip of {entry.duration:.2f} s",
-            "Bring start and end inside the clip.",
+            told(
+                "plays {start:.2f}-{end:.2f} s of a clip of {duration:.2f} s",
+                start=timing.start,
+                end=end,
+                duration=entry.duration,
+            ),
+            told("Bring start and end inside the clip."),
         )
     elif end <= timing.start and entry.frames > 1:
         yield at(
             "error",
             "empty",
-            f"ends at {end:.2f} s, not after its start at {timing.start:.2f} s",
-            "Move its end behind its start.",
+            told("ends at {end:.2f} s, not after its start at {start:.2f} s", end=end, start=timing.start),
+            told("Move its end behind its start."),
         )
     elif (
         action.kind != "stance"
@@ -307,21 +351,34 @@ def _action(project: Project, graph: MetaGraph, action: Action) -> Iterator[Prob
         yield at(
             "warning",
             "blend",
-            f"blends for {timing.blend_in + timing.blend_out:.2f} s of its {end - timing.start:.2f} s",
-            "Shorten its blends.",
+            told(
+                "blends for {blends:.2f} s of its {length:.2f} s",
+                blends=timing.blend_in + timing.blend_out,
+                length=end - timing.start,
+            ),
+            told("Shorten its blends."),
         )
     for name, blend in (("in", timing.blend_in), ("out", timing.blend_out)):
         if not _sound(blend):
             severity: Severity = "warning" if isfinite(blend) else "error"  # a negative one plays as none
             yield at(
-                severity, "blend", f"blends {name} for {blend:g} s", f"Set its blend {name} to 0 s or more."
+                severity,
+                "blend",
+                told("blends in for {blend:g} s", blend=blend)
+                if name == "in"
+                else told("blends out for {blend:g} s", blend=blend),
+                told("Set its blend in to 0 s or more.")
+                if name == "in"
+                else told("Set its blend out to 0 s or more."),
             )
     if timing.earliest_exit is not None and not timing.start <= timing.earliest_exit <= end:
         yield at(
             "warning",
             "exit",
-            f"may be left at {timing.earliest_exit:.2f} s, outside what plays",
-            "Bring the earliest exit inside.",
+            told(
+                "may be left at {earliest_exit:.2f} s, outside what plays", earliest_exit=timing.earliest_exit
+            ),
+            told("Bring the earliest exit inside."),
         )
     yield from _ends(project, graph, action, at)
 
@@ -340,8 +397,8 @@ def _ends(
             yield at(
                 "warning",
                 "open-loop",
-                f"does not close: its ends are {gap.metres * 100:.0f} cm apart",
-                "Blend its seam (blend in), or trim it to a loop.",
+                told("does not close: its ends are {far:.0f} cm apart", far=gap.metres * 100),
+                told("Blend its seam (blend in), or trim it to a loop."),
             )
         return
     for gap in end_gaps.gaps(project, graph, action):
@@ -350,7 +407,7 @@ def _ends(
                 "warning",
                 "far-start" if gap.edge == "begins" else "far-end",
                 end_gaps.gap_words(gap, _name(project, gap.stance)),
-                "Trim it, lengthen the blend, or place it on the stance it fits.",
+                told("Trim it, lengthen the blend, or place it on the stance it fits."),
             )
 
 

@@ -32,6 +32,7 @@ from metagraph.graph.model import (
 )
 from metagraph.motion.clip import Clip
 from metagraph.motion.features import loop_error
+from metagraph.wording import told
 
 SEAM = 0.01  # metres a loop may be open before its seam gets blended
 _LIMB_WORDS: tuple[tuple[Limb, str], ...] = (
@@ -92,7 +93,7 @@ def with_motions(project: Project, motions: Mapping[str, Clip]) -> Project:
 
 def rename_clip(project: Project, clip: str, name: str) -> Project:
     if clip not in project.clips:
-        raise EditError("that clip is no longer in the project")
+        raise EditError(told("that clip is no longer in the project"))
     return replace(project, clips={**project.clips, clip: replace(project.clips[clip], name=_clean(name))})
 
 
@@ -161,10 +162,10 @@ def refusal(
     stance.
     """
     if not clips:
-        return "nothing to place"
+        return told("nothing to place")
     missing = [c for c in clips if c not in project.clips]
     if missing:
-        return "a clip that is not in this project"
+        return told("a clip that is not in this project")
     for clip in clips:
         entry = project.clips[clip]
         if (
@@ -172,17 +173,17 @@ def refusal(
             and project.skeleton is not None
             and entry.motion.skeleton != project.skeleton
         ):
-            return f"'{entry.name}' has another skeleton than this project"
+            return told("'{name}' has another skeleton than this project", name=entry.name)
     graph = project.graphs[layer]
     if kind == "stance":
         return None
     if stance is None or stance not in graph.stances:
-        return f"make a stance first: drop a clip on the middle of the {layer} layer"
+        return told("make a stance first: drop a clip on the middle of the {layer} layer", layer=told(layer))
     if kind == "transition":
         if end is None or end not in graph.stances:
-            return "choose the stance this transition ends in first"
+            return told("choose the stance this transition ends in first")
         if end == stance:
-            return "a transition must end in another stance"
+            return told("a transition must end in another stance")
     return None
 
 
@@ -342,7 +343,7 @@ def set_base(project: Project, clip: str | None, frame: int = 0) -> Project:
     if clip is not None:
         entry = project.clips.get(clip)
         if entry is None:
-            raise EditError("the clip of the base pose is not in this project")
+            raise EditError(told("the clip of the base pose is not in this project"))
         frame = min(max(0, frame), max(0, entry.frames - 1))
     return replace(project, base=BasePose(clip, frame if clip else 0))
 
@@ -350,7 +351,9 @@ def set_base(project: Project, clip: str | None, frame: int = 0) -> Project:
 def set_weight(project: Project, layer: Layer, part: Part, weight: float) -> Project:
     """Set how strongly a layer moves a body part, 0..2."""
     if part not in PARTS:
-        raise EditError(f"there is no body part '{part}'; there are {', '.join(PARTS)}")
+        raise EditError(
+            told("there is no body part '{part}'; there are {names}", part=told(part), names=", ".join(PARTS))
+        )
     graph = project.graphs[layer]
     return project.with_graph(graph.but(weights={**graph.weights, part: min(2.0, max(0.0, weight))}))
 
@@ -398,14 +401,14 @@ def rename_project(project: Project, name: str) -> Project:
 def _stance(project: Project, ident: str) -> Stance:
     found = project.stance(ident)
     if found is None:
-        raise EditError("that stance is no longer in the project")
+        raise EditError(told("that stance is no longer in the project"))
     return found
 
 
 def _clean(name: str) -> str:
     name = " ".join(name.split())
     if not name:
-        raise EditError("a name needs at least one letter")
+        raise EditError(told("a name needs at least one letter"))
     return name
 
 

@@ -17,6 +17,7 @@ from metagraph.graph.expand import ends_in
 from metagraph.graph.model import REACH, Action, MetaGraph, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.features import pose_distance
+from metagraph.wording import told
 
 Array = NDArray[Any]
 Edge = Literal["begins", "ends"]
@@ -52,7 +53,10 @@ class Gap:
 
 def gap_words(gap: Gap, stance: str) -> str:
     """Say a gap, in the words of every place that warns of one. stance: its name."""
-    return f"{gap.edge} {gap.metres * 100:.0f} cm from stance '{stance}'"
+    far = gap.metres * 100
+    if gap.edge == "begins":
+        return told("begins {far:.0f} cm from stance '{stance}'", far=far, stance=stance)
+    return told("ends {far:.0f} cm from stance '{stance}'", far=far, stance=stance)
 
 
 def hidden(height: float, blend: float) -> float:

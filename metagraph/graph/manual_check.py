@@ -10,6 +10,7 @@ from metagraph.graph import anatomy
 from metagraph.graph.manual import ANY, Alias, Link, Manual, State
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.problem import Problem, Severity
+from metagraph.wording import told
 
 
 def check_manual(project: Project) -> list[Problem]:
@@ -27,8 +28,8 @@ def _machine(project: Project, manual: Manual) -> Iterator[Problem]:
         yield Problem(
             "error",
             "no-start",
-            f"the {layer} layer has no state to begin in",
-            "Right-click a state and 'Start here'.",
+            told("the {layer} layer has no state to begin in", layer=told(layer)),
+            told("Right-click a state and 'Start here'."),
             layer,
         )
     reached = manual.reachable()
@@ -36,13 +37,22 @@ def _machine(project: Project, manual: Manual) -> Iterator[Problem]:
 
         def at(severity: Severity, code: str, message: str, remedy: str, of: State = state) -> Problem:
             return Problem(
-                severity, code, f"state '{of.name}' {message}", remedy, layer, clip=of.clip, state=of.id
+                severity,
+                code,
+                told("state '{name}' {message}", name=of.name, message=message),
+                remedy,
+                layer,
+                clip=of.clip,
+                state=of.id,
             )
 
         yield from _state(project, state, at)
         if reached and state.id not in reached:
             yield at(
-                "warning", "unreachable", "cannot be reached", "Draw a link to it from a state that can."
+                "warning",
+                "unreachable",
+                told("cannot be reached"),
+                told("Draw a link to it from a state that can."),
             )
         ways = [x for x in manual.leaving(state.id) if x.target != state.id]
         if not ways and len(manual.states) > 1:
@@ -50,19 +60,19 @@ def _machine(project: Project, manual: Manual) -> Iterator[Problem]:
                 yield at(
                     "warning",
                     "no-exit",
-                    "loops for ever: no link leads out of it",
-                    "Draw a link from it to another state.",
+                    told("loops for ever: no link leads out of it"),
+                    told("Draw a link from it to another state."),
                 )
             else:
                 yield at(
                     "warning",
                     "dead-end",
-                    "cannot be left: it holds its last frame",
-                    "Draw a link from it to another state.",
+                    told("cannot be left: it holds its last frame"),
+                    told("Draw a link from it to another state."),
                 )
         elif ways and not state.loop and not any(x.condition.when == "finished" for x in ways):
-            message = "holds its last frame until something is requested"
-            yield at("hint", "waits", message, "Let one of its links be taken when it has finished.")
+            message = told("holds its last frame until something is requested")
+            yield at("hint", "waits", message, told("Let one of its links be taken when it has finished."))
     for alias in manual.aliases.values():
         yield from _alias(manual, alias)
     seen: set[tuple[str, str, str, str]] = set()
@@ -70,7 +80,9 @@ def _machine(project: Project, manual: Manual) -> Iterator[Problem]:
         yield from _link(project, manual, link)
         same = (link.source, link.target, link.condition.when, link.condition.trigger)
         if same in seen:
-            yield _about(manual, link, "warning", "twice", "is drawn twice", "Remove one of them.")
+            yield _about(
+                manual, link, "warning", "twice", told("is drawn twice"), told("Remove one of them.")
+            )
         seen.add(same)
 
 
@@ -82,41 +94,60 @@ def _state(
         yield at(
             "error",
             "lost-clip",
-            "uses a clip that is not in the project",
-            "Remove it, or import the clip again.",
+            told("uses a clip that is not in the project"),
+            told("Remove it, or import the clip again."),
         )
         return
     end = entry.duration if state.end is None else state.end
     latest = entry.duration + 0.5 / entry.fps
     if not (0 <= state.start <= latest and end <= latest):  # also where one of them is not a number
-        message = f"plays {state.start:.2f}-{end:.2f} s of a clip of {entry.duration:.2f} s"
-        yield at("error", "trim", message, "Bring start and end inside the clip.")
+        message = told(
+            "plays {start:.2f}-{end:.2f} s of a clip of {duration:.2f} s",
+            start=state.start,
+            end=end,
+            duration=entry.duration,
+        )
+        yield at("error", "trim", message, told("Bring start and end inside the clip."))
     elif end <= state.start and entry.frames > 1:
-        message = f"ends at {end:.2f} s, not after its start at {state.start:.2f} s"
-        yield at("error", "empty", message, "Move its end behind its start.")
+        message = told(
+            "ends at {end:.2f} s, not after its start at {start:.2f} s", end=end, start=state.start
+        )
+        yield at("error", "empty", message, told("Move its end behind its start."))
     if unknown := anatomy.unknown_joints(project.skeleton, state):
-        message = f"moves joint '{unknown[0]}', which the skeleton does not have"
-        yield at("error", "mask", message, "Correct its joints.")
+        message = told("moves joint '{unknown}', which the skeleton does not have", unknown=unknown[0])
+        yield at("error", "mask", message, told("Correct its joints."))
 
 
 def _alias(manual: Manual, alias: Alias) -> Iterator[Problem]:
     def at(severity: Severity, code: str, message: str, remedy: str) -> Problem:
         return Problem(
-            severity, code, f"alias '{alias.name}' {message}", remedy, manual.layer, state=alias.id
+            severity,
+            code,
+            told("alias '{name}' {message}", name=alias.name, message=message),
+            remedy,
+            manual.layer,
+            state=alias.id,
         )
 
     used = alias.id in manual.out or alias.id in manual.into
     if not manual.members(alias):
-        yield at("warning" if used else "hint", "alias-empty", "stands for no state", "Choose its states.")
+        yield at(
+            "warning" if used else "hint",
+            "alias-empty",
+            told("stands for no state"),
+            told("Choose its states."),
+        )
     elif not used:
-        yield at("hint", "alias-unused", "has no links", "Draw a link from it, or remove it.")
+        yield at("hint", "alias-unused", told("has no links"), told("Draw a link from it, or remove it."))
     if alias.entry is not None and alias.entry not in manual.members(alias):
-        name = manual.states[alias.entry].name if alias.entry in manual.states else "a state that is gone"
+        name = (
+            manual.states[alias.entry].name if alias.entry in manual.states else told("a state that is gone")
+        )
         yield at(
             "warning",
             "alias-entry",
-            f"is entered by '{name}', not one of its states",
-            "Choose another entry.",
+            told("is entered by '{name}', not one of its states", name=name),
+            told("Choose another entry."),
         )
 
 
@@ -125,9 +156,16 @@ def _about(manual: Manual, link: Link, severity: Severity, code: str, message: s
     aliases = manual.aliases
     names = " → ".join(
         found.name if found is not None else aliases[ident].name if ident in aliases else otherwise
-        for found, ident, otherwise in ((source, link.source, "any state"), (target, link.target, "?"))
+        for found, ident, otherwise in ((source, link.source, told("any state")), (target, link.target, "?"))
     )
-    return Problem(severity, code, f"link {names} {message}", remedy, manual.layer, link=link.id)
+    return Problem(
+        severity,
+        code,
+        told("link {names} {message}", names=names, message=message),
+        remedy,
+        manual.layer,
+        link=link.id,
+    )
 
 
 def _link(project: Project, manual: Manual, link: Link) -> Iterator[Problem]:
@@ -135,29 +173,34 @@ def _link(project: Project, manual: Manual, link: Link) -> Iterator[Problem]:
         return _about(manual, link, severity, code, message, remedy)
 
     if link.condition.when == "request" and not link.condition.trigger.strip():
-        yield at("error", "no-trigger", "waits for a request without a name", "Name its trigger.")
+        yield at("error", "no-trigger", told("waits for a request without a name"), told("Name its trigger."))
     if not link.condition.weight > 0:
         yield at(
             "error",
             "weight",
-            f"has the weight {link.condition.weight:g} and can never be drawn",
-            "Set it above 0.",
+            told("has the weight {weight:g} and can never be drawn", weight=link.condition.weight),
+            told("Set it above 0."),
         )
     if not link.blend >= 0:
-        yield at("error", "blend", f"blends for {link.blend:g} s", "Set its blend to 0 or more.")
+        yield at(
+            "error",
+            "blend",
+            told("blends for {blend:g} s", blend=link.blend),
+            told("Set its blend to 0 or more."),
+        )
     if manual.end(link) is None:
         yield at(
             "error",
             "no-entry",
-            "leads to an alias that has no entry",
-            "Choose the state that it is entered by.",
+            told("leads to an alias that has no entry"),
+            told("Choose the state that it is entered by."),
         )
     if link.source == ANY and link.condition.when == "finished":
         yield at(
             "warning",
             "any-finished",
-            "is taken whenever any state has finished",
-            "Let it wait for a request.",
+            told("is taken whenever any state has finished"),
+            told("Let it wait for a request."),
         )
     source = manual.states.get(link.source)
     entry = project.clips.get(source.clip) if source is not None else None
@@ -168,9 +211,21 @@ def _link(project: Project, manual: Manual, link: Link) -> Iterator[Problem]:
         entry.duration if source.end is None else min(source.end, entry.duration),
     )
     if link.exit_time is not None and not start <= link.exit_time <= end + 0.5 / entry.fps:
-        message = f"may be taken at {link.exit_time:.2f} s, outside what '{source.name}' plays"
-        yield at("warning", "exit", message, f"Bring it between {start:.2f} and {end:.2f} s.")
+        message = told(
+            "may be taken at {exit_time:.2f} s, outside what '{name}' plays",
+            exit_time=link.exit_time,
+            name=source.name,
+        )
+        yield at(
+            "warning",
+            "exit",
+            message,
+            told("Bring it between {start:.2f} and {end:.2f} s.", start=start, end=end),
+        )
     elif link.blend > end - start > 0 and not source.loop:
         yield at(
-            "warning", "blend", f"blends for {link.blend:.2f} s of {end - start:.2f} s", "Shorten its blend."
+            "warning",
+            "blend",
+            told("blends for {blend:.2f} s of {plays:.2f} s", blend=link.blend, plays=end - start),
+            told("Shorten its blend."),
         )

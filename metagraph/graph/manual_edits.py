@@ -14,6 +14,7 @@ from typing import Any
 from metagraph.graph.edits import EditError, free_name, limb_of
 from metagraph.graph.manual import ANY, Alias, Condition, Link, Manual, State, without
 from metagraph.graph.model import BasePose, Layer, Project
+from metagraph.wording import told
 
 WIDE, HIGH = 240.0, 96.0  # how far apart states that are dropped together stand, in units of the editor
 
@@ -26,17 +27,17 @@ def machine(project: Project, layer: Layer) -> Manual:
 def refusal(project: Project, clips: Sequence[str]) -> str | None:
     """Return in words why clips cannot become states, or None when they can."""
     if not clips:
-        return "nothing to place"
+        return told("nothing to place")
     for clip in clips:
         entry = project.clips.get(clip)
         if entry is None:
-            return "a clip that is not in this project"
+            return told("a clip that is not in this project")
         if (
             entry.motion is not None
             and project.skeleton is not None
             and entry.motion.skeleton != project.skeleton
         ):
-            return f"'{entry.name}' has another skeleton than this project"
+            return told("'{name}' has another skeleton than this project", name=entry.name)
     return None
 
 
@@ -84,13 +85,13 @@ def link_refusal(project: Project, layer: Layer, source: str, target: str) -> st
     """Return in words why a link cannot be drawn, or None when it can."""
     found = machine(project, layer)
     if target == ANY:
-        return "no link can lead to any state: draw it the other way round"
+        return told("no link can lead to any state: draw it the other way round")
     group = found.aliases.get(target)
     if group is not None and found.end(Link("", source, target)) is None:
-        return f"'{group.name}' has no entry: choose the state it is entered by first"
+        return told("'{name}' has no entry: choose the state it is entered by first", name=group.name)
     known = found.states.keys() | found.aliases.keys()
     if target not in known or (source != ANY and source not in known):
-        return "a link joins two states of one layer"
+        return told("a link joins two states of one layer")
     return None
 
 
@@ -124,7 +125,7 @@ def add_links(project: Project, layer: Layer, sources: Sequence[str], targets: S
     there = {(x.source, x.target) for x in found.links.values()}
     pairs = [(a, b) for a in sources for b in targets if a != b and (a, b) not in there]
     if not pairs:
-        raise EditError("these links are drawn already")
+        raise EditError(told("these links are drawn already"))
     links = {**found.links, **_new(found, pairs, project.next_id)}
     return project.with_manual(replace(found, links=links), next_id=project.next_id + len(pairs))
 
@@ -199,7 +200,7 @@ def set_start(project: Project, state: str) -> Project:
     """Let the layer begin in a state. Raises EditError."""
     found = project.state(state)
     if found is None:
-        raise EditError("that state is no longer in the project")
+        raise EditError(told("that state is no longer in the project"))
     return project.with_manual(replace(project.manual[found.layer], start=state))
 
 
@@ -356,5 +357,5 @@ def _whole(place: float) -> float:
 def _clean(name: str) -> str:
     name = " ".join(name.split())
     if not name:
-        raise EditError("a name needs at least one letter")
+        raise EditError(told("a name needs at least one letter"))
     return name

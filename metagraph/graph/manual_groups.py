@@ -14,6 +14,7 @@ from metagraph.graph.edits import EditError, free_name
 from metagraph.graph.manual import Alias, Link, Manual
 from metagraph.graph.manual_edits import HIGH, WIDE, machine, name_of
 from metagraph.graph.model import Layer, Project
+from metagraph.wording import told
 
 
 def add_alias(project: Project, layer: Layer, states: Sequence[str], every: bool = False) -> Project:
@@ -23,7 +24,7 @@ def add_alias(project: Project, layer: Layer, states: Sequence[str], every: bool
     found = machine(project, layer)
     chosen = tuple(i for i in found.states if i in states)
     if not chosen and not (every and found.states):
-        raise EditError("select the states the alias is to stand for")
+        raise EditError(told("select the states the alias is to stand for"))
     mine = [found.states[i] for i in chosen or found.states]
     ident = f"g{project.next_id}"
     taken = {a.name for a in found.aliases.values()}
@@ -65,7 +66,7 @@ def update_aliases(project: Project, aliases: Collection[str], **changes: Any) -
     if "name" in changes:
         changes["name"] = " ".join(str(changes["name"]).split())
         if not changes["name"]:
-            raise EditError("a name needs at least one letter")
+            raise EditError(told("a name needs at least one letter"))
     machines = dict(project.manual)
     for layer, found in project.manual.items():
         edits = {i: replace(found.aliases[i], **changes) for i in aliases if i in found.aliases}
@@ -78,7 +79,7 @@ def choose(project: Project, alias: str, states: Collection[str], on: bool = Tru
     """Let an alias stand for some states as well, or no longer."""
     found = project.alias(alias)
     if found is None:
-        raise EditError("that alias is no longer in the project")
+        raise EditError(told("that alias is no longer in the project"))
     of = project.manual[found.layer]
     chosen = {*found.states, *states} if on else set(found.states) - set(states)
     entry = found.entry if found.entry in chosen or found.every else None
@@ -103,7 +104,7 @@ def paste_links(project: Project, layer: Layer, links: Sequence[Link], nodes: Se
     found = machine(project, layer)
     sources, targets = Counter(x.source for x in links), Counter(x.target for x in links)
     if len(sources) > 1 and len(targets) > 1:
-        raise EditError("copy links that leave one state, or that lead to one")
+        raise EditError(told("copy links that leave one state, or that lead to one"))
     there = {(x.source, x.target) for x in found.links.values()}
     out: dict[str, Link] = {}
     for node in nodes:
@@ -118,6 +119,6 @@ def paste_links(project: Project, layer: Layer, links: Sequence[Link], nodes: Se
                 ident = f"l{project.next_id + len(out)}"
                 out[ident] = replace(one, id=ident)
     if not out:
-        raise EditError("these links are drawn already")
+        raise EditError(told("these links are drawn already"))
     after = replace(found, links={**found.links, **out})
     return project.with_manual(after, next_id=project.next_id + len(out))

@@ -15,6 +15,7 @@ from metagraph.graph.model import Action, Limb, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.features import pose_distance
 from metagraph.motion.mirror import mirror, pairs_of, swap_sides
+from metagraph.wording import told
 
 SAME = 0.01  # metres: a motion nowhere further from its mirror image than this has no side
 _OTHER: Mapping[Limb, Limb] = {"left": "right", "right": "left", "both": "both"}
@@ -37,7 +38,7 @@ def twin_clips(project: Project, actions: Collection[str]) -> list[TwinClip]:
     both sides.
     """
     if not actions:
-        raise EditError("nothing to mirror")
+        raise EditError(told("nothing to mirror"))
     groups: dict[str, list[Action]] = {}
     for ident in dict.fromkeys(actions):
         action = _action(project, ident)
@@ -50,7 +51,7 @@ def twin_clips(project: Project, actions: Collection[str]) -> list[TwinClip]:
 def mirrored_clips(project: Project, clips: Collection[str]) -> list[TwinClip]:
     """Return the mirror images of clips, for the library alone. Raises EditError as `twin_clips` does."""
     if not clips:
-        raise EditError("nothing to mirror")
+        raise EditError(told("nothing to mirror"))
     names = {i: project.clips[i].name for i in dict.fromkeys(clips) if i in project.clips}
     return _mirrored(project, {i: (name, ()) for i, name in names.items()})
 
@@ -64,7 +65,7 @@ def _mirrored(project: Project, wanted: Mapping[str, tuple[str, tuple[str, ...]]
     for clip, (called, actions) in wanted.items():
         entry = project.clips.get(clip)
         if entry is None or entry.motion is None:
-            raise EditError(f"'{called}' cannot be mirrored: its clip's file is missing")
+            raise EditError(told("'{called}' cannot be mirrored: its clip's file is missing", called=called))
         try:
             twin = mirror(entry.motion, pairs)
         except ValueError as error:
@@ -72,7 +73,11 @@ def _mirrored(project: Project, wanted: Mapping[str, tuple[str, tuple[str, ...]]
         distance = float(pose_distance(twin.skeleton, entry.motion.poses(), twin.poses()).max())
         if distance < SAME and not _faces_differ(entry.motion, twin):
             raise EditError(
-                f"'{called}' has no side: it is within {100 * distance:.1f} cm of its mirror image"
+                told(
+                    "'{called}' has no side: it is within {far:.1f} cm of its mirror image",
+                    called=called,
+                    far=100 * distance,
+                )
             )
         name = free_name(twin_name(entry.name), taken)
         taken.add(name)
@@ -92,17 +97,26 @@ def place_twins(project: Project, pairs: Mapping[str, str]) -> Project:
         action = _action(project, ident)
         entry, before = project.clips.get(clip), project.clips.get(action.clip)
         if entry is None:
-            raise EditError(f"the mirrored clip of '{action.name}' is not in the project")
+            raise EditError(told("the mirrored clip of '{name}' is not in the project", name=action.name))
         if clip == action.clip:
-            raise EditError(f"'{action.name}' cannot be its own twin")
+            raise EditError(told("'{name}' cannot be its own twin", name=action.name))
         if before is not None and (entry.frames, entry.fps) != (before.frames, before.fps):
-            raise EditError(f"'{entry.name}' is not as long as '{before.name}', whose twin it is to be")
+            raise EditError(
+                told(
+                    "'{name}' is not as long as '{other}', whose twin it is to be",
+                    name=entry.name,
+                    other=before.name,
+                )
+            )
         graph = project.graphs[action.layer]
         end = None if action.end_stance is None else _stance_twin(project, action.end_stance)
         stance = _stance_twin(project, action.stance)
         if action.kind == "transition" and end == stance:
             raise EditError(
-                f"the twin of '{action.name}' would end where it starts: the stances have no twins by name"
+                told(
+                    "the twin of '{name}' would end where it starts: the stances have no twins by name",
+                    name=action.name,
+                )
             )
         twin = replace(
             action,
@@ -136,7 +150,7 @@ def twin_name(name: str) -> str:
 def _action(project: Project, ident: str) -> Action:
     action = project.action(ident)
     if action is None:
-        raise EditError("that action is no longer in the project")
+        raise EditError(told("that action is no longer in the project"))
     return action
 
 

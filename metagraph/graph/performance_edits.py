@@ -14,6 +14,7 @@ from metagraph.graph.edits import EditError, free_name
 from metagraph.graph.model import Project
 from metagraph.graph.requests import LONGEST_NAME, AnyRequest, Line, Performance, Point, RequestError
 from metagraph.graph.timeline import without_timeline
+from metagraph.wording import told
 
 
 def add_performance(project: Project, performance: Performance) -> tuple[Project, str]:
@@ -60,7 +61,7 @@ def change_performance(project: Project, ident: str, **changes: Any) -> Project:
     if "name" in changes:
         changes["name"] = " ".join(str(changes["name"]).split())
         if not changes["name"]:
-            raise EditError("a performance needs a name")
+            raise EditError(told("a performance needs a name"))
     if "asks" in changes:
         changes["asks"] = _numbered(changes["asks"])
     try:
@@ -81,7 +82,7 @@ def remove_performance(project: Project, ident: str) -> Project:
 def _performance(project: Project, ident: str) -> Performance:
     found = project.performances.get(ident)
     if found is None:
-        raise EditError("that performance is not kept in this project")
+        raise EditError(told("that performance is not kept in this project"))
     return found
 
 
@@ -184,7 +185,7 @@ def set_line(project: Project, ident: str, line: Line | None) -> Project:
     """Set or, with None, remove a line of dialogue. Raises EditError for an id of nothing."""
     ident = ident.strip()
     if not ident:
-        raise EditError("a line needs an id to be called by")
+        raise EditError(told("a line needs an id to be called by"))
     lines = (
         {i: x for i, x in project.lines.items() if i != ident}
         if line is None
@@ -204,7 +205,11 @@ def rename_line(project: Project, ident: str, new: str) -> Project:
     if new == ident:
         return project
     if not new or new in project.lines:
-        raise EditError(f"there is a line '{new}' already" if new else "a line needs an id to be called by")
+        raise EditError(
+            told("there is a line '{new}' already", new=new)
+            if new
+            else told("a line needs an id to be called by")
+        )
     lines = {new if i == ident else i: x for i, x in project.lines.items()}
     voices = {new if i == ident else i: v for i, v in project.voices.items()}
 

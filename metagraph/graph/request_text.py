@@ -16,6 +16,7 @@ from metagraph.graph import requests as a
 from metagraph.graph.edits import EditError
 from metagraph.graph.model import LAYERS, Project
 from metagraph.graph.performance_edits import asked_at, change_performance, move_requests
+from metagraph.wording import told
 
 KIND, VERSION = "requests", 1
 MOST = 100_000  # requests of one text
@@ -68,7 +69,7 @@ def paste_requests(project: Project, performance: str, text: str, at: float) -> 
         asks = [a.request_from(x) for x in data["requests"]]
         names: dict[str, Any] = dict(data.get("names", {}))
     except (a.RequestError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        raise EditError("there are no requests on the clipboard that can be read") from None
+        raise EditError(told("there are no requests on the clipboard that can be read")) from None
     kept: list[a.AnyRequest] = []
     left_out: list[str] = []
     for ask in asks:

@@ -14,6 +14,7 @@ from metagraph.playback.phases import phases
 from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, plain
 from metagraph.suggest.soft_blends import softened
 from metagraph.suggest.whole_body import CARRIER
+from metagraph.wording import told
 
 
 @dataclass(frozen=True)
@@ -104,11 +105,11 @@ def _place(
     held in a moment of a clip. Raises EditError.
     """
     if p.stance is None:
-        raise EditError("nothing says which stance it belongs to")
+        raise EditError(told("nothing says which stance it belongs to"))
     layer: Layer = p.layer.value
     kind: Kind = p.kind.value
     if kind == "transition" and p.end_stance is None:
-        raise EditError("nothing says where it ends")
+        raise EditError(told("nothing says where it ends"))
     for belief in (p.stance, p.end_stance if kind == "transition" else None):
         if belief is None or belief.value in keys or (belief is p.stance and kind == "stance"):
             continue
@@ -119,8 +120,12 @@ def _place(
         )
         if loop is None:
             raise EditError(
-                f"no resting clip shows {'its stance' if belief is p.stance else 'the stance it ends in'}, "
-                f"'{place.name}'"
+                told(
+                    "no resting clip shows its stance, '{name}'"
+                    if belief is p.stance
+                    else "no resting clip shows the stance it ends in, '{name}'",
+                    name=place.name,
+                )
             )
         project = edits.add_stance(project, layer, place.name, [loop])
         made = list(project.graphs[layer].stances)[-1]

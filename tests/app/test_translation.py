@@ -7,18 +7,45 @@ import string
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+import metagraph
 from app import translation
-from app.translation import tr
+from app.look.plural import many
+from app.translation import tr, tr_error, tr_told
+from metagraph.errors import FileError
+from metagraph.graph import edits
+from metagraph.graph.check import check
+from metagraph.graph.model import Project
+from metagraph.wording import told
 
 APP = Path(translation.__file__).parent
+DOMAIN = Path(metagraph.__file__).parent
 OTHERS = sorted(set(translation.NAMES) - {translation.ENGLISH})
 
 
+def templates() -> Iterator[tuple[str, str, set[str]]]:
+    """Yield where, what, and the names of values, for each template of the domain's (`metagraph.wording`)."""
+    for path in sorted(DOMAIN.rglob("*.py")):
+        source = path.read_text(encoding="utf-8")
+        if "from metagraph.wording import told" not in source:
+            continue
+        for node in ast.walk(ast.parse(source)):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "told":
+                first = node.args[0]
+                for text in (first.body, first.orelse) if isinstance(first, ast.IfExp) else (first,):
+                    if isinstance(text, ast.Constant):
+                        where = f"{path.relative_to(DOMAIN)}:{node.lineno}"
+                        yield where, str(text.value), {str(k.arg) for k in node.keywords}
+
+
 def marked() -> Iterator[tuple[str, str, set[str]]]:
-    """Yield where, what, and the names of values, for each text in `tr`, `tr_noop` and `many`."""
+    """Yield where, what, and the names of values, for each text in `tr`, `tr_noop` and `many`, and each of the
+    domain's.
+    """
+    yield from templates()
     for path in sorted(APP.rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if (
@@ -79,6 +106,50 @@ def test_a_translation_has_the_same_values_marks_and_keys(code: str) -> None:
             and (text[-1:] == " ") == (other[-1:] == " ")
         ), text
         assert text.replace("&&", "").count("&") >= other.replace("&&", "").count("&"), text
+
+
+def test_what_checks_find_is_said_in_the_language_and_stays_english_for_programs(
+    english: None, toy: Any
+) -> None:
+    project = toy.project()
+    project = edits.update_actions(project, [toy.id(project, "rest beat lf")], likelihood=-1.0)
+    (found,) = [p for p in check(project) if p.code == "likelihood"]
+    assert (
+        tr_told(found.message)
+        == found.message
+        == "'rest beat lf' has the likelihood -1 and can never be chosen"
+    )
+    translation.choose("de")
+    assert tr_told(found.message) == "'rest beat lf' hat die Häufigkeit -1 und kann nie gewählt werden"
+    assert tr_told(found.remedy) == "Setze sie über 0."
+    assert found.message == "'rest beat lf' has the likelihood -1 and can never be chosen"
+
+
+def test_errors_are_said_in_the_language_as_far_as_they_know_their_templates(english: None) -> None:
+    translation.choose("de")
+    with pytest.raises(edits.EditError) as caught:
+        edits.rename_clip(Project(), "c1", "x")
+    assert tr_error(caught.value) == "dieser Clip ist nicht mehr im Projekt"
+    assert str(caught.value) == "that clip is no longer in the project"
+    whole = FileError("some/a.bvh", told("nothing to mirror"), "line 3", told("Choose its states."))
+    assert tr_error(whole) == "a.bvh, line 3: nichts zu spiegeln. Wähle seine Zustände."
+    assert str(whole) == "a.bvh, line 3: nothing to mirror. Choose its states."
+    plain = FileError("a.bvh", "it is odd")
+    assert tr_error(plain) == str(plain) == "a.bvh: it is odd."
+    assert tr_error(OSError(2, "No such file")) == "[Errno 2] No such file"
+    assert tr_error(ValueError()) == "" and tr_told("words of nobody") == "words of nobody"
+
+
+def test_what_was_said_is_known_in_english_for_logs(english: None) -> None:
+    assert translation.in_english(tr("Set base pose")) == "Set base pose"
+    translation.choose("de")
+    german = tr("Duplicate {clips}", clips=many(3, "clip"))
+    assert german != "Duplicate 3 clips" == translation.in_english(german)
+    assert translation.in_english("nobody said this") == "nobody said this"
+    for n in range(translation.REMEMBERED + 10):
+        tr("no such text {n}", n=n)
+    assert len(translation._english) == translation.REMEMBERED, "it does not grow for ever"
+    assert translation.in_english(german) == german
 
 
 def test_what_a_language_lacks_is_english(english: None) -> None:

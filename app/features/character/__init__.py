@@ -14,7 +14,7 @@ from app.shell.actions import Command
 from app.shell.context import Contribution, Panel, Shell
 from app.shell.places import Places
 from app.shell.workspace_keeper import Workspaces
-from app.translation import tr
+from app.translation import tr, tr_error
 from metagraph.graph import edits
 
 FRAME = 1 / 30  # seconds of a step
@@ -344,5 +344,5 @@ def choose_character(shell: Shell) -> None:
         tr("Reading {name}", name=Path(name).name),
         lambda _: look_at(path, folder, skeleton),
         done,
-        lambda error: shell.tell(str(error)),
+        lambda error: shell.tell(tr_error(error)),
     )

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QWidget
 
 from app.look import icons
 from app.look.theme import theme
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.errors import FileError
@@ -81,7 +81,7 @@ class _Reader(QObject):
                     last = picture
                     self.came.emit(picture)
         except FileError as error:
-            self.failed.emit(str(error))
+            self.failed.emit(tr_error(error))
         finally:
             if video is not None:
                 video.close()

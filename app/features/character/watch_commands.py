@@ -14,7 +14,7 @@ from app.project.jobs import Job
 from app.shell.actions import Command
 from app.shell.context import Shell
 from app.stage.watch import MOST_GHOSTS, SPACINGS, Watch
-from app.translation import tr
+from app.translation import tr, tr_error
 
 if TYPE_CHECKING:
     from app.features.character.character_panel import PreviewPanel
@@ -266,4 +266,4 @@ def next_slide(shell: Shell) -> None:
         session.watch.set(feet=True)
         session.transport.seek(found)
 
-    shell.jobs.start(tr("Searching feet that slide"), search, done, lambda error: shell.tell(str(error)))
+    shell.jobs.start(tr("Searching feet that slide"), search, done, lambda error: shell.tell(tr_error(error)))

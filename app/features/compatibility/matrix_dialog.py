@@ -44,7 +44,7 @@ from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.compatibility_state import Compatibility, proposed_fields
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_error, tr_told
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph import edits
 from metagraph.graph.model import KINDS, Action, Project
@@ -302,6 +302,7 @@ class MatrixDialog(QDialog):
         end = self._end(clip, stance) if kind == "transition" else None
         why = edits.refusal(project, [clip], layer, kind, stance, end)
         if why is not None:
+            why = tr_told(why)
             self.words.setText(f"{why[:1].upper()}{why[1:]}.")
             return
         measured = judged.measured[layer] if judged is not None else None
@@ -325,13 +326,13 @@ class MatrixDialog(QDialog):
             try:
                 self.document.edit(tr("Place 1 clip"), placed)
             except edits.EditError as error:
-                self.words.setText(str(error))
+                self.words.setText(tr_error(error))
                 return
             action = _newest(before, self.document.project)
             self.session.jump(action=action.id)
             self.session.show_context(action.id)
 
-        self.jobs.start("place", work, done, lambda error: self.words.setText(str(error)), quick=True)
+        self.jobs.start("place", work, done, lambda error: self.words.setText(tr_error(error)), quick=True)
 
 
 def _newest(before: Project, after: Project) -> Action:

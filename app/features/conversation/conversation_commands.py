@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QFileDialog, QInputDialog
 from app.project.document import Edit
 from app.project.files import Files
 from app.project.speech_files import SOUNDS, TRANSCRIPTS, beside, kinds_of
-from app.translation import tr
+from app.translation import tr, tr_error
 from metagraph.errors import FileError
 from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import MOST_SPEAKERS, Conversation
@@ -153,7 +153,7 @@ def write_segments(shell: Shell) -> None:
         else:
             write_elan(found[1], path, shell.document.folder)
     except (FileError, OSError) as error:
-        shell.tell(str(error))
+        shell.tell(tr_error(error))
         return
     shell.tell(tr("Wrote {name}", name=path.name))
 
@@ -162,4 +162,4 @@ def _edit(shell: Shell, text: str, function: Edit) -> None:
     try:
         shell.document.edit(text, function)
     except EditError as error:
-        shell.tell(str(error))
+        shell.tell(tr_error(error))

@@ -34,7 +34,7 @@ from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.project.speech_files import TRANSCRIPTS, facts_of
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.act_strip import clock
 from app.widgets.making import make_widget
 from metagraph.graph import conversation_edits
@@ -265,7 +265,7 @@ class ImportDialog(QDialog):
 
     def _failed(self, error: Exception) -> None:
         self.job = None
-        self._show(tr("It could not be read."), failure=str(error))
+        self._show(tr("It could not be read."), failure=tr_error(error))
 
     def _show(self, told: str, busy: bool = False, failure: str = "") -> None:
         """Show how things are."""

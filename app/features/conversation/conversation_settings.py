@@ -24,7 +24,7 @@ from app.look.theme import strengthen
 from app.project.document import Document
 from app.stage.performance import Performance
 from app.stage.playback_source import Shown
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.graph import conversation_edits
@@ -126,7 +126,7 @@ class SettingDialog(QDialog):
         try:
             self.document.edit(self.text, self.change)
         except EditError as error:
-            self.said.setText(f"{str(error)[:1].upper()}{str(error)[1:]}.")
+            self.said.setText(f"{tr_error(error)[:1].upper()}{tr_error(error)[1:]}.")
             self.said.show()
             return
         super().accept()

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QMenu, QWidget
 
 from app.project.document import Document
 from app.project.speech_files import SOUNDS, channels_of
-from app.translation import tr
+from app.translation import tr, tr_error
 from metagraph.formats.store import SUFFIX, relative
 from metagraph.graph.conversation import Conversation, side_name
 from metagraph.graph.conversation_edits import change_side
@@ -94,7 +94,7 @@ def _set(document: Document, ident: str, side: int, changes: dict[str, object]) 
     try:
         document.edit(text, lambda p: change_side(p, ident, side, **changes))
     except EditError as error:
-        document.failed.emit(str(error))
+        document.failed.emit(tr_error(error))
 
 
 def _beside(document: Document, suffixes: tuple[str, ...], used: Iterable[str | None]) -> list[str]:

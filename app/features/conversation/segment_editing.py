@@ -15,7 +15,7 @@ from app.features.conversation.sound_reading import SideSound, Sounds
 from app.look.plural import many
 from app.project.document import Document, Edit
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_error
 from metagraph.graph import conversation_edits
 from metagraph.graph.conversation import SPOKEN, Conversation, Segment, Sound
 from metagraph.graph.edits import EditError
@@ -135,7 +135,7 @@ class Editing(QObject):
         try:
             self.document.edit(text, function)
         except EditError as error:
-            self.document.failed.emit(f"{str(error)[:1].upper()}{str(error)[1:]}.")
+            self.document.failed.emit(f"{tr_error(error)[:1].upper()}{tr_error(error)[1:]}.")
             return False
         return True
 

@@ -26,7 +26,7 @@ from PySide6.QtWidgets import (
 from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.document import Document
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from metagraph.graph import batch
@@ -136,7 +136,7 @@ class RenameDialog(BatchDialog):
                     project, self.edited, self.sought.text(), self.put.text(), self.regex.isChecked()
                 )
         except EditError as error:
-            words = str(error)
+            words = tr_error(error)
         self.trouble.setText(words)
         self.go.setEnabled(bool(self.names))
         self.preview.clear()
@@ -189,7 +189,7 @@ class PasteDialog(BatchDialog):
         try:
             after = batch.paste(self.document.project, self.source, self.edited, groups)
         except EditError as error:
-            self.trouble.setText(str(error))
+            self.trouble.setText(tr_error(error))
             return
         self.document.edit(tr("Paste properties"), lambda p: after)
         self.accept()

@@ -36,7 +36,7 @@ from app.look.theme import strengthen
 from app.project.chosen import was_chosen
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
-from app.translation import tr
+from app.translation import tr, tr_error, tr_told
 from app.widgets.making import make_widget
 from app.widgets.tree_items import items_below, top_items
 from metagraph.engines.targets import registry
@@ -129,7 +129,11 @@ class ExportDialog(QDialog):
         if errors:
             self.go.setEnabled(False)
             self.trouble.setText(
-                tr("First: {message}. {remedy}", message=errors[0].message, remedy=errors[0].remedy)
+                tr(
+                    "First: {message}. {remedy}",
+                    message=tr_told(errors[0].message),
+                    remedy=tr_told(errors[0].remedy),
+                )
             )
 
     # --- parts
@@ -349,7 +353,7 @@ class ExportDialog(QDialog):
         if isinstance(error, ForeignFilesError) and self.target.name == target:
             self._ask_overwrite(error)
         else:
-            self.trouble.setText(str(error))
+            self.trouble.setText(tr_error(error))
 
     def _ask_overwrite(self, error: ForeignFilesError) -> None:
         """Ask before anything that is not of this export is overwritten."""
@@ -370,5 +374,5 @@ class ExportDialog(QDialog):
         box.buttonClicked.connect(
             lambda button: self._export(overwrite=True) if button is overwrite else self._browse()
         )
-        self.trouble.setText(str(error))
+        self.trouble.setText(tr_error(error))
         box.open()

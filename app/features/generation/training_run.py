@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.look.plural import many
-from app.translation import tr
+from app.translation import tr, tr_error
 
 if TYPE_CHECKING:
     from metagraph.generation.standing import Standing
@@ -133,7 +133,7 @@ class TrainingRun(QObject):
         try:
             return self.process.wait(1.0), ""
         except (RuntimeError, TimeoutError) as error:
-            return None, str(error)
+            return None, tr_error(error)
 
     def stop(self) -> None:
         """Let it end soon, keeping what it has."""

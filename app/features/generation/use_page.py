@@ -35,7 +35,7 @@ from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from metagraph.errors import FileError
@@ -217,7 +217,7 @@ class UsePage(Page):
             try:
                 self.about.setText(about(read_card(path), self.document.project))
             except FileError as error:
-                self.about.setText(str(error))
+                self.about.setText(tr_error(error))
         self._enable()
 
     def _speech_chosen(self) -> None:

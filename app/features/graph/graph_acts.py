@@ -15,7 +15,7 @@ from app.look.plural import many
 from app.project.document import Document
 from app.project.load import Load
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.vocabulary import word
 from metagraph.graph import edits
 from metagraph.graph.listing_edits import shifted
@@ -60,7 +60,7 @@ class GraphActs(QObject):
         try:
             self.document.edit(words, lambda p: perform(p, layer, drop, load))
         except edits.EditError as error:
-            self.refused.emit(str(error))
+            self.refused.emit(tr_error(error))
             return
         made = tuple(a.id for a in self.document.project.actions() if a.id not in before) or load.actions
         if drop.kind in ("stance", None) and made:
@@ -105,7 +105,7 @@ class GraphActs(QObject):
         try:
             self.document.edit(tr("Move actions"), lambda p: edits.to_stance(p, chosen, stance))
         except edits.EditError as error:
-            self.refused.emit(str(error))
+            self.refused.emit(tr_error(error))
 
     def end_selection_in(self, stance: str) -> None:
         self.end_in(self.session.selection.actions, stance)
@@ -115,7 +115,7 @@ class GraphActs(QObject):
         try:
             self.document.edit(tr("Change end stance"), lambda p: edits.set_ends(p, actions, stance))
         except edits.EditError as error:
-            self.refused.emit(str(error))
+            self.refused.emit(tr_error(error))
 
     def show_clip(self) -> None:
         actions = self.session.selection.selected_actions()

@@ -10,7 +10,7 @@ from app.features.graph.graph_layout import GraphHit
 from app.look.names import node_names
 from app.look.plural import many
 from app.project.load import ANNOTATIONS, Load
-from app.translation import tr, tr_noop
+from app.translation import tr, tr_error, tr_noop, tr_told
 from app.widgets.vocabulary import word
 from metagraph.graph.edits import EditError, move_actions, place, refusal, to_stance
 from metagraph.graph.listing_edits import reordered
@@ -98,7 +98,7 @@ def drop_at(
     if why is None and load.actions and target is None and kind == "stance":
         why = tr("drag its clip from the library to make a new stance of it")
     if why is not None:
-        return Drop(False, why, kind, target, end)
+        return Drop(False, tr_told(why), kind, target, end)
     return Drop(True, words, kind, target, end)
 
 
@@ -138,7 +138,7 @@ def _move(project: Project, stance: str, load: Load) -> Drop:
     try:
         to_stance(project, load.actions, stance)
     except EditError as error:
-        return Drop(False, str(error), None, stance)
+        return Drop(False, tr_error(error), None, stance)
     return Drop(True, tr("move {what} to *{name}*", what=_count(load), name=name), None, stance)
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from app.features.graph.graph_drops import Drop
 from app.features.graph.graph_layout import GraphHit
-from app.translation import tr
+from app.translation import tr, tr_error
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 
@@ -28,7 +28,7 @@ def repoint_at(project: Project, actions: Sequence[str], hit: GraphHit) -> Drop:
     try:
         edits.set_ends(project, actions, stance.id)
     except edits.EditError as error:
-        return Drop(False, str(error), "transition", None, stance.id)
+        return Drop(False, tr_error(error), "transition", None, stance.id)
     words = (
         tr("let go and this transition ends in *{name}*", name=stance.name)
         if len(chosen) == 1

@@ -12,7 +12,7 @@ from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelInd
 from PySide6.QtGui import QFont
 from PySide6.QtWidgets import QComboBox, QStyledItemDelegate, QStyleOptionViewItem, QWidget
 
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.vocabulary import word
 from metagraph.graph.words import KINDS, LAYERS, LIMBS
@@ -249,7 +249,7 @@ class PatternTable(QAbstractTableModel):
         try:
             changed(self.patterns, row, phrase, meaning)
         except PatternsError as error:
-            self._refused(str(error))
+            self._refused(tr_error(error))
             return False
         self._change(lambda p: changed(p, row, phrase, meaning))
         return True

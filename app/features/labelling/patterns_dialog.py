@@ -44,7 +44,7 @@ from app.project.document import Document
 from app.project.learned import Learned
 from app.project.pattern_files import read_patterns, write_patterns
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.vocabulary import word
 from metagraph.errors import FileError
@@ -283,7 +283,7 @@ class PatternsDialog(QDialog):
         try:
             self.model.patterns.with_pattern(field, phrase, " ".join(meaning.split()))
         except PatternsError as error:
-            self._tell(str(error))
+            self._tell(tr_error(error))
             self.phrase.setFocus()
             return
         self._tell("")
@@ -355,7 +355,7 @@ class PatternsDialog(QDialog):
             try:
                 theirs = read_patterns(Path(name))
             except FileError as error:
-                self._tell(str(error))
+                self._tell(tr_error(error))
                 return
             self.learned.edit(lambda mine: merged(mine, theirs))
             own = sum(map(len, theirs.changes.values()))
@@ -377,7 +377,7 @@ class PatternsDialog(QDialog):
             try:
                 write_patterns(path, self.model.patterns)
             except FileError as error:
-                self._tell(str(error))
+                self._tell(tr_error(error))
                 return
             self._tell(
                 tr(

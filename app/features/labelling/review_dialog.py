@@ -40,7 +40,7 @@ from app.project.learned import Learned
 from app.stage.figures import Figures
 from app.stage.playback_source import Shown, alone
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.vocabulary import word
 from metagraph.graph.model import KINDS, Kind
 from metagraph.suggest.proposal import Proposal
@@ -528,7 +528,7 @@ class ReviewDialog(QDialog):
                 self.work.times_found(times)
 
     def _failed(self, error: object) -> None:
-        self.stage.tell(escape(str(error)))
+        self.stage.tell(escape(tr_error(error)))
 
     # --- keys
 

@@ -11,7 +11,7 @@ from PySide6.QtCore import QElapsedTimer, QObject, QTimer, Signal
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.project.learned import Learned
-from app.translation import tr
+from app.translation import tr, tr_error
 from metagraph.graph.model import Kind, Project
 from metagraph.suggest.accept import Taken
 from metagraph.suggest.bridges import bridged, missing, told
@@ -68,7 +68,7 @@ class Reviewing(QObject):
         self.found.emit()
 
     def _failed(self, error: Exception) -> None:
-        self.failed.emit(str(error))
+        self.failed.emit(tr_error(error))
 
     def _proposals(self, project: Project, clips: list[str] | None, job: Job) -> Proposals:
         """Propose, with what was learned from other projects; on a job's thread."""

@@ -97,8 +97,13 @@ class ClipActs:
     def mark(self, clips: Iterable[str], field: str, value: object) -> None:
         """Put something on clips: one field of a `ClipMark`."""
         some = tuple(clips)
-        words = {"color": "Colour", "rating": "Rate", "favourite": "Favourite"}[field]
-        self.document.edit(f"{words} {many(len(some), 'clip')}", lambda p: mark(p, some, **{field: value}))
+        what = many(len(some), "clip")
+        words = {
+            "color": tr("Colour {clips}", clips=what),
+            "rating": tr("Rate {clips}", clips=what),
+            "favourite": tr("Favourite {clips}", clips=what),
+        }[field]
+        self.document.edit(words, lambda p: mark(p, some, **{field: value}))
 
     def favour(self, clips: Iterable[str]) -> None:
         """Put a heart on clips; where all have one, take it away."""

@@ -22,7 +22,7 @@ from PySide6.QtWidgets import (
 from app.features.life.dial_words import in_sentence
 from app.project.document import Document
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.choice_row import ChoiceRow
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, Slider
@@ -265,7 +265,7 @@ class LifePanel(QWidget):
         try:
             life = with_life(self.document.project.life, mode, **changes)
         except ValueError as error:
-            self.document.failed.emit(str(error))
+            self.document.failed.emit(tr_error(error))
             return
         self._set(text, life, merge)
 
@@ -279,4 +279,4 @@ class LifePanel(QWidget):
         try:
             self.document.edit(text, lambda p: performance_edits.set_life(p, **fields), merge)
         except EditError as error:
-            self.document.failed.emit(str(error))
+            self.document.failed.emit(tr_error(error))

@@ -36,7 +36,7 @@ from app.project.document import Document, Edit
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.flow import Flow
 from app.widgets.making import make_widget
 from metagraph.graph import performance_edits
@@ -263,7 +263,7 @@ class LinesPanel(QWidget):
         try:
             self.document.edit(text, function)
         except EditError as error:
-            self.told.emit(str(error))
+            self.told.emit(tr_error(error))
             self.refresh()
 
     def _typed(self, item: QTableWidgetItem) -> None:
@@ -331,7 +331,7 @@ class LinesPanel(QWidget):
             tr("Reading lines"),
             lambda _: read_lines(paths, folder, keep_chosen),
             done,
-            lambda error: self.told.emit(str(error)),
+            lambda error: self.told.emit(tr_error(error)),
         )
 
     def say(self) -> None:

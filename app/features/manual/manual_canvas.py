@@ -36,7 +36,7 @@ from app.project.document import Document
 from app.stage.performance import Performance
 from app.stage.session import Session
 from app.stage.thumbnails import Thumbnails
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.gesture import Hand
 from app.widgets.mime import load_of
 from metagraph.graph import manual_edits
@@ -411,7 +411,7 @@ class ManualCanvas(QWidget):
         try:
             self.document.edit(text, edit)
         except EditError as error:
-            self.refused.emit(str(error))
+            self.refused.emit(tr_error(error))
             return False
         return True
 

@@ -17,7 +17,7 @@ from app.features.manual.manual_painter import facts, words_of
 from app.features.manual.manual_scene import ManualHit
 from app.look.plural import many
 from app.project.load import Load
-from app.translation import tr
+from app.translation import tr, tr_told
 from metagraph.graph import manual_edits
 from metagraph.graph.manual import ANY, Link
 from metagraph.graph.model import Project
@@ -260,7 +260,7 @@ def _show_all(canvas: ManualHost) -> None:
 def drop_words(project: Project, load: Load) -> tuple[bool, str]:
     """Return whether a drop makes states, and what it does or why not."""
     why = manual_edits.refusal(project, load.clips) if load.clips else None
-    words = why or (
+    words = tr_told(why or "") or (
         tr("drop to make {count} states here", count=load.count)
         if load.count > 1
         else tr("drop to make a state here")

@@ -12,7 +12,7 @@ from app.features.manual import manual_many
 from app.features.manual.manual_canvas import ManualCanvas
 from app.features.manual.manual_inspector import Inspector
 from app.look.plural import many
-from app.translation import tr
+from app.translation import tr, tr_told
 from app.widgets.form_fields import Chooser
 from app.widgets.making import make_widget
 from metagraph.graph.model import Project
@@ -141,7 +141,8 @@ class ManualEditor(QWidget):
         for p in problems:
             ident = p.state or p.link
             if ident and p.severity != "hint":
-                troubles.setdefault(ident, f"{p.message[:1].upper()}{p.message[1:]}. {p.remedy}")
+                message = tr_told(p.message)
+                troubles.setdefault(ident, f"{message[:1].upper()}{message[1:]}. {tr_told(p.remedy)}")
         self.canvas.set_troubles(troubles)
         self.inspector.show_selection()
 

@@ -6,7 +6,7 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 
 from app.features.manual.manual_host import ManualHost
 from app.features.manual.manual_scene import ManualHit
-from app.translation import tr
+from app.translation import tr, tr_told
 from app.widgets.gesture import PressDrag, Reason
 from metagraph.graph import manual_edits
 
@@ -126,7 +126,7 @@ class DrawLink(PressDrag):
             why = manual_edits.link_refusal(
                 self.host.document.project, self.host.session.place.layer, self.source, hit.ident
             )
-            self.target, self.words = (hit.ident, "") if why is None else ("", why)
+            self.target, self.words = (hit.ident, "") if why is None else ("", tr_told(why))
         self.host.show_cursor(Qt.CursorShape.ForbiddenCursor if self.words else Qt.CursorShape.CrossCursor)
         self.host.show_link(self.source, at, self.target, self.sources, self._tell())
 

@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QApplication, QFileDialog, QWidget
 
 from app.features.manual.manual_host import ManualHost
 from app.look.plural import many
-from app.translation import tr
+from app.translation import tr, tr_error
 from metagraph.errors import FileError
 from metagraph.formats import manual_table
 from metagraph.formats.clips import is_face_recording
@@ -75,7 +75,7 @@ def import_table(canvas: ManualHost, path: Path) -> None:
     try:
         rows = manual_table.read_table(path)
     except FileError as error:
-        canvas.refuse(str(error))
+        canvas.refuse(tr_error(error))
         return
     _fill(canvas, rows, path.name)
 

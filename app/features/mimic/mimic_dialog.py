@@ -26,7 +26,7 @@ from PySide6.QtWidgets import (
 from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.jobs import Job
-from app.translation import tr
+from app.translation import tr, tr_error
 from metagraph.formats.keypoints import read_keypoints
 from metagraph.graph import performance_edits
 from metagraph.graph.model import LAYERS, Project
@@ -144,7 +144,7 @@ class MimicDialog(QDialog):
             return mimic_performance(project, keypoints, mirror, layers, gaze, into, tell)
 
         def failed(error: Exception) -> None:
-            QMessageBox.warning(shell.widget, tr("Not mimicked"), str(error))
+            QMessageBox.warning(shell.widget, tr("Not mimicked"), tr_error(error))
 
         def done(found: Mimicry) -> None:
             if shell.document.project.skeleton is project.skeleton:
@@ -210,6 +210,6 @@ def open_keypoints(shell: Shell, path: str | Path | None = None) -> None:
         MimicDialog(shell, keypoints, file.name).open()
 
     def failed(error: Exception) -> None:
-        QMessageBox.warning(shell.widget, tr("Not read"), str(error))
+        QMessageBox.warning(shell.widget, tr("Not read"), tr_error(error))
 
     shell.jobs.start(tr("Reading {name}", name=file.name), lambda _: read_keypoints(file), show, failed)

@@ -34,7 +34,7 @@ from app.look.theme import KIND_MARKS, strengthen, theme
 from app.project.annotation_reading import Reading, begin, into, told
 from app.project.document import Document
 from app.stage.session import Session
-from app.translation import tr, tr_noop
+from app.translation import tr, tr_error, tr_noop
 from app.widgets.act_strip import Strip, clock
 from app.widgets.form_fields import Seconds
 from app.widgets.making import make_widget
@@ -438,7 +438,7 @@ def open_annotation(
             done(dialog)
 
     def failed(error: Exception) -> None:
-        QMessageBox.warning(shell.widget, tr("Not imported"), str(error))
+        QMessageBox.warning(shell.widget, tr("Not imported"), tr_error(error))
 
     shell.jobs.start(tr("Reading {name}", name=file.name), work, show, failed)
 

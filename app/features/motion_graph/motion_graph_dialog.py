@@ -39,7 +39,7 @@ from app.project.document import Document
 from app.project.jobs import Job, Jobs
 from app.project.new_clips import pieces, save
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import DoubleSpinBox, SpinBox
 from metagraph.compiling import there
@@ -340,7 +340,7 @@ class MotionGraphDialog(QDialog):
             self.said.setText(tr("Cancelled; nothing was changed."))
 
     def _failed(self, error: Exception) -> None:
-        text = str(error)
+        text = tr_error(error)
         self.said.setText(f"{text[:1].upper()}{text[1:].rstrip('.')}.")
 
     def count(self) -> None:

@@ -42,7 +42,7 @@ from app.look.plural import many
 from app.look.theme import theme
 from app.stage.fixes import Fix
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_noop, tr_told
 from metagraph.graph.problem import Problem
 
 MOST = 500  # rows; a project with more has one cause, seen long before
@@ -51,6 +51,8 @@ WHERE = 170  # pixels wide, the column of places
 ICON, MARGIN = 26, 12  # pixels beside the words of a row: of its icon, of its edges
 SHARE = 0.55  # of the rest, that the problem itself has; what to do has the other part
 ROLE = Qt.ItemDataRole.UserRole
+
+SEVERITIES = (tr_noop("error"), tr_noop("warning"), tr_noop("hint"))
 
 
 class FixButtons(QStyledItemDelegate):
@@ -207,14 +209,13 @@ class ProblemsPanel(QWidget):
             stance = project.stance(problem.stance)
             drawn = project.state(problem.state)
             inside = stance.name if stance else drawn.name if drawn else ""
-            place = ", ".join(x for x in (problem.layer or "", inside) if x) or "project"
+            place = ", ".join(x for x in (tr(problem.layer or ""), inside) if x) or tr("project")
             fix = fixes.get(problem)
-            item = QTreeWidgetItem(
-                [problem.message, place, problem.remedy, fix.words if fix is not None else ""]
-            )
+            message, remedy = tr_told(problem.message), tr_told(problem.remedy)
+            item = QTreeWidgetItem([message, place, remedy, fix.words if fix is not None else ""])
             item.setIcon(0, icons.icon("warning", colors[problem.severity]))
             item.setForeground(0, QColor(look.text if problem.severity != "hint" else look.dim))
-            item.setToolTip(0, f"{problem.severity}: {problem.message}. {problem.remedy}")
+            item.setToolTip(0, f"{tr(problem.severity)}: {message}. {remedy}")
             if fix is not None:
                 item.setToolTip(FIX, fix.tip)
             item.setData(0, ROLE, problem)

@@ -14,6 +14,7 @@ from app.features.properties.layer_page import LayerPage
 from app.features.properties.timing_plot import ANY
 from app.project.document import Document
 from app.stage.session import Session
+from app.translation import tr_error
 from metagraph.graph import edits
 from metagraph.graph.model import Project
 
@@ -111,7 +112,7 @@ class PropertiesPanel(QScrollArea):
         try:
             self.document.edit(text, function, merge)
         except edits.EditError as error:
-            self.document.failed.emit(str(error))
+            self.document.failed.emit(tr_error(error))
             self.show_selection()
             return False
         return True

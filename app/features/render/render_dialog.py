@@ -26,7 +26,7 @@ from app.project.jobs import Job, Jobs
 from app.stage.performance import Performance
 from app.stage.render_process import SUFFIXES, RenderOrder, write
 from app.stage.session import Session
-from app.translation import tr, tr_noop
+from app.translation import tr, tr_error, tr_noop
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox
 from metagraph.graph import requests
 from metagraph.graph.conversation import Conversation
@@ -219,4 +219,4 @@ class RenderDialog(QDialog):
         self.written.emit(str(path))
 
     def _failed(self, error: Exception) -> None:
-        self.words.setText(str(error))
+        self.words.setText(tr_error(error))

@@ -21,7 +21,7 @@ from app.look.plural import many
 from app.look.theme import strengthen
 from app.project.document import Document
 from app.project.jobs import Job, Jobs
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.making import make_widget
 from app.widgets.tree_items import items_below, top_items
 from metagraph.formats.repairs import Repaired, Reread, repairs_of, reread
@@ -165,13 +165,13 @@ class RepairsDialog(QDialog):
                     )
                     self.document.edit(words, result.into)
             except EditError as error:
-                failures.append(str(error))
+                failures.append(tr_error(error))
             self.found = []
             self._fill()
             if failures:
                 self._fail("\n".join(failures[:4]))
 
-        self.jobs.start(tr("Reading clips again"), work, done, lambda error: self._fail(str(error)))
+        self.jobs.start(tr("Reading clips again"), work, done, lambda error: self._fail(tr_error(error)))
 
     def _fail(self, words: str) -> None:
         self.trouble.setText(words)

@@ -26,7 +26,7 @@ from PySide6.QtWidgets import (
 
 from app.look.theme import DARK, LIGHT, strengthen
 from app.project.jobs import Jobs
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox
 from app.widgets.stick_figures import StickFigures
@@ -323,7 +323,7 @@ class JointMapDialog(QDialog):
 
         def failed(error: Exception) -> None:
             if asked == self._asked:
-                self.trouble.setText(str(error))
+                self.trouble.setText(tr_error(error))
 
         self.jobs.start(
             tr("Trying the joint map"), lambda _: bringing.bring(clip, joint_map), done, failed, quick=True

@@ -23,7 +23,7 @@ from app.features.study.study_guide import Guide
 from app.look.theme import strengthen
 from app.project.files import Files
 from app.shell.places import Places
-from app.translation import tr, tr_noop
+from app.translation import tr, tr_error, tr_noop
 from metagraph.errors import FileError
 from metagraph.study.sitting import standing
 from metagraph.study.study_plan import Study, read_study
@@ -49,7 +49,7 @@ def run_study(
     try:
         study = read_study(path)
     except FileError as error:
-        QMessageBox.warning(shell.widget, tr("This study cannot be run"), str(error))
+        QMessageBox.warning(shell.widget, tr("This study cannot be run"), tr_error(error))
         return
     if participant is not None:
         begin(shell, study, participant, experimenter)
@@ -68,7 +68,7 @@ def begin(shell: Shell, study: Study, participant: str, experimenter: bool = Fal
     try:
         guide = Guide(shell, study, participant, experimenter)
     except (FileError, ValueError) as error:
-        QMessageBox.warning(shell.widget, tr("This sitting cannot begin"), str(error))
+        QMessageBox.warning(shell.widget, tr("This sitting cannot begin"), tr_error(error))
         return None
     guide.show()
     return guide

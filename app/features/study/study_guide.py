@@ -27,7 +27,7 @@ from app.features.study.study_screen import (
 )
 from app.project.files import Files
 from app.project.jobs import Job
-from app.translation import tr, tr_noop
+from app.translation import tr, tr_error, tr_noop
 from metagraph import __version__
 from metagraph.errors import FileError
 from metagraph.graph.model import Project
@@ -138,7 +138,7 @@ class Guide(QObject):
                 self.recorder.boundary()
                 self.shell.document.save()
         except FileError as error:  # the window asks what is to become of the edits
-            self.shell.tell(str(error))
+            self.shell.tell(tr_error(error))
         self._leave()
 
     # --- going through
@@ -255,7 +255,7 @@ class Guide(QObject):
         self._show(
             question_page(
                 tr("This cannot go on"),
-                str(error),
+                tr_error(error),
                 tr("Try again"),
                 self.show,
                 tr("Close the window"),
@@ -371,7 +371,7 @@ class Guide(QObject):
             self._show(
                 question_page(
                     tr("This could not be saved"),
-                    str(error),
+                    tr_error(error),
                     tr("Try again"),
                     lambda: self.finish_task(why),
                     tr("Close the window"),

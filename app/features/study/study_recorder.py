@@ -119,10 +119,10 @@ class Recorder(QObject):
         stack = self._stack
         last, count = self._index, stack.count()
         if index > last and self._undone is not None and stack.command(last) is self._undone:
-            self._back_or_again("redo", stack.text(index - 1))
+            self._back_or_again("redo", stack.command(index - 1))
         elif index < last:
             if count == self._count:
-                self._back_or_again("undo", stack.text(index))
+                self._back_or_again("undo", stack.command(index))
             else:  # a drag that was cancelled leaves no step
                 self._edit = None
                 self._merging.stop()
@@ -130,10 +130,10 @@ class Recorder(QObject):
             self._edit_made(index)
         self._position()
 
-    def _back_or_again(self, kind: str, words: str) -> None:
+    def _back_or_again(self, kind: str, command: Any) -> None:
         self._tell_edit()
         self._tell_operators()
-        self._write(kind, {"words": words, **self._change(self.shell.document.project)})
+        self._write(kind, {"words": command.english, **self._change(self.shell.document.project)})
 
     def _change(self, now: Project) -> dict[str, Any]:
         """Return what makes the project that was told last what it is now, so that the work can be seen
@@ -162,7 +162,7 @@ class Recorder(QObject):
         command, self._edit = self._edit["command"], None
         self._tell_operators()
         about = described(command.before, command.after)
-        self._write("edit", {**about, "words": command.text(), **self._change(command.after)})
+        self._write("edit", {**about, "words": command.english, **self._change(command.after)})
 
     def _loaded(self) -> None:
         self._edit = None

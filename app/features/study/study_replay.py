@@ -12,7 +12,7 @@ from app.features.study.reserved_window import ReservedWindow
 from app.features.study.study_screen import clock
 from app.project.files import Files
 from app.project.opening import with_motion_of
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.making import make_widget
 from app.widgets.quiet_fields import ComboBox, Slider
 from metagraph.errors import FileError
@@ -124,7 +124,7 @@ class Replayer(QObject):
             tr("Loading the clips"),
             lambda job: first_project(self.study, part),
             lambda project: self._loaded(part, project),
-            lambda error: self.bar.told.setText(str(error)),
+            lambda error: self.bar.told.setText(tr_error(error)),
         )
 
     def _loaded(self, part: Part, first: Project) -> None:
@@ -201,7 +201,7 @@ class Replayer(QObject):
         try:
             project = with_motion_of(self.again.project(), self.again.first)
         except ValueError as error:
-            self.bar.told.setText(str(error))
+            self.bar.told.setText(tr_error(error))
             return
         self.shell.document.edit(words or tr("Replay"), lambda _: project)
 

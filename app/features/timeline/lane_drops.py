@@ -24,7 +24,7 @@ from app.look.plural import many
 from app.look.theme import theme
 from app.project.importing import Importing
 from app.project.load import Load
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.lane_geometry import lane_at
 from app.widgets.lane_paint import badge
 from app.widgets.mime import load_of
@@ -166,7 +166,7 @@ class LaneDrops(QObject):
         try:
             project, asked = asked_for(self.document.project, drop, load)
         except edits.EditError as error:
-            self.importing.told.emit(str(error))
+            self.importing.told.emit(tr_error(error))
             return
         if project is not self.document.project:
             self.document.edit(

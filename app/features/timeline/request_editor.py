@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.stage.performance import Performance
-from app.translation import tr, tr_noop
+from app.translation import tr, tr_error, tr_noop
 from app.widgets.lane_geometry import outcome
 from app.widgets.quiet_fields import ComboBox, DoubleSpinBox, SpinBox
 from app.widgets.request_menu import MODE_WORDS, MOOD_WORDS, mood_words, request_words
@@ -131,7 +131,7 @@ class RequestEditor(QDialog):
         try:
             self.performance.requests.change(self.ident, **{name: value})
         except EditError as error:
-            self.words.setText(str(error))
+            self.words.setText(tr_error(error))
 
     def _remove(self) -> None:
         self.performance.requests.withdraw(self.ident)

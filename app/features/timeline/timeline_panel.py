@@ -28,7 +28,7 @@ from app.project.document import Document
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.lane_geometry import outcome, wanted
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
@@ -313,7 +313,7 @@ class TimelinePanel(QWidget):
                     text, lambda p: performance_edits.change_performance(p, ident, **changes), merge=text
                 )
             except EditError as error:
-                self.document.failed.emit(str(error))
+                self.document.failed.emit(tr_error(error))
 
     # --- live
 

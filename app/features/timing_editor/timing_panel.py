@@ -25,7 +25,7 @@ from app.look.plural import many
 from app.look.theme import KIND_MARKS, theme
 from app.project.document import Document
 from app.stage.session import Session
-from app.translation import tr
+from app.translation import tr, tr_error
 from app.widgets.form_fields import Chooser, Seconds, common
 from app.widgets.making import make_widget
 from app.widgets.more_button import MoreButton
@@ -205,7 +205,7 @@ class TimingPanel(QWidget):
         try:
             edit()
         except EditError as error:
-            self.document.failed.emit(str(error))
+            self.document.failed.emit(tr_error(error))
 
     def _type(self, ident: str, handle: str, box: QRectF) -> None:
         """Let a number be typed where it stands."""

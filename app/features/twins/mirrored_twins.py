@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from app.look.plural import clips_words, many
 from app.project.jobs import Job
-from app.translation import tr
+from app.translation import tr, tr_error
 from metagraph.file_names import file_stem
 from metagraph.formats.clips import digest, read_clips
 from metagraph.formats.gltf_writer import write_glb
@@ -66,7 +66,7 @@ def make_twins(shell: Shell) -> None:
                 lambda p: with_twins(p, made),
             )
         except EditError as error:
-            shell.tell(str(error))
+            shell.tell(tr_error(error))
             return
         after = document.project
         if actions:
@@ -81,7 +81,7 @@ def make_twins(shell: Shell) -> None:
             tr("{words}: {names}. Written to {folder}.", words=words, names=names, folder=folder / FOLDER)
         )
 
-    shell.jobs.start(tr("Making mirrored twins"), work, done, lambda error: shell.tell(str(error)))
+    shell.jobs.start(tr("Making mirrored twins"), work, done, lambda error: shell.tell(tr_error(error)))
 
 
 def write_twin(twin: TwinClip, folder: Path) -> Loaded:

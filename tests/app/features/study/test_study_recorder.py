@@ -9,8 +9,10 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
+from app import translation
 from app.features.study.operator_counting import Counting
 from app.features.study.study_changes import described
+from app.translation import tr
 from metagraph.graph import edits, manual_edits
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
@@ -115,6 +117,21 @@ def test_edits_undos_and_redos_are_told_apart(recorded):
         ("edit", "Another"),
     ]
     assert [e["what"] for e in d.log.of("edit")] == ["stance", "rename", "stance"]
+
+
+def test_a_log_is_english_in_any_language(recorded):
+    d = recorded
+    translation.choose("de")
+    try:
+        d.document.edit(tr("New stance"), lambda p: edits.add_stance(p, "arms", "one"))
+        d.document.undo()
+        d.document.redo()
+        assert d.document.undo_stack.undoText() == tr("New stance") != "New stance"
+        d.recorder.boundary()
+    finally:
+        translation.choose("en")
+    told = [(e["type"], e["words"]) for e in d.log.of("edit", "undo", "redo")]
+    assert told[-3:] == [(kind, "New stance") for kind in ("edit", "undo", "redo")]
 
 
 def test_a_drag_of_a_time_is_one_edit_and_a_cancelled_one_none(recorded):

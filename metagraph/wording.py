@@ -1,0 +1,51 @@
+"""What the domain says to people: English words that know what they were made of, so that who shows them can
+say the same in another language.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Self
+
+
+class Told(str):
+    """English words, and the template and values they were made of. Values may be told, too."""
+
+    __slots__ = ("template", "values")
+    template: str
+    values: Mapping[str, Any]
+
+    def __new__(cls, template: str, values: Mapping[str, Any]) -> Self:
+        made = super().__new__(cls, filled(template, values))
+        made.template, made.values = template, values
+        return made
+
+    def __reduce__(self) -> tuple[type[Self], tuple[str, dict[str, Any]]]:
+        return type(self), (self.template, dict(self.values))
+
+
+def told(template: str, /, **values: Any) -> Told:
+    """Return words made of a template, in whose braces the values stand, as `str.format` has it; without
+    any, braces are braces.
+
+    What a program writes, as JSON or into a log, is `str` of it.
+    """
+    return Told(template, values)
+
+
+def filled(template: str, values: Mapping[str, Any]) -> str:
+    """Return a template with its values."""
+    return template.format(**values) if values else template
+
+
+def reworded(words: str, look_up: Callable[[str], str]) -> str:
+    """Return words with each template they were made of replaced by what `look_up` finds for it; words that
+    do not know their template as they are.
+    """
+    if not isinstance(words, Told):
+        return words
+    values = {
+        name: reworded(value, look_up) if isinstance(value, str) else value
+        for name, value in words.values.items()
+    }
+    return filled(look_up(words.template), values)
