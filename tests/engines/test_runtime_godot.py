@@ -545,7 +545,9 @@ def test_the_node_moves_a_skeletons_bones(game: Path) -> None:
     assert out["began"] >= 1
     assert out["answer"] in ("planned", "late")  # the line makes a gesture of its own
     assert out["broken"] == "refused"
-    assert out["said"] == [True, "said#1", 0, ["said#2", "said#3"], True, True, "", []], "lines have their own"
+    assert out["said"] == [True, "said#1", 0, ["said#2", "said#3"], True, True, "", []], (
+        "lines have their own"
+    )
 
 
 NODE = """extends SceneTree
