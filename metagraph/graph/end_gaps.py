@@ -17,6 +17,7 @@ from metagraph.graph.expand import ends_in
 from metagraph.graph.model import REACH, Action, MetaGraph, Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.features import pose_distance
+from metagraph.motion.rig_controls import rig_controls
 from metagraph.wording import told
 
 Array = NDArray[Any]
@@ -137,10 +138,12 @@ def motion_of(project: Project, action: Action | None) -> Clip | None:
 def _reached(project: Project, graph: MetaGraph, action: Action) -> tuple[int, ...]:
     moved = anatomy.mask(project, action)
     parts = anatomy.parts(project)
+    controls = rig_controls(project.skeleton) if project.skeleton is not None else ()
     return tuple(
         j
         for j, part in enumerate(parts)
-        if graph.weights.get(part, REACH[graph.layer][part]) > 0
+        if j not in controls
+        and graph.weights.get(part, REACH[graph.layer][part]) > 0
         and part != "face"
         and (moved is None or moved[j] > 0)
     )

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.motion.clip import Clip
+from metagraph.motion.rig_controls import rig_controls
 from metagraph.motion.skeleton import Pose, Skeleton
 
 Array = NDArray[Any]
@@ -47,14 +48,14 @@ def stroke(speeds: Array, fps: float) -> float:
 
 def pose_distance(skeleton: Skeleton, a: Pose, b: Pose, joints: Sequence[int] | None = None) -> Array:
     """Return `[...]` the largest distance in metres of any of `joints` between poses, both with joint 0 at
-    the origin.
+    the origin. joints: all but a rig's controls where it is left out.
     """
     if a.rotations.ndim == 2 and _alike(a, b):  # one pose costs as much as two
         both = Pose(np.stack((a.rotations, b.rotations)), np.stack((a.translations, b.translations)))
         pa, pb = skeleton.globals(both)[1]
     else:
         pa, pb = skeleton.globals(a)[1], skeleton.globals(b)[1]
-    chosen = list(range(len(skeleton))) if joints is None else list(joints)
+    chosen = sorted(set(range(len(skeleton))) - rig_controls(skeleton)) if joints is None else list(joints)
     if not chosen:
         return np.zeros(pa.shape[:-2])
     d = (pa - pa[..., :1, :])[..., chosen, :] - (pb - pb[..., :1, :])[..., chosen, :]
