@@ -21,7 +21,7 @@ from metagraph.suggest.clip_measures import layer_of, with_tremble
 from metagraph.suggest.details import masked, rest_of, stroked, timed, weighted
 from metagraph.suggest.estimate import Belief
 from metagraph.suggest.left_aside import MANY, left_aside
-from metagraph.suggest.motion_guess import guess
+from metagraph.suggest.motion_guess import MotionGuess, guess
 from metagraph.suggest.name_words import NameGuess, Patterns, read_names
 from metagraph.suggest.places import Heard, Places
 from metagraph.suggest.proposal import Place, Proposal, Proposals, Rest, Spare, plain, words_of
@@ -48,6 +48,7 @@ __all__ = [
 Source = Literal["name", "motion", "learned"]
 SOURCES: tuple[Source, ...] = ("name", "motion", "learned")
 TOLD = 0.7  # of how sure a name is of its stance, below which it does not say what stances there are
+LEADS = 0.8  # of how sure the motion is that a clip called after a stance goes there
 LENT = 0.5  # of a clip that a stance plays, below which it only borrows a moment of it
 
 
@@ -145,6 +146,7 @@ def propose(
             each.motion = guess(each.traits, shapes, CARRIER if each.posture else None, each.posture)
         if alike.examples:
             each.learned = alike.guess(words_of(each.name), measures_of(each.traits))
+        each.said = _leading(each.said, each.motion)
         usual, apart = odd >= MANY * len(chosen), shapes if each.posture is None else None
         why = left_aside(each.said, each.traits, each.motion, usual, apart)
         layer = _layer_of(each)
@@ -169,6 +171,19 @@ def propose(
             for c, p in out.items()
         }
     return Proposals(weighted(project, out), _with_rests(project, places.by_key, out), aside, whole, spare)
+
+
+def _leading(said: NameGuess, motion: MotionGuess | None) -> NameGuess:
+    """Return what a name says of a clip that is called after a stance alone and yet goes from one pose to
+    another: the stance is where it leads, "Sitting" is how somebody sits down.
+    """
+    named = said.kind is not None and said.kind.value == "stance" and said.end_stance is None
+    if not named or said.stance is None or motion is None:
+        return said
+    if motion.kind.value != "transition" or motion.kind.confidence < LEADS:
+        return said
+    why = f"{said.stance.reason}, and it comes there from elsewhere"
+    return replace(said, kind=None, stance=None, end_stance=replace(said.stance, reason=why))
 
 
 def _shapes(

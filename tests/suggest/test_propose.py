@@ -247,3 +247,36 @@ def test_walks_and_fights_are_left_aside_with_a_word() -> None:
     unnamed = propose(project, sources=("motion",))
     assert all(unnamed.aside[clip].startswith("walks or runs: its feet pass") for clip in walks)
     assert not set(walks) & set(accept(project, found).placed)
+
+
+def test_a_clip_called_after_a_stance_alone_that_comes_from_elsewhere_leads_there():
+    from metagraph.suggest.estimate import Belief
+    from metagraph.suggest.motion_guess import MotionGuess
+    from metagraph.suggest.name_words import NameGuess
+    from metagraph.suggest.propose import _leading
+
+    said = NameGuess(kind=Belief("stance", 0.7, "x"), stance=Belief("sitting", 0.9, "name says 'Sitting'"))
+
+    def motion(kind, sure):
+        return MotionGuess(
+            Belief(kind, sure, ""), Belief("body", 1, ""), Belief("both", 1, ""), Belief(False, 1, "")
+        )
+
+    led = _leading(said, motion("transition", 0.86))
+    assert (led.kind, led.stance, led.end_stance.value) == (None, None, "sitting")
+    assert "Sitting" in led.end_stance.reason
+    assert _leading(said, motion("transition", 0.6)) is said
+    assert _leading(said, motion("gesture", 0.9)) is said
+    assert _leading(said, None) is said
+    gesture = NameGuess(kind=Belief("gesture", 0.7, "x"), stance=said.stance)
+    assert _leading(gesture, motion("transition", 0.9)) is gesture
+
+
+def test_a_robot_nobody_made_here_sits_where_its_clip_of_sitting_ends(shared_data):
+    project = import_files(Project(), None, [shared_data / "robot-expressive"]).into(Project())
+    found = propose(project)
+    names = {project.clips[c].name: p for c, p in found.proposals.items()}
+    ends = {
+        name: found.places[p.end_stance.value].name for name, p in names.items() if p.end_stance is not None
+    }
+    assert ends["Sitting"] == "sitting" and ends["Standing"] == "standing"
