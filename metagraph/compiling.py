@@ -10,10 +10,12 @@ import importlib
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+import zlib
+from collections.abc import Callable, Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from threading import Lock
+from types import BuiltinFunctionType, FunctionType, ModuleType
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -75,6 +77,39 @@ def compiler(keep: bool = True, **options: Any) -> Callable[[Callable[..., Any]]
             return numba.njit(**options)(function)
 
     return compiled
+
+
+def compiled_from(
+    modules: Sequence[ModuleType], otherwise: Mapping[Any, Any], inside: Callable[[Any], Any]
+) -> dict[str, dict[str, Any]]:
+    """Return the names of modules that are written in plain numbers, their functions compiled with `inside`.
+    otherwise: what stands in for functions that numba does not take. Numba takes tuples and named tuples for
+    dataclasses.
+    """
+    spaces: dict[str, dict[str, Any]] = {module.__name__: {} for module in modules}
+    made: dict[Any, Any] = {}
+    for module in modules:
+        for value in vars(module).values():
+            if isinstance(value, FunctionType) and value.__module__ == module.__name__:
+                code = otherwise.get(value, value).__code__
+                made[value] = inside(FunctionType(code, spaces[module.__name__], value.__name__))
+    for module in modules:
+        for name, value in vars(module).items():
+            if isinstance(value, FunctionType) and value in made:
+                spaces[module.__name__][name] = made[value]
+            elif isinstance(value, (int, float, tuple, BuiltinFunctionType)):
+                spaces[module.__name__][name] = value
+    return spaces
+
+
+def stamp(modules: Sequence[ModuleType]) -> int:
+    """Return a number that is another as soon as one of some modules is. Numba keeps what it compiled for as
+    long as its own file stays as it is: a loop that is compiled from others' is made with this number.
+    """
+    said = 0
+    for module in modules:
+        said = zlib.crc32(Path(str(module.__file__)).read_bytes(), said)
+    return said
 
 
 def _install() -> None:

@@ -18,7 +18,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 HOME = ROOT / ".pytest_cache" / "numba"
-PATTERNS = ("kernels.py", "*_kernels.py", "wander.py", "*_solve.py", "plain_vectors.py")
+PATTERNS = ("kernels.py", "*_kernels.py", "wander.py", "*solve.py", "plain_vectors.py")
 
 
 def kept() -> Path:

@@ -7,16 +7,13 @@ last bit, but for how `sin` and `cos` are rounded.
 
 from __future__ import annotations
 
-import zlib
 from collections import namedtuple
 from collections.abc import Callable
-from pathlib import Path
-from types import BuiltinFunctionType, FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
 
-from metagraph.compiling import compiler
+from metagraph.compiling import compiled_from, compiler, stamp
 from metagraph.motion import contact_solve, feet_solve, plain_vectors, weight_solve
 
 Array = Any
@@ -67,25 +64,7 @@ _OTHERWISE: dict[Any, Any] = {
 }
 
 
-def _compile(modules: tuple[ModuleType, ...]) -> dict[str, dict[str, Any]]:
-    """Return the names of modules, their functions compiled."""
-    spaces: dict[str, dict[str, Any]] = {module.__name__: {} for module in modules}
-    made: dict[Any, Any] = {}
-    for module in modules:
-        for value in vars(module).values():
-            if isinstance(value, FunctionType) and value.__module__ == module.__name__:
-                code = _OTHERWISE.get(value, value).__code__
-                made[value] = _inside(FunctionType(code, spaces[module.__name__], value.__name__))
-    for module in modules:
-        for name, value in vars(module).items():
-            if isinstance(value, FunctionType) and value in made:
-                spaces[module.__name__][name] = made[value]
-            elif isinstance(value, (int, float, tuple, BuiltinFunctionType)):
-                spaces[module.__name__][name] = value
-    return spaces
-
-
-_made = _compile(SOURCES)
+_made = compiled_from(SOURCES, _OTHERWISE, _inside)
 _join_all = _made[contact_solve.__name__]["spread"]
 _solve_contacts = _made[contact_solve.__name__]["solve_contacts"]
 _answer_arms = _made[weight_solve.__name__]["answer_arms"]
@@ -143,9 +122,9 @@ def _put(rotations: Array, joint: int, turn: Any) -> None:
     rotations[joint, 0], rotations[joint, 1], rotations[joint, 2], rotations[joint, 3] = x, y, z, w
 
 
-def _drivers(stamp: int) -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """Return what is called from without. stamp: of the sources, part of what numba keeps them under: by
-    itself it looks at this file alone.
+def _drivers(said: int) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """Return what is called from without. said: `stamp` of the sources, part of what numba keeps them
+    under.
     """
     compiled = compiler(**_OPTIONS)
 
@@ -171,7 +150,7 @@ def _drivers(stamp: int) -> tuple[Callable[..., Any], Callable[..., Any]]:
         goals: goal_places `[G, 2]` (arm, to), goals `[G, 8]` (at, turn, weight). rotations `[N, J, 4]`,
         translations `[N, J, 3]`.
         """
-        count = 0 * stamp
+        count = 0 * said
         body = _body_of(parents, arms, below, capsule_places, capsules, guard)
         for n in range(len(rotations)):
             pose = _pose_of(joints, rotations[n], translations[n])
@@ -223,7 +202,7 @@ def _drivers(stamp: int) -> tuple[Callable[..., Any], Callable[..., Any]]:
         feet `[N, 2, 9]` (at, turn, planted, lift), nan where there is no goal; planted: the dial. drives `[N,
         16]`, follow, lift `[N]`: the dials, both 0 where arms are not answered.
         """
-        count = 0 * stamp
+        count = 0 * said
         body = _body_of(parents, arms, below, capsule_places, capsules, guard)
         rig = _Rig(
             body,
@@ -269,14 +248,7 @@ def _drivers(stamp: int) -> tuple[Callable[..., Any], Callable[..., Any]]:
     return hold_hands, carry_weight
 
 
-def _stamp() -> int:
-    said = 0
-    for module in SOURCES:
-        said = zlib.crc32(Path(str(module.__file__)).read_bytes(), said)
-    return said
-
-
-hold_hands, carry_weight = _drivers(_stamp())
+hold_hands, carry_weight = _drivers(stamp(SOURCES))
 
 
 def warm() -> None:

@@ -1,5 +1,5 @@
 """Loading the compiled loops that poses are worked out with: forward kinematics, the layers of a plan,
-contacts and weight. Until they are there, and where numba is not, NumPy gives the same poses to 1e-5.
+contacts, weight and life. Until they are there, and where numba is not, NumPy gives the same poses to 1e-5.
 """
 
 from __future__ import annotations
@@ -12,8 +12,9 @@ from threading import Lock, Thread
 from metagraph.compiling import ROOT, there, unkept
 from metagraph.motion import forward
 from metagraph.playback import laid_plan, solving
+from metagraph.playback.life import living
 
-LOOPS = (forward.COMPILED, solving.COMPILED, laid_plan.COMPILED)
+LOOPS = (forward.COMPILED, solving.COMPILED, laid_plan.COMPILED, living.COMPILED)
 
 _one = Lock()
 _begun: list[Thread] = []

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,9 @@ from metagraph.motion.skeleton import Pose
 from metagraph.playback import laid_plan, laying, loops
 from metagraph.playback.composer import rig
 from metagraph.playback.contacts import contact_rig, goals_at, solved
+from metagraph.playback.life.evaluate import enliven
+from metagraph.playback.life.schedule import Schedule, schedule
+from metagraph.playback.life.track import LookAt, MoodFrom, Speech, track_of
 from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import extend, make_plan
 from metagraph.playback.player import layered, layers_at, pose_at
@@ -177,6 +181,35 @@ def test_the_sample_agrees_with_life_guard_and_weight(switch: Switch, sample: Pr
     assert float(np.median(np.abs(found.rotations - wanted.rotations).max((1, 2)))) < LAYERS_ALONE
     one = pose_at(plan, sample, float(times[7]), alive)
     assert one.rotations.shape == (61, 4) and apart(one, wanted[7]) < GUARDED
+
+
+def test_who_talks_looks_about_and_feels_agrees(switch: Switch, sample: Project) -> None:
+    text = "Well, I think that we should go there tomorrow, because the weather will be fine."
+    said = [Speech(f"s{n}", 9.0 * n, 9.0 * n + 7.5, None, text) for n in range(6)]
+    looks = [LookAt(f"l{n}", 7.0 * n, 7.0 * n + 4.0, (np.sin(n), 1.5, 1.0)) for n in range(8)]
+    feels = [MoodFrom("m", 20.0, 40.0, -0.8, 0.7, 1.0)]
+    times = np.random.default_rng(5).uniform(0, 60, 200)
+    dull = Life(gaze=0.0, breathing=0.0, blinks=0.0)
+    for life in (sample.life, Life(stillness=0.5, lips=0.3, gaze=0.4), dull):
+        project = replace(sample, life=life)
+        track = track_of([*said, *looks, *feels])
+        lives = schedule(life, track, {}, 1, 60.0, Schedule(), 0.0)
+        layers = rig(project).compose(layers_at(make_plan(project, 60), project, times), len(times))
+        words = project, lives, track
+        wanted = without(switch, partial(enliven, layers, *words, times))
+        found = enliven(layers, *words, times)
+        assert apart(found, wanted) < LAYERS_ALONE
+        assert apart(enliven(layers[:1], *words, times[:1]), found[:1]) == 0
+
+
+def test_bodies_that_lack_much_live_the_same(switch: Switch, toy: Any) -> None:
+    project = toy.project()
+    plan = make_plan(project, 30)
+    times = np.random.default_rng(6).uniform(0, 30, 100)
+    for roles in ({}, {"head": "nowhere"}, {"head": "nowhere", "left_shoulder": "nowhere"}):
+        lacking = replace(project, roles=roles)
+        wanted = without(switch, lambda lacking=lacking: pose_at(plan, lacking, times))
+        assert apart(pose_at(plan, lacking, times), wanted) < LAYERS_ALONE
 
 
 def test_hands_that_are_held_and_pushed_out_are_the_same_to_the_bit(switch: Switch, sample: Project) -> None:

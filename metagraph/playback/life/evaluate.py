@@ -28,18 +28,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.graph.anatomy import base_pose
-from metagraph.graph.face import CHANNELS, LIDS, MOUTH, UPPER_FOLLOWS, UPPER_LID_SHUT, FaceRig
+from metagraph.graph.face import CHANNELS, LIDS, MOUTH, FaceRig
 from metagraph.graph.face_names import MOOD_FACE
 from metagraph.graph.life import Life
 from metagraph.graph.model import Project
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.life.body import Body, body_of
 from metagraph.playback.life.expressions import FaceShown, answer, settle, shown_face
-from metagraph.playback.life.gaze import ease, gaze_of
+from metagraph.playback.life.gaze import Gaze, Moves, ease, gaze_of
 from metagraph.playback.life.lane import Lane
 from metagraph.playback.life.lips import mouth
+from metagraph.playback.life.living import brought_to_life, compiled, lids_of
 from metagraph.playback.life.schedule import Schedule
-from metagraph.playback.life.solve import breathe, lid, look, part_along
+from metagraph.playback.life.solve import LifeDials, LifeNow, enlivened
 from metagraph.playback.life.track import Track
 from metagraph.playback.mood import Bearing, bearing
 from metagraph.playback.mood import shown as mood_shown
@@ -50,9 +51,6 @@ Playing = tuple[Sequence[str], float, float]  # a cue: its action's tags, start 
 INHALE = 0.4  # of a breath
 UNMOVED = Bearing()
 MORPH_LOOK = np.radians(30.0)  # the turn of an eye that a morph target of a look stands for
-MORPH_FOLLOWS = UPPER_FOLLOWS / np.radians(
-    UPPER_LID_SHUT
-)  # how far a morph target shuts for an eye that looks down a radian
 MORPH_WIDE = 0.6  # of a target that opens wide, for a lid as far open as it would be shut
 
 _PRODUCT = np.array(
@@ -71,6 +69,8 @@ def enliven(pose: Pose, project: Project, schedule: Schedule, track: Track, time
     body = body_of(project)
     if body.empty:
         return pose
+    if compiled(pose):
+        return _compiled(body, project, schedule, track, np.asarray(times, np.float64), pose)
     found = _Found(body, project, schedule, track, np.asarray(times, np.float64), pose)
     rotations = np.array(pose.rotations)
     rotations[:, body.joints] = found.rotations()
@@ -80,6 +80,41 @@ def enliven(pose: Pose, project: Project, schedule: Schedule, track: Track, time
         translations = np.array(translations)
         translations[:, body.face.joints[shifted]] += _each(found.channels, body.face.shifts[:, shifted])
     return Pose(rotations, translations)
+
+
+def _compiled(
+    body: Body, project: Project, schedule: Schedule, track: Track, times: Array, pose: Pose
+) -> Pose:
+    """Return what `_Found` makes of poses, by compiled loops."""
+    life = project.life
+    looking = _looking(body, project, schedule)
+    now, moves = [], []
+    for time in times.tolist():
+        now.append(happening(schedule, life, time)[0])
+        moves.append(looking.at(time) if looking is not None else NO_MOVES)
+    channels = _spoken(project, track, times)
+    return brought_to_life(pose, body, _dials(life), now, moves, looking is not None, channels)
+
+
+def _looking(body: Body, project: Project, schedule: Schedule) -> Gaze | None:
+    """Return the gaze of a body; None of one that looks at nothing."""
+    if not body.lookers or not schedule.targets:
+        return None
+    return gaze_of(schedule, project.life, body, project.points)
+
+
+def _dials(life: Life) -> LifeDials:
+    return LifeDials(life.gaze, 1 - life.stillness, life.head_share, life.lids)
+
+
+def _spoken(project: Project, track: Track, times: Array) -> Array:
+    """Return the face's channels `[N, C]` at times, the mouth's filled."""
+    life = project.life
+    out = np.zeros((len(times), len(CHANNELS)))
+    shown = mouth(track, project.voices, life.lip_smoothing, times) if life.lips > 0 else None
+    if shown is not None:
+        out[:, len(LIDS) + 2 :] = shown * life.lips
+    return out
 
 
 def face_weights(
@@ -133,68 +168,27 @@ class _Found:
         self, body: Body, project: Project, schedule: Schedule, track: Track, times: Array, pose: Pose
     ) -> None:
         self.body, self.pose = body, pose
-        life, rig = project.life, body.face
-        calm = 1 - life.stillness
-        gaze = gaze_of(schedule, life, body, project.points) if body.lookers else None
-        moving = gaze is not None and bool(schedule.targets)
+        life = project.life
+        gaze = _looking(body, project, schedule)
         read = pose.rotations[:, body.read].tolist()
         places = pose.translations[:, body.chain].tolist()
-        long = len(body.chain)
-        lids = rig.lid_joints.tolist()
-        follows = rig.follows.tolist() if max(lids) >= 0 else [MORPH_FOLLOWS, MORPH_FOLLOWS, 0.0, 0.0]
-        shut_by = rig.shut_by.tolist()
-        self.channels = np.zeros((len(times), len(CHANNELS)))
+        lids, dials = lids_of(body.face), _dials(life)
+        self.channels = _spoken(project, track, times)
         chains: list[Any] = []
         turns: list[Any] = []
         self.faces: list[_Look] = []
         for n, time in enumerate(times.tolist()):
-            rotations = read[n]
-            chain = rotations[:long]
-            full = breath_at(schedule.breaths, life, time)
-            mood = mood_shown(schedule.moods.times, schedule.moods.rows, time)
-            bears = UNMOVED if mood.neutral else bearing(mood)
-            if full or bears.droop or bears.thrust:
-                breathe(body, chain, full, bears.droop, bears.thrust)
-            turn: list[Any] = [_NONE] * long
-            eyes = [(0.0, 0.0), (0.0, 0.0)]
-            if moving and gaze is not None:
-                towards, eyes = look(body, chain, places[n], gaze.at(time), life.gaze, calm, life.head_share)
-                for looker, vector in zip(body.lookers, towards, strict=True):
-                    turn[looker.place] = vector
-            lifted, tight = full + bears.lift, bears.tension
-            if tight:
-                turn += [
-                    (lifted * x + tight * a, lifted * y + tight * b, lifted * z + tight * c)
-                    for (x, y, z), (a, b, c) in zip(body.shoulders, body.tense, strict=True)
-                ]
-            else:
-                turn += [(lifted * x, lifted * y, lifted * z) for x, y, z in body.shoulders]
-            down = [-eyes[0][1], -eyes[1][1]]
-            place = long
-            for side, eye in enumerate(body.eyes):
-                if eye.joint:
-                    (left, up), a, b = eyes[side], eye.turn_left, eye.turn_up
-                    turn.append((left * a[0] + up * b[0], left * a[1] + up * b[1], left * a[2] + up * b[2]))
-                    down[side] += part_along(rotations[place], eye.down)
-                    place += 1
-            blink = max(blink_at(schedule.blinks, life, time), bears.lids)
-            shut, own = [], []
-            for k in range(4):
-                already = 0.0
-                if lids[k] >= 0:
-                    already = part_along(rotations[place], shut_by[k])
-                    place += 1
-                shut.append(lid(down[k % 2], life.lids * follows[k], already, blink))
-                own.append(shut[k] - already)
+            now, bears = happening(schedule, life, time)
+            moves = gaze.at(time) if gaze is not None else NO_MOVES
+            chain, turn, eyes, shut, own = enlivened(
+                body, lids, dials, now, read[n], places[n], moves, gaze is not None
+            )
             chains.append(chain)
             turns.append(turn)
-            self.faces.append(_Look(blink, tuple(shut), tuple(eyes), bears))
-            self.channels[n, : len(LIDS) + 1] = (*own, blink)
-        self.chain = np.array(chains).reshape(len(times), long, 4)
+            self.faces.append(_Look(now.blink, tuple(shut), tuple(eyes), bears))
+            self.channels[n, : len(LIDS) + 1] = (*own, now.blink)
+        self.chain = np.array(chains).reshape(len(times), len(body.chain), 4)
         self.turns = np.array(turns).reshape(len(times), -1, 3)
-        shown = mouth(track, project.voices, life.lip_smoothing, times) if life.lips > 0 else None
-        if shown is not None:
-            self.channels[:, len(LIDS) + 2 :] = shown * life.lips
 
     def rotations(self) -> Array:
         """Return what the rotations of the body's joints become `[N, L, 4]`."""
@@ -207,7 +201,16 @@ class _Found:
         return _times(local, _turn(turns))
 
 
-_NONE = (0.0, 0.0, 0.0)
+def happening(schedule: Schedule, life: Life, time: float) -> tuple[LifeNow, Bearing]:
+    """Return what happens to a body at a time, and what the mood has in it."""
+    full = breath_at(schedule.breaths, life, time)
+    mood = mood_shown(schedule.moods.times, schedule.moods.rows, time)
+    bears = UNMOVED if mood.neutral else bearing(mood)
+    blink = max(blink_at(schedule.blinks, life, time), bears.lids)
+    return LifeNow(full, bears.droop, bears.thrust, full + bears.lift, bears.tension, blink), bears
+
+
+NO_MOVES = Moves((), (0.0, 0.0), (0.0, 0.0))
 
 
 def breath_at(lane: Lane, life: Life, time: float) -> float:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import atan2, copysign, cos, hypot, pi, radians, sin, sqrt, tanh
+from typing import NamedTuple
 
 from metagraph.playback.life.body import Body, Quaternion, Vector
 from metagraph.playback.life.gaze import Moves
@@ -26,6 +27,87 @@ LOOK_SIDEWAYS, LOOK_UPRIGHT = (
 )  # beyond these nobody looks, however much the target is behind
 NEAREST = 0.25  # metres; nearer things are looked at as if they were there
 WIDEST = -0.8  # how far lids open beyond rest, of their shutting turn
+
+
+class LifeNow(NamedTuple):
+    """What happens at a time. full: how full the chest is. droop, thrust: of the posture. lift, tight: of
+    what rises and tightens, breath and mood together. blink: how far a blink has shut the eyes.
+    """
+
+    full: float
+    droop: float
+    thrust: float
+    lift: float
+    tight: float
+    blink: float
+
+
+class LifeDials(NamedTuple):
+    """gaze: the amount of all looking. calm: of what nobody asked for. head: its share of a turn. lids: how
+    far they follow the eyes.
+    """
+
+    gaze: float
+    calm: float
+    head: float
+    lids: float
+
+
+class FaceLids(NamedTuple):
+    """A face's lids, in the order of `face.LIDS`. joints: whether each is one. follows, shut_by: as
+    `FaceRig`.
+    """
+
+    joints: Sequence[bool]
+    follows: Sequence[float]
+    shut_by: Sequence[Quaternion]
+
+
+def enlivened(
+    body: Body,
+    lids: FaceLids,
+    dials: LifeDials,
+    now: LifeNow,
+    read: list[Quaternion],
+    places: Sequence[Vector],
+    gaze: Moves,
+    looks: bool,
+) -> tuple[list[Quaternion], list[Vector], list[tuple[float, float]], list[float], list[float]]:
+    """Return a body's chain as breath and posture have it, the turns of its joints but the face's, rotation
+    vectors, those of the eyes, how far each lid is shut, and how much of that is life's own.
+
+    read: rotations of `body.read`; places: translations of the chain. looks: whether `gaze` counts.
+    """
+    long = len(places)
+    chain = read[:long]
+    if now.full != 0.0 or now.droop != 0.0 or now.thrust != 0.0:
+        breathe(body, chain, now.full, now.droop, now.thrust)
+    turn = [(0.0, 0.0, 0.0) for _ in range(long)]
+    eyes = [(0.0, 0.0), (0.0, 0.0)]
+    if looks:
+        towards, eyes = look(body, chain, places, gaze, dials.gaze, dials.calm, dials.head)
+        for k, looker in enumerate(body.lookers):
+            turn[looker.place] = towards[k]
+    for k, shoulder in enumerate(body.shoulders):
+        rises = _scaled(shoulder, now.lift)
+        turn.append(_plus(rises, _scaled(body.tense[k], now.tight)) if now.tight != 0.0 else rises)
+    down = [-eyes[0][1], -eyes[1][1]]
+    place = long
+    for side, eye in enumerate(body.eyes):
+        if eye.joint:
+            turn.append(_plus(_scaled(eye.turn_left, eyes[side][0]), _scaled(eye.turn_up, eyes[side][1])))
+            down[side] += part_along(read[place], eye.down)
+            place += 1
+    shut: list[float] = []
+    own: list[float] = []
+    for k in range(len(lids.joints)):
+        already = 0.0
+        if lids.joints[k]:
+            already = part_along(read[place], lids.shut_by[k])
+            place += 1
+        shut.append(lid(down[k % 2], dials.lids * lids.follows[k], already, now.blink))
+        own.append(shut[k] - already)
+    return chain, turn, eyes, shut, own
 
 
 def breathe(body: Body, chain: list[Quaternion], full: float, droop: float, thrust: float) -> None:
@@ -84,9 +166,9 @@ def look(
     moved_to, so_far = at[body.lookers[0].place], 0.0
     unit = _scaled(vector, 1 / size) if size > 1e-12 else (0.0, 1.0, 0.0)
     ends = [at[j.place] for j in body.lookers[1:]] + [at[-1]]
-    for looker, end in zip(body.lookers, ends, strict=True):
+    for k, looker in enumerate(body.lookers):
         so_far += looker.share
-        arm = _minus(end, at[looker.place])
+        arm = _minus(ends[k], at[looker.place])
         moved_to = _plus(moved_to, rotate(_about(unit, size * so_far), arm))
     head = times(_about(unit, size), head)
     # The point looked at, in the head's space; each eye turns to it the shortest way, so that it does not
@@ -118,12 +200,10 @@ def _head(
     x, y = x + beyond * _excess(left - x, EYE_EASE), y + beyond * _excess(up - y, EYE_EASE)
     # A character that has turned away as a whole turns its head back; one whose head alone or body alone has,
     # means it.
-    rests = []
-    for place, ahead in ((body.trunk, body.trunk_ahead), (-1, body.head_ahead)):
-        facing = rotate(turned[place], ahead)
-        gap = left - atan2(_dot(body.left, facing), _dot(body.ahead, facing))
-        rests.append(gap - 2 * pi if gap > pi else gap + 2 * pi if gap < -pi else gap)
-    x += beyond * amount * _excess(max(min(rests), 0.0) + min(max(rests), 0.0), max(TURNED_AWAY, abs(left)))
+    trunk = _gap(body, left, rotate(turned[body.trunk], body.trunk_ahead))
+    face = _gap(body, left, rotate(turned[-1], body.head_ahead))
+    both = max(min(trunk, face), 0.0) + min(max(trunk, face), 0.0)
+    x += beyond * amount * _excess(both, max(TURNED_AWAY, abs(left)))
     x, y = _within(x, HEAD_SIDEWAYS), min(max(y, -HEAD_DOWN), HEAD_UP)
     # First up, then round: the head does not tilt to a shoulder.
     cx, sx, cy, sy = cos(0.5 * x), sin(0.5 * x), cos(0.5 * y), -sin(0.5 * y)
@@ -132,6 +212,12 @@ def _head(
     size = 2 * atan2(length, w)
     k = size / length if length > 1e-12 else 0.0
     return _plus(_plus(_scaled(body.left, a * k), _scaled(body.up, b * k)), _scaled(body.ahead, c * k)), size
+
+
+def _gap(body: Body, left: float, facing: Vector) -> float:
+    """Return how far it is from where somebody faces to `left`, the short way round."""
+    gap = left - atan2(_dot(body.left, facing), _dot(body.ahead, facing))
+    return gap - 2 * pi if gap > pi else gap + 2 * pi if gap < -pi else gap
 
 
 def head_part(angle: float, share: float) -> float:
@@ -170,9 +256,9 @@ def globals_of(
 ) -> tuple[list[Quaternion], list[Vector]]:
     """Return rotations and positions of a chain in the character's space, from those in the parents'."""
     turned, at = [chain[0]], [places[0]]
-    for q, place in zip(chain[1:], places[1:], strict=True):
-        at.append(_plus(at[-1], rotate(turned[-1], place)))
-        turned.append(times(turned[-1], q))
+    for n in range(1, len(chain)):
+        at.append(_plus(at[-1], rotate(turned[-1], places[n])))
+        turned.append(times(turned[-1], chain[n]))
     return turned, at
 
 
