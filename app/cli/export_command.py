@@ -44,6 +44,11 @@ def arguments(parser: ArgumentParser) -> None:
         "--expanded", action="store_true", help="list the expanded state machine in the JSON as well"
     )
     parser.add_argument(
+        "--compress",
+        action="store_true",
+        help="pack the GLB (EXT_meshopt_compression): half the size, for runtimes and viewers that know it",
+    )
+    parser.add_argument(
         "--overwrite",
         action="store_true",
         help="also files that an export of something else, or somebody, put there",
@@ -139,7 +144,8 @@ def _once(options: Namespace) -> None:
     )
     made = registry.write(project, options.target, options.out, character, options.expanded,
                           base=options.project.resolve().parent, overwrite=options.overwrite,
-                          chosen_by_hand=lambda p: any(is_inside(p, x) for x in options.sounds))  # fmt: skip
+                          chosen_by_hand=lambda p: any(is_inside(p, x) for x in options.sounds),
+                          compress=options.compress)  # fmt: skip
     files = list(made.files)
     if options.tools:
         from metagraph.engines.tools_file import write_tools

@@ -77,19 +77,20 @@ def export(
     mesh: bool = True,
     character: Path | Character | None = None,
     progress: Callable[[int, int, str], None] | None = None,
+    compress: bool = False,
 ) -> Exported:
     """Write `<name>.json` and `<name>.glb` into a folder.
 
     expanded: list the expanded state machine as well. mesh: put the character's mesh into the GLB;
-    `character` is it, or its file. Raises ExportError while the project has errors, FileError when a file
-    cannot be written.
+    `character` is it, or its file. compress: pack the GLB, see `write_glb`. Raises ExportError while the
+    project has errors, FileError when a file cannot be written.
     """
     from metagraph.engines.targets.placing import Staging
 
     warnings = sound(project)
     place = Path(folder)
     with Staging(place) as staged:
-        made = write(project, staged.path, expanded, character if mesh else None, progress)
+        made = write(project, staged.path, expanded, character if mesh else None, progress, compress=compress)
         names = [path.relative_to(staged.path).as_posix() for path in (made.glb, *made.sounds, made.json)]
         staged.move(names)
     return replace(
@@ -128,10 +129,11 @@ def write(
     progress: Callable[[int, int, str], None] | None = None,
     base: Path | None = None,
     chosen: Chosen = nothing_chosen,
+    compress: bool = False,
 ) -> Exported:
     """Write a project that has clips without asking whether it is sound. Arguments as for `export`. base: the
     folder its lines' sounds are relative to; they are copied into `lines/`, where it is given. chosen: see
-    `_sounds`.
+    `_sounds`. compress: pack the GLB, see `write_glb`.
     """
     project = writable(project)
     tell = progress or (lambda done, total, words: None)
@@ -142,7 +144,7 @@ def write(
     names = unique_names([entry.name for entry in used])
     tell(0, 3, "clips")
     clips = exported_clips(project)
-    notes = _write_glb(glb, clips, project, character)
+    notes = _write_glb(glb, clips, project, character, compress)
     tell(1, 3, "graph")
     document = to_document(project, glb.name, names, expanded)
     sounds, missing = _sounds(document, target, base, chosen) if base is not None else ((), ())
@@ -206,6 +208,7 @@ def _write_glb(
     clips: list[Clip],
     project: Project,
     character: Path | Character | None,
+    compress: bool,
 ) -> list[str]:
     """Write the GLB, without the meshes that are hidden; return what is not in it, in words."""
     from metagraph.formats.gltf_writer import write_glb
@@ -224,7 +227,7 @@ def _write_glb(
         ) from None
     shown, notes = mesh_on(skeleton, character, project.hidden)
     presets = presets_of(shown.morphs, project.face.channels) if shown is not None else {}
-    write_glb(path, clips, shown, expressions=presets)
+    write_glb(path, clips, shown, expressions=presets, compress=compress)
     return notes
 
 

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from metagraph.budgets import CLIP_SECONDS, FBX_MEMORY, FBX_SAMPLES, NODES
-from metagraph.formats.gltf_writer import BinaryChunk, glb_bytes
+from metagraph.formats.gltf_binary import BinaryChunk, glb_bytes
 
 FPS = 30.0
 MISSING, REFUSED = 4, 3  # exit code; code of an answer

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.budgets import CLIP_SECONDS
-from metagraph.formats.gltf_file import Animation, Gltf, extras
+from metagraph.formats.gltf_file import Gltf, extras
 from metagraph.formats.gltf_skeleton import GltfRig
+from metagraph.formats.gltf_values import Animation
 from metagraph.formats.takes import frame_rate, repaired, take_name, take_repair, without_stray_poses
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip

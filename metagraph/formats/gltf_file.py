@@ -1,4 +1,4 @@
-"""A glTF 2.0 file opened and checked: its JSON as typed values, its buffers, and accessors as arrays.
+"""A glTF 2.0 file opened and checked: its buffers, and accessors as arrays.
 
 Nothing in the file is believed: every index, length and range is checked before use, and the memory that a
 small file may ask for (zero-filled accessors, long resampled clips) is bounded by `Gltf.spend`.
@@ -11,7 +11,7 @@ import binascii
 import struct
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Any, NoReturn
 from urllib.parse import unquote
 
 import msgspec
@@ -21,11 +21,10 @@ from numpy.typing import NDArray
 from metagraph.budgets import MOTION_FILE, OUT_OF_PROPORTION, PATH_LENGTH, Allowance
 from metagraph.errors import FileError
 from metagraph.files import read_file
+from metagraph.formats.gltf_values import Accessor, Buffer, BufferView, Document, PackedView, Sparse
+from metagraph.formats.meshopt import MeshoptError, unpacked
 
 Array = NDArray[Any]
-Index = Annotated[int, msgspec.Meta(ge=0)]
-Vec3 = tuple[float, float, float]
-Vec4 = tuple[float, float, float, float]
 
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _DTYPES = {code: np.dtype(name) for code, name in _COMPONENTS.items()}
@@ -33,6 +32,7 @@ _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 # Required extensions that change nothing we read, or that the reader understands.
 _KNOWN = (
     "KHR_mesh_quantization",
+    "EXT_meshopt_compression",
     "KHR_materials_",
     "KHR_texture_",
     "EXT_texture_",
@@ -42,159 +42,9 @@ _KNOWN = (
     "KHR_node_visibility",
 )
 _REMEDIES = {
-    "EXT_meshopt_compression": "Export it again without meshopt compression, or unpack it with "
-    "'gltf-transform copy'.",
     "KHR_draco_mesh_compression": "Export it again without Draco compression, or unpack it with "
     "'gltf-transform copy'.",
 }
-
-
-class _Value(msgspec.Struct, rename="camel", gc=False):
-    pass
-
-
-class SparseIndices(_Value):
-    buffer_view: Index
-    component_type: int
-    byte_offset: Index = 0
-
-
-class SparseValues(_Value):
-    buffer_view: Index
-    byte_offset: Index = 0
-
-
-class Sparse(_Value):
-    count: Index
-    indices: SparseIndices
-    values: SparseValues
-
-
-class Accessor(_Value):
-    component_type: int
-    count: Index
-    type: str
-    buffer_view: Index | None = None
-    byte_offset: Index = 0
-    normalized: bool = False
-    sparse: Sparse | None = None
-
-
-class BufferView(_Value):
-    buffer: Index
-    byte_length: Index
-    byte_offset: Index = 0
-    byte_stride: Index = 0
-
-
-class Buffer(_Value):
-    byte_length: Index
-    uri: str | None = None
-
-
-class Node(_Value):
-    name: str = ""
-    children: list[Index] = []
-    translation: Vec3 | None = None
-    rotation: Vec4 | None = None
-    scale: Vec3 | None = None
-    matrix: list[float] | None = None
-    mesh: Index | None = None
-    skin: Index | None = None
-    camera: Index | None = None
-    weights: list[float] | None = None
-    extras: msgspec.Raw = msgspec.Raw()
-
-
-class Skin(_Value):
-    joints: list[Index]
-    inverse_bind_matrices: Index | None = None
-    skeleton: Index | None = None
-
-
-class GltfTarget(_Value):
-    path: str
-    node: Index | None = None
-
-
-class Channel(_Value):
-    sampler: Index
-    target: GltfTarget
-
-
-class Sampler(_Value):
-    input: Index
-    output: Index
-    interpolation: str = "LINEAR"
-
-
-class Animation(_Value):
-    channels: list[Channel]
-    samplers: list[Sampler]
-    name: str = ""
-    extras: msgspec.Raw = msgspec.Raw()
-
-
-class Primitive(_Value):
-    attributes: dict[str, Index]
-    indices: Index | None = None
-    material: Index | None = None
-    mode: int = 4
-    targets: list[dict[str, Index]] = []
-    extras: msgspec.Raw = msgspec.Raw()
-
-
-class Mesh(_Value):
-    primitives: list[Primitive]
-    name: str = ""
-    weights: list[float] | None = None
-    extras: msgspec.Raw = msgspec.Raw()
-
-
-class TextureInfo(_Value):
-    index: Index
-
-
-class Pbr(_Value):
-    base_color_factor: Vec4 = (1.0, 1.0, 1.0, 1.0)
-    base_color_texture: TextureInfo | None = None
-    roughness_factor: float = 1.0
-
-
-class MaterialValue(_Value):
-    name: str = ""
-    pbr_metallic_roughness: Pbr | None = None
-    double_sided: bool = False
-
-
-class Texture(_Value):
-    source: Index | None = None
-
-
-class Image(_Value):
-    uri: str | None = None
-    buffer_view: Index | None = None
-
-
-class GltfScene(_Value):
-    nodes: list[Index] = []
-
-
-class Document(_Value):
-    scene: Index = 0
-    scenes: list[GltfScene] = []
-    nodes: list[Node] = []
-    skins: list[Skin] = []
-    animations: list[Animation] = []
-    meshes: list[Mesh] = []
-    materials: list[MaterialValue] = []
-    textures: list[Texture] = []
-    images: list[Image] = []
-    accessors: list[Accessor] = []
-    buffer_views: list[BufferView] = []
-    buffers: list[Buffer] = []
-    extensions: msgspec.Raw = msgspec.Raw()
-    extensions_required: list[str] = []
 
 
 _decoder = msgspec.json.Decoder(Document)
@@ -208,6 +58,7 @@ class Gltf:
         self._binary = binary
         self._buffers: dict[int, memoryview] = {}
         self._named: dict[str, bytes] = {}  # files beside this one
+        self._unpacked: dict[int, memoryview] = {}
         self._allowance = Allowance(size, lambda where: self.fail(OUT_OF_PROPORTION, where))
         for name in document.extensions_required:
             if not name.startswith(_KNOWN):
@@ -286,6 +137,8 @@ class Gltf:
     def view(self, index: int, where: str) -> tuple[memoryview, BufferView]:
         """Return the bytes of a buffer view and its description."""
         view: BufferView = self.item(self.json.buffer_views, index, "buffer view", where)
+        if view.packed is not None:
+            return self._unpack(index, view, view.packed), view
         data = self.buffer(view.buffer, f"buffer view {index}")
         if view.byte_offset + view.byte_length > len(data):
             self.fail(
@@ -293,6 +146,29 @@ class Gltf:
                 where,
             )
         return data[view.byte_offset : view.byte_offset + view.byte_length], view
+
+    def _unpack(self, index: int, view: BufferView, packed: PackedView) -> memoryview:
+        if index not in self._unpacked:
+            where = f"buffer view {index}"
+            data = self.buffer(packed.buffer, where)
+            end, size = packed.byte_offset + packed.byte_length, packed.count * packed.byte_stride
+            if end > len(data) or size != view.byte_length:
+                self.fail(
+                    f"it is packed up to byte {end} of {len(data)}, {size} of {view.byte_length} bytes", where
+                )
+            self.spend(size, where)
+            try:
+                raw = unpacked(
+                    bytes(data[packed.byte_offset : end]),
+                    packed.count,
+                    packed.byte_stride,
+                    packed.mode,
+                    packed.filter,
+                )
+            except MeshoptError as error:
+                self.fail(str(error), where)
+            self._unpacked[index] = memoryview(raw)
+        return self._unpacked[index]
 
     def array(self, index: int, where: str, kind: str = "") -> Array:
         """Return accessor `index` as `[count, n]`, or `[count]` for scalars; normalised integers as float32.
@@ -339,7 +215,13 @@ class Gltf:
                 return None
             view = views[a.buffer_view]
             start = view.byte_offset + a.byte_offset
-            if view.buffer or (view.byte_stride and view.byte_stride != item) or start > last or start & 3:
+            if (
+                view.packed is not None
+                or view.buffer
+                or (view.byte_stride and view.byte_stride != item)
+                or start > last
+                or start & 3
+            ):
                 return None
             if a.byte_offset + item * a.count > view.byte_length:
                 return None

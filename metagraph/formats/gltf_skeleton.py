@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.budgets import JOINTS, NODES
-from metagraph.formats.gltf_file import Gltf, Node
+from metagraph.formats.gltf_file import Gltf
+from metagraph.formats.gltf_values import Node
 from metagraph.formats.takes import UNIT
 from metagraph.motion import rotation
 from metagraph.motion.clip import Repair

@@ -3,16 +3,27 @@
 from __future__ import annotations
 
 import hashlib
-import struct
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from metagraph.formats.atomic import write_atomically
+from metagraph.formats.gltf_binary import (
+    ARRAY_BUFFER,
+    BYTE,
+    ELEMENT_BUFFER,
+    FLOAT,
+    SHORT,
+    UBYTE,
+    UINT,
+    USHORT,
+    BinaryChunk,
+    Packing,
+    glb_bytes,
+)
 from metagraph.motion import rotation
 from metagraph.motion.character_mesh import Character
 from metagraph.motion.clip import Clip
@@ -20,97 +31,15 @@ from metagraph.motion.skeleton import Pose, Skeleton
 
 Array = NDArray[Any]
 
-_FLOAT, _SHORT, _USHORT, _UBYTE, _UINT = 5126, 5122, 5123, 5121, 5125
-_TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
-_ARRAY_BUFFER, _ELEMENT_BUFFER = 34962, 34963
-
-
-class BinaryChunk:
-    """The binary chunk as it grows, with its views and accessors; equal arrays are stored once."""
-
-    def __init__(self) -> None:
-        self.data = bytearray()
-        self.views: list[dict[str, Any]] = []
-        self.accessors: list[dict[str, Any]] = []
-        self._known: dict[tuple[Any, ...], int] = {}
-
-    def view(self, raw: bytes, target: int | None = None, stride: int = 0) -> int:
-        self.data += b"\0" * (-len(self.data) % 4)
-        view: dict[str, Any] = {"buffer": 0, "byteOffset": len(self.data), "byteLength": len(raw)}
-        if target:
-            view["target"] = target
-        if stride:
-            view["byteStride"] = stride
-        self.data += raw
-        self.views.append(view)
-        return len(self.views) - 1
-
-    def array(
-        self,
-        values: Array,
-        component: int,
-        *,
-        target: int | None = None,
-        normalized: bool = False,
-        bounds: bool = False,
-    ) -> int:
-        """Add `[count]` or `[count, n]` values and return the accessor's index."""
-        dtype = {_FLOAT: "<f4", _SHORT: "<i2", _USHORT: "<u2", _UBYTE: "<u1", _UINT: "<u4"}[component]
-        values = np.ascontiguousarray(values, dtype)
-        key = (values.tobytes(), component, values.shape, target, normalized)
-        if key in self._known:
-            return self._known[key]
-        width = 1 if values.ndim == 1 else values.shape[1]
-        size = width * values.itemsize
-        stride = 0
-        raw = values.tobytes()
-        if target == _ARRAY_BUFFER and size % 4:  # vertex attributes start on multiples of four
-            padded = np.zeros((len(values), size + (-size % 4)), np.uint8)
-            padded[:, :size] = values.view(np.uint8).reshape(len(values), size)
-            raw, stride = padded.tobytes(), padded.shape[1]
-        accessor: dict[str, Any] = {
-            "bufferView": self.view(raw, target, stride),
-            "componentType": component,
-            "count": len(values),
-            "type": _TYPES[width],
-        }
-        if normalized:
-            accessor["normalized"] = True
-        if bounds:
-            flat = values.reshape(len(values), width).astype(float)
-            accessor["min"], accessor["max"] = flat.min(0).tolist(), flat.max(0).tolist()
-        self.accessors.append(accessor)
-        self._known[key] = len(self.accessors) - 1
-        return self._known[key]
-
-    def sparse(self, offsets: Array) -> int:
-        """Add offsets `[count, 3]` of a morph target and return the accessor's index: only those that are not
-        zero, where that takes less room.
-        """
-        moved = np.flatnonzero(np.abs(offsets).max(1))
-        if not len(moved) or 2 * len(moved) > len(offsets):
-            return self.array(offsets, _FLOAT, target=_ARRAY_BUFFER, bounds=True)
-        kind = (_USHORT, "<u2") if moved[-1] < 65535 else (_UINT, "<u4")
-        kept = np.ascontiguousarray(offsets[moved], "<f4")
-        low, high = np.minimum(kept.min(0), 0).astype(float), np.maximum(kept.max(0), 0).astype(float)
-        self.accessors.append(
-            {
-                "componentType": _FLOAT,
-                "count": len(offsets),
-                "type": "VEC3",
-                "min": low.tolist(),
-                "max": high.tolist(),
-                "sparse": {
-                    "count": len(moved),
-                    "indices": {
-                        "bufferView": self.view(moved.astype(kind[1]).tobytes()),
-                        "componentType": kind[0],
-                    },
-                    "values": {"bufferView": self.view(kept.tobytes())},
-                },
-            }
-        )
-        return len(self.accessors) - 1
+# How far packed files may be off: turns 0.007 degrees, keys of joints 8 micrometres, a mesh 15, texture
+# coordinates a sixteenth of a pixel of 2,048.
+TURNS = Packing(filter="QUATERNION", amount=15)
+MOVES = Packing(filter="EXPONENTIAL", amount=-16)
+PLACES = Packing(filter="EXPONENTIAL", amount=-15)
+MORPHS = Packing(filter="EXPONENTIAL", amount=-17)
+COORDINATES = Packing(filter="EXPONENTIAL", amount=-14)
+NORMALS = Packing(filter="OCTAHEDRAL", amount=8)
+AS_THEY_ARE, INDICES = Packing(), Packing("INDICES")
 
 
 SCENE = "Character"  # what the scene of a GLB that stands in a pose is called
@@ -127,6 +56,7 @@ def write_glb(
     moved: Mapping[str, Collection[int]] | None = None,
     extensions: Mapping[str, Any] | None = None,
     expressions: Mapping[str, Mapping[str, float]] | None = None,
+    compress: bool = False,
 ) -> None:
     """Write one skeleton, its skin and every clip as an animation.
 
@@ -138,7 +68,9 @@ def write_glb(
     as in many exporters' files. stand: the pose the joints' nodes have, the rest pose when None; the skin
     stays bound to the rest pose, and the scene gets a name, with which some engines' paths begin. moved: clip
     name -> the joints it moves, all where None. extensions: of the document, by name. expressions: name ->
-    morph target -> weight, beside the targets' names in the mesh's `extras`. Raises FileError when the file
+    morph target -> weight, beside the targets' names in the mesh's `extras`. compress: pack the file, by
+    EXT_meshopt_compression and KHR_mesh_quantization, which whoever reads it must know then; and leave out
+    channels that keep a joint as its node is posed. Raises FileError when the file
     cannot be written, ValueError for mixed skeletons.
     """
     path = Path(path)
@@ -149,7 +81,7 @@ def write_glb(
         if clip.skeleton is not skeleton and clip.skeleton != skeleton:
             raise ValueError(f"clip '{clip.name}' is on another skeleton; retarget it first")
     tolerance = (5e-5 if quantize else 0.0) if tolerance is None else tolerance
-    body = BinaryChunk()
+    body = BinaryChunk(compress)
     document: dict[str, Any] = {"asset": {"version": "2.0", "generator": "Metagraph"}, "scene": 0}
     document["nodes"] = nodes = _joint_nodes(skeleton, skeleton.rest if stand is None else stand)
     roots = [i for i, p in enumerate(skeleton.parents) if p < 0]
@@ -165,7 +97,7 @@ def write_glb(
         {
             "name": "Skin",
             "joints": list(range(len(skeleton))),
-            "inverseBindMatrices": body.array(inverse.transpose(0, 2, 1).reshape(-1, 16), _FLOAT),
+            "inverseBindMatrices": body.array(inverse.transpose(0, 2, 1).reshape(-1, 16), FLOAT),
             "skeleton": roots[0],
         }
     ]
@@ -180,28 +112,17 @@ def write_glb(
     document["scenes"] = [{"nodes": roots} if stand is None else {"name": SCENE, "nodes": roots}]
     posed = _pose_still_nodes(nodes, clips, tolerance) if pose_nodes and clips else frozenset()
     animations = [
-        _animation(body, clip, quantize, tolerance, morphs, mesh_node, posed, moved) for clip in clips
+        _animation(body, nodes, clip, quantize, tolerance, morphs, mesh_node, posed, moved) for clip in clips
     ]
     if animations:
         document["animations"] = animations
     if extensions:
         document["extensionsUsed"] = sorted(extensions)
         document["extensions"] = dict(extensions)
+    if compress and character is not None and len(character.triangles):
+        for name in ("extensionsUsed", "extensionsRequired"):
+            document[name] = sorted({*document.get(name, ()), "KHR_mesh_quantization"})
     write_atomically(path, glb_bytes(document, body))
-
-
-def glb_bytes(document: dict[str, Any], body: BinaryChunk) -> bytes:
-    """Return the file: header, JSON and binary chunk. Adds the accessors, views and buffer of `body` to
-    `document`.
-    """
-    document["accessors"], document["bufferViews"] = body.accessors, body.views
-    document["buffers"] = [{"byteLength": len(body.data)}]
-    head = msgspec.json.encode(document)
-    head += b" " * (-len(head) % 4)
-    body.data += b"\0" * (-len(body.data) % 4)
-    size = 12 + 8 + len(head) + 8 + len(body.data)
-    start = struct.pack("<4sIIII", b"glTF", 2, size, len(head), 0x4E4F534A)
-    return b"".join((start, head, struct.pack("<II", len(body.data), 0x004E4942), body.data))
 
 
 def _joint_nodes(skeleton: Skeleton, pose: Pose) -> list[dict[str, Any]]:
@@ -230,18 +151,21 @@ def _add_character(document: dict[str, Any], body: BinaryChunk, character: Chara
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     normals = np.where(length > 1e-9, normals / np.maximum(length, 1e-9), [0.0, 1.0, 0.0])
     attributes = {
-        "POSITION": body.array(character.positions, _FLOAT, target=_ARRAY_BUFFER, bounds=True),
-        "NORMAL": body.array(normals, _FLOAT, target=_ARRAY_BUFFER),
-        "TEXCOORD_0": body.array(character.uvs, _FLOAT, target=_ARRAY_BUFFER),
+        "POSITION": body.array(character.positions, FLOAT, target=ARRAY_BUFFER, bounds=True, packing=PLACES),
+        "NORMAL": _normals(body, normals),
+        "TEXCOORD_0": body.array(character.uvs, FLOAT, target=ARRAY_BUFFER, packing=COORDINATES),
         "JOINTS_0": body.array(
-            joints, _UBYTE if len(character.skeleton) <= 255 else _USHORT, target=_ARRAY_BUFFER
+            joints,
+            UBYTE if len(character.skeleton) <= 255 else USHORT,
+            target=ARRAY_BUFFER,
+            packing=AS_THEY_ARE,
         ),
-        "WEIGHTS_0": body.array(weights, _FLOAT, target=_ARRAY_BUFFER),
+        "WEIGHTS_0": _weights(body, weights),
     }
     targets = []
     if character.morph_positions is not None:
         targets = [
-            {"POSITION": body.sparse(np.asarray(offsets, np.float32))}
+            {"POSITION": body.sparse(np.asarray(offsets, np.float32), MORPHS)}
             for offsets in character.morph_positions
         ]
     primitives = []
@@ -252,7 +176,10 @@ def _add_character(document: dict[str, Any], body: BinaryChunk, character: Chara
         primitive: dict[str, Any] = {
             "attributes": attributes,
             "indices": body.array(
-                order, _USHORT if int(order.max()) < 65535 else _UINT, target=_ELEMENT_BUFFER
+                order,
+                USHORT if int(order.max()) < 65535 else UINT,
+                target=ELEMENT_BUFFER,
+                packing=INDICES,
             ),
             "material": surface.material,
         }
@@ -292,6 +219,24 @@ def _add_character(document: dict[str, Any], body: BinaryChunk, character: Chara
     return len(document["nodes"]) - 1
 
 
+def _normals(body: BinaryChunk, normals: Array) -> int:
+    """Add normals: floats, or where the file is packed bytes, which have room for what is packed."""
+    if not body.compress:
+        return body.array(normals, FLOAT, target=ARRAY_BUFFER)
+    small = np.rint(normals * 127)
+    return body.array(small, BYTE, target=ARRAY_BUFFER, normalized=True, packing=NORMALS)
+
+
+def _weights(body: BinaryChunk, weights: Array) -> int:
+    """Add skin weights: floats, or where the file is packed whole numbers that still sum up."""
+    if not body.compress:
+        return body.array(weights, FLOAT, target=ARRAY_BUFFER)
+    whole = np.rint(weights.astype(np.float64) * 65535)
+    rows = np.arange(len(whole))
+    whole[rows, whole.argmax(1)] += 65535 - whole.sum(1)
+    return body.array(whole, USHORT, target=ARRAY_BUFFER, normalized=True, packing=AS_THEY_ARE)
+
+
 def _pose_still_nodes(nodes: list[dict[str, Any]], clips: Sequence[Clip], tolerance: float) -> frozenset[int]:
     """Turn the nodes of joints whose rotation no clip changes, and return those joints."""
     first = clips[0].rotations[0].astype(np.float64)
@@ -304,6 +249,7 @@ def _pose_still_nodes(nodes: list[dict[str, Any]], clips: Sequence[Clip], tolera
 
 def _animation(
     body: BinaryChunk,
+    nodes: list[dict[str, Any]],
     clip: Clip,
     quantize: bool,
     tolerance: float,
@@ -316,13 +262,16 @@ def _animation(
     times = np.arange(clip.frames) / clip.fps
     samplers: list[dict[str, Any]] = []
     channels: list[dict[str, Any]] = []
+    places: dict[tuple[int, int], int] = {}
 
     def add(node: int, path: str, kept: Array, values: Array, component: int) -> None:
-        own = times[kept]
-        source = body.array(own, _FLOAT, bounds=True)
-        output = body.array(values, component, normalized=component == _SHORT)
-        samplers.append({"input": source, "output": output, "interpolation": "LINEAR"})
-        channels.append({"sampler": len(samplers) - 1, "target": {"node": node, "path": path}})
+        packing = TURNS if component == SHORT else AS_THEY_ARE if path == "rotation" else MOVES
+        source = body.array(times[kept], FLOAT, bounds=True, shared="times")
+        output = body.array(values, component, normalized=component == SHORT, packing=packing, shared=path)
+        place = places.setdefault((source, output), len(samplers))
+        if place == len(samplers):
+            samplers.append({"input": source, "output": output})
+        channels.append({"sampler": place, "target": {"node": node, "path": path}})
 
     rotations = clip.rotations.astype(np.float64)
     for joint, kept in enumerate(_keys(rotations, tolerance, True)):
@@ -331,23 +280,30 @@ def _animation(
         if moved is not None and joint == min(chosen) and joint != 0 and clip.frames > 1 and len(kept) == 1:
             kept = np.array([0, clip.frames - 1])  # keeps the clip's length, whatever else stands still
         values = rotations[kept, joint]
+        if body.compress and len(kept) == 1 and joint and _as_posed(values[0], nodes[joint]["rotation"]):
+            continue
         if quantize:
             values = np.round(rotation.normalize(values) * 32767)
-        add(joint, "rotation", kept, values, _SHORT if quantize else _FLOAT)
+        add(joint, "rotation", kept, values, SHORT if quantize else FLOAT)
     translations = clip.translations.astype(np.float64)
     for place, kept in zip(clip.translated, _keys(translations, tolerance, False), strict=True):
         if place not in chosen:
             continue
         if place == 0 and clip.frames > 1 and len(kept) == 1:
             kept = np.array([0, clip.frames - 1])  # keeps the clip's length, whatever else stands still
-        add(place, "translation", kept, translations[kept, clip.translated.index(place)], _FLOAT)
+        add(place, "translation", kept, translations[kept, clip.translated.index(place)], FLOAT)
     shared = [clip.morphs.index(name) if name in clip.morphs else -1 for name in morphs]
     if mesh_node is not None and clip.weights is not None and any(i >= 0 for i in shared):
         weights = np.stack([clip.weights[:, i] if i >= 0 else np.zeros(clip.frames) for i in shared], 1)
         still = bool((np.abs(weights - weights[:1]) <= tolerance).all())
         kept = np.array([0]) if still else np.arange(clip.frames)
-        add(mesh_node, "weights", kept, weights[kept].reshape(-1), _FLOAT)
+        add(mesh_node, "weights", kept, weights[kept].reshape(-1), FLOAT)
     return {"name": clip.name, "samplers": samplers, "channels": channels, "extras": {"fps": clip.fps}}
+
+
+def _as_posed(turn: Array, node: list[float]) -> bool:
+    """Whether a turn is what a node has by itself, which readers take where no channel tells."""
+    return bool(np.minimum(np.abs(turn - node).max(), np.abs(turn + node).max()) < 1e-6)
 
 
 # Which frames to keep is most of the time of an export, and the same when it is written again, or for another

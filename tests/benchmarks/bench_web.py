@@ -1,12 +1,13 @@
 """How soon the web page shows its first pose: python tests/benchmarks/bench_web.py [project]
 
 From the navigation to the first frame drawn, in headless Chromium with a software renderer, from a server on
-this machine; median of five, of the sample project (152 clips) or another. Needs Node, Chromium and what
-tests/package.json names.
+this machine; medians of seven in turns, of the sample project (152 clips) or another, with its GLB as it is
+and packed, and the bytes of both. Needs Node, Chromium and what tests/package.json names.
 """
 
 from __future__ import annotations
 
+import gzip
 import json
 import statistics
 import subprocess
@@ -20,21 +21,31 @@ sys.path.insert(0, str(ROOT))
 from app.project.opening import open_whole  # noqa: E402
 from metagraph.engines.targets import registry, web  # noqa: E402
 
-RUNS = 5
+RUNS = 7
+KINDS = ("plain", "packed")
 
 
 def main() -> None:
     path = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "sample_clips" / "sample.metagraph.yaml"
     project = open_whole(path).project
     web.tools = lambda folder: ROOT / "tests" / "node_modules"
+    character = path.parent / project.character if project.character else None
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        made = registry.write(
-            project, "web", folder, path.parent / project.character if project.character else None
-        )
+        for kind in KINDS:
+            made = registry.write(project, "web", folder / kind, character, compress=kind == "packed")
+            (glb,) = (p.read_bytes() for p in made.files if p.suffix == ".glb")
+            size, zipped = len(glb) / 1e6, len(gzip.compress(glb, 6)) / 1e6
+            print(f"{kind}: {made.clips} clips, GLB of {size:.2f} MB, {zipped:.2f} zipped")
         shown = {"run": "performance.getEntriesByName('first pose')[0].startTime"}
-        opened = {"url": "", "until": "performance.getEntriesByName('first pose').length"}
-        (folder / "steps.json").write_text(json.dumps([opened, shown] * RUNS))
+        until = "performance.getEntriesByName('first pose').length"
+        steps = [
+            step
+            for _ in range(RUNS)
+            for kind in KINDS
+            for step in ({"url": f"{kind}/", "until": until}, shown)
+        ]
+        (folder / "steps.json").write_text(json.dumps(steps))
         command = [
             "node",
             str(ROOT / "tests" / "engines" / "run" / "browser.mjs"),
@@ -42,10 +53,11 @@ def main() -> None:
             str(folder / "steps.json"),
         ]
         told = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
-        size = sum(p.stat().st_size for p in made.files if p.suffix in (".json", ".glb")) / 1e6
     times = [row["value"] for row in map(json.loads, told) if "value" in row]
-    spread = f"median of {RUNS} ({min(times):.0f} to {max(times):.0f})"
-    print(f"{made.clips} clips, {size:.1f} MB: first pose after {statistics.median(times):.0f} ms, {spread}")
+    for n, kind in enumerate(KINDS):
+        own = times[n :: len(KINDS)]
+        spread = f"median of {RUNS} ({min(own):.0f} to {max(own):.0f})"
+        print(f"{kind}: first pose after {statistics.median(own):.0f} ms, {spread}")
 
 
 if __name__ == "__main__":

@@ -551,6 +551,24 @@ def test_a_character_that_lives_tick_by_tick_plays_what_one_plan_would() -> None
     assert found < 1e-6
 
 
+def test_motions_are_made_when_they_first_play_or_are_asked_for_and_are_the_same() -> None:
+    first, one, none, off = run(
+        """
+        const [lazy, whole] = [load(text, glb), load(text, glb)];
+        const first = lazy.unmade.length, one = lazy.prepare(0), none = whole.prepare();
+        const plan = hear(lazy, emptyPlan(7), 0, [], 60), same = hear(whole, emptyPlan(7), 0, [], 60);
+        let off = 0;
+        for (let t = 0; t < 60; t += 0.37) {
+          const [a, b] = [poseAt(lazy, plan, t).rotations, poseAt(whole, same, t).rotations];
+          a.forEach((x, n) => (off = Math.max(off, Math.abs(x - b[n]))));
+        }
+        say([first, one, none, off]);
+        """
+    )
+    assert first > 10, "what does not play yet is not made"
+    assert (one, none, off) == (first - 1, 0, 0)
+
+
 def test_posing_makes_no_garbage_to_speak_of() -> None:
     bytes_a_pose = run(
         """

@@ -61,6 +61,7 @@ class Choice:
     expanded: bool = False
     vectors: bool = False
     tools: bool = False
+    compress: bool = False
 
 
 @dataclass(frozen=True)
@@ -175,8 +176,13 @@ class ExportDialog(QDialog):
         self.vectors.setChecked(chosen.vectors)
         self.tools = QCheckBox(tr("what may be asked, as tools for a language model"), self)
         self.tools.setChecked(chosen.tools)
-        boxes = (self.mesh, self.expanded, self.vectors, self.tools)
-        for words, box in zip((tr("Include"), "", "", ""), boxes, strict=True):
+        self.compress = QCheckBox(
+            tr("the GLB packed, half as large, for runtimes and viewers that know it"), self
+        )
+        self.compress.setToolTip(tr("EXT_meshopt_compression: not every viewer opens it."))
+        self.compress.setChecked(chosen.compress)
+        boxes = (self.mesh, self.expanded, self.vectors, self.tools, self.compress)
+        for words, box in zip((tr("Include"), "", "", "", ""), boxes, strict=True):
             form.addRow(words, box)
         return form
 
@@ -251,6 +257,7 @@ class ExportDialog(QDialog):
         )
         for box in (self.expanded, self.vectors, self.tools):
             box.setVisible(played)
+        self.compress.setVisible(target.unpacks)
         rows = [f"<li>{escape(words)}</li>" for words in registry.losses(project, target.name)]
         note = tr("<p><b>Experimental</b>: {why}.</p>", why=escape(target.untried)) if target.untried else ""
         nothing = tr("<p>Nothing else is lost.</p>") if self.differences else tr("<p>Nothing is lost.</p>")
@@ -296,8 +303,8 @@ class ExportDialog(QDialog):
     def _export(self, overwrite: bool = False) -> None:
         project, folder, name = self.project, Path(self.folder.text()), self.target.name
         base = self.document.folder
-        boxes = (self.expanded, self.vectors, self.tools)
-        expanded, vectors, tools = (box.isChecked() and not box.isHidden() for box in boxes)
+        boxes = (self.expanded, self.vectors, self.tools, self.compress)
+        expanded, vectors, tools, compress = (box.isChecked() and not box.isHidden() for box in boxes)
         character = (
             (base or Path()) / project.character if project.character and self.mesh.isChecked() else None
         )
@@ -312,7 +319,7 @@ class ExportDialog(QDialog):
 
         def work(job: Job) -> Report:
             made = registry.write(
-                project, name, folder, character, expanded, job.tell, base, overwrite, was_chosen
+                project, name, folder, character, expanded, job.tell, base, overwrite, was_chosen, compress
             )
             if vectors:
                 write_vectors(next(path for path in made.files if path.suffix == ".json"))

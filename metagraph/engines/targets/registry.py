@@ -72,18 +72,25 @@ def write(
     base: Path | None = None,
     overwrite: bool = False,
     chosen_by_hand: Chosen = nothing_chosen,
+    compress: bool = False,
 ) -> Report:
     """Write a project for a target into a folder, which is made.
 
     character: the mesh or its file, None to leave it out. expanded: list the state machine in the JSON as
     well. base: the folder the lines' sounds are relative to, None to leave them where they are. overwrite:
     also files that are not of an earlier export of the same project for the same target. chosen_by_hand:
-    which sounds outside `base` the user has chosen, not only the project; no others are copied. All of it is
-    written, or nothing. Raises ExportError
+    which sounds outside `base` the user has chosen, not only the project; no others are copied. compress:
+    pack the GLB (EXT_meshopt_compression). All of it is written, or nothing. Raises ExportError where the
+    target is read by what cannot unpack it, and
     while the project has errors, `ForeignFilesError`, an ExportError, where such files stand in the way,
     FileError when a file cannot be written.
     """
     chosen = target(name)
+    if compress and not chosen.unpacks:
+        able = ", ".join(t.name for t in targets().values() if t.unpacks)
+        raise ExportError(
+            f"'{name}' is not read by what unpacks a GLB: export it without --compress, or for {able}"
+        )
     project = writable(project)
     warnings = sound(project)
     place = Path(folder)
@@ -97,6 +104,7 @@ def write(
             tell or (lambda done, total, words: None),
             base,
             chosen_by_hand,
+            compress,
         )
         with synced_together():
             made = chosen.write(order)

@@ -19,7 +19,14 @@ BML = Loss("requests in Behaviour Markup Language are read by the desktop alone"
 def written(order: ExportOrder) -> Made:
     """Write JSON, GLB and the lines' sounds."""
     made = write(
-        order.project, order.folder, order.expanded, order.character, order.tell, order.base, order.chosen
+        order.project,
+        order.folder,
+        order.expanded,
+        order.character,
+        order.tell,
+        order.base,
+        order.chosen,
+        order.compress,
     )
     return Made((made.json, made.glb, *made.sounds), made.warnings)
 
@@ -81,6 +88,7 @@ TARGETS = (
         "one JSON, the graph, and one GLB, its clips",
         written,
         group="Played as the preview does",
+        unpacks=True,
     ),
     ExportTarget(
         "javascript",
@@ -89,6 +97,7 @@ TARGETS = (
         _with("javascript", "metagraph"),
         (BML,),
         group="Played as the preview does",
+        unpacks=True,
     ),
     ExportTarget(
         "godot",
@@ -106,6 +115,7 @@ TARGETS = (
         (BML,),
         untried="compiled and checked outside Unity; not run in Unity",
         group="Played as the preview does",
+        unpacks=True,
     ),
     ExportTarget(
         "cpp",
@@ -114,6 +124,7 @@ TARGETS = (
         _with("cpp", "metagraph"),
         (BML,),
         group="Played as the preview does",
+        unpacks=True,
     ),
     ExportTarget(
         "unreal",

@@ -33,6 +33,7 @@ class ExportOrder:
     """What is to be written: a sound project into a folder that is there. stem: what its files are called.
     character: the mesh, or None to leave it out. expanded: the state machine in the JSON, where there is one.
     base: the folder the project's own paths are relative to. chosen: which files outside it the user chose.
+    compress: pack the GLB, for targets that read it then.
     """
 
     project: Project
@@ -43,6 +44,7 @@ class ExportOrder:
     tell: Tell = lambda done, total, words: None
     base: Path | None = None
     chosen: Chosen = nothing_chosen
+    compress: bool = False
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,8 @@ class Made:
 @dataclass(frozen=True)
 class ExportTarget:
     """name: on the command line. title: in the window. files: what will be written, in words. write: does it.
-    losses: what it loses. untried: why it is experimental; empty where it was run.
+    losses: what it loses. untried: why it is experimental; empty where it was run. unpacks: whether
+    it reads GLBs that are packed.
     """
 
     name: str
@@ -66,6 +69,7 @@ class ExportTarget:
     losses: tuple[Loss, ...] = ()
     untried: str = ""
     group: str = "Formats"
+    unpacks: bool = False
 
 
 @dataclass(frozen=True)

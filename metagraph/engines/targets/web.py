@@ -72,5 +72,6 @@ TARGETS = (
         write,
         (BML, Loss("the picture: light and floor are the page's own, the motion is the same")),
         group="Played as the preview does",
+        unpacks=True,
     ),
 )

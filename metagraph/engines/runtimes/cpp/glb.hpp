@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstring>
+#include <unordered_map>
 
+#include "meshopt.hpp"
 #include "node.hpp"
 #include "rotation.hpp"
 
@@ -92,6 +94,7 @@ private:
     Trouble& trouble_;
     Json document_;
     std::size_t binary_ = 0, binary_size_ = 0;
+    mutable std::unordered_map<int, List<std::uint8_t>> unpacked_; // views
 
     void tell(const std::string& what) const { trouble_.tell(name_, what, "Export it again, and copy both files."); }
 
@@ -123,7 +126,7 @@ private:
         const Node needed = root.maybe("extensionsRequired");
         if (!needed.empty()) {
             for (const std::string& extension : needed.texts()) {
-                if (extension != "KHR_mesh_quantization") tell("needs the extension " + extension);
+                if (extension != "KHR_mesh_quantization" && extension != "EXT_meshopt_compression") tell("needs the extension " + extension);
             }
         }
         nodes = names("nodes");
@@ -158,7 +161,9 @@ private:
     /// An accessor's values as numbers, those of normalised integers from -1 to 1.
     List<float> numbers(int accessor) const {
         const Node of = at("accessors", accessor);
-        const Node view = at("bufferViews", of["bufferView"].count());
+        const int place = of["bufferView"].count();
+        const Node view = at("bufferViews", place);
+        const Node packed = view.maybe("extensions").empty() ? Node(view.maybe("extensions")) : view["extensions"].maybe("EXT_meshopt_compression");
         static const List<std::string> kinds = {"SCALAR", "VEC2", "VEC3", "VEC4"};
         const std::size_t width = static_cast<std::size_t>(lang::index(kinds, of["type"].one_of(kinds))) + 1;
         const int type = of["componentType"].count();
@@ -168,10 +173,12 @@ private:
             return number.empty() ? usual : static_cast<std::size_t>(number.count());
         };
         const std::size_t stride = whole(view.maybe("byteStride"), size * width);
-        const std::size_t begin = whole(view.maybe("byteOffset"), 0) + whole(of.maybe("byteOffset"), 0);
+        const List<std::uint8_t>* own = packed.empty() ? nullptr : &unpacked(place, packed);
+        const std::uint8_t* from = own != nullptr ? own->data() : data_ + binary_;
+        const std::size_t begin = (own != nullptr ? 0 : whole(view.maybe("byteOffset"), 0)) + whole(of.maybe("byteOffset"), 0);
         if (size == 0 || !of.maybe("sparse").empty()) of.wrong("is of a kind that is not read here");
         const std::size_t needed = count == 0 ? 0 : (count - 1) * stride + size * width;
-        if (size == 0 || trouble_.found() || begin + needed > binary_size_) {
+        if (size == 0 || trouble_.found() || begin + needed > (own != nullptr ? own->size() : binary_size_)) {
             of.wrong("lies outside the file's data; the file is cut off or damaged");
             return {};
         }
@@ -179,8 +186,25 @@ private:
         const bool normalized = !normal.empty() && normal.flag();
         List<float> out(count * width);
         for (std::size_t n = 0; n < out.size(); n++) {
-            out[n] = component(data_ + binary_ + begin + n / width * stride + n % width * size, type, normalized);
+            out[n] = component(from + begin + n / width * stride + n % width * size, type, normalized);
         }
+        return out;
+    }
+
+    /// A packed view's bytes; none where they cannot be read, which is told.
+    const List<std::uint8_t>& unpacked(int view, const Node& packed) const {
+        const auto known = unpacked_.find(view);
+        if (known != unpacked_.end()) return known->second;
+        const Node offset = packed.maybe("byteOffset"), filter = packed.maybe("filter");
+        auto size = [&packed](const char* name) { return static_cast<std::size_t>(packed[name].count()); };
+        const std::size_t begin = offset.empty() ? 0 : static_cast<std::size_t>(offset.count()), length = size("byteLength");
+        std::string wrong = "lies outside the file's data; the file is cut off or damaged";
+        List<std::uint8_t>& out = unpacked_[view];
+        if (!trouble_.found() && begin + length <= binary_size_ && packed["mode"].text() == "ATTRIBUTES") {
+            out = meshopt::attributes(data_ + binary_ + begin, length, size("count"), size("byteStride"), wrong);
+            if (wrong.empty()) meshopt::unfilter(out, size("byteStride"), filter.empty() ? "NONE" : filter.text(), wrong);
+        }
+        if (!wrong.empty()) packed.wrong(wrong);
         return out;
     }
 

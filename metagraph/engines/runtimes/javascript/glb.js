@@ -1,5 +1,6 @@
 /** Reading the export's GLB: joint nodes and animations, as far as a runtime needs them. */
 
+import { MeshoptError, unpacked } from "./meshopt.js";
 import { normalize, slerp } from "./rotation.js";
 
 const [HEADER, JSON_CHUNK, BIN_CHUNK, MAGIC] = [12, 0x4e4f534a, 0x004e4942, 0x46546c67];
@@ -9,6 +10,8 @@ const COMPONENTS = {
   5120: [1, "getInt8", 127], 5121: [1, "getUint8", 255], 5122: [2, "getInt16", 32767], 5123: [2, "getUint16", 65535],
   5126: [4, "getFloat32", 1],
 };
+
+const KNOWN = ["KHR_mesh_quantization", "EXT_meshopt_compression"];
 
 /** What is wrong with a file, in words; `load` says which. */
 export class GlbError extends Error {}
@@ -31,9 +34,10 @@ export class Glb {
     }
     if (!this.document) throw new GlbError("has no JSON");
     const needed = this.document.extensionsRequired ?? [];
-    if (needed.some((name) => name !== "KHR_mesh_quantization")) throw new GlbError(`needs ${needed.join(", ")}`);
+    if (needed.some((name) => !KNOWN.includes(name))) throw new GlbError(`needs ${needed.join(", ")}`);
     this.nodes = this.document.nodes ?? [];
     this.animations = this.document.animations ?? [];
+    this.unpacked = new Map(); // views
   }
 
   /** Return where an accessor's values lie and how they are read. Throws GlbError for what is not read here, or not there. */
@@ -43,19 +47,35 @@ export class Glb {
     const [size, read, most] = COMPONENTS[accessor?.componentType] ?? [];
     const width = WIDTHS[accessor?.type];
     if (!source || !size || !width || !this.binary) throw new GlbError(`accessor ${index} is of a kind that is not read here`);
-    const begin = (source.byteOffset ?? 0) + (accessor.byteOffset ?? 0);
+    const packed = source.extensions?.EXT_meshopt_compression;
+    const data = packed ? this.unpack(accessor.bufferView, packed) : this.binary;
+    const begin = (packed ? 0 : source.byteOffset ?? 0) + (accessor.byteOffset ?? 0);
     const stride = source.byteStride ?? size * width;
-    if (begin + (accessor.count - 1) * stride + size * width > this.binary.byteLength) throw new GlbError("is cut short");
-    return { begin, stride, size, width, read, count: accessor.count, normalized: accessor.normalized, scale: accessor.normalized ? most : 1 };
+    if (begin + (accessor.count - 1) * stride + size * width > data.byteLength) throw new GlbError("is cut short");
+    return { data, begin, stride, size, width, read, count: accessor.count, normalized: accessor.normalized, scale: accessor.normalized ? most : 1 };
+  }
+
+  /** Return a packed view's bytes. @returns {DataView} */
+  unpack(view, { byteOffset = 0, byteLength, count, byteStride, mode, filter }) {
+    if (!this.unpacked.has(view)) {
+      const { buffer, byteOffset: from, byteLength: size } = this.binary;
+      if (byteOffset + byteLength > size) throw new GlbError("is cut short");
+      try {
+        this.unpacked.set(view, new DataView(unpacked(new Uint8Array(buffer, from + byteOffset, byteLength), count, byteStride, mode, filter).buffer));
+      } catch (error) {
+        throw error instanceof MeshoptError ? new GlbError(error.message) : error;
+      }
+    }
+    return this.unpacked.get(view);
   }
 
   /** Return an accessor's values as numbers, those of normalised integers from -1 to 1. @returns {Float32Array} */
   values(index) {
-    const { begin, stride, size, width, read, count, normalized, scale } = this.placed(index);
+    const { data, begin, stride, size, width, read, count, normalized, scale } = this.placed(index);
     const out = new Float32Array(count * width);
     for (let n = 0; n < out.length; n++) {
       const at = begin + Math.floor(n / width) * stride + (n % width) * size;
-      out[n] = Math.max(this.binary[read](at, true) / scale, normalized ? -1 : -Infinity);
+      out[n] = Math.max(data[read](at, true) / scale, normalized ? -1 : -Infinity);
     }
     return out;
   }

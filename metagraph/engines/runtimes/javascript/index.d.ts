@@ -115,7 +115,19 @@ export interface Graph {
   readonly lines: ReadonlyMap<string, { readonly text?: string; readonly duration?: number }>;
   /** What is missing in the GLB, in words; the rest plays all the same. */
   readonly problems: readonly string[];
+  /**
+   * Make motions that were not played yet, which otherwise is done when they first play, for so many milliseconds and one at least; all
+   * of them where nothing is said. Returns how many are left.
+   */
+  prepare(milliseconds?: number): number;
 }
+
+/** Unpacks what is packed by EXT_meshopt_compression; for three.js's `GLTFLoader.setMeshoptDecoder`, too. */
+export const MeshoptDecoder: {
+  readonly supported: boolean;
+  readonly ready: Promise<void>;
+  decodeGltfBuffer(target: Uint8Array, count: number, size: number, source: Uint8Array, mode: string, filter?: string): void;
+};
 
 /** Which file, where in it, what is wrong, and what to do about it. */
 export class MetagraphError extends Error {}

@@ -7,6 +7,7 @@ export { FORMAT, Graph, MetagraphError, load } from "./graph.js";
 export { answers, hear, since } from "./hear.js";
 export { emptyPlan, keyOf } from "./plan.js";
 export { Player, morphsAt, poseAt } from "./pose.js";
+export { MeshoptDecoder } from "./meshopt.js";
 export { StreamedVoice } from "./streamed_voice.js";
 export { Talk } from "./talk.js";
 export { LAYERS } from "./words.js";

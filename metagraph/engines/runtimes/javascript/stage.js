@@ -6,6 +6,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import { MeshoptDecoder } from "./meshopt.js";
 
 const FOV = 28, PITCH = 7, DISTANCE = 4.2, HEIGHT = 1.75; // degrees, metres: as the desktop's preview sees somebody of that height, a long lens
 const SIDES = { front: 0, "three-quarter": 28, left: 90, right: -90, back: 180 }; // degrees
@@ -127,6 +128,7 @@ export class Stage {
   async add(bytes, head = "") {
     const loader = new GLTFLoader();
     loader.register(unanimated);
+    loader.setMeshoptDecoder(MeshoptDecoder);
     const { scene } = await loader.parseAsync(bytes, "");
     let drawn = false;
     const meshes = new Map(); // by what their vertices are: parts of different materials share them

@@ -56,6 +56,7 @@ def test_every_target_is_offered_and_says_what_it_writes_and_loses(toys):
             assert words[:25] in dialog.losses.text().replace("&#x27;", "'")
         assert ("Experimental" in dialog.losses.text()) == bool(target.untried)
         assert dialog.vectors.isHidden() == (target.group != "Played as the preview does")
+        assert dialog.compress.isHidden() != target.unpacks
     dialog.reject()
 
 
@@ -103,6 +104,23 @@ def test_vectors_and_tools_are_written_where_they_are_asked_for(toys, tmp_path):
     assert "gesture" in tools.read_text()
     dialog.reject()
     assert opened(drive).tools.isChecked()
+
+
+def test_a_glb_is_packed_where_that_is_asked_for_and_its_target_reads_it(toys, tmp_path):
+    drive = toys
+    dialog = opened(drive)
+    pick(drive, dialog, "javascript")
+    assert not dialog.compress.isChecked()
+    QTest.mouseClick(dialog.compress, Qt.MouseButton.LeftButton, pos=QPoint(8, dialog.compress.height() // 2))
+    assert dialog.compress.isChecked()
+    for name, packed in (("javascript", True), ("godot", False)):
+        pick(drive, dialog, name)
+        put(dialog, str(tmp_path / name))
+        QTest.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+        drive.wait(lambda: dialog.open_button.isEnabled(), 60)
+        (glb,) = (tmp_path / name).glob("*.glb")
+        assert (b"EXT_meshopt_compression" in glb.read_bytes()) == packed
+    dialog.reject()
 
 
 @pytest.mark.parametrize(

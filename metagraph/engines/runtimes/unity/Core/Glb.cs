@@ -14,6 +14,7 @@ namespace Metagraph
         private readonly int start, length; // of the binary chunk
         private readonly List<Node> accessors, views;
         private readonly Dictionary<int, float[]> known = new Dictionary<int, float[]>();
+        private readonly Dictionary<int, byte[]> unpacked = new Dictionary<int, byte[]>(); // views
 
         /// <summary>Raises MetagraphException for what is no GLB or is cut off; name: for messages.</summary>
         public Glb(byte[] data, string name)
@@ -95,8 +96,11 @@ namespace Metagraph
             int count = of["count"].Count, type = of["componentType"].Count, width = Width(of);
             int size = type == 5126 || type == 5125 ? 4 : type == 5122 || type == 5123 ? 2 : type == 5120 || type == 5121 ? 1 : 0;
             int stride = Integer(views[place], "byteStride", size * width);
-            long at = (long)Integer(views[place], "byteOffset", 0) + Integer(of, "byteOffset", 0);
-            if (size == 0 || count < 0 || at < 0 || (count > 0 && at + (long)stride * (count - 1) + size * width > length))
+            byte[] packed = Unpacked(place);
+            byte[] from = packed ?? data;
+            int begin = packed == null ? start : 0, most = packed == null ? length : packed.Length;
+            long at = (packed == null ? Integer(views[place], "byteOffset", 0) : 0L) + Integer(of, "byteOffset", 0);
+            if (size == 0 || count < 0 || at < 0 || (count > 0 && at + (long)stride * (count - 1) + size * width > most))
             {
                 throw of.Wrong("lies outside the file's data; the file is cut off or damaged");
             }
@@ -105,9 +109,36 @@ namespace Metagraph
             var found = new float[count * width];
             for (int n = 0; n < found.Length; n++)
             {
-                found[n] = Number((int)(start + at + (long)stride * (n / width) + size * (n % width)), type, normalized);
+                found[n] = Number(from, (int)(begin + at + (long)stride * (n / width) + size * (n % width)), type, normalized);
             }
             return found;
+        }
+
+        /// <summary>The bytes of a view that is packed, null where it is not.</summary>
+        private byte[] Unpacked(int view)
+        {
+            Node extensions, packed, filter;
+            byte[] found;
+            if (unpacked.TryGetValue(view, out found) || !views[view].Maybe("extensions", out extensions)
+                || !extensions.Maybe("EXT_meshopt_compression", out packed))
+            {
+                return found;
+            }
+            int at = Integer(packed, "byteOffset", 0), size = packed["byteLength"].Count;
+            if (at < 0 || size < 0 || (long)at + size > length)
+            {
+                throw packed.Wrong("lies outside the file's data; the file is cut off or damaged");
+            }
+            string kind = packed.Maybe("filter", out filter) ? filter.Text : "NONE";
+            try
+            {
+                int count = packed["count"].Count, stride = packed["byteStride"].Count;
+                return unpacked[view] = Meshopt.Unpacked(data, start + at, size, count, stride, packed["mode"].Text, kind);
+            }
+            catch (FormatException error)
+            {
+                throw packed.Wrong(error.Message);
+            }
         }
 
         private static int Width(Node accessor)
@@ -117,14 +148,14 @@ namespace Metagraph
             return place >= 0 ? place + 1 : type == "MAT4" ? 16 : 1;
         }
 
-        private float Number(int at, int type, bool normalized)
+        private static float Number(byte[] data, int at, int type, bool normalized)
         {
             switch (type)
             {
                 case 5126:
                     return BitConverter.ToSingle(data, at); // all that Unity runs on is little-endian, as glTF is
                 case 5125:
-                    return Word(at);
+                    return BitConverter.ToUInt32(data, at);
                 case 5123:
                     return (data[at] | data[at + 1] << 8) / (normalized ? 65535f : 1f);
                 case 5122:

@@ -40,6 +40,9 @@ func _open(shim):
 	if typeof(found) != TYPE_DICTIONARY:
 		return "its JSON chunk is broken"
 	_data = found
+	for name in _data.get("extensionsRequired", []):
+		if name != "KHR_mesh_quantization":
+			return "it needs %s, which is not read here; export it without --compress" % name
 	if 28 + length <= whole:
 		_size = _stream.get_u32()
 		if _stream.get_u32() != 0x004E4942 or 28 + length + _size > whole:

@@ -1,0 +1,218 @@
+"""An export whose GLB is packed plays the same in the runtimes that read it, and is refused by what does not."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import struct
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from metagraph.engines.export import ExportError, export
+from metagraph.engines.targets import registry, web, web_tools
+from metagraph.engines.vectors import check_vectors, write_vectors
+from metagraph.graph.model import Project
+from tests.engines import test_runtime_cpp, test_runtime_godot, test_runtime_unity
+from tests.engines.test_runtime_godot import game, needs_godot
+from tests.engines.test_target_web import MODULES, browse
+from tests.formats.test_gltf_packed import BODY, parts, rewritten
+
+__all__ = ["game"]
+
+ROOT = Path(__file__).resolve().parents[2]
+RUNTIMES = ROOT / "metagraph" / "engines" / "runtimes"
+JAVASCRIPT = RUNTIMES / "javascript"
+needs_node = pytest.mark.skipif(shutil.which("node") is None, reason="needs Node")
+
+
+@pytest.fixture(scope="module")
+def packed(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The sample's export, packed, with every eighth of its vectors' cases."""
+    folder = tmp_path_factory.mktemp("packed") / "sample"
+    path = write_vectors(export(sample, folder, character=BODY, compress=True).json)
+    vectors = json.loads(path.read_bytes())
+    vectors["cases"] = vectors["cases"][::8]
+    path.write_text(json.dumps(vectors, ensure_ascii=False), encoding="utf-8")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def damaged(packed: Path, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """Copies whose packed turns are cut short, longer than said, or of a filter they cannot have."""
+    out: list[Path] = []
+    changes: list[dict[str, Any]] = [
+        {"byteLength": 999},
+        {"count": 9},
+        {"filter": "WAVELET"},
+        {"byteOffset": 1 << 28},
+    ]
+    for change in changes:
+        folder = shutil.copytree(packed, tmp_path_factory.mktemp("damaged") / "sample")
+        document, binary = parts(folder / "sample.glb")
+        turns = document["accessors"][document["animations"][0]["samplers"][0]["output"]]
+        document["bufferViews"][turns["bufferView"]]["extensions"]["EXT_meshopt_compression"] |= change
+        rewritten(folder / "sample.glb", document, binary)
+        out.append(folder)
+    return out
+
+
+def test_it_plays_the_same_in_python(packed: Path) -> None:
+    outcome = check_vectors(packed)
+    assert outcome.passed > 15 and not outcome.failures
+
+
+@needs_node
+def test_it_plays_the_same_in_javascript(packed: Path) -> None:
+    done = subprocess.run(
+        ["node", JAVASCRIPT / "conformance.mjs", packed], capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
+
+
+LOAD = """
+import { readFileSync } from "node:fs";
+import { load } from "%s/index.js";
+for (const folder of process.argv.slice(1)) {
+  try {
+    load(readFileSync(folder + "/sample.json", "utf8"), readFileSync(folder + "/sample.glb"));
+    console.log("loaded");
+  } catch (error) {
+    console.log(`${error.name}: ${error.message}`);
+  }
+}
+"""
+
+
+@needs_node
+def test_a_damaged_one_is_refused_by_javascript_when_it_is_loaded(damaged: list[Path]) -> None:
+    """Not when its clips first play, which is when they are made."""
+    script = LOAD % JAVASCRIPT.as_uri()
+    done = subprocess.run(
+        ["node", "--input-type=module", "-e", script, *damaged], capture_output=True, text=True, timeout=60
+    )
+    lines = done.stdout.splitlines()
+    assert len(lines) == len(damaged) and all(
+        line.startswith("MetagraphError: sample.glb") for line in lines
+    ), lines
+
+
+DECODE = """
+import { readFileSync } from "node:fs";
+import { MeshoptDecoder as ours } from "%s/index.js";
+import { MeshoptDecoder as theirs } from "%s/three/examples/jsm/libs/meshopt_decoder.module.js";
+await theirs.ready;
+await ours.ready;
+const reference = JSON.parse(readFileSync(process.argv[1])), glb = readFileSync(process.argv[2]);
+const document = JSON.parse(glb.subarray(20, 20 + glb.readUInt32LE(12))), binary = glb.subarray(28 + glb.readUInt32LE(12));
+const rows = Object.values(reference.triangles).map(({ packed, indices }) => [packed, indices.length, 4, "TRIANGLES"]);
+rows.push([reference.indices.packed, reference.indices.indices.length, 4, "INDICES"]);
+rows.push([reference.attributes.packed, 40, 8, "ATTRIBUTES"]);
+const cases = rows.map(([packed, ...rest]) => [Buffer.from(packed, "base64"), ...rest]);
+for (const view of document.bufferViews) {
+  const packed = view.extensions?.EXT_meshopt_compression;
+  if (!packed) continue;
+  const { byteOffset, byteLength, count, byteStride, mode, filter = "NONE" } = packed;
+  cases.push([binary.subarray(byteOffset, byteOffset + byteLength), count, byteStride, mode, filter]);
+}
+console.log(JSON.stringify(cases.map(([data, count, size, mode, filter]) => {
+  const [a, b] = [ours, theirs].map((decoder) => {
+    const out = new Uint8Array(count * size);
+    decoder.decodeGltfBuffer(out, count, size, data, mode, filter);
+    return filter === "QUATERNION" ? new Int16Array(out.buffer) : out;
+  });
+  return [mode, filter ?? "NONE", a.reduce((most, x, n) => Math.max(most, Math.abs(x - b[n])), 0)];
+})));
+"""
+
+
+@needs_node
+def test_views_are_unpacked_as_the_extensions_own_library_does(packed: Path) -> None:
+    """Which three.js comes with: packed by it and packed by us. Turns may differ in the last digit."""
+    if not web_tools.has_three(MODULES):
+        pytest.skip("needs three.js (python3 run.py test fetches it where npm is)")
+    reference = ROOT / "tests" / "formats" / "meshopt_reference.json"
+    script = DECODE % (JAVASCRIPT.as_uri(), MODULES.resolve().as_uri())
+    done = subprocess.run(
+        ["node", "--input-type=module", "-e", script, reference, packed / "sample.glb"],
+        capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert {"TRIANGLES", "INDICES", "ATTRIBUTES"} == {mode for mode, _, _ in found}
+    assert {kind for _, kind, _ in found} == {"NONE", "EXPONENTIAL", "QUATERNION", "OCTAHEDRAL"}
+    assert all(off <= (kind == "QUATERNION") for _, kind, off in found), found
+
+
+@test_runtime_unity.pytestmark
+def test_it_plays_the_same_in_c_sharp_and_a_damaged_one_is_refused(
+    packed: Path, damaged: list[Path], tmp_path: Path
+) -> None:
+    runner = test_runtime_unity.RUNTIME / "Conformance" / "Conformance.cs"
+    program = test_runtime_unity.compiled(tmp_path / "packed.exe", runner, *test_runtime_unity.CORE)
+    done = test_runtime_unity.mono(program, packed)
+    assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
+    done = test_runtime_unity.mono(program, *damaged)
+    lines = done.stdout.splitlines()
+    assert done.returncode == 1 and len(lines) == len(damaged) + 1, done.stdout + done.stderr
+    assert all("sample.glb" in line for line in lines[:-1]), lines
+
+
+@test_runtime_cpp.pytestmark
+def test_it_plays_the_same_in_cpp_and_a_damaged_one_is_refused(
+    packed: Path, damaged: list[Path], tmp_path: Path
+) -> None:
+    source = tmp_path / "packed.cpp"
+    shutil.copy(RUNTIMES / "cpp" / "conformance.cpp", source)
+    program = test_runtime_cpp.compiled(source, "-I", RUNTIMES / "cpp")
+    done = test_runtime_cpp.ran(program, packed)
+    assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
+    done = test_runtime_cpp.ran(program, *damaged)
+    told = [line for line in done.stdout.splitlines() if "loading" in line]
+    assert done.returncode == 1 and len(told) == len(damaged), done.stdout
+    assert all("sample.glb" in line for line in told)
+
+
+@needs_godot
+def test_gdscript_says_that_it_does_not_read_it(packed: Path, game: Path) -> None:
+    code, told = test_runtime_godot.godot(game, "addons/metagraph/conformance.gd", packed)
+    assert code == 1 and "without --compress" in told
+
+
+@pytest.mark.parametrize("name", sorted(registry.targets()))
+def test_targets_that_cannot_read_it_refuse_and_the_others_write_it(
+    sample: Project, tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(web, "tools", lambda place: None)
+    if not registry.target(name).unpacks:
+        with pytest.raises(ExportError, match="without --compress"):
+            registry.write(sample, name, tmp_path / "out", compress=True)
+        assert not (tmp_path / "out").exists()
+        return
+    made = registry.write(sample, name, tmp_path / "out", compress=True)
+    (glb,) = (path for path in made.files if path.suffix == ".glb")
+    assert "EXT_meshopt_compression" in parts(glb)[0]["extensionsRequired"]
+
+
+def test_a_page_shows_it(sample: Project, tmp_path: Path) -> None:
+    if web_tools.esbuild(MODULES) is None or not web_tools.has_three(MODULES):
+        pytest.skip("needs three.js and esbuild (python3 run.py test fetches them where npm is)")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(web, "tools", lambda place: MODULES)
+        registry.write(sample, "web", tmp_path, BODY, compress=True)
+    seen = """(() => { const { stage, object } = document.querySelector("metagraph-character"); let vertices = 0;
+      stage.scene.traverse((one) => (vertices += one.isSkinnedMesh ? one.geometry.attributes.position.count : 0));
+      return [vertices, object.missing.length, stage.bounds.max.y]; })()"""
+    ((vertices, missing, top),), errors = browse(
+        tmp_path, {"url": "", "until": "performance.getEntriesByName('first pose').length"}, {"run": seen}
+    )
+    assert not errors
+    assert vertices > 9000 and missing == 0 and 1.4 < top < 2.1
+
+
+def test_the_size_that_is_said_is_the_size_there_is(packed: Path, sample_export: Path) -> None:
+    plain, small = ((folder / "sample.glb").stat().st_size for folder in (sample_export, packed))
+    assert small < 0.75 * plain
+    assert struct.unpack_from("<I", (packed / "sample.glb").read_bytes(), 8) == (small,)
