@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from metagraph.errors import error_words
 from metagraph.wording import reworded
 
 ENGLISH = "en"
@@ -33,7 +34,7 @@ def tr(text: str, **values: object) -> str:
     found = _words.get(text, text)
     if not _words:
         return found.format(**values) if values else found
-    shown = found.format(**values) if values else found
+    shown = found.format(**{k: _said(v) for k, v in values.items()}) if values else found
     _english[shown] = text.format(**{k: _in_english(v) for k, v in values.items()}) if values else text
     _english.move_to_end(shown)
     if len(_english) > REMEMBERED:
@@ -48,6 +49,13 @@ def in_english(text: str) -> str:
     return _english.get(text, text)
 
 
+def _said(value: object) -> object:
+    """Return a value as it stands in a text: what the domain says in the same language."""
+    if isinstance(value, BaseException):
+        return tr_error(value)
+    return tr_told(value) if isinstance(value, str) else value
+
+
 def _in_english(value: object) -> object:
     return _english.get(value, value) if isinstance(value, str) else value
 
@@ -59,8 +67,7 @@ def tr_told(words: str) -> str:
 
 def tr_error(error: object) -> str:
     """Return what an error says, in the language that was chosen."""
-    first = error.args[0] if isinstance(error, BaseException) and error.args else ""
-    return tr_told(first) if isinstance(first, str) and str(error) == first else str(error)
+    return tr_told(error_words(error)) if isinstance(error, BaseException) else str(error)
 
 
 def tr_noop(text: str) -> str:
