@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from metagraph.errors import error_words
 from metagraph.wording import reworded
 
 ENGLISH = "en"
@@ -59,8 +60,7 @@ def tr_told(words: str) -> str:
 
 def tr_error(error: object) -> str:
     """Return what an error says, in the language that was chosen."""
-    first = error.args[0] if isinstance(error, BaseException) and error.args else ""
-    return tr_told(first) if isinstance(first, str) and str(error) == first else str(error)
+    return tr_told(error_words(error)) if isinstance(error, BaseException) else str(error)
 
 
 def tr_noop(text: str) -> str:

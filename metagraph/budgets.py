@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from metagraph.wording import told
+
 KIB, MIB, GIB = 1 << 10, 1 << 20, 1 << 30
 
 # Bytes of whole files, by what they hold.
@@ -74,4 +76,4 @@ class Allowance:
             self._refuse(where)
 
 
-OUT_OF_PROPORTION = "it asks for far more memory than its size warrants"
+OUT_OF_PROPORTION = told("it asks for far more memory than its size warrants")

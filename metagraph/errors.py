@@ -28,8 +28,20 @@ class FileError(Exception):
         words = "{place}: {cause}. {remedy}" if remedy else "{place}: {cause}."
         super().__init__(told(words, place=place, cause=shown(cause), remedy=remedy))
 
+    @property
+    def words(self) -> str:
+        """All of it; words that know their templates (`metagraph.wording`)."""
+        found: str = self.args[0]
+        return found
+
     def __str__(self) -> str:
         return str(self.args[0])
 
     def __reduce__(self) -> tuple[type[FileError], tuple[Path, str, str, str]]:
         return type(self), (self.path, self.cause, self.where, self.remedy)
+
+
+def error_words(error: BaseException) -> str:
+    """Return what an error says, as words that know their template where it was made of such."""
+    first = error.args[0] if error.args else ""
+    return first if isinstance(first, str) and str(error) == first else str(error)

@@ -18,11 +18,12 @@ from pathlib import Path
 from typing import ParamSpec, TypeVar
 
 from metagraph.errors import FileError
+from metagraph.wording import told
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
-_THERE = "Check that it is there and that you may read it."
+_THERE = told("Check that it is there and that you may read it.")
 _KINDS = (
     (stat.S_ISDIR, "a folder"),
     (stat.S_ISFIFO, "a pipe"),
@@ -98,7 +99,7 @@ def check_file(path: str | Path, most: int) -> Path:
 def unreadable(path: Path, error: OSError | ValueError) -> FileError:
     """Return the error that says why a file cannot be read."""
     words = (error.strerror or str(error)) if isinstance(error, OSError) else "its path is none"
-    return FileError(path, f"cannot be read ({words})", "on opening it", _THERE)
+    return FileError(path, told("cannot be read ({words})", words=words), told("on opening it"), _THERE)
 
 
 def _handle(path: Path) -> BufferedReader:
@@ -110,14 +111,24 @@ def _handle(path: Path) -> BufferedReader:
 def _checked(path: Path, found: os.stat_result, most: int) -> None:
     for kind, words in _KINDS:
         if kind(found.st_mode):
-            raise FileError(path, f"it is {words}, not a file", "on opening it", "Choose a file.")
+            raise FileError(
+                path,
+                told("it is {words}, not a file", words=words),
+                told("on opening it"),
+                told("Choose a file."),
+            )
     if found.st_size > most:
         raise _too_large(path, most)
 
 
 def _too_large(path: Path, most: int) -> FileError:
     size = f"{most >> 30} GiB" if most >= 1 << 30 else f"{most >> 20} MiB"
-    return FileError(path, f"is larger than the {size} that are read", "on opening it", "Split it.")
+    return FileError(
+        path,
+        told("is larger than the {size} that are read", size=size),
+        told("on opening it"),
+        told("Split it."),
+    )
 
 
 def guarded(read: Callable[P, R]) -> Callable[P, R]:
@@ -146,10 +157,10 @@ def unforeseen(path: str | Path, error: Exception) -> FileError:
     if isinstance(error, FileError):
         return error
     if isinstance(error, MemoryError):
-        remedy = "Close other programs, or split the file."
-        return FileError(path, "there is not enough memory for it", "on reading it", remedy)
+        remedy = told("Close other programs, or split the file.")
+        return FileError(path, told("there is not enough memory for it"), told("on reading it"), remedy)
     if isinstance(error, OSError):
         return unreadable(Path(path), error)
     said = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-    remedy = "Export it again; if that does not help, report it with the file (docs/reliability.md)."
-    return FileError(path, f"its reader failed on it ({said})", "on reading it", remedy)
+    remedy = told("Export it again; if that does not help, report it with the file (docs/reliability.md).")
+    return FileError(path, told("its reader failed on it ({said})", said=said), told("on reading it"), remedy)

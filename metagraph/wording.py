@@ -4,7 +4,7 @@ say the same in another language.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Self
 
 
@@ -31,6 +31,13 @@ def told(template: str, /, **values: Any) -> Told:
     What a program writes, as JSON or into a log, is `str` of it.
     """
     return Told(template, values)
+
+
+def joined(words: Sequence[str], between: str) -> Told:
+    """Return several words with something between them; each is said in another language by itself."""
+    values = {f"part{n}": one for n, one in enumerate(words)}
+    between = between.replace("{", "{{").replace("}", "}}")
+    return Told(between.join(f"{{{name}}}" for name in values), values)
 
 
 def filled(template: str, values: Mapping[str, Any]) -> str:

@@ -18,7 +18,7 @@ from app.project.jobs import Job, Jobs
 from app.project.kept_maps import kept_maps
 from app.project.load import Load
 from app.project.opening import take_over
-from app.translation import tr
+from app.translation import tr, tr_told
 from metagraph.formats.clips import SUFFIXES
 from metagraph.formats.import_words import Remedy, counted, head, said
 from metagraph.formats.imports import Imported, Strangers, import_files
@@ -174,7 +174,7 @@ class Importing(QObject):
             )
             return
         before = [note for note in result.notes if note.endswith("retargeted as before")]
-        self.told.emit(". ".join([said(result), *before]))
+        self.told.emit(". ".join([tr_told(said(result)), *before]))
         clips = self.load_for(result).clips
         repairs = repairs_of(self.document.project, clips)
         if any(
@@ -182,7 +182,8 @@ class Importing(QObject):
         ):  # a name is plain to see, and no reason to interrupt
             told = {found.repair.words for found in repairs}
             notes = [note for note in result.notes if note.split(": ", 1)[-1] not in told]
-            self.noticed.emit(head(result), clips, counted([*result.failures, *notes]))
+            lines = [tr_told(line) for line in counted([*result.failures, *notes])]
+            self.noticed.emit(tr_told(head(result)), clips, lines)
         self.ended.emit(result)
 
     def load_for(self, result: Imported) -> Load:

@@ -34,6 +34,7 @@ from metagraph.motion import rotation
 from metagraph.motion.clip import Clip, Repair
 from metagraph.motion.roles import find_roles
 from metagraph.motion.skeleton import Skeleton, unique_names
+from metagraph.wording import told
 
 Array = NDArray[Any]
 
@@ -44,7 +45,7 @@ _read_so_far = [0]  # bytes of motion this process has read
 _loops: list[Any] = []  # the module of compiled loops, once it is whole; None where it cannot be had
 _importing = Lock()
 _LONGEST_HEADER = 16 * MIB
-_DAMAGED = "The file is damaged: export it again."
+_DAMAGED = told("The file is damaged: export it again.")
 
 
 @dataclass
@@ -70,12 +71,19 @@ def read_bvh(path: str | Path, scale: float | None = None, as_is: Collection[str
     data = read_file(path, MOTION_FILE)
     head = data[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
     if head[:9].upper() != b"HIERARCHY":
-        raise FileError(path, "it does not begin with HIERARCHY", "line 1", "Check that it is a BVH file.")
+        raise FileError(
+            path,
+            told("it does not begin with HIERARCHY"),
+            told("line 1"),
+            told("Check that it is a BVH file."),
+        )
     motion = re.search(rb"(?im)^[ \t]*MOTION[ \t]*\r?$", data)
     if motion is None:
-        raise FileError(path, "it has no MOTION section", "its end", "Export it with its motion.")
+        raise FileError(
+            path, told("it has no MOTION section"), told("its end"), told("Export it with its motion.")
+        )
     if motion.start() > _LONGEST_HEADER:
-        raise FileError(path, "its HIERARCHY is longer than any", "its HIERARCHY", _DAMAGED)
+        raise FileError(path, told("its HIERARCHY is longer than any"), told("its HIERARCHY"), _DAMAGED)
     joints = _Header(path, data[: motion.start()].decode("utf-8", "replace")).joints()
     notes: list[str] = []
     values, fps = _motion(path, data, motion.end(), sum(len(j.channels) for j in joints), notes)
@@ -87,7 +95,7 @@ def _afford(path: Path, size: int, frames: int, joints: list[_Joint]) -> None:
     """Refuse what would take far more memory than the file has: joints without channels cost it nothing."""
 
     def refuse(where: str) -> None:
-        raise FileError(path, OUT_OF_PROPORTION, where, "Leave out the joints that do not move.")
+        raise FileError(path, OUT_OF_PROPORTION, where, told("Leave out the joints that do not move."))
 
     placed = sum(any(name[1] == "p" for name in joint.channels) for joint in joints)
     Allowance(size, refuse).spend(frames * (len(joints) * 64 + placed * 96), f"its {len(joints)} joints")
@@ -104,11 +112,11 @@ class _Header:
         self.at = 0
 
     def fail(self, cause: str, line: int, remedy: str = _DAMAGED) -> NoReturn:
-        raise FileError(self.path, cause, f"line {line}", remedy)
+        raise FileError(self.path, cause, told("line {line}", line=line), remedy)
 
     def next(self) -> tuple[str, int]:
         if self.at >= len(self.words):
-            self.fail("the HIERARCHY section ends too early", self.words[-1][1] if self.words else 1)
+            self.fail(told("the HIERARCHY section ends too early"), self.words[-1][1] if self.words else 1)
         self.at += 1
         return self.words[self.at - 1]
 
@@ -117,9 +125,9 @@ class _Header:
         try:
             value = float(word)
         except ValueError:
-            self.fail(f"'{word[:40]}' is not a number", line)
+            self.fail(told("'{word}' is not a number", word=word[:40]), line)
         if not abs(value) < 1e9:
-            self.fail(f"{word[:40]} is not a sensible number", line)
+            self.fail(told("{word} is not a sensible number", word=word[:40]), line)
         return value
 
     def joints(self) -> list[_Joint]:
@@ -131,70 +139,72 @@ class _Header:
             word, line = self.next()
             kind = word.upper()
             if opened is not None and kind != "{":
-                self.fail(f"expected '{{', found '{word[:40]}'", line)
+                self.fail(told("expected '{{', found '{word}'", word=word[:40]), line)
             if kind in ("ROOT", "JOINT", "END"):
                 if kind == "ROOT" and stack:
-                    self.fail("a ROOT stands inside another joint", line)
+                    self.fail(told("a ROOT stands inside another joint"), line)
                 if kind != "ROOT" and (not stack or stack[-1] < 0):
-                    self.fail(f"a {word[:10]} stands outside any joint", line)
+                    self.fail(told("a {word} stands outside any joint", word=word[:10]), line)
                 name = []
                 while self.at < len(self.words) and self.words[self.at][0] != "{":
                     name.append(self.next()[0])
                     if len(name) > 64:
-                        self.fail(f"no '{{' follows {kind}", line)
+                        self.fail(told("no '{{' follows {kind}", kind=kind), line)
                 if kind == "END":
                     opened = -1
                 else:
                     if len(out) >= JOINTS:
-                        self.fail(f"it has more than the {JOINTS} joints of any character", line)
+                        self.fail(
+                            told("it has more than the {JOINTS} joints of any character", JOINTS=JOINTS), line
+                        )
                     out.append(_Joint(" ".join(name), stack[-1] if stack else -1, line))
                     opened = len(out) - 1
             elif kind == "{":
                 if opened is None:
-                    self.fail("'{' without a joint", line)
+                    self.fail(told("'{' without a joint"), line)
                 stack.append(opened)
                 opened = None
             elif kind == "}":
                 if not stack:
-                    self.fail("'}' without a '{'", line)
+                    self.fail(told("'}' without a '{'"), line)
                 stack.pop()
             elif kind == "OFFSET":
                 if not stack:
-                    self.fail("OFFSET outside any joint", line)
+                    self.fail(told("OFFSET outside any joint"), line)
                 offset = (self.number(), self.number(), self.number())
                 if stack[-1] >= 0:
                     out[stack[-1]].offset = offset
             elif kind == "CHANNELS":
                 self._channels(out, stack, line)
             else:
-                self.fail(f"'{word[:40]}' is not expected here", line)
+                self.fail(told("'{word}' is not expected here", word=word[:40]), line)
         if stack:
-            self.fail(f"{len(stack)} '}}' are missing", self.words[-1][1])
+            self.fail(told("{count} '}}' are missing", count=len(stack)), self.words[-1][1])
         if not out:
-            self.fail("there is no ROOT", 1)
+            self.fail(told("there is no ROOT"), 1)
         for joint in out:
             if not joint.offset:
-                self.fail(f"joint '{joint.name}' has no OFFSET", joint.line)
+                self.fail(told("joint '{name}' has no OFFSET", name=joint.name), joint.line)
         return out
 
     def _channels(self, out: list[_Joint], stack: list[int], line: int) -> None:
         if not stack or stack[-1] < 0:
-            self.fail("CHANNELS outside any joint", line)
+            self.fail(told("CHANNELS outside any joint"), line)
         word, _ = self.next()
         if not word.isdecimal() or len(word) > 9 or int(word) > 64:
-            self.fail(f"'{word[:40]}' is not a number of channels", line)
+            self.fail(told("'{word}' is not a number of channels", word=word[:40]), line)
         if out[stack[-1]].channels:
-            self.fail(f"joint '{out[stack[-1]].name}' has CHANNELS twice", line)
+            self.fail(told("joint '{name}' has CHANNELS twice", name=out[stack[-1]].name), line)
         for _ in range(int(word)):
             channel, at = self.next()
             if not re.fullmatch(r"(?i)[xyz](position|rotation|scale)", channel):
                 self.fail(
-                    f"'{channel[:40]}' is not a channel",
+                    told("'{channel}' is not a channel", channel=channel[:40]),
                     at,
-                    "Make the number after CHANNELS fit the names that follow.",
+                    told("Make the number after CHANNELS fit the names that follow."),
                 )
             if channel.lower() in out[stack[-1]].channels and channel[1].lower() == "p":
-                self.fail(f"channel {channel} comes twice", at)
+                self.fail(told("channel {channel} comes twice", channel=channel), at)
             out[stack[-1]].channels.append(channel.lower())
 
 
@@ -205,50 +215,70 @@ def _motion(path: Path, data: bytes, at: int, channels: int, notes: list[str]) -
     ).match(data, at)
     if head is None:
         raise FileError(
-            path, "'Frames:' and 'Frame Time:' do not follow MOTION", f"line {_line(data, at)}", _DAMAGED
+            path,
+            told("'Frames:' and 'Frame Time:' do not follow MOTION"),
+            told("line {line}", line=_line(data, at)),
+            _DAMAGED,
         )
     where = f"line {_line(data, head.start(1))}"
     try:
         promised, step = int(head[1]), float(head[2])
     except ValueError:
-        raise FileError(path, "'Frames:' and 'Frame Time:' are not numbers", where, _DAMAGED) from None
+        raise FileError(path, told("'Frames:' and 'Frame Time:' are not numbers"), where, _DAMAGED) from None
     if not FRAME_SECONDS[0] <= step <= FRAME_SECONDS[1]:
         raise FileError(
             path,
-            f"a frame time of {step:g} s makes no sense",
-            f"line {_line(data, head.start(2))}",
-            "Write the seconds per frame, such as 0.0333333.",
+            told("a frame time of {step:g} s makes no sense", step=step),
+            told("line {line}", line=_line(data, head.start(2))),
+            told("Write the seconds per frame, such as 0.0333333."),
         )
     if channels == 0:
         raise FileError(
-            path, "no joint has any CHANNELS", "its HIERARCHY", "Export it with rotation channels."
+            path,
+            told("no joint has any CHANNELS"),
+            told("its HIERARCHY"),
+            told("Export it with rotation channels."),
         )
     start = head.end()
     numbers = _numbers(path, data, start, channels)
     rows, rest = divmod(len(numbers), channels)
     if rows > FRAMES or (rows - 1) * step > CLIP_SECONDS:
-        cause = f"it has {rows:,} frames, {rows * step:.0f} s"
-        raise FileError(path, cause, where, "Cut the take into pieces.")
+        cause = told("it has {rows:,} frames, {value:.0f} s", rows=rows, value=rows * step)
+        raise FileError(path, cause, where, told("Cut the take into pieces."))
     if rows == 0 or (promised <= 0 and rows > 1):
-        cause = f"'Frames:' says {promised} but {rows} rows follow" if rows else "it has no frames"
-        raise FileError(path, cause, where, "Export it with its motion.")
+        cause = (
+            told("'Frames:' says {promised} but {rows} rows follow", promised=promised, rows=rows)
+            if rows
+            else told("it has no frames")
+        )
+        raise FileError(path, cause, where, told("Export it with its motion."))
     if (rest and rows + 1 < promised) or abs(rows - promised) > 1:
         line = _uneven_row(data, start, channels)
         cause = (
-            f"this row does not hold {channels} numbers"
+            told("this row does not hold {channels} numbers", channels=channels)
             if line
-            else f"'Frames:' says {promised} but {rows} rows of {channels} numbers follow"
+            else told(
+                "'Frames:' says {promised} but {rows} rows of {channels} numbers follow",
+                promised=promised,
+                rows=rows,
+                channels=channels,
+            )
         )
         raise FileError(
             path,
             cause,
-            f"line {line}" if line else where,
-            f"Make it say {rows}, or export the file again." if not line else _DAMAGED,
+            told("line {line}", line=line) if line else where,
+            told("Make it say {rows}, or export the file again.", rows=rows) if not line else _DAMAGED,
         )
     if rest:
         line = _uneven_row(data, start, channels)
         if line and line < _line(data, len(data.rstrip())):
-            raise FileError(path, f"this row does not hold {channels} numbers", f"line {line}", _DAMAGED)
+            raise FileError(
+                path,
+                told("this row does not hold {channels} numbers", channels=channels),
+                told("line {line}", line=line),
+                _DAMAGED,
+            )
         notes.append("its last row was cut off and was dropped")
     if rows != promised:
         notes.append(f"'Frames:' says {promised}, the file has {rows}")
@@ -326,8 +356,18 @@ def _numbers(path: Path, data: bytes, start: int, channels: int) -> Array:
                 fine = False
             if not fine:
                 text = word[:40].decode("utf-8", "replace")
-                raise FileError(path, f"'{text}' is not a sensible number", f"line {first + i}", _DAMAGED)
-    raise FileError(path, "it holds bytes that are not numbers", f"line {_line(data, stopped)}", _DAMAGED)
+                raise FileError(
+                    path,
+                    told("'{text}' is not a sensible number", text=text),
+                    told("line {value}", value=first + i),
+                    _DAMAGED,
+                )
+    raise FileError(
+        path,
+        told("it holds bytes that are not numbers"),
+        told("line {line}", line=_line(data, stopped)),
+        _DAMAGED,
+    )
 
 
 def _compiled_numbers(parse: Any, data: bytes, start: int) -> tuple[Array, int]:

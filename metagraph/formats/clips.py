@@ -17,11 +17,12 @@ from metagraph.formats.live_link_face import is_live_link
 from metagraph.formats.stray_poses import is_bind_pose
 from metagraph.formats.takes import NAME, ONE_FRAME, repaired
 from metagraph.motion.clip import Clip, ClipError, Repair
+from metagraph.wording import told
 
 SUFFIXES = (".bvh", ".glb", ".gltf", ".vrm", ".vrma", ".fbx", ".csv")
 
 _GLTF = (".glb", ".gltf", ".vrm", ".vrma")
-_REMEDY = f"Clips are read from {', '.join(SUFFIXES)}."
+_REMEDY = told("Clips are read from {endings}.", endings=", ".join(SUFFIXES))
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,23 +54,31 @@ def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
     wanted = {".bvh": "bvh", ".fbx": "fbx", ".csv": "live link", **dict.fromkeys(_GLTF, "gltf")}.get(suffix)
     if wanted is None:
         raise FileError(
-            path, f"'{path.suffix or path.name}' is not an ending of a clip file", "its name", _REMEDY
+            path,
+            told("'{value}' is not an ending of a clip file", value=path.suffix or path.name),
+            told("its name"),
+            _REMEDY,
         )
     if kind != wanted:
         names = {
-            "bvh": "a BVH file",
-            "gltf": "a glTF file",
-            "fbx": "an FBX file",
-            "live link": "a recording of Live Link Face",
+            "bvh": told("a BVH file"),
+            "gltf": told("a glTF file"),
+            "fbx": told("an FBX file"),
+            "live link": told("a recording of Live Link Face"),
         }
         if kind in names:
             raise FileError(
                 path,
-                f"it is {names[kind]} in spite of its ending",
-                "its first bytes",
-                "Rename it to match its content.",
+                told("it is {names} in spite of its ending", names=names[kind]),
+                told("its first bytes"),
+                told("Rename it to match its content."),
             )
-        raise FileError(path, f"it is {kind}, not {names[wanted]}", "its first bytes", _REMEDY)
+        raise FileError(
+            path,
+            told("it is {kind}, not {names}", kind=kind, names=names[wanted]),
+            told("its first bytes"),
+            _REMEDY,
+        )
     try:
         if wanted == "bvh":
             from metagraph.formats.bvh import read_bvh
@@ -88,7 +97,7 @@ def read_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]:
 
             clips = read_fbx_clips(path, as_is=as_is)
     except ClipError as error:
-        raise FileError(path, str(error), "its motion", "Export it again.") from error
+        raise FileError(path, str(error), told("its motion"), told("Export it again.")) from error
     return _without_junk(clips, as_is)
 
 
@@ -132,7 +141,7 @@ def _content(path: Path) -> str:
         head = file.read(4096)
     start = head.lstrip(b"\xef\xbb\xbf \t\r\n")
     if not head:
-        return "an empty file"
+        return told("an empty file")
     if head.startswith(b"glTF") or start.startswith(b"{"):
         return "gltf"
     if head.startswith(b"Kaydara FBX Binary") or start.startswith(b"; FBX") or b"FBXHeaderExtension" in head:
@@ -142,10 +151,10 @@ def _content(path: Path) -> str:
     if is_live_link(head):
         return "live link"
     if head.startswith(b"version https://git-lfs"):
-        return "a Git LFS pointer whose content was never fetched"
+        return told("a Git LFS pointer whose content was never fetched")
     if start[:1] == b"<":
-        return "a web page or XML file"
-    return "something else"
+        return told("a web page or XML file")
+    return told("something else")
 
 
 def is_face_recording(path: Path) -> bool:

@@ -18,9 +18,10 @@ from metagraph.formats.gltf_file import parse_gltf
 from metagraph.formats.gltf_skeleton import build_rig
 from metagraph.formats.takes import unique_takes
 from metagraph.motion.clip import Clip
+from metagraph.wording import told
 
 TIMEOUT = 120.0  # seconds for one file
-_AGAIN = "Export it again from the program that made it, as binary FBX 2014 or later, or as GLB."
+_AGAIN = told("Export it again from the program that made it, as binary FBX 2014 or later, or as GLB.")
 
 
 def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT, as_is: Collection[str] = ()) -> list[Clip]:
@@ -34,15 +35,18 @@ def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT, as_is: Collection
     if importlib.util.find_spec("ufbx") is None:
         raise FileError(
             path,
-            "reading FBX needs the ufbx library, which is not installed",
-            "on opening it",
-            "Run: pip install 'metagraph-studio[fbx]'",
+            told("reading FBX needs the ufbx library, which is not installed"),
+            told("on opening it"),
+            told("Run: pip install 'metagraph-studio[fbx]'"),
         )
     data = _converted(path, timeout)
     gltf = parse_gltf(path, data)
     if not gltf.json.animations:
         raise FileError(
-            path, "it holds no animation", "its animations", "Export it with its animation baked."
+            path,
+            told("it holds no animation"),
+            told("its animations"),
+            told("Export it with its animation baked."),
         )
     with np.errstate(all="ignore"):
         rig = build_rig(gltf, as_is)
@@ -54,9 +58,9 @@ def read_fbx_clips(path: str | Path, timeout: float = TIMEOUT, as_is: Collection
     if not clips:
         raise FileError(
             path,
-            "none of its takes moves the skeleton",
-            "its animations",
-            "Export it with its animation baked.",
+            told("none of its takes moves the skeleton"),
+            told("its animations"),
+            told("Export it with its animation baked."),
         )
     return unique_takes(clips)
 
@@ -68,9 +72,9 @@ def _converted(path: Path, timeout: float) -> bytes:
     except OSError as error:
         raise FileError(
             path,
-            f"the reader of FBX files did not start ({error.strerror})",
-            "on opening it",
-            "Install Metagraph again.",
+            told("the reader of FBX files did not start ({strerror})", strerror=error.strerror),
+            told("on opening it"),
+            told("Install Metagraph again."),
         ) from error
     except ReaderError as error:
         raise _told(path, error, timeout) from None
@@ -79,16 +83,30 @@ def _converted(path: Path, timeout: float) -> bytes:
 def _told(path: Path, error: ReaderError, timeout: float) -> FileError:
     code, words = error.code, error.words or "no reason given"
     if code is None:
-        return FileError(path, f"it could not be read within {timeout:.0f} s", "on reading it", _AGAIN)
+        return FileError(
+            path,
+            told("it could not be read within {timeout:.0f} s", timeout=timeout),
+            told("on reading it"),
+            _AGAIN,
+        )
     if code == fbx_child.MISSING:
         return FileError(
             path,
-            "the ufbx library is installed but does not load",
-            "on opening it",
-            "Run: pip install --force-reinstall 'metagraph-studio[fbx]'",
+            told("the ufbx library is installed but does not load"),
+            told("on opening it"),
+            told("Run: pip install --force-reinstall 'metagraph-studio[fbx]'"),
         )
     if code == fbx_child.REFUSED:
-        return FileError(path, f"it is not a sound FBX file ({words})", "its content", _AGAIN)
+        return FileError(
+            path, told("it is not a sound FBX file ({words})", words=words), told("its content"), _AGAIN
+        )
     if code < 0:
-        return FileError(path, f"the FBX library crashed on it (signal {-code})", "its content", _AGAIN)
-    return FileError(path, f"it could not be converted ({words})", "its content", _AGAIN)
+        return FileError(
+            path,
+            told("the FBX library crashed on it (signal {value})", value=-code),
+            told("its content"),
+            _AGAIN,
+        )
+    return FileError(
+        path, told("it could not be converted ({words})", words=words), told("its content"), _AGAIN
+    )

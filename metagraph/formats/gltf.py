@@ -19,6 +19,7 @@ from metagraph.formats.gltf_writer import write_glb
 from metagraph.formats.takes import unique_takes
 from metagraph.motion.character_mesh import Character
 from metagraph.motion.clip import Clip
+from metagraph.wording import told
 
 # Numbers out of a broken file overflow on their way to the check that refuses them; that is no reason to
 # warn.
@@ -40,9 +41,9 @@ def read_gltf_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]
     if not gltf.json.animations:
         raise FileError(
             path,
-            "it holds no animation",
-            "its animations",
-            "Export it with its animation, or open it as a character.",
+            told("it holds no animation"),
+            told("its animations"),
+            told("Export it with its animation, or open it as a character."),
         )
     rig = build_rig(gltf, as_is)
     clips = [
@@ -51,9 +52,9 @@ def read_gltf_clips(path: str | Path, as_is: Collection[str] = ()) -> list[Clip]
     if not clips:
         raise FileError(
             path,
-            "none of its animations moves the skeleton",
-            "its animations",
-            "Export it with its animation.",
+            told("none of its animations moves the skeleton"),
+            told("its animations"),
+            told("Export it with its animation."),
         )
     return unique_takes(clips)
 

@@ -18,6 +18,7 @@ from metagraph.formats.takes import frame_rate, repaired, take_name, take_repair
 from metagraph.motion import rotation
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Pose
+from metagraph.wording import told
 
 Array = NDArray[Any]
 
@@ -46,7 +47,7 @@ def read_clip(gltf: Gltf, rig: GltfRig, number: int, as_is: Collection[str] = ()
     keys = {i: _key_times(gltf, i, where) for i in sorted(inputs)}
     start, end = min(float(k[0]) for k in keys.values()), max(float(k[-1]) for k in keys.values())
     if not end - start <= CLIP_SECONDS:
-        gltf.fail(f"it lasts {end - start:.3g} s", where)
+        gltf.fail(told("it lasts {value:.3g} s", value=end - start), where)
     wanted = extras(animation.extras).get("fps")
     fps = frame_rate(
         list(keys.values()),
@@ -111,9 +112,9 @@ def read_clip(gltf: Gltf, rig: GltfRig, number: int, as_is: Collection[str] = ()
             if len(bad)
             else rig.skeleton.names[next(j for j in moved if not np.isfinite(moved[j]).all())]
         )
-        gltf.fail("a key is not a number", f"{where}, node '{name}'")
+        gltf.fail(told("a key is not a number"), told("{where}, node '{name}'", where=where, name=name))
     if np.abs(translations).max() > 1e7:
-        gltf.fail("a translation is out of range", where)
+        gltf.fail(told("a translation is out of range"), where)
     morphs, weights = _morphs(gltf, morph_channels, keys, grid, where)
     stem = gltf.path.stem
     name, renaming = take_repair(animation.name, take_name(animation.name, stem), stem, as_is)
@@ -152,11 +153,11 @@ def _channels(
         target = channel.target
         node, path = target.node, target.path
         if channel.sampler >= count:
-            gltf.fail(f"sampler {channel.sampler} does not exist", where)
+            gltf.fail(told("sampler {sampler} does not exist", sampler=channel.sampler), where)
         sampler = samplers[channel.sampler]
         mode = sampler.interpolation
         if mode != "LINEAR" and mode not in ("STEP", "CUBICSPLINE"):
-            gltf.fail(f"interpolation '{mode}' is unknown", where)
+            gltf.fail(told("interpolation '{mode}' is unknown", mode=mode), where)
         if node is None:
             unknown.add(path)
         elif path == "weights":
@@ -174,9 +175,9 @@ def _channels(
 def _key_times(gltf: Gltf, accessor: int, where: str) -> Array:
     times = np.asarray(gltf.array(accessor, where, "SCALAR"), np.float64)
     if not len(times):
-        gltf.fail(f"accessor {accessor} holds no key times", where)
+        gltf.fail(told("accessor {accessor} holds no key times", accessor=accessor), where)
     if not np.isfinite(times).all() or (np.diff(times) < 0).any():
-        gltf.fail(f"the key times of accessor {accessor} do not ascend", where)
+        gltf.fail(told("the key times of accessor {accessor} do not ascend", accessor=accessor), where)
     return times
 
 
@@ -193,8 +194,13 @@ def _stack(gltf: Gltf, outputs: list[int], count: int, width: int, where: str) -
         values = gltf.array(output, where)
         if values.ndim != 2 or values.shape[1] != width or len(values) < count:
             gltf.fail(
-                f"accessor {output} holds {'x'.join(map(str, values.shape))} values, expected "
-                f"{count}x{width}",
+                told(
+                    "accessor {output} holds {names} values, expected {count}x{width}",
+                    output=output,
+                    names="x".join(map(str, values.shape)),
+                    count=count,
+                    width=width,
+                ),
                 where,
             )
         arrays.append(values if len(values) == count else values[:count])
@@ -274,7 +280,7 @@ def _morphs(
     columns: dict[str, Array] = {}
     for source, mode, node, output in channels:
         if node >= len(gltf.json.nodes):
-            gltf.fail(f"its target node {node} does not exist", where)
+            gltf.fail(told("its target node {node} does not exist", node=node), where)
         names = morph_names(gltf, node)
         values = gltf.array(output, where, "SCALAR")
         count = len(keys[source]) * (3 if mode == "CUBICSPLINE" else 1)
@@ -282,7 +288,14 @@ def _morphs(
             continue
         if len(values) != count * len(names):
             gltf.fail(
-                f"accessor {output} holds {len(values)} weights, expected {count} x {len(names)}", where
+                told(
+                    "accessor {output} holds {count} weights, expected {count2} x {count3}",
+                    output=output,
+                    count=len(values),
+                    count2=count,
+                    count3=len(names),
+                ),
+                where,
             )
         gltf.spend(len(grid.times) * len(names) * 8, where)
         tracks = np.asarray(values, np.float64).reshape(count, len(names)).T[..., None]
@@ -292,5 +305,5 @@ def _morphs(
         return (), None
     weights = np.stack(list(columns.values()), 1)
     if not np.isfinite(weights).all() or np.abs(weights).max() > 1e6:
-        gltf.fail("a morph weight is not a sensible number", where)
+        gltf.fail(told("a morph weight is not a sensible number"), where)
     return tuple(columns), weights

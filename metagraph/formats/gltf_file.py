@@ -23,9 +23,11 @@ from metagraph.errors import FileError
 from metagraph.files import read_file
 from metagraph.formats.gltf_values import Accessor, Buffer, BufferView, Document, PackedView, Sparse
 from metagraph.formats.meshopt import MeshoptError, unpacked
+from metagraph.wording import told
 
 Array = NDArray[Any]
 
+DAMAGED = told("The file is damaged: export it again.")
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _DTYPES = {code: np.dtype(name) for code, name in _COMPONENTS.items()}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
@@ -63,12 +65,12 @@ class Gltf:
         for name in document.extensions_required:
             if not name.startswith(_KNOWN):
                 self.fail(
-                    f"it needs the glTF extension {name}, which is not supported",
-                    "its required extensions",
+                    told("it needs the glTF extension {name}, which is not supported", name=name),
+                    told("its required extensions"),
                     _REMEDIES.get(name, "Export it again without it."),
                 )
 
-    def fail(self, cause: str, where: str, remedy: str = "The file is damaged: export it again.") -> NoReturn:
+    def fail(self, cause: str, where: str, remedy: str = DAMAGED) -> NoReturn:
         raise FileError(self.path, cause, where, remedy)
 
     def spend(self, size: int, where: str) -> None:
@@ -80,7 +82,15 @@ class Gltf:
     def item(self, items: list[Any], index: int, kind: str, where: str) -> Any:
         """Return `items[index]`, or fail naming what refers to it."""
         if index >= len(items):
-            self.fail(f"{kind} {index} does not exist (there are {len(items)})", where)
+            self.fail(
+                told(
+                    "{kind} {index} does not exist (there are {count})",
+                    kind=kind,
+                    index=index,
+                    count=len(items),
+                ),
+                where,
+            )
         return items[index]
 
     def buffer(self, index: int, where: str) -> memoryview:
@@ -89,7 +99,7 @@ class Gltf:
             value: Buffer = self.item(self.json.buffers, index, "buffer", where)
             if value.uri is None:
                 if index or self._binary is None:
-                    self.fail(f"buffer {index} has no data", where)
+                    self.fail(told("buffer {index} has no data", index=index), where)
                 self._buffers[index] = self._binary
             else:
                 self._buffers[index] = memoryview(self.resource(value.uri, f"buffer {index}"))
@@ -109,7 +119,7 @@ class Gltf:
                     else unquote(body).encode("latin-1")
                 )
             except (binascii.Error, ValueError) as error:
-                self.fail(f"its data URI cannot be decoded ({error})", where)
+                self.fail(told("its data URI cannot be decoded ({error})", error=error), where)
         name = unquote(uri[:PATH_LENGTH])
         if name in self._named:
             return self._named[name]
@@ -121,15 +131,17 @@ class Gltf:
             target, inside = self.path / name, True
         if not inside:
             self.fail(
-                f"it points to '{name[:80]}', outside the file's own folder",
+                told("it points to '{name}', outside the file's own folder", name=name[:80]),
                 where,
-                "Put that file beside the glTF file.",
+                told("Put that file beside the glTF file."),
             )
         try:
             data = self._named[name] = read_file(target, MOTION_FILE)
         except FileError as error:
             self.fail(
-                f"'{name[:80]}' {error.cause}", where, "Put it beside the glTF file, or export one .glb file."
+                told("'{name}' {cause}", name=name[:80], cause=error.cause),
+                where,
+                told("Put it beside the glTF file, or export one .glb file."),
             )
         self._allowance.add(len(data))
         return data
@@ -142,7 +154,12 @@ class Gltf:
         data = self.buffer(view.buffer, f"buffer view {index}")
         if view.byte_offset + view.byte_length > len(data):
             self.fail(
-                f"buffer view {index} ends at byte {view.byte_offset + view.byte_length} of {len(data)}",
+                told(
+                    "buffer view {index} ends at byte {value} of {count}",
+                    index=index,
+                    value=view.byte_offset + view.byte_length,
+                    count=len(data),
+                ),
                 where,
             )
         return data[view.byte_offset : view.byte_offset + view.byte_length], view
@@ -180,11 +197,24 @@ class Gltf:
         dtype, width = _DTYPES.get(accessor.component_type), _WIDTHS.get(accessor.type)
         if dtype is None or width is None or (width == 16 and accessor.component_type != 5126):
             self.fail(
-                f"accessor {index} has component type {accessor.component_type} and type '{accessor.type}'",
+                told(
+                    "accessor {index} has component type {component_type} and type '{type}'",
+                    index=index,
+                    component_type=accessor.component_type,
+                    type=accessor.type,
+                ),
                 where,
             )
         if kind and accessor.type != kind:
-            self.fail(f"accessor {index} holds {accessor.type}, expected {kind}", where)
+            self.fail(
+                told(
+                    "accessor {index} holds {type}, expected {kind}",
+                    index=index,
+                    type=accessor.type,
+                    kind=kind,
+                ),
+                where,
+            )
         if accessor.buffer_view is None:
             self.spend(accessor.count * width * dtype.itemsize, where)
             out = np.zeros((accessor.count, width), dtype)
@@ -236,7 +266,15 @@ class Gltf:
         stride = view.byte_stride or item
         end = accessor.byte_offset + stride * (accessor.count - 1) + item if accessor.count else 0
         if stride < item or end > len(data):
-            self.fail(f"accessor {index} ends at byte {end} of a buffer view of {len(data)}", where)
+            self.fail(
+                told(
+                    "accessor {index} ends at byte {end} of a buffer view of {count}",
+                    index=index,
+                    end=end,
+                    count=len(data),
+                ),
+                where,
+            )
         return np.ndarray(
             (accessor.count, width),
             dtype,
@@ -250,16 +288,23 @@ class Gltf:
     ) -> Array:
         places_type = _DTYPES.get(sparse.indices.component_type)
         if places_type is None or places_type.kind != "u":
-            self.fail("its sparse indices are not unsigned integers", where)
+            self.fail(told("its sparse indices are not unsigned integers"), where)
         data, _ = self.view(sparse.indices.buffer_view, where)
         values, _ = self.view(sparse.values.buffer_view, where)
         if sparse.indices.byte_offset + sparse.count * places_type.itemsize > len(
             data
         ) or sparse.values.byte_offset + sparse.count * width * dtype.itemsize > len(values):
-            self.fail("its sparse values lie beyond their buffer view", where)
+            self.fail(told("its sparse values lie beyond their buffer view"), where)
         places = np.frombuffer(data, places_type, sparse.count, sparse.indices.byte_offset)
         if sparse.count and int(places.max()) >= len(base):
-            self.fail(f"its sparse index {int(places.max())} is beyond its {len(base)} elements", where)
+            self.fail(
+                told(
+                    "its sparse index {int} is beyond its {count} elements",
+                    int=int(places.max()),
+                    count=len(base),
+                ),
+                where,
+            )
         out = base.copy()
         out[places] = np.frombuffer(values, dtype, sparse.count * width, sparse.values.byte_offset).reshape(
             -1, width
@@ -283,30 +328,43 @@ def parse_gltf(path: Path, data: bytes) -> Gltf:
     elif data.lstrip()[:1] != b"{":
         raise FileError(
             path,
-            "it is neither a binary nor a text glTF file",
-            "its first bytes",
-            "Check that the file has the right ending.",
+            told("it is neither a binary nor a text glTF file"),
+            told("its first bytes"),
+            told("Check that the file has the right ending."),
         )
     try:
         document = _decoder.decode(text)
     except (msgspec.MsgspecError, RecursionError, ValueError) as error:
         raise FileError(
-            path, f"its JSON does not describe a glTF scene ({error})", "its header", "Export it again."
+            path,
+            told("its JSON does not describe a glTF scene ({error})", error=error),
+            told("its header"),
+            told("Export it again."),
         ) from error
     return Gltf(path, document, binary, len(data))
 
 
 def _chunks(path: Path, data: bytes) -> tuple[memoryview, memoryview | None]:
     """Return the JSON and binary chunks of a GLB file."""
-    remedy = "The file is cut off or damaged: copy or export it again."
+    remedy = told("The file is cut off or damaged: copy or export it again.")
     if len(data) < 20:
-        raise FileError(path, f"it ends after {len(data)} bytes", "its header", remedy)
+        raise FileError(
+            path, told("it ends after {count} bytes", count=len(data)), told("its header"), remedy
+        )
     version, _, size, kind = struct.unpack_from("<IIII", data, 4)
     if version != 2:
-        raise FileError(path, f"it is glTF version {version}", "its header", "Export it as glTF 2.0.")
+        raise FileError(
+            path,
+            told("it is glTF version {version}", version=version),
+            told("its header"),
+            told("Export it as glTF 2.0."),
+        )
     if kind != 0x4E4F534A or 20 + size > len(data):
         raise FileError(
-            path, f"its JSON chunk of {size} bytes does not fit its {len(data)} bytes", "its header", remedy
+            path,
+            told("its JSON chunk of {size} bytes does not fit its {count} bytes", size=size, count=len(data)),
+            told("its header"),
+            remedy,
         )
     whole = memoryview(data)
     at, binary = 20 + size, None
@@ -316,8 +374,12 @@ def _chunks(path: Path, data: bytes) -> tuple[memoryview, memoryview | None]:
             if at + 8 + length > len(data):
                 raise FileError(
                     path,
-                    f"its binary chunk of {length} bytes is cut off after {len(data) - at - 8}",
-                    "its binary chunk",
+                    told(
+                        "its binary chunk of {length} bytes is cut off after {value}",
+                        length=length,
+                        value=len(data) - at - 8,
+                    ),
+                    told("its binary chunk"),
                     remedy,
                 )
             binary = whole[at + 8 : at + 8 + length]

@@ -18,6 +18,7 @@ from metagraph.formats.takes import UNIT
 from metagraph.motion import rotation
 from metagraph.motion.clip import Repair
 from metagraph.motion.skeleton import Skeleton, unique_names
+from metagraph.wording import told
 
 Array = NDArray[Any]
 
@@ -85,9 +86,13 @@ def build_rig(gltf: Gltf, as_is: Collection[str] = ()) -> GltfRig:
     """
     nodes = gltf.json.nodes
     if not nodes:
-        gltf.fail("it holds no nodes", "its nodes", "Export it with its skeleton.")
+        gltf.fail(told("it holds no nodes"), told("its nodes"), told("Export it with its skeleton."))
     if len(nodes) > NODES:
-        gltf.fail(f"it has more than {NODES:,} nodes", "its nodes", "Export the character alone.")
+        gltf.fail(
+            told("it has more than {NODES:,} nodes", NODES=NODES),
+            told("its nodes"),
+            told("Export the character alone."),
+        )
     parents, order = _tree(gltf, nodes)
     members = _members(gltf, nodes, parents, order)
     key = hashlib.sha256(msgspec.json.encode((nodes, gltf.json.skins, sorted(members), UNIT in as_is)))
@@ -115,9 +120,13 @@ def _build(
     joints = _in_order(gltf, members, parents, order)
     if len(joints) > JOINTS:
         gltf.fail(
-            f"it has {len(joints)} joints, more than the {JOINTS} of any character",
-            "its nodes",
-            "Export the character alone.",
+            told(
+                "it has {count} joints, more than the {JOINTS} of any character",
+                count=len(joints),
+                JOINTS=JOINTS,
+            ),
+            told("its nodes"),
+            told("Export the character alone."),
         )
     places = {node: i for i, node in enumerate(joints)}
     above = np.array([places.get(parents[n], -1) for n in joints])
@@ -174,7 +183,7 @@ def _build(
         and np.isfinite(rest_translations).all()
         and np.abs(rest_translations).max() < 1e9
     ):
-        gltf.fail("its joints are scaled beyond all bounds", "its nodes")
+        gltf.fail(told("its joints are scaled beyond all bounds"), told("its nodes"))
     height = float(np.ptp(rest_matrices[:, :3, 3], axis=0).max())
     unit = 0.01 if height > _TALL else 100.0 if 1e-3 < height < _TINY and len(joints) > 3 else 1.0
     if unit != 1.0:
@@ -209,9 +218,15 @@ def _tree(gltf: Gltf, nodes: list[Node]) -> tuple[list[int], list[int]]:
     for i, node in enumerate(nodes):
         for child in node.children:
             if child >= len(nodes):
-                gltf.fail(f"child {child} does not exist", f"node {i} '{node.name}'")
+                gltf.fail(
+                    told("child {child} does not exist", child=child),
+                    told("node {i} '{name}'", i=i, name=node.name),
+                )
             if parents[child] >= 0 or child == i:
-                gltf.fail(f"node {child} has more than one parent", f"node {i} '{node.name}'")
+                gltf.fail(
+                    told("node {child} has more than one parent", child=child),
+                    told("node {i} '{name}'", i=i, name=node.name),
+                )
             parents[child] = i
     order: list[int] = []
     stack = [i for i in range(len(nodes) - 1, -1, -1) if parents[i] < 0]
@@ -221,7 +236,9 @@ def _tree(gltf: Gltf, nodes: list[Node]) -> tuple[list[int], list[int]]:
         stack.extend(reversed(nodes[i].children))
     if len(order) < len(nodes):
         lost = min(set(range(len(nodes))) - set(order))
-        gltf.fail("it is its own ancestor", f"node {lost} '{nodes[lost].name}'")
+        gltf.fail(
+            told("it is its own ancestor"), told("node {lost} '{name}'", lost=lost, name=nodes[lost].name)
+        )
     return parents, order
 
 
@@ -237,7 +254,10 @@ def _transforms(gltf: Gltf, nodes: list[Node]) -> tuple[Array, Array, Array]:
                 or not np.isfinite(node.matrix).all()
                 or np.abs(node.matrix).max() > _LARGEST
             ):
-                gltf.fail("its matrix is not 16 sensible numbers", f"node {i} '{node.name}'")
+                gltf.fail(
+                    told("its matrix is not 16 sensible numbers"),
+                    told("node {i} '{name}'", i=i, name=node.name),
+                )
             translations[i], rotations[i], scales[i] = decompose(np.array(node.matrix).reshape(4, 4).T)
     wild = (
         (np.abs(translations).max(-1) > _LARGEST)
@@ -246,7 +266,10 @@ def _transforms(gltf: Gltf, nodes: list[Node]) -> tuple[Array, Array, Array]:
     )
     if wild.any():
         i = int(np.flatnonzero(wild)[0])
-        gltf.fail("its translation, rotation or scale is out of range", f"node {i} '{nodes[i].name}'")
+        gltf.fail(
+            told("its translation, rotation or scale is out of range"),
+            told("node {i} '{name}'", i=i, name=nodes[i].name),
+        )
     return translations, rotation.normalize(rotations), scales
 
 
@@ -257,7 +280,7 @@ def _members(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int]
     for s, skin in enumerate(doc.skins):
         for joint in skin.joints:
             if joint >= len(nodes):
-                gltf.fail(f"joint {joint} does not exist", f"skin {s}")
+                gltf.fail(told("joint {joint} does not exist", joint=joint), told("skin {s}", s=s))
             skinned.add(joint)
     animated: dict[int, list[tuple[str, int]]] = {}
     for a, animation in enumerate(doc.animations):
@@ -268,7 +291,10 @@ def _members(gltf: Gltf, nodes: list[Node], parents: list[int], order: list[int]
             if node is None or channel.target.path not in ("translation", "rotation", "scale"):
                 continue
             if node >= len(nodes):
-                gltf.fail(f"its target node {node} does not exist", f"animation {a} '{animation.name}'")
+                gltf.fail(
+                    told("its target node {node} does not exist", node=node),
+                    told("animation {a} '{name}'", a=a, name=animation.name),
+                )
             sampler = gltf.item(
                 animation.samplers, channel.sampler, "sampler", f"animation {a} '{animation.name}'"
             )
@@ -412,7 +438,14 @@ def _rest_pose(
             continue
         inverse = np.asarray(gltf.array(skin.inverse_bind_matrices, f"skin {s}", "MAT4"), float)
         if len(inverse) < len(skin.joints):
-            gltf.fail(f"{len(inverse)} inverse bind matrices for {len(skin.joints)} joints", f"skin {s}")
+            gltf.fail(
+                told(
+                    "{count} inverse bind matrices for {count2} joints",
+                    count=len(inverse),
+                    count2=len(skin.joints),
+                ),
+                told("skin {s}", s=s),
+            )
         inverse = inverse[: len(skin.joints)].reshape(-1, 4, 4).transpose(0, 2, 1)
         if not _is_sound(inverse):
             continue

@@ -5,20 +5,21 @@ do about it. The window and the command line say the same.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 from metagraph.formats.imports import Imported, Strangers
 from metagraph.formats.takes import BIND_POSE, NAME, ONE_FRAME, UNIT, UP
+from metagraph.wording import joined, told
 
 _RIGHT = {
-    BIND_POSE: "bind poses on first frames",
-    UNIT: "units of length",
-    UP: "Z up",
-    ONE_FRAME: "takes of one frame",
-    NAME: "names",
+    BIND_POSE: told("bind poses on first frames"),
+    UNIT: told("units of length"),
+    UP: told("Z up"),
+    ONE_FRAME: told("takes of one frame"),
+    NAME: told("names"),
 }
 _VARIES = re.compile(r"'[^']*'|\d+(?:\.\d+)?")
 
@@ -43,21 +44,24 @@ def remedies(result: Imported) -> tuple[Remedy, ...]:
     unsure = tuple(s for s in result.apart if s.joint_map.missing)
     if sure:
         count = _clips(_count(sure))
-        out.append(Remedy("retarget", f"Retarget {count}", f"retarget {count} (--retarget)", sure))
+        label = told("Retarget {clips}", clips=count)
+        out.append(Remedy("retarget", label, f"retarget {count} (--retarget)", sure))
     if unsure:
         count = _clips(_count(unsure))
-        out.append(Remedy("map", f"Map joints of {count}…", f"map joints of {count} in the window", unsure))
+        label = told("Map joints of {clips}…", clips=count)
+        out.append(Remedy("map", label, f"map joints of {count} in the window", unsure))
     if result.stand_ins:
-        out.append(Remedy("character", "Choose character…", "choose a character in the window"))
+        out.append(Remedy("character", told("Choose character…"), "choose a character in the window"))
     return tuple(out)
 
 
 def head(result: Imported) -> str:
     """Return what came in: "Imported 24 clips, 3 of them retargeted"."""
     count = len(result.loaded)
-    return f"Imported {_clips(count)}" + (
-        f", {result.retargeted} of them retargeted" if result.retargeted and count else ""
-    )
+    if result.retargeted and count:
+        again = result.retargeted
+        return told("Imported {clips}, {again} of them retargeted", clips=_clips(count), again=again)
+    return told("Imported {clips}", clips=_clips(count))
 
 
 def said(result: Imported, window: bool = True) -> str:
@@ -68,32 +72,53 @@ def said(result: Imported, window: bool = True) -> str:
         right[name] = right.get(name, 0) + n
     if result.stand_ins:
         first = Path(result.stand_ins[0].path).name
-        more = f" and {len(result.stand_ins) - 1} more" if len(result.stand_ins) > 1 else ""
-        parts.append(f"No character: the mesh of {first}{more} {result.stand_ins[0].why_not}")
+        more, why = len(result.stand_ins) - 1, result.stand_ins[0].why_not
+        parts.append(
+            told("No character: the mesh of {first} and {more} more {why}", first=first, more=more, why=why)
+            if more
+            else told("No character: the mesh of {first} {why}", first=first, why=why)
+        )
     if right:
-        parts.append("Put right: " + ", ".join(f"{_RIGHT.get(k, k)} ({n})" for k, n in right.items()))
+        made = [told("{what} ({count})", what=_RIGHT.get(k, k), count=n) for k, n in right.items()]
+        parts.append(told("Put right: {made}", made=joined(made, ", ")))
     if result.character is not None and result.character.hidden:
-        parts.append(f"Hidden: {_many(len(result.character.hidden), 'mesh', 'meshes')} in the hands")
-    told = {repair.words for _, _, _, clip in result.loaded for repair in clip.repairs}
+        count = len(result.character.hidden)
+        parts.append(
+            told("Hidden: 1 mesh in the hands")
+            if count == 1
+            else told("Hidden: {count} meshes in the hands", count=count)
+        )
+    known = {repair.words for _, _, _, clip in result.loaded for repair in clip.repairs}
     hidden = result.character.notes if result.character is not None else ()
-    notes = [n for n in result.notes if n.partition(": ")[2] not in told and n not in hidden]
+    notes = [n for n in result.notes if n.partition(": ")[2] not in known and n not in hidden]
     if notes := counted(notes):
-        parts.append(f"{_many(len(notes), 'note', 'notes')}")
+        parts.append(told("1 note") if len(notes) == 1 else told("{count:,} notes", count=len(notes)))
     left = []
     if apart := _count(result.apart):
-        left.append(f"{_clips(apart)} of another skeleton")
+        left.append(told("{clips} of another skeleton", clips=_clips(apart)))
     broken = len(result.failures) - sum(len(s.told) for s in result.apart)
     if broken > 0:
-        left.append(f"{_many(broken, 'file', 'files')} that cannot be used")
+        left.append(
+            told("1 file that cannot be used")
+            if broken == 1
+            else told("{count:,} files that cannot be used", count=broken)
+        )
     if left:
-        parts.append(f"Left out: {', '.join(left)}")
+        parts.append(told("Left out: {left}", left=joined(left, ", ")))
     to_do = remedies(result)
     if to_do:
-        steps = [r.label[0].lower() + r.label[1:].rstrip("…") if window else r.command for r in to_do]
-        parts.append(f"To do: {', '.join(steps)}")
+        steps = [_STEPS[r.do](r) if window else r.command for r in to_do]
+        parts.append(told("To do: {steps}", steps=joined(steps, ", ")))
     if result.cancelled:
-        parts.append("It was stopped before the end")
-    return ". ".join(parts)
+        parts.append(told("It was stopped before the end"))
+    return joined(parts, ". ")
+
+
+_STEPS: dict[str, Callable[[Remedy], str]] = {
+    "retarget": lambda r: told("retarget {clips}", clips=_clips(_count(r.strangers))),
+    "map": lambda r: told("map joints of {clips}", clips=_clips(_count(r.strangers))),
+    "character": lambda r: told("choose character"),
+}
 
 
 def _repairs(result: Imported) -> Iterable[tuple[str, int]]:
@@ -116,14 +141,16 @@ def counted(lines: Iterable[str]) -> list[str]:
     the most.
     """
     groups: dict[tuple[str, bool], list[tuple[str, str]]] = {}
+    whole: dict[tuple[str, str], str] = {}  # lines as they came, with what they know of their making
     for line in lines:
         subject, colon, text = line.partition(": ")
+        whole[subject, text] = line
         groups.setdefault((_VARIES.sub("#", text or subject), bool(colon)), []).append((subject, text))
     out = []
     for (_, about), found in groups.items():
         subject, text = found[0]
         if len(found) == 1 or not about:
-            out += [f"{s}: {t}" if about else s for s, t in dict.fromkeys(found)]
+            out += [whole.get((s, t), f"{s}: {t}" if about else s) for s, t in dict.fromkeys(found)]
             continue
         out.append(f"{subject} and {len(found) - 1} more: {_ranged([t for _, t in found])}")
     return out
@@ -147,9 +174,5 @@ def _count(strangers: Iterable[Strangers]) -> int:
     return sum(len(s.clips) for s in strangers)
 
 
-def _many(count: int, one: str, more: str) -> str:
-    return f"{count:,} {one if count == 1 else more}"
-
-
 def _clips(count: int) -> str:
-    return _many(count, "clip", "clips")
+    return told("{count:,} clip", count=count) if count == 1 else told("{count:,} clips", count=count)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
 
-from metagraph.errors import FileError
+from metagraph.errors import FileError, error_words
 from metagraph.files import unforeseen
 from metagraph.formats.characters import CharacterFile, character_among
 from metagraph.formats.clips import digest, find_clip_files, import_clips, read_clips
@@ -23,12 +23,13 @@ from metagraph.motion.adopt import SkeletonMismatchError, adopt, bone_difference
 from metagraph.motion.clip import Clip, ClipError
 from metagraph.motion.joint_map import JointMap, RetargetError, fingerprint
 from metagraph.motion.skeleton import Skeleton
+from metagraph.wording import told
 
 Loaded = tuple[str, int, str, Clip]  # path as the project keeps it, take, digest, clip
 Maps = Callable[
     [str, str], JointMap | None
 ]  # fingerprints of a source and a target skeleton -> the map kept for them
-_ALONE = "Import it into a project of its own."
+_ALONE = told("Import it into a project of its own.")
 _LONGER = 0.025  # share by which bones may differ from the project's without a word
 
 
@@ -63,12 +64,23 @@ class Strangers:
         remedy = (
             _ALONE
             if self.joint_map.missing
-            else f"Retarget it (import it with --retarget), or {_ALONE[0].lower()}{_ALONE[1:]}"
+            else told("Retarget it (import it with --retarget), or import it into a project of its own.")
         )
+        why = self.why
         return tuple(
-            (
-                f"{Path(path).name}: {f'{count} clips are' if count > 1 else 'its clip is'} of another "
-                f"character: {self.why}. {remedy}"
+            told(
+                "{file}: {count} clips are of another character: {why}. {remedy}",
+                file=Path(path).name,
+                count=count,
+                why=why,
+                remedy=remedy,
+            )
+            if count > 1
+            else told(
+                "{file}: its clip is of another character: {why}. {remedy}",
+                file=Path(path).name,
+                why=why,
+                remedy=remedy,
             )
             for path, count in files.items()
         )
@@ -138,7 +150,7 @@ def import_files(
     did, for skeletons that the project has no joint map for yet.
     """
     report = import_clips(gather(paths), progress, cancelled)
-    failures = [str(error) for error in report.failures]
+    failures: list[str] = [error.words for error in report.failures]
     bodies = [clip for _, _, clip in report.clips if not is_face_take(clip)]
     skeleton = project.skeleton or _skeleton_of_most(bodies)
     faces: list[Loaded] = []
@@ -153,7 +165,7 @@ def import_files(
                 digests[path] = digest(path)
             name = kept_path(path, folder)
         except FileError as error:
-            failures.append(str(error))
+            failures.append(error.words)
             continue
         if is_face_take(clip):
             faces.append((name, take, digests[path], clip))
@@ -173,14 +185,14 @@ def import_files(
         try:
             loaded.append((name, take, content, on_body(add_clips(project, loaded), clip)))
         except RetargetError as error:
-            failures.append(f"{Path(name).name}: {error}")
+            failures.append(told("{file}: {why}", file=Path(name).name, why=error_words(error)))
     character: CharacterFile | None = None
     stand_ins: tuple[CharacterFile, ...] = ()
     if project.character is None and skeleton is not None:
         still = {_name(e.path, folder): e for e in report.failures}
         character, stand_ins = character_among([name for name, *_ in loaded], still, folder, skeleton)
         if character is not None and character.path in still:  # it is of use without a motion
-            failures.remove(str(still[character.path]))
+            failures.remove(still[character.path].words)
     notes = (*_together(report.clips), *_other_bones(list(apart.values())))
     if character is not None:
         notes = (*notes, *character.notes)
@@ -194,8 +206,8 @@ def import_files(
                 Strangers(tuple(clips), reasons[key], *_map(bringing, clips, remembered, contacts)),
                 retarget,
             )
-    told = curves_told(result.into(project), [clip for *_, clip in result.loaded])
-    return replace(result, failures=tuple(dict.fromkeys(result.failures)), notes=(*result.notes, *told))
+    curves = curves_told(result.into(project), [clip for *_, clip in result.loaded])
+    return replace(result, failures=tuple(dict.fromkeys(result.failures)), notes=(*result.notes, *curves))
 
 
 def _map(
@@ -219,12 +231,12 @@ def _with_strangers(result: Imported, bringing: Bringing, strangers: Strangers, 
         brought = bring_over(bringing, strangers, known or strangers.joint_map)
         count, first = len(strangers.clips), Path(strangers.clips[0][0]).name
         how = "as before" if known is not None else f"from a skeleton of {len(strangers.skeleton)} joints"
-        told = f"{count} clips ({first} …) were" if count > 1 else f"{first}: its clip was"
+        whose = f"{count} clips ({first} …) were" if count > 1 else f"{first}: its clip was"
         return replace(
             result,
             loaded=(*result.loaded, *brought.loaded),
             failures=(*result.failures, *brought.failures),
-            notes=(*result.notes, f"{told} retargeted {how}") if brought.loaded else result.notes,
+            notes=(*result.notes, f"{whose} retargeted {how}") if brought.loaded else result.notes,
             joint_maps={**result.joint_maps, **brought.joint_maps},
             retargeted=result.retargeted + brought.retargeted,
         )
@@ -263,9 +275,10 @@ def bring_over(
         try:
             loaded.append((path, take, content, bringing.bring(clip, joint_map)))
         except (RetargetError, ClipError) as error:
-            failures.append(f"{Path(path).name}: {error}. {_ALONE}")
+            why = error_words(error)
+            failures.append(told("{file}: {why}. {remedy}", file=Path(path).name, why=why, remedy=_ALONE))
         except Exception as error:  # one bad clip never spoils the others
-            failures.append(str(unforeseen(path, error)))
+            failures.append(unforeseen(path, error).words)
     maps = {strangers.fingerprint: joint_map} if loaded else {}
     return Imported(
         tuple(loaded), tuple(failures), cancelled=stopped, joint_maps=maps, retargeted=len(loaded)

@@ -38,6 +38,7 @@ from metagraph.formats.manual_data import alias_data, link_data, manual_data, st
 from metagraph.formats.store import content_digest, file_digest
 from metagraph.graph.manual import Manual
 from metagraph.graph.model import LAYERS, Layer, MetaGraph, Project
+from metagraph.wording import told
 
 KEYED = ("clips", "stances", "actions", "states", "aliases", "links")
 ABOUT = ("step", "how")  # what a record says of its edit, beside what changed
@@ -188,9 +189,9 @@ class Journal:
             except OSError as error:
                 raise FileError(
                     self.path,
-                    f"cannot be written ({error.strerror or error})",
-                    "on beginning it",
-                    "Save the project now and then.",
+                    told("cannot be written ({value})", value=error.strerror or error),
+                    told("on beginning it"),
+                    told("Save the project now and then."),
                 ) from None
 
     def _foundation(self) -> Data:
@@ -205,7 +206,10 @@ class Journal:
             return {"unsaved": self._base[1], "base": to_data(self._base[0])}
         except DataError as error:
             raise FileError(
-                self.path, f"cannot be written ({error})", error.where, "Correct that value."
+                self.path,
+                told("cannot be written ({error})", error=error),
+                error.where,
+                told("Correct that value."),
             ) from None
 
     def edit(self, before: Project, after: Project, step: str = "", how: How = "done") -> None:
@@ -221,7 +225,10 @@ class Journal:
             change = changes(before, after)
         except DataError as error:
             raise FileError(
-                self.path, f"cannot be written ({error})", error.where, "Correct that value."
+                self.path,
+                told("cannot be written ({error})", error=error),
+                error.where,
+                told("Correct that value."),
             ) from None
         if change:
             if not self._begun:
@@ -303,9 +310,9 @@ class Journal:
         except OSError as error:
             raise FileError(
                 self.path,
-                f"cannot be written ({error.strerror or error})",
-                "on adding to it",
-                "Make room on the disk and save the project.",
+                told("cannot be written ({value})", value=error.strerror or error),
+                told("on adding to it"),
+                told("Make room on the disk and save the project."),
             ) from None
 
     def close(self) -> None:

@@ -35,6 +35,7 @@ from metagraph.graph.requests import Line
 from metagraph.motion.adopt import SkeletonMismatchError, adopt
 from metagraph.motion.clip import Clip, ClipError
 from metagraph.motion.joint_map import RetargetError
+from metagraph.wording import told
 
 SUFFIX = ".metagraph.yaml"
 SEARCHED = 20_000  # files looked at when a clip has moved
@@ -69,14 +70,17 @@ def from_text(text: str, path: Path, notes: list[str] | None = None) -> Project:
     except TextError as error:
         line = f"line {error.line}" if error.line else "its text"
         raise FileError(
-            path, f"not valid YAML ({error})", line, "Undo the last change made by hand, or restore a backup."
+            path,
+            told("not valid YAML ({error})", error=error),
+            line,
+            told("Undo the last change made by hand, or restore a backup."),
         ) from None
     try:
         return from_data(_upgraded(data, path), notes)
     except DataError as error:
         cause = f"{error.where} {error}".strip()
         raise FileError(
-            path, cause, _line_of(lines, error.where), "Correct it, or restore a backup."
+            path, cause, _line_of(lines, error.where), told("Correct it, or restore a backup.")
         ) from None
 
 
@@ -87,8 +91,12 @@ def _upgraded(data: Any, path: Path) -> Any:
     if not isinstance(version, int) or isinstance(version, bool) or version < 1:
         raise DataError("metagraph", "should be the version of the format, a whole number from 1")
     if version > FORMAT:
-        cause = f"was written by a newer Metagraph (format {version}, this one reads up to {FORMAT})"
-        raise FileError(path, cause, "metagraph", "Update Metagraph.")
+        cause = told(
+            "was written by a newer Metagraph (format {version}, this one reads up to {FORMAT})",
+            version=version,
+            FORMAT=FORMAT,
+        )
+        raise FileError(path, cause, "metagraph", told("Update Metagraph."))
     while version < FORMAT:
         data = {**UPGRADES[version](dict(data)), "metagraph": version + 1}
         version += 1
@@ -123,15 +131,21 @@ def encoded(project: Project, path: Path) -> bytes:
     try:
         text = to_text(to_data(project))
     except DataError as error:
-        raise FileError(path, f"cannot be saved: {error}", error.where, "Correct that value.") from None
+        raise FileError(
+            path, told("cannot be saved: {error}", error=error), error.where, told("Correct that value.")
+        ) from None
     try:
         from_data(_parsed(text, path))
     except DataError as error:
         raise FileError(
             path,
-            f"cannot be saved, since it could not be opened again: {error.where} {error}",
+            told(
+                "cannot be saved, since it could not be opened again: {where} {error}",
+                where=error.where,
+                error=error,
+            ),
             error.where,
-            "Correct that value; the file is as it was.",
+            told("Correct that value; the file is as it was."),
         ) from None
     return text.encode()
 
@@ -140,7 +154,12 @@ def _parsed(text: str, path: Path) -> Data:
     try:
         data: Data = parse(text)[0]
     except TextError as error:
-        raise FileError(path, f"cannot be saved: {error}", f"line {error.line}", "Correct it.") from None
+        raise FileError(
+            path,
+            told("cannot be saved: {error}", error=error),
+            told("line {line}", line=error.line),
+            told("Correct it."),
+        ) from None
     return data
 
 
@@ -241,7 +260,7 @@ def kept_path(path: Path, folder: Path | None) -> str:
     whole = path.parent.resolve() / path.name  # a linked file keeps its name
     name = relative(path, folder) if folder is not None else whole.as_posix()
     if not is_text(name):
-        raise FileError(path, "has a name that is no text", "its name", "Rename it.")
+        raise FileError(path, told("has a name that is no text"), told("its name"), told("Rename it."))
     return name
 
 
@@ -274,7 +293,10 @@ def _decoded(content: bytes, path: Path, notes: list[str] | None = None) -> Proj
         return from_text(content.decode("utf-8-sig"), path, notes)
     except UnicodeDecodeError as error:
         raise FileError(
-            path, "is not text", f"byte {error.start}", "Choose a Metagraph project file."
+            path,
+            told("is not text"),
+            told("byte {start}", start=error.start),
+            told("Choose a Metagraph project file."),
         ) from None
 
 

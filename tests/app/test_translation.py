@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import string
 from collections.abc import Iterator
 from functools import cache
@@ -16,6 +17,8 @@ from app import translation
 from app.look.plural import many
 from app.translation import tr, tr_error, tr_told
 from metagraph.errors import FileError
+from metagraph.formats import import_words
+from metagraph.formats.imports import import_files
 from metagraph.graph import edits
 from metagraph.graph.check import check
 from metagraph.graph.model import Project
@@ -30,7 +33,7 @@ def templates() -> Iterator[tuple[str, str, set[str]]]:
     """Yield where, what, and the names of values, for each template of the domain's (`metagraph.wording`)."""
     for path in sorted(DOMAIN.rglob("*.py")):
         source = path.read_text(encoding="utf-8")
-        if "from metagraph.wording import told" not in source:
+        if not re.search(r"^from metagraph\.wording import .*\btold\b", source, re.MULTILINE):
             continue
         for node in ast.walk(ast.parse(source)):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "told":
@@ -138,6 +141,23 @@ def test_errors_are_said_in_the_language_as_far_as_they_know_their_templates(eng
     assert tr_error(plain) == str(plain) == "a.bvh: it is odd."
     assert tr_error(OSError(2, "No such file")) == "[Errno 2] No such file"
     assert tr_error(ValueError()) == "" and tr_told("words of nobody") == "words of nobody"
+
+
+def test_an_import_is_told_in_the_language_whatever_files_are_left_out(english: None, tmp_path: Path) -> None:
+    (tmp_path / "bad.bvh").write_text("no motion")
+    (tmp_path / "worse.glb").write_bytes(b"noise")
+    result = import_files(Project(), tmp_path, [tmp_path])
+    translation.choose("de")
+    assert tr_told(import_words.said(result)) == (
+        "0 Clips importiert. Weggelassen: 2 Dateien, die nicht zu brauchen sind"
+    )
+    lines = [tr_told(line) for line in import_words.counted(result.failures)]
+    assert lines[0] == (
+        "bad.bvh, ihre ersten Bytes: sie ist etwas anderes, nicht eine BVH-Datei. "
+        "Clips werden gelesen aus .bvh, .glb, .gltf, .vrm, .vrma, .fbx, .csv."
+    )
+    assert lines[1].startswith("worse.glb, ihre ersten Bytes: sie ist ")
+    assert import_words.said(result) == "Imported 0 clips. Left out: 2 files that cannot be used"
 
 
 def test_what_was_said_is_known_in_english_for_logs(english: None) -> None:
