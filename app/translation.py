@@ -34,7 +34,7 @@ def tr(text: str, **values: object) -> str:
     found = _words.get(text, text)
     if not _words:
         return found.format(**values) if values else found
-    shown = found.format(**values) if values else found
+    shown = found.format(**{k: _said(v) for k, v in values.items()}) if values else found
     _english[shown] = text.format(**{k: _in_english(v) for k, v in values.items()}) if values else text
     _english.move_to_end(shown)
     if len(_english) > REMEMBERED:
@@ -47,6 +47,13 @@ def in_english(text: str) -> str:
     be read by others. A text that was not is returned as it is.
     """
     return _english.get(text, text)
+
+
+def _said(value: object) -> object:
+    """Return a value as it stands in a text: what the domain says in the same language."""
+    if isinstance(value, BaseException):
+        return tr_error(value)
+    return tr_told(value) if isinstance(value, str) else value
 
 
 def _in_english(value: object) -> object:

@@ -21,6 +21,7 @@ from metagraph.playback.life.voice import Voice, silent, voiced
 from metagraph.speech.phones import pieces_of
 from metagraph.speech.sound import hear, read_sound, shapes_heard, syllables
 from metagraph.speech.textgrid import Interval, TextGrid, Tier, read_textgrid
+from metagraph.wording import told
 
 Array = NDArray[Any]
 
@@ -71,8 +72,12 @@ def voice_from_phones(phones: str | Path) -> Voice:
     pieces = [p for p in pieces_of(grid) if p.start >= 0]
     duration = max([grid.end, *(p.end for p in pieces)])
     if duration > LINE_SECONDS:
-        why = f"lasts {duration:.0f} s, a line at most {LINE_SECONDS:.0f} s"
-        raise FileError(phones, why, "its end", "Cut it into lines.")
+        why = told(
+            "lasts {duration:.0f} s, a line at most {most:.0f} s",
+            duration=duration,
+            most=LINE_SECONDS,
+        )
+        raise FileError(phones, why, told("its end"), told("Cut it into lines."))
     if not pieces:
         return silent(max(duration, 0.0))
     vowels = [
@@ -116,7 +121,8 @@ def load_voices(project: Project, folder: str | Path) -> tuple[Project, tuple[st
             try:
                 voice = read_line(attempt, folder)
             except Exception as error:  # one bad sound never spoils a project
-                note = f"line '{ident}': {unforeseen(folder / (line.audio or line.phones or ''), error)}"
+                why = unforeseen(folder / (line.audio or line.phones or ""), error)
+                note = told("line '{ident}': {why}", ident=ident, why=why.words)
                 if note not in notes:
                     notes.append(note)
                 continue

@@ -27,6 +27,7 @@ from metagraph.budgets import (
 from metagraph.errors import FileError
 from metagraph.files import check_file, guarded, is_file, opened
 from metagraph.playback.life.mouth import MouthPiece
+from metagraph.wording import told
 
 Array = NDArray[Any]
 
@@ -116,7 +117,9 @@ def read_sound(
     if channel >= len(samples):
         count = f"{len(samples)} channels" if len(samples) > 1 else "one channel"
         raise FileError(
-            path, f"has {count}; there is no channel {channel + 1}", remedy="Choose the sound anew."
+            path,
+            told("has {count}; there is no channel {channel}", count=count, channel=channel + 1),
+            remedy=told("Choose the sound anew."),
         )
     return samples[channel], read.rate
 
@@ -139,8 +142,13 @@ def read_head(path: str | Path) -> tuple[int, int, int]:
 def _no_sound(path: Path, error: Exception) -> FileError:
     cause = str(getattr(error, "error_string", error)).strip().rstrip(".") or type(error).__name__
     if (kind := sound_kind(path)) and not kind.startswith("a WAV"):
-        cause = f"it is {kind}"
-    return FileError(path, f"cannot be read as sound: {cause}", "its content", f"Save it as {_SUFFIXES}.")
+        cause = told("it is {kind}", kind=kind)
+    return FileError(
+        path,
+        told("cannot be read as sound: {cause}", cause=cause),
+        told("its content"),
+        told("Save it as {endings}.", endings=_SUFFIXES),
+    )
 
 
 @guarded
@@ -154,7 +162,9 @@ def read_recording(path: str | Path, longest: float = LONGEST, most: int | None 
     path = Path(path)
     if not is_file(path) and not path.exists():
         raise FileError(
-            path, "there is no such sound file", remedy="Check where it is, or choose the file anew."
+            path,
+            told("there is no such sound file"),
+            remedy=told("Check where it is, or choose the file anew."),
         )
     check_file(path, SOUND_FILE)
     try:
@@ -163,29 +173,49 @@ def read_recording(path: str | Path, longest: float = LONGEST, most: int | None 
             if file.frames / max(rate, 1) > longest:
                 raise FileError(
                     path,
-                    f"lasts {file.frames / rate:.0f} s, at most {longest:.0f} s are read",
-                    remedy="Cut it into pieces.",
+                    told(
+                        "lasts {lasts:.0f} s, at most {longest:.0f} s are read",
+                        lasts=file.frames / rate,
+                        longest=longest,
+                    ),
+                    remedy=told("Cut it into pieces."),
                 )
             if not file.frames or rate < SOUND_RATES[0]:
                 why = (
-                    "holds no sound"
+                    told("holds no sound")
                     if not file.frames
-                    else f"has {rate} samples a second, too few for speech"
+                    else told("has {rate} samples a second, too few for speech", rate=rate)
                 )
                 raise FileError(
-                    path, why, remedy=f"Save it as {_SUFFIXES}, with 16000 samples a second or more."
+                    path,
+                    why,
+                    remedy=told(
+                        "Save it as {endings}, with 16000 samples a second or more.", endings=_SUFFIXES
+                    ),
                 )
             if rate > SOUND_RATES[1] or file.channels > SOUND_CHANNELS:
                 why = (
-                    f"has {rate:,} samples a second, more than any recorder's {SOUND_RATES[1]:,}"
+                    told(
+                        "has {rate:,} samples a second, more than any recorder's {most:,}",
+                        rate=rate,
+                        most=SOUND_RATES[1],
+                    )
                     if rate > SOUND_RATES[1]
-                    else f"has {file.channels} channels, at most {SOUND_CHANNELS} are read"
+                    else told(
+                        "has {channels} channels, at most {most} are read",
+                        channels=file.channels,
+                        most=SOUND_CHANNELS,
+                    )
                 )
-                raise FileError(path, why, remedy=f"Save it anew as {_SUFFIXES}, with 48000.")
+                raise FileError(
+                    path, why, remedy=told("Save it anew as {endings}, with 48000.", endings=_SUFFIXES)
+                )
             every = 1 if most is None else max(1, -(-rate // most))
             if file.frames // every * file.channels > SOUND_SAMPLES:
                 raise FileError(
-                    path, "holds more samples than are read", remedy="Cut it, or save it with 48000 a second."
+                    path,
+                    told("holds more samples than are read"),
+                    remedy=told("Cut it, or save it with 48000 a second."),
                 )
             return replace(_read_blocks(file, rate, every), really=misnamed(path))
     except (soundfile.LibsndfileError, RuntimeError, TypeError, MemoryError, OSError) as error:
@@ -222,7 +252,12 @@ def sound_ending(path: str | Path) -> str:
     own = path.suffix.lower()
     known = next((endings for words, endings in _ENDINGS.items() if words == sound_kind(path)), ())
     if not known and not any(own in endings for endings in _ENDINGS.values()):
-        raise FileError(path, "is a sound of an unusual kind", "its content", f"Save it as {_SUFFIXES}.")
+        raise FileError(
+            path,
+            told("is a sound of an unusual kind"),
+            told("its content"),
+            told("Save it as {endings}.", endings=_SUFFIXES),
+        )
     return path.suffix if not known or own in known else known[0]
 
 

@@ -13,6 +13,7 @@ from metagraph.errors import FileError
 from metagraph.graph.requests import Line
 from metagraph.playback.plan import Plan
 from metagraph.speech.sound import read_sound
+from metagraph.wording import told
 
 Array = NDArray[Any]
 
@@ -33,7 +34,7 @@ def line_sounds(
             try:
                 samples, own = read_sound(folder / line.audio, line.channel)
             except FileError as error:
-                notes.append(f"line '{ident}': {error}")
+                notes.append(told("line '{ident}': {why}", ident=ident, why=error.words))
                 continue
             sounds[ident] = resampled(samples, own, rate)
     return sounds, tuple(notes)

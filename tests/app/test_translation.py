@@ -140,6 +140,7 @@ def test_errors_are_said_in_the_language_as_far_as_they_know_their_templates(eng
     plain = FileError("a.bvh", "it is odd")
     assert tr_error(plain) == str(plain) == "a.bvh: it is odd."
     assert tr_error(OSError(2, "No such file")) == "[Errno 2] No such file"
+    assert tr("The character cannot be drawn: {error}", error=whole).endswith(": " + tr_error(whole))
     assert tr_error(ValueError()) == "" and tr_told("words of nobody") == "words of nobody"
 
 

@@ -36,7 +36,7 @@ from app.project.document import Document, Edit
 from app.project.jobs import Jobs
 from app.stage.performance import Performance
 from app.stage.session import Session
-from app.translation import tr, tr_error
+from app.translation import tr, tr_error, tr_told
 from app.widgets.flow import Flow
 from app.widgets.making import make_widget
 from metagraph.graph import performance_edits
@@ -325,7 +325,7 @@ class LinesPanel(QWidget):
                 self._try(tr("Add {what}", what=many(len(read.lines), "line")), lambda p: add_lines(p, read))
             if read.notes:
                 more = tr(" (and {count} more)", count=len(read.notes) - 1) if len(read.notes) > 1 else ""
-                self.told.emit(read.notes[0] + more)
+                self.told.emit(tr_told(read.notes[0]) + more)
 
         self.jobs.start(
             tr("Reading lines"),
