@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from metagraph.errors import error_words
-from metagraph.wording import reworded
+from metagraph.wording import Told, reworded
 
 ENGLISH = "en"
 NAMES = {"en": "English", "de": "Deutsch"}  # languages by what they call themselves
@@ -35,18 +35,22 @@ def tr(text: str, **values: object) -> str:
     if not _words:
         return found.format(**values) if values else found
     shown = found.format(**{k: _said(v) for k, v in values.items()}) if values else found
-    _english[shown] = text.format(**{k: _in_english(v) for k, v in values.items()}) if values else text
-    _english.move_to_end(shown)
-    if len(_english) > REMEMBERED:
-        _english.popitem(last=False)
+    _remember(shown, text.format(**{k: _in_english(v) for k, v in values.items()}) if values else text)
     return shown
 
 
+def _remember(shown: str, english: str) -> None:
+    _english[shown] = english
+    _english.move_to_end(shown)
+    if len(_english) > REMEMBERED:
+        _english.popitem(last=False)
+
+
 def in_english(text: str) -> str:
-    """Return what was lately said, by `tr`, in the language that was chosen, in English: for logs that are to
-    be read by others. A text that was not is returned as it is.
+    """Return what was lately said, by `tr` or `tr_told`, in English: for logs that are to be read by others.
+    A text that was not is returned as it is.
     """
-    return _english.get(text, text)
+    return str(_english.get(text, text))
 
 
 def _said(value: object) -> object:
@@ -62,7 +66,11 @@ def _in_english(value: object) -> object:
 
 def tr_told(words: str) -> str:
     """Return what the domain says in the language that was chosen, where it knows how it was made."""
-    return reworded(words, lambda template: _words.get(template, template)) if _words else words
+    if not _words or not isinstance(words, Told):
+        return words
+    shown = reworded(words, lambda template: _words.get(template, template))
+    _remember(shown, str(words))
+    return shown
 
 
 def tr_error(error: object) -> str:

@@ -166,6 +166,9 @@ def test_what_was_said_is_known_in_english_for_logs(english: None) -> None:
     translation.choose("de")
     german = tr("Duplicate {clips}", clips=many(3, "clip"))
     assert german != "Duplicate 3 clips" == translation.in_english(german)
+    with pytest.raises(edits.EditError) as caught:
+        edits.rename_clip(Project(), "c1", "x")
+    assert translation.in_english(tr_error(caught.value)) == "that clip is no longer in the project"
     assert translation.in_english("nobody said this") == "nobody said this"
     for n in range(translation.REMEMBERED + 10):
         tr("no such text {n}", n=n)
