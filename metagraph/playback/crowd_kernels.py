@@ -18,8 +18,8 @@ from metagraph.playback.laying import CLIP, CUE, LANES, REST
 
 Array = Any
 Number = Any  # float32 throughout, except for times
-# A sample's two rows of a table, and how far it is from the first to the second; a stance loop, the other side
-# of its seam, and how much of that shows: -1 without a clip.
+# A sample's two rows of a table, and how far it is from the first to the second; a loop, the other side of
+# its seam, and how much of that shows: -1 without a clip.
 Spot = tuple[int, int, Number]
 Loop = tuple[Spot, Spot, Number]
 
