@@ -18,14 +18,12 @@ from metagraph.playback.laying import CLIP, CUE, LANES, REST
 
 Array = Any
 Number = Any  # float32 throughout, except for times
-Spot = tuple[
-    int, int, Number
-]  # a sample's two rows of a table, and how far it is from the first to the second
-Loop = tuple[
-    Spot, Spot, Number
-]  # a stance loop, the other side of its seam, and how much of that shows: -1 without a clip
+# A sample's two rows of a table, and how far it is from the first to the second; a loop, the other side of
+# its seam, and how much of that shows: -1 without a clip.
+Spot = tuple[int, int, Number]
+Loop = tuple[Spot, Spot, Number]
 
-AT_ONCE = 32  # characters: their blocks stay in a processor's cache
+AT_ONCE = 128  # characters: their blocks stay in a processor's cache
 # Rows of a layer's `lanes [3 + K, b, 16]` and `mover_lanes [3 + K, m]`: which joints turn farther, and which
 # less far, where a cue is larger or smaller than made; the layer's weights on them; and K masks, how far
 # an action moves a joint from its stance, 0..1.
@@ -117,11 +115,8 @@ def _lead(shown: Array, stance: Array, edge: Array, weight: Number) -> None:
     v = np.float32(1) - weight
     for i in range(LANES):
         u = -weight if edge[3 * LANES + i] < 0 else weight
-        edge[i], edge[LANES + i], edge[2 * LANES + i] = (
-            edge[i] * u,
-            edge[LANES + i] * u,
-            edge[2 * LANES + i] * u,
-        )
+        edge[i], edge[LANES + i] = edge[i] * u, edge[LANES + i] * u
+        edge[2 * LANES + i] = edge[2 * LANES + i] * u
         edge[3 * LANES + i] = edge[3 * LANES + i] * u + v
     _append(shown, edge)
 
@@ -136,12 +131,8 @@ def _power(q: Array, weights: Array) -> None:
         sine = np.sqrt(x * x + y * y + z * z)
         half = np.arctan2(sine, w) * weights[i]
         factor = np.sin(half) / sine if sine > 1e-8 else weights[i]
-        q[i], q[LANES + i], q[2 * LANES + i], q[3 * LANES + i] = (
-            x * factor,
-            y * factor,
-            z * factor,
-            np.cos(half),
-        )
+        q[i], q[LANES + i], q[2 * LANES + i] = x * factor, y * factor, z * factor
+        q[3 * LANES + i] = np.cos(half)
 
 
 @_compiled
@@ -260,7 +251,7 @@ def _add_layer(
     """Add one layer's offsets for characters `first`..`last`: rotations to `out [last - first, B, 64]`,
     translations to `out_t [C, J, 3]`. layer: as `laying.LaidLayer` has it.
     """
-    rests, cues, at, clips, turns, ways, blocks, movers, lanes, mover_lanes = layer
+    rests, rest_starts, cues, cue_starts, at, clips, turns, ways, blocks, movers, lanes, mover_lanes = layer
     shown, stance = np.empty(4 * LANES, np.float32), np.empty(4 * LANES, np.float32)
     other, spare = np.empty(4 * LANES, np.float32), np.empty(4 * LANES, np.float32)
     turned = np.empty(LANES, np.float32)
@@ -274,7 +265,7 @@ def _add_layer(
         )
         if first_rest == last_rest:
             continue
-        place = _last_from(cues.start, first_cue, last_cue, time)
+        place = _last_from(cue_starts, first_cue, last_cue, time)
         playing = place >= first_cue and time < cues[place].end and cues[place].clip >= 0
         mask, lead, blending = -1, np.float32(0), False
         extent, way = 1.0, WIDER
@@ -295,7 +286,7 @@ def _add_layer(
         loop = before = (spot, spot, np.float32(-1))
         fade = np.float32(1)
         if resting:
-            current = max(_last_from(rests.fade_start, first_rest, last_rest, time), first_rest)
+            current = max(_last_from(rest_starts, first_rest, last_rest, time), first_rest)
             rest = rests[current]
             loop = _loop(rest, clips, time)
             if current > first_rest and time < rest.fade_start + rest.fade:
@@ -346,9 +337,7 @@ def _add_layer(
 
 @_compiled
 def _to_joints(blocked: Array, places: Array, out: Array) -> None:
-    """Scale rotations `[B, 64]` to unit length and write them joint by joint: `out [J, 4]` from places
-    `[J]`.
-    """
+    """Scale rotations `[B, 64]` to unit length and write them joint by joint: `out [J, 4]`."""
     for b in range(len(blocked)):
         _unit(blocked[b])
     flat = blocked.reshape(-1)
@@ -377,12 +366,9 @@ def pose(
     model_r: Array,
     model_p: Array,
 ) -> None:
-    """Write poses of characters `first`..`last`: rotations to `out_r [C, J, 4]`, translations to `out_t [C,
-    J, 3]`; and where `model_r [C, J, 4]` and `model_p [C, J, 3]` are not empty, those in the character's
-    space.
-
-    layers: three times what `_add_layer` takes. base `[B, 64]`, travels `[J, 3]`: the base pose. places
-    `[J]`: of the joints in the blocks.
+    """Write poses of characters `first`..`last` to `out_r [C, J, 4]`, `out_t [C, J, 3]`; and where they are
+    not empty, those in the character's space to `model_r`, `model_p`. layers: what `_add_layer` takes. base
+    `[B, 64]`, travels `[J, 3]`: the base pose. places `[J]`: of the joints in the blocks.
     """
     blocked = np.empty((min(AT_ONCE, last - first), *base.shape), np.float32)
     for start in range(first, last, AT_ONCE):
@@ -403,7 +389,8 @@ def warm() -> None:
     """Have ready what poses are worked out with."""
     numbers = np.zeros(0, np.int64)
     layer = (
-        *(np.zeros(0, REST), np.zeros(0, CUE), np.zeros((1, 2), np.int64), np.zeros(0, CLIP)),
+        *(np.zeros(0, REST), np.zeros(0), np.zeros(0, CUE), np.zeros(0)),
+        *(np.zeros((1, 2), np.int64), np.zeros(0, CLIP)),
         *(np.zeros((0, 0, 4 * LANES), np.float32), np.zeros((0, 0, 3), np.float32), numbers, numbers),
         *(np.zeros((0, 0, LANES), np.float32), np.zeros((0, 0), np.float32)),
     )

@@ -35,7 +35,9 @@ def composed(plan: Plan, project: Project, frame: ComposerRig, times: Array) -> 
     """
     if COMPILED.now is None or not len(times):
         return None
-    first, last = float(times.min()), float(times.max())
+    first = last = float(times[0])
+    if len(times) > 1:
+        first, last = float(times.min()), float(times.max())
     for known in tuple(_lately):
         if known.first <= first and last <= known.last and known.is_of(plan, project, frame):
             return known.poses(times)

@@ -34,10 +34,11 @@ CUE = np.dtype([(n, "f8") for n in _TIMES] + [("clip", "i8"), ("mask", "i8")])
 LANES = 16  # joints in a block
 ROWS = 1024  # of a table that begins
 
-# Of a layer, for several plans: rests `[R]`, cues `[C]`, where each plan's begin, `[P + 1, 2]`; its clips,
+# Of a layer, for several plans: rests `[R]` and when they begin to fade in, cues `[C]` and when they start,
+# apart since they are searched; where each plan's begin, `[P + 1, 2]`; its clips,
 # their turns `[rows, b, 64]` in blocks `[b]` and ways `[rows, m, 3]` of joints `[m]`; `lanes [4 + K, b, 16]`
 # and `mover_lanes [4 + K, m]`, as `crowd_kernels.MASKS` has it.
-LaidLayer = tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array, Array]
+LaidLayer = tuple[Array, ...]
 Line = tuple[Sequence[Rest], Sequence[Cue]]  # a layer's rests and cues
 
 
@@ -221,9 +222,9 @@ def _lay(clips: _Clips, frame: ComposerRig, project: Project, lines: Sequence[Li
             times = (cue.start, cue.end, cue.entry, cue.blend_in, cue.blend_out, cue.extent, cue.tempo)
             cues.append((*times, *_held(cue), number(cue.action), mask(cue.action)))
         at.append((len(rests), len(cues)))
+    rest_table, cue_table = np.array(rests, REST), np.array(cues, CUE)
     return (
-        np.array(rests, REST),
-        np.array(cues, CUE),
+        *(rest_table, rest_table["fade_start"].copy(), cue_table, cue_table["start"].copy()),
         np.array(at, np.int64),
         np.array(clips.clips, CLIP),
         clips.turns,

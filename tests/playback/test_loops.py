@@ -127,7 +127,7 @@ def test_of_an_hour_little_is_laid_out(switch: Switch, toy: Any) -> None:
     (kept,) = laid_plan._lately
     assert kept.last - kept.first <= laid_plan.MOST
     assert (
-        sum(len(layer[1]) for layer in kept.given[0]) < sum(len(of.cues) for of in plan.layers.values()) / 10
+        sum(len(layer[2]) for layer in kept.given[0]) < sum(len(of.cues) for of in plan.layers.values()) / 10
     )
 
 
