@@ -63,7 +63,10 @@ def pack(files: dict[str, bytes]) -> bytes:
     return head.ljust(base, b"\0") + contents + struct.pack("<I", len(files)) + rows
 
 
-def test_shipped_vectors_pass_in_godot_4(tmp_path: Path) -> None:
+@pytest.mark.parametrize("part", [0, 1])
+def test_shipped_vectors_pass_in_godot_4(tmp_path: Path, part: int) -> None:
+    """Half of them at a time: with all, the engine for the web fails to end, after the last has passed."""
+    folders = FOLDERS[part::2]
     files = {
         f"addons/{path.relative_to(ADDON).as_posix()}": path.read_bytes()
         for path in ADDON.rglob("*")
@@ -77,16 +80,16 @@ def test_shipped_vectors_pass_in_godot_4(tmp_path: Path) -> None:
     files["addons/metagraph/conformance.gd"] = (checks + "\n\nfunc quit(_code):\n\tpass\n").encode()
     files |= {"main.gd": MAIN.encode(), "main.tscn": SCENE.encode()}
     files["project.godot"] = b'config_version=5\n\n[application]\n\nrun/main_scene="res://main.tscn"\n'
-    for folder in FOLDERS:
+    for folder in folders:
         files |= {f"vectors/{folder.name}/{path.name}": path.read_bytes() for path in folder.iterdir()}
     for path in ENGINE.glob("index.*"):
         shutil.copy(path, tmp_path)
     (tmp_path / "index.pck").write_bytes(pack(files))
-    words = ["--headless", "--", *(f"res://vectors/{folder.name}" for folder in FOLDERS)]
+    words = ["--headless", "--", *(f"res://vectors/{folder.name}" for folder in folders)]
     (tmp_path / "index.html").write_text(PAGE.replace("ARGS", json.dumps(words)))
     values, _ = browse(tmp_path, {"url": ""}, {"run": "window.finished"})
     told = "\n".join(values[0]["told"])
-    cases = sum(len(json.loads((folder / "vectors.json").read_bytes())["cases"]) for folder in FOLDERS)
+    cases = sum(len(json.loads((folder / "vectors.json").read_bytes())["cases"]) for folder in folders)
     assert "Godot Engine v4." in told
     assert "SCRIPT ERROR" not in told, told[:3000]
     assert f"{cases} passed, 0 failed" in told, told[:3000]

@@ -55,6 +55,8 @@ def kinds(character: Character, case: dict[str, Any], t: float) -> Iterator[str]
             yield "limited to a limb"
         if action["joints"]:
             yield "limited to joints"
+        if action.get("joint_weights"):
+            yield "joints that move in part"
 
 
 def told(case: dict[str, Any], character: Character, t: float) -> list[tuple[float, float, str]] | None:

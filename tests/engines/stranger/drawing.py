@@ -67,7 +67,7 @@ def rests_of(character: Character, layer: str, case: dict[str, Any]) -> list[lis
             continue
         start, length = cue["end"] - cue["blend_out"], cue["end"] - cue["start"]
         action = character.actions[cue["action"]]
-        if action["limb"] == "both" and not action["joints"]:
+        if action["limb"] == "both" and not action["joints"] and not action.get("joint_weights"):
             fade_start = cue["start"] + cue["blend_in"]
             fade = start - fade_start
         else:

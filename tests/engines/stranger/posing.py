@@ -54,11 +54,14 @@ def playing(plan: dict[str, Any], t: float) -> dict[str, Any] | None:
 
 
 def moves(character: Character, action: dict[str, Any]) -> Any:
-    """Which joints [J] an action moves; docs/format.md, "Joints an action does not move"."""
+    """How far [J] an action moves joints, 0..1; docs/format.md, "Joints an action does not move"."""
     other = {"left": "right", "right": "left", "both": None}[action["limb"]]
+    weights = action.get("joint_weights", {})
     return np.array(
         [
-            not (part == "arms" and side == other) and (not action["joints"] or name in action["joints"])
+            weights.get(name, 1.0)
+            if not (part == "arms" and side == other) and (not action["joints"] or name in action["joints"])
+            else 0.0
             for name, part, side in zip(character.names, character.parts, character.sides, strict=True)
         ]
     )
@@ -130,7 +133,10 @@ def layer(character: Character, plan: dict[str, Any], t: float) -> Pose:
         e = e + left * (rest[1] - e_edge)
     d, e = sized(character, (d, e), rest, cue.get("extent", 1.0))
     moved = moves(character, action)[:, None]
-    return np.where(moved, d, rest[0]), np.where(moved, e, rest[1])
+    some = (moved > 0.0) & (moved < 1.0)
+    d = np.where(some, nlerp(rest[0], d, moved), d)
+    e = np.where(some, rest[1] + moved * (e - rest[1]), e)
+    return np.where(moved > 0.0, d, rest[0]), np.where(moved > 0.0, e, rest[1])
 
 
 def sized(character: Character, shown: Pose, rest: Pose, extent: float) -> Pose:

@@ -121,7 +121,7 @@ def wanted(character: Character, plan: dict[str, Any], height: float, t: float) 
         seam = loop_seconds(character.actions[rests[n][1]], t - rests[n][2])[2] > 0.0
         return stance(character, height, rests, t) if seam or fades(rests, n, t) else None
     action = character.actions[cue["action"]]
-    if action["joints"]:
+    if action["joints"] or action.get("joint_weights"):
         return None
     came, goes = lasting(character, cue, True), lasting(character, cue, False)
     here = row(character, action, cue_second(cue, t))
