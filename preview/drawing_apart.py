@@ -28,7 +28,9 @@ Array = NDArray[Any]
 Seen = tuple[Scene, Camera]
 
 MOST = 4  # processes; more would wait for whoever encodes
-WORTH = 150  # pictures, from which on starting processes costs less than it saves: it takes half a second
+# Pictures from which on starting processes costs less than it saves: each takes a second of a core, so that
+# two cores gain a seventh over a minute, and nothing over ten seconds.
+WORTH, LEAST = 900, 300
 WAITING = 4  # pictures under way for each process
 
 
@@ -51,7 +53,7 @@ def drawn(
     with Offscreen(*size) as here:
         if processes is None:
             cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-            apart = here.renderer.software and count >= WORTH and cores > 1
+            apart = cores > 1 and count >= max(LEAST, WORTH // (cores - 1)) and here.renderer.software
             processes = min(MOST, cores) if apart else 0
         first = next(scenes, None)
         if first is None:

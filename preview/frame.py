@@ -16,6 +16,7 @@ from preview.scene import Actor, Scene, Theme
 Array = NDArray[Any]
 
 TILE = 16  # pixels, of the squares that figures are laid over a picture by
+MOST = 64  # rectangles; of a crowd all round it is smoothed, which costs less than so many
 MARGIN = 4  # pixels that smoothing looks and writes beyond an edge, and a bit
 
 
@@ -95,6 +96,8 @@ def covered(frame: Frame, palettes: Sequence[Array]) -> Array:
     change = np.diff(tiles, axis=1)
     (rows, first), (_, last) = np.nonzero(change == 1), np.nonzero(change == -1)
     runs = np.stack([first, rows, last, rows + 1], 1) * TILE
+    if len(runs) > MOST:
+        runs = np.concatenate([runs[:, :2].min(0), runs[:, 2:].max(0)])[None]
     return np.asarray(np.minimum(runs, np.tile(size, 2)))
 
 

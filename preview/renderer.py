@@ -36,7 +36,8 @@ def is_software(ctx: moderngl.Context) -> bool:
 
 
 class Renderer:
-    """Belongs to one context. `samples` None chooses: 4 on a graphics card, 0 in software (edges are smoothed
+    """Belongs to one context. occlusion: whether limbs keep light from each other; by default where a
+    graphics card draws. `samples` None chooses: 4 on a graphics card, 0 in software (edges are smoothed
     instead). beside: another of the same context, which draws the same scenes from elsewhere: what both need
     is made once. It has to live longer.
     """
@@ -51,6 +52,7 @@ class Renderer:
         self._drawing: Drawing = Drawing(ctx) if beside is None else beside._drawing
         self._shadows: Shadows = Shadows(self._drawing, self.software) if beside is None else beside._shadows
         self.store = self._drawing.store
+        self.occlusion = not self.software  # a tenth of a picture's time where the processor draws
         self._backdrop = Backdrop(self._drawing)
         self._size = (0, 0)
         self._targets: list[Any] = []
@@ -130,7 +132,7 @@ class Renderer:
         for i in which:
             actor = frame.actors[i]
             cast = frame.light is not None and actor.opacity >= 1
-            rods = actor.figure.rods if cast and actor.count == 1 else None
+            rods = actor.figure.rods if self.occlusion and cast and actor.count == 1 else None
             for kind in ("plain", "textured"):
                 if not any((b.image is not None) == (kind == "textured") for b in frame.meshes[i].batches):
                     continue

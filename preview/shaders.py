@@ -150,8 +150,7 @@ void main() {
 }
 """
 
-# Soft spots where the body comes near the ground: one square each, on the ground as the camera sees it or
-# as seen from above, where many are put into one small picture that multiplies the ground once.
+# Soft spots where the body comes near the ground: one square each.
 SPOT_VERTEX = """#version 330 core
 uniform mat4 u_matrix;
 in vec4 in_spot;  // x, z, radius, strength
@@ -163,39 +162,18 @@ void main() {
     gl_Position = u_matrix * vec4(in_spot.x + v_at.x * in_spot.z, 0.0, in_spot.y + v_at.y * in_spot.z, 1.0);
 }
 """
-_LESS = """
-// Half a step of noise hides the bands eight bits would show.
-vec4 without(vec3 less) {
-    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
-    return vec4(1.0 - less - (noise - 0.5) * min(vec3(1.0 / 255.0), less), 1.0);
-}
-"""
-_SPOT = """
+SPOT = """#version 330 core
 uniform vec3 u_dark;
 in vec2 v_at;
 in float v_strength;
 out vec4 o_color;
-vec3 spot() {
-    float t = clamp(1.0 - dot(v_at, v_at), 0.0, 1.0);
-    return (vec3(1.0) - u_dark) * (t * t * v_strength);
-}
-"""
-SPOT = "#version 330 core\n" + _LESS + _SPOT + "void main() { o_color = without(spot()); }\n"
-SPOT_APART = "#version 330 core\n" + _SPOT + "void main() { o_color = vec4(1.0 - spot(), 1.0); }\n"
-SPOTS = (
-    "#version 330 core\n"
-    + _LESS
-    + """
-uniform sampler2D u_spots;
-uniform vec4 u_patch;
-in vec2 v_at;
-out vec4 o_color;
 void main() {
-    vec2 at = (v_at - u_patch.xy) / u_patch.zw * 0.5 + 0.5;
-    o_color = without(1.0 - textureLod(u_spots, at, 0.0).rgb);
+    float t = clamp(1.0 - dot(v_at, v_at), 0.0, 1.0);
+    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy + v_strength * 97.0, vec2(0.06711056, 0.00583715))));
+    vec3 less = (vec3(1.0) - u_dark) * (t * t * v_strength);
+    o_color = vec4(1.0 - less - (noise - 0.5) * min(vec3(1.0 / 255.0), less), 1.0);
 }
 """
-)
 
 _SKIN = """
 uniform sampler2D u_palette;  // three texels a matrix, one row an instance

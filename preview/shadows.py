@@ -18,8 +18,6 @@ Array = NDArray[Any]
 
 SHADOW_SIZE = 1024, 320  # texels, on a graphics card and in software
 SOFT_SIZE = 128, 56  # texels of the ground's shadow, along the light and across
-SPOTS_SIZE = 96  # texels of the picture the spots are gathered in, both ways
-SPOTS_REACH = 3.0  # metres from its middle to its edge; spots that lie farther apart are drawn one by one
 SHADOW_LIMIT = 8  # instances; a crowd has only the soft spots under it
 Strip = tuple[tuple[float, ...], tuple[float, float]]  # a patch of the ground and its turn
 
@@ -35,9 +33,7 @@ class Shadows:
         self._map_fbo = ctx.framebuffer(depth_attachment=self.map)
         self._soft = ctx.texture(SOFT_SIZE, 1)
         self._soft_fbo = ctx.framebuffer([self._soft])
-        self._spots = ctx.texture((SPOTS_SIZE, SPOTS_SIZE), 4, dtype="f2")
-        self._spots_fbo = ctx.framebuffer([self._spots])
-        for texture in (self.map, self._soft, self._spots):
+        for texture in (self.map, self._soft):
             texture.repeat_x = texture.repeat_y = False
         self._lit: tuple[list[Actor], tuple[float, ...], Array] | None = None  # actors, lamp, matrix
         self._strip: Strip | None = None  # where their shadow lies on the ground, once it is drawn
@@ -45,7 +41,7 @@ class Shadows:
     def release(self) -> None:
         """Give everything back."""
         held: Any
-        for held in (self._map_fbo, self.map, self._soft_fbo, self._soft, self._spots_fbo, self._spots):
+        for held in (self._map_fbo, self.map, self._soft_fbo, self._soft):
             held.release()
 
     def cast(self, frame: Frame) -> Array:
@@ -81,8 +77,6 @@ class Shadows:
     def on_ground(self, frame: Frame, target: Any, ground_to: int, solid: Sequence[Actor]) -> None:
         """What darkens the ground multiplies what is there. ground_to: the row, from below, it ends at."""
         strip = self._softened(frame) if frame.light is not None else None
-        spots = np.concatenate([_spots(a) for a in solid])
-        gathered = self._gathered(frame, spots)
         self._drawing.state(target, (0, 0, *frame.size), moderngl.BLEND)
         target.scissor = (0, 0, frame.size[0], ground_to)
         self._drawing.ctx.blend_func = moderngl.ZERO, moderngl.SRC_COLOR
@@ -93,39 +87,10 @@ class Shadows:
             set_uniforms(program, u_matrix=frame.matrix, u_patch=patch, u_turn=turn)
             set_uniforms(program, u_dark=frame.theme.shadow, u_soft=4)
             self._drawing.bare("cast", program).render(moderngl.TRIANGLE_STRIP, 4)
-        if gathered is not None:
-            program = self._drawing.program("spots", shaders.GROUND_VERTEX, shaders.SPOTS)
-            self._spots.use(4)
-            set_uniforms(program, u_matrix=frame.matrix, u_patch=gathered, u_turn=(1.0, 0.0), u_spots=4)
-            self._drawing.bare("spots", program).render(moderngl.TRIANGLE_STRIP, 4)
-        else:
-            self._draw_spots("spot", shaders.SPOT, frame, frame.matrix, spots)
+        program = self._drawing.program("spots", shaders.SPOT_VERTEX, shaders.SPOT)
+        set_uniforms(program, u_matrix=frame.matrix, u_dark=frame.theme.shadow)
+        self._drawing.squares("spots", program, np.concatenate([_spots(a) for a in solid]), "4f/i", "in_spot")
         target.scissor = None
-
-    def _gathered(self, frame: Frame, spots: Array) -> tuple[float, ...] | None:
-        """Draw all spots into a small picture, as seen from above; return where on the ground that lies: x,
-        z, half its width and depth. None where they are too far apart for it.
-        """
-        if not len(spots):
-            return None
-        low, past = (spots[:, :2] - spots[:, 2:3]).min(0), (spots[:, :2] + spots[:, 2:3]).max(0)
-        middle, half = (low + past) / 2, (past - low) / 2 * (1 + 2 / SPOTS_SIZE)
-        if half.max() > SPOTS_REACH:
-            return None
-        matrix = np.zeros((4, 4))
-        matrix[0, [0, 3]] = np.array([1, -middle[0]]) / half[0]
-        matrix[1, [2, 3]] = np.array([1, -middle[1]]) / half[1]
-        matrix[3, 3] = 1
-        self._drawing.state(self._spots_fbo, (0, 0, SPOTS_SIZE, SPOTS_SIZE), moderngl.BLEND)
-        self._drawing.ctx.blend_func = moderngl.ZERO, moderngl.SRC_COLOR
-        self._spots_fbo.clear(1.0, 1.0, 1.0, 1.0)
-        self._draw_spots("spot apart", shaders.SPOT_APART, frame, matrix, spots)
-        return float(middle[0]), float(middle[1]), float(half[0]), float(half[1])
-
-    def _draw_spots(self, key: str, source: str, frame: Frame, matrix: Array, spots: Array) -> None:
-        program = self._drawing.program(key, shaders.SPOT_VERTEX, source)
-        set_uniforms(program, u_matrix=matrix, u_dark=frame.theme.shadow)
-        self._drawing.squares(key, program, spots, "4f/i", "in_spot")
 
     def _softened(self, frame: Frame) -> Strip:
         """Draw the shadow on the ground as seen from above; return where on it that lies: a patch, its turn.

@@ -18,6 +18,13 @@ from tests.preview.conftest import chain
 NAMES = [name for name, *_ in LIMBS]
 
 
+@pytest.fixture
+def open_air(offscreen, monkeypatch):
+    """What draws with occlusion, whatever draws."""
+    monkeypatch.setattr(offscreen.renderer, "occlusion", True)
+    return offscreen
+
+
 def way(of: str, rod: str) -> int:
     return int(ways()[NAMES.index(of), NAMES.index(rod)])
 
@@ -57,7 +64,7 @@ def test_rods_lie_where_limbs_are_and_move_with_them(mannequin):
 
 
 @pytest.mark.gl
-def test_an_arm_at_the_side_darkens_the_flank_and_nothing_gets_brighter(offscreen, mannequin):
+def test_an_arm_at_the_side_darkens_the_flank_and_nothing_gets_brighter(open_air, mannequin):
     figure = SkinnedFigure(mannequin)
     skeleton = figure.skeleton
     turned = skeleton.rest_rotations.copy()
@@ -68,11 +75,9 @@ def test_an_arm_at_the_side_darkens_the_flank_and_nothing_gets_brighter(offscree
     placed = skeleton.globals(Pose(turned, skeleton.rest_translations))
     scene = Scene((Actor(figure, *placed),))
     camera = Camera(yaw=0.0).frame(scene.bounds(), 0.8)
-    with_rods = offscreen.render(scene, camera, DARK, (240, 300))[..., :3].astype(int)
+    with_rods = open_air.render(scene, camera, DARK, (240, 300))[..., :3].astype(int)
     figure.__dict__["rods"] = None
-    without = offscreen.render(Scene((Actor(figure, *placed),)), camera, DARK, (240, 300))[..., :3].astype(
-        int
-    )
+    without = open_air.render(Scene((Actor(figure, *placed),)), camera, DARK, (240, 300))[..., :3].astype(int)
     change = (with_rods - without).sum(-1)
     assert change.max() <= 6, "smoothing moves an edge by a step or two"
     assert (change < -9).sum() > 200, (change < -9).sum()
@@ -83,15 +88,18 @@ def test_an_arm_at_the_side_darkens_the_flank_and_nothing_gets_brighter(offscree
 
 @pytest.mark.gl
 @pytest.mark.parametrize("name", ["kaykit-rogue/Rogue.glb", "robot-expressive/RobotExpressive.glb"])
-def test_bodies_of_other_shapes_stay_bright_where_they_rest(offscreen: Offscreen, shared_data, name):
+def test_bodies_of_other_shapes_stay_bright_where_they_rest(open_air: Offscreen, shared_data, name):
     """A child's body is as wide as high: its rods are as well, and must not shade all of it."""
     figure = SkinnedFigure(read_character(shared_data / name))
     placed = figure.skeleton.globals(figure.skeleton.rest)
     camera = Camera(yaw=0.0).frame(Scene((Actor(figure, *placed),)).bounds(), 0.8)
-    lit = offscreen.render(Scene((Actor(figure, *placed),)), camera, DARK, (240, 300))[..., :3].astype(float)
+    lit = open_air.render(Scene((Actor(figure, *placed),)), camera, DARK, (240, 300))[..., :3].astype(float)
     figure.__dict__["rods"] = None
-    plain = offscreen.render(Scene((Actor(figure, *placed),)), camera, DARK, (240, 300))[..., :3].astype(
-        float
-    )
+    plain = open_air.render(Scene((Actor(figure, *placed),)), camera, DARK, (240, 300))[..., :3].astype(float)
     inside = np.abs(plain - plain[2, 2]).sum(-1) > 60
     assert 0.88 < lit[inside].mean() / plain[inside].mean() <= 1.001
+
+
+@pytest.mark.gl
+def test_the_processor_draws_without_unless_it_is_asked_to(offscreen):
+    assert offscreen.renderer.occlusion == (not offscreen.renderer.software)
