@@ -84,7 +84,7 @@ def _properties(said: dict[str, Any]) -> list[str]:
     """Return the fields of an object of JSON; what is nested deeper than a list is its JSON as a text."""
     out = []
     for key, value in said.items():
-        if value is None or value == []:
+        if value is None or value in ([], {}):
             continue
         kind, shown = _value(value)
         out.append(f"custom {kind} metagraph:{key} = {shown}")
