@@ -62,9 +62,7 @@ def project(still: Clip) -> Project:
     made = place(made, [first], "arms", "transition", stance, other)
     [gesture] = made.graphs["arms"].of(stance, "gesture")
     weights = (("LeftHand", 0.5), ("RightHand", 0.25))
-    return update_actions(
-        made, [gesture.id], name=STRANGE, tags=("greeting", STRANGE), joint_weights=weights
-    )
+    return update_actions(made, [gesture.id], name=STRANGE, tags=("greeting", STRANGE), joint_weights=weights)
 
 
 @pytest.fixture(scope="module")
@@ -195,7 +193,7 @@ def test_fields_that_say_nothing_are_left_out_and_nested_ones_are_their_json(wri
     weighted = [a["joint_weights"] for a in actions if a["joint_weights"]]
     assert len(actions) > len(weighted) == 1
     assert text.count("metagraph:joint_weights") == 1
-    assert r'{\"LeftHand\": 0.5, \"RightHand\": 0.25}' in text
+    assert r"{\"LeftHand\": 0.5, \"RightHand\": 0.25}" in text
 
 
 def test_names_that_are_no_identifiers_become_ones_and_none_is_twice() -> None:
