@@ -1,8 +1,8 @@
 """Forward kinematics: where joints are, from what each does beside its parent; over many poses at once.
 
-Numbers lie with the poses last, so that each step runs along memory, and a depth of the tree is one slice. Only
-what needs a parent is done depth by depth: turns, a product of four by four, then places, a sum. To the same bit
-as `rotation.multiply` and `rotation.rotate` depth after depth, many times as fast.
+Numbers lie with the poses last, so that each step runs along memory, and a depth of the tree is one slice.
+Only what needs a parent is done depth by depth: turns, a product of four by four, then places, a sum. It is,
+to the same bit, `rotation.multiply` and `rotation.rotate` depth after depth, many times as fast.
 """
 
 from __future__ import annotations

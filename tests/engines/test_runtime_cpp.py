@@ -22,7 +22,7 @@ from metagraph.graph.requests import request_from
 from metagraph.playback.extend_performance import hear, since
 from metagraph.playback.life.voice import voice_from_text
 from metagraph.playback.plan import Plan
-from tests.engines.mutants import broken, folders_to_try
+from tests.engines.mutants import PLAYED, broken, folders_to_try
 from tests.engines.test_runtime_unity import ASKED, SENSELESS
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -221,7 +221,7 @@ def probe(cpp_probe: Path) -> Path:
 # --- conformance
 
 
-@pytest.mark.parametrize("folder", VECTORS, ids=lambda folder: folder.name)
+@pytest.mark.parametrize("folder", PLAYED, ids=lambda folder: folder.name)
 def test_the_runtime_agrees_with_the_vectors(probe: Path, folder: Path) -> None:
     done = ran(probe, "conformance", folder)
     assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
