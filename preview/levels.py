@@ -26,6 +26,7 @@ Array = NDArray[Any]
 ERRORS = (0.001, 0.002, 0.004, 0.008)  # of the figure's height
 MADE = 1  # to be raised when they are made otherwise
 LEAST = 600  # triangles, fewer than which are drawn as they are
+WORTH = 0.85  # of the triangles of the level before, with more than which there is none
 MOST = 64 * 1024 * 1024  # bytes on disk
 
 
@@ -58,7 +59,12 @@ def levels_of(mesh: Mesh, height: float, cancelled: Callable[[], bool] = lambda:
         if len(found) < len(errors):
             return ()
         cache.write(key, _written(found))
-    return tuple(Level(error, fewer.of(mesh)) for error, fewer in zip(errors, found, strict=True))
+    out, before = [], len(mesh.triangles)
+    for error, fewer in zip(errors, found, strict=True):
+        if len(fewer.triangles) <= WORTH * before:
+            out.append(Level(error, fewer.of(mesh)))
+            before = len(fewer.triangles)
+    return tuple(out)
 
 
 def _key(mesh: Mesh, errors: list[float]) -> str:
