@@ -19,6 +19,7 @@ from metagraph.engines.engine_machine import Arrow, Machine, State, animations, 
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
+from metagraph.engines.targets.unity_clips import Moving, clip_asset
 from metagraph.engines.targets.unity_yaml import (
     CLIP,
     CONTROLLER,
@@ -28,9 +29,7 @@ from metagraph.engines.targets.unity_yaml import (
     STATES,
     TRANSITION,
     Inline,
-    Moving,
     asset,
-    clip_asset,
     fields,
     guid,
     joint_path,
