@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, is_dataclass
+from functools import cache
 from typing import Literal
 
 TypeKind = Literal[
@@ -380,8 +381,15 @@ def walk(node: object) -> Iterator[Expression | Statement]:
     if isinstance(node, tuple):
         for one in node:
             yield from walk(one)
-    elif is_dataclass(node) and not isinstance(node, Type):
-        if isinstance(node, Expression | Statement):
-            yield node
-        for f in fields(node):
-            yield from walk(getattr(node, f.name))
+        return
+    names = _held(type(node))
+    if names and isinstance(node, Expression | Statement):
+        yield node
+    for name in names:
+        yield from walk(getattr(node, name))
+
+
+@cache
+def _held(kind: type) -> tuple[str, ...]:
+    """Return the names of what a piece of tree of a class may have pieces in."""
+    return tuple(f.name for f in fields(kind)) if is_dataclass(kind) and not issubclass(kind, Type) else ()
