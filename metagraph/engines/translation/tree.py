@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, is_dataclass
 from functools import cache
-from typing import Literal
+from typing import Any, Literal
 
 TypeKind = Literal[
     "int", "bits", "float", "bool", "str", "none", "any", "optional", "list", "tuple", "map", "set", "record",
@@ -376,7 +376,7 @@ class Module:
         return self.name.rpartition(".")[2]
 
 
-def walk(node: object) -> Iterator[Expression | Statement]:
+def walk(node: Any) -> Iterator[Expression | Statement]:
     """Yield every expression and statement in a piece of tree, itself first."""
     if isinstance(node, tuple):
         for one in node:
