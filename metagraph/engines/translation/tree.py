@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, is_dataclass
-from functools import cache
-from typing import Any, Literal
+from typing import Literal
 
 TypeKind = Literal[
     "int", "bits", "float", "bool", "str", "none", "any", "optional", "list", "tuple", "map", "set", "record",
@@ -376,20 +375,23 @@ class Module:
         return self.name.rpartition(".")[2]
 
 
-def walk(node: Any) -> Iterator[Expression | Statement]:
+def walk(node: object) -> Iterator[Expression | Statement]:
     """Yield every expression and statement in a piece of tree, itself first."""
     if isinstance(node, tuple):
         for one in node:
             yield from walk(one)
         return
-    names = _held(type(node))
+    kind = type(node)
+    names = _HELD.get(kind)
+    if names is None:
+        names = ()
+        if is_dataclass(node) and not isinstance(node, Type):
+            names = tuple(f.name for f in fields(node))
+        _HELD[kind] = names
     if names and isinstance(node, Expression | Statement):
         yield node
     for name in names:
         yield from walk(getattr(node, name))
 
 
-@cache
-def _held(kind: type) -> tuple[str, ...]:
-    """Return the names of what a piece of tree of a class may have pieces in."""
-    return tuple(f.name for f in fields(kind)) if is_dataclass(kind) and not issubclass(kind, Type) else ()
+_HELD: dict[type, tuple[str, ...]] = {}  # what a piece of tree of a class has pieces in
