@@ -29,7 +29,9 @@ ROOT = Path(__file__).resolve().parents[1]
 
 WORKER = os.environ.get("PYTEST_XDIST_WORKER", "")
 os.environ["NUMBA_CACHE_DIR"] = str(kernels.provide(WORKER or "alone"))
+os.environ["METAGRAPH_LOOP_CACHE"] = ""  # loops are numba's own but where a test says otherwise
 os.environ["METAGRAPH_MOTION_CACHE"] = str(ROOT / ".pytest_cache" / "motion")
+os.environ["METAGRAPH_MESH_CACHE"] = str(ROOT / ".pytest_cache" / "meshes")
 
 # Files that take longest, the longest first: begun late, one of them would keep one process busy while the
 # others have nothing left.

@@ -60,6 +60,7 @@ class Figures(QObject):
     def _read(self, result: tuple[Key, Figure]) -> None:
         if result[0] == self._wanted:
             self._skinned = result
+            self._simplify(result[1])
             if result[1].instead:
                 self.document.failed.emit(tr("A stick figure is drawn: {instead}", instead=result[1].instead))
             self.changed.emit()
@@ -112,10 +113,16 @@ class Figures(QObject):
 
     def _came(self, result: tuple[Key, Figure]) -> None:
         self._guests[result[0]] = result[1]
+        self._simplify(result[1])
         self.changed.emit()
+
+    def _simplify(self, figure: Figure) -> None:
+        """Make its levels of detail while it is already drawn."""
+        self.jobs.start("levels of detail", lambda job: figure.simplify(lambda: job.cancelled), quick=True)
 
     def _built(self, figure: Figure) -> None:
         self._sticks[figure.skeleton.fingerprint] = figure
+        self._simplify(figure)
         self.changed.emit()
 
 
@@ -128,5 +135,4 @@ def _ready(figure: Figure) -> Figure:
             decoded(batch.image)
     _, rest = figure.skeleton.globals(figure.skeleton.rest)
     figure.bounds(rest)
-    _ = figure.coarse
     return figure

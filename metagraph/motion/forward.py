@@ -18,6 +18,9 @@ Array = NDArray[Any]
 
 COMPILED = Loops("metagraph.motion.forward_kernels")
 AT_ONCE = 256  # poses: what is worked on stays in a processor's cache
+MANY = 2000  # poses for which it pays to load the loops, where they are kept: they give the same to the bit
+
+_worked = [0]  # poses so far, without loops
 
 # What of a joint's own turn, w x y z, its parent's w, x, y and z are multiplied by, a row each.
 FACTORS = np.array(((0, 1, 2, 3), (1, 0, 3, 2), (2, 3, 0, 1), (3, 2, 1, 0)))
@@ -44,6 +47,10 @@ class Forward:
 
     def __call__(self, rotations: Array, translations: Array) -> tuple[Array, Array]:
         """Return model-space rotations `[F, J, 4]` and positions `[F, J, 3]`, typed as the local ones."""
+        if COMPILED.now is None and _worked[0] < MANY:
+            _worked[0] += len(translations)
+            if _worked[0] >= MANY:
+                COMPILED.load_kept()
         if COMPILED.now is not None and rotations.dtype == translations.dtype == np.float32:
             whole = plain(rotations), plain(translations)
             made = np.empty_like(whole[0]), np.empty_like(whole[1])

@@ -14,7 +14,10 @@ import numpy as np
 
 from metagraph.compiling import compiler
 from metagraph.motion import forward_kernels
+from metagraph.playback import laying
 from metagraph.playback.laying import CLIP, CUE, LANES, REST
+
+KEPT, SOURCES = ("pose",), (forward_kernels, laying)
 
 Array = Any
 Number = Any  # float32 throughout, except for times
