@@ -101,8 +101,8 @@ LONG = (
     "fuzz/test_readers.py",
 )
 
-# The gate must give the same answer twice; at the desk, examples are drawn anew each time.
-settings.register_profile("gate", derandomize=True, deadline=None)
+# The gate must give the same answer twice; at the desk, examples are drawn anew each time, and twice as many.
+settings.register_profile("gate", derandomize=True, deadline=None, max_examples=50)
 settings.register_profile("desk", deadline=None)
 settings.register_profile("thorough", deadline=None, max_examples=1000)
 files.strict = True  # what a reader trips over is a bug to be seen here, though users are told in words
