@@ -75,10 +75,6 @@ class Shadows:
         """How far apart its texels are looked at, of its size."""
         return TAPS[0] / self._used.size, TAPS[1] / self._used.size
 
-    def casters(self, actor: Actor) -> list[Mesh]:
-        """Return the meshes that may throw an actor's shadow."""
-        return [actor.figure.finest(off * actor.figure.height) for off in (CAST_OFF, SOFT_OFF)]
-
     def cast(self, frame: Frame) -> Array:
         """Draw depth as the lamp sees it, if it sees another; return the matrix from the world to the shadow
         map, 0..1. Near by, what is in the picture has a map of its own.
@@ -109,7 +105,7 @@ class Shadows:
     def _drawn(self, frame: Frame, into: _Map, matrix: Array, off: float) -> Array:
         self._drawing.state(into.target, (0, 0, into.size, into.size), moderngl.DEPTH_TEST, colors=False)
         into.target.clear(depth=1.0)
-        depths(self._drawing, frame, frame.which(solid=True), matrix, off)
+        depths(self._drawing, frame, frame.which(solid=True), matrix, frame.casters[off])
         half = np.eye(4) * 0.5
         half[:3, 3], half[3, 3] = 0.5, 1
         return np.asarray(half @ matrix)
@@ -178,18 +174,21 @@ def _strip(frame: Frame) -> Strip | None:
     return patch, (float(along[0]), float(along[1])), fade
 
 
-def depths(drawing: Drawing, frame: Frame, which: Sequence[int], matrix: Array, off: float = 0.0) -> None:
-    """Draw nothing but depth, as seen through `matrix`. off: of its height, that a figure may be off for
-    fewer triangles; 0 draws the frame's meshes.
-    """
+def shadow_casters(actors: Sequence[Actor]) -> dict[float, list[Mesh]]:
+    """Return what may throw each actor's shadow, by how far off that is, of its height."""
+    return {off: [a.figure.finest(off * a.figure.height) for a in actors] for off in (CAST_OFF, SOFT_OFF)}
+
+
+def depths(
+    drawing: Drawing, frame: Frame, which: Sequence[int], matrix: Array, meshes: Sequence[Mesh]
+) -> None:
+    """Draw nothing but depth, as seen through `matrix`. meshes: one for each actor of the frame."""
     program = drawing.program("depth", shaders.DEPTH_VERTEX, shaders.DEPTH)
     set_uniforms(program, u_matrix=matrix, u_palette=0)
     drawing.store.palette.use(0)
     for i in which:
         set_uniforms(program, u_row=frame.rows[i])
-        actor = frame.actors[i]
-        mesh = actor.figure.finest(off * actor.figure.height) if off else frame.meshes[i]
-        drawing.triangles(mesh, actor, program, "depth")
+        drawing.triangles(meshes[i], frame.actors[i], program, "depth")
 
 
 def _lamp(frame: Frame) -> tuple[Array, Array, float]:

@@ -71,7 +71,7 @@ def frame_of(scene: Scene, camera: Camera, offscreen: Offscreen) -> Frame:
     matrix = camera.projection(1.0) @ camera.view()
     parts = boxes(actors, offscreen.renderer.store.palettes)
     meshes = [a.figure.mesh for a in actors]
-    return Frame(scene, actors, [0], camera, SIZE, NOON, matrix, scene.bounds(), meshes, parts)
+    return Frame(scene, actors, [0], camera, SIZE, NOON, matrix, scene.bounds(), meshes, parts, {})
 
 
 def test_near_by_an_edge_has_no_saw_teeth(offscreen, monkeypatch):
