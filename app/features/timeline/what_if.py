@@ -194,7 +194,8 @@ class WhatIf(QObject):
         )
         if self._live is not None:
             return tr(
-                "{here}What seed {seed} would have played: head, arms, body\nClick: the next session plays it",
+                "{here}What seed {seed} would have played: head, arms, body\n"
+                "Click: the next session plays it",
                 here=here,
                 seed=seed,
             )
