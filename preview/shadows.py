@@ -207,14 +207,16 @@ def _window(frame: Frame, axes: Array, texels: float) -> tuple[Array, Array] | N
     """
     camera, (width, height) = frame.camera, frame.size
     seen = camera.project(frame.boxes, width / height)
-    with np.errstate(invalid="ignore"):
-        inside = (np.nanmin(seen, 1) < 1).all(1) & (np.nanmax(seen, 1) > 0).all(1)
+    behind = np.asarray(np.isnan(seen).any(2))  # the eye
+    low, high = (np.where(behind[..., None], fill, seen) for fill in (np.inf, -np.inf))
+    inside = (low.min(1) < 1).all(1) & (high.max(1) > 0).all(1)
+    inside |= behind.any(1) & ~behind.all(1)
     if not inside.any():
         return None
     corners = frame.boxes[inside].reshape(-1, 3)
-    away = (camera.eye - corners) @ camera.axes[2]
+    away = np.maximum((camera.eye - corners) @ camera.axes[2], camera.near)
     tall = height / (2 * np.tan(camera.fov / 2))  # pixels of a metre, a metre away
-    if tall / max(float(away.min()), camera.near) < NEAR * texels:
+    if tall / float(away.min()) < NEAR * texels:
         return None
     # No more of the boxes than is in the picture, from the nearest to the farthest of them.
     right, up, back = camera.axes

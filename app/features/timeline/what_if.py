@@ -230,7 +230,7 @@ def paint_ghost(
     painter.setOpacity(FADED)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
     painter.setPen(Qt.PenStyle.NoPen)
-    each, bars = (lane.height() - 5) / len(LAYERS), dict[str, list[QRectF]]()
+    each, bars = (lane.height() - 2) / len(LAYERS), dict[str, list[QRectF]]()
     for n, layer in enumerate(ORDER):
         cues = plan.layers[layer].cues if plan is not None else ()
         begin, end = scale.seconds(LEFT), scale.seconds(width)
@@ -238,7 +238,7 @@ def paint_ghost(
             if cue.start > end:
                 break
             left, right = scale.x(cue.start), scale.x(cue.end)
-            rect = QRectF(left, lane.top() + 3 + n * each, max(2.0, right - left - 1), max(2.0, each - 1))
+            rect = QRectF(left, lane.top() + 1 + n * each, max(2.0, right - left - 1), max(2.0, each - 1))
             bars.setdefault(cue.action.kind, []).append(rect)
     for kind, rects in bars.items():
         painter.setBrush(t.fill(kind))
