@@ -20,7 +20,8 @@ Array = NDArray[Any]
 # Texels, on a graphics card and in software: of all and near by; of all for the ground alone.
 SHADOW_SIZE = (1024, 1024), (416, 208)
 NEAR = 3.0  # pixels of the picture that a texel of the whole may be wide before what is in it has its own map
-TAPS = 0.8, 0.45  # texels from the middle of the two places of the map that are looked at
+# Texels from the middle of the two places of the map that are looked at, likewise.
+TAPS = (1.6, 0.9), (0.8, 0.45)
 CAST_OFF, SOFT_OFF = 0.004, 0.008  # of the height, that what throws a shadow may be off; on the ground alone
 STEPS = 8  # sizes of the map near by for each doubling: else its texels would creep over a body that moves
 SOFT_SIZE = 128, 56  # texels of the ground's shadow, along the light and across
@@ -51,7 +52,7 @@ class Shadows:
     """Belongs to a drawing; views of one scene share what the lamp saw of the whole of it."""
 
     def __init__(self, drawing: Drawing, software: bool) -> None:
-        self._drawing, ctx = drawing, drawing.ctx
+        self._drawing, self._taps, ctx = drawing, TAPS[software], drawing.ctx
         size, small = SHADOW_SIZE[software]
         self._whole, self._near, self._low = _Map(ctx, size), _Map(ctx, size), _Map(ctx, small)
         self._used = self._whole
@@ -73,7 +74,7 @@ class Shadows:
     @property
     def spread(self) -> tuple[float, float]:
         """How far apart its texels are looked at, of its size."""
-        return TAPS[0] / self._used.size, TAPS[1] / self._used.size
+        return self._taps[0] / self._used.size, self._taps[1] / self._used.size
 
     def cast(self, frame: Frame) -> Array:
         """Draw depth as the lamp sees it, if it sees another; return the matrix from the world to the shadow
