@@ -18,7 +18,7 @@ from preview.drawing import Drawing, set_uniforms
 from preview.frame import MARGIN, Array, Frame, boxes, covered, drawable, tall
 from preview.mesh import Mesh
 from preview.scene import DARK, Actor, Scene, Theme
-from preview.shadows import SHADOW_LIMIT, Shadows, depths
+from preview.shadows import SHADOW_LIMIT, Shadows, depths, shadow_casters
 
 GHOST_BACK = (2.0, 1500.0)  # by slope, and in steps of the depth; about a centimetre where a figure stands
 CONTACT, CONTACT_HIGH = 0.75, 0.16  # how much darker a sole is, and of the height, up to where
@@ -96,13 +96,13 @@ class Renderer:
             return a.figure.finest(off * a.figure.height / max(1.0, tall(a, camera, height)))
 
         meshes = [mesh(a) for a in actors]
-        casters = [m for a in solid for m in self._shadows.casters(a)] if cast else []
-        rows = self._drawing.store.prepare(actors, meshes + casters)
+        casters = shadow_casters(actors) if cast else {}
+        rows = self._drawing.store.prepare(actors, sum(casters.values(), meshes))
         matrix = camera.projection(width / height) @ camera.view()
         bounds = Scene(tuple(solid)).bounds()
         round_pieces = boxes(actors, self.store.palettes if actors else ())
         frame = Frame(
-            scene, actors, rows, camera, (width, height), theme, matrix, bounds, meshes, round_pieces
+            scene, actors, rows, camera, (width, height), theme, matrix, bounds, meshes, round_pieces, casters
         )
         if cast:
             frame = replace(frame, light=self._shadows.cast(frame))
@@ -187,7 +187,7 @@ class Renderer:
         self.ctx.polygon_offset = GHOST_BACK
         self._main.color_mask = (False, False, False, False)
         self._main.use()  # a mask counts from the next use
-        depths(self._drawing, frame, which, frame.matrix)
+        depths(self._drawing, frame, which, frame.matrix, frame.meshes)
         self._main.color_mask = (True, True, True, True)
         self._main.use()
         self.ctx.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA

@@ -20,7 +20,8 @@ Array = NDArray[Any]
 # Texels, on a graphics card and in software: of all and near by; of all for the ground alone.
 SHADOW_SIZE = (1024, 1024), (416, 208)
 NEAR = 3.0  # pixels of the picture that a texel of the whole may be wide before what is in it has its own map
-TAPS = 0.8, 0.45  # texels from the middle of the two places of the map that are looked at
+# Texels from the middle of the two places of the map that are looked at, likewise.
+TAPS = (1.6, 0.9), (0.8, 0.45)
 CAST_OFF, SOFT_OFF = 0.004, 0.008  # of the height, that what throws a shadow may be off; on the ground alone
 STEPS = 8  # sizes of the map near by for each doubling: else its texels would creep over a body that moves
 SOFT_SIZE = 128, 56  # texels of the ground's shadow, along the light and across
@@ -51,7 +52,7 @@ class Shadows:
     """Belongs to a drawing; views of one scene share what the lamp saw of the whole of it."""
 
     def __init__(self, drawing: Drawing, software: bool) -> None:
-        self._drawing, ctx = drawing, drawing.ctx
+        self._drawing, self._taps, ctx = drawing, TAPS[software], drawing.ctx
         size, small = SHADOW_SIZE[software]
         self._whole, self._near, self._low = _Map(ctx, size), _Map(ctx, size), _Map(ctx, small)
         self._used = self._whole
@@ -73,11 +74,7 @@ class Shadows:
     @property
     def spread(self) -> tuple[float, float]:
         """How far apart its texels are looked at, of its size."""
-        return TAPS[0] / self._used.size, TAPS[1] / self._used.size
-
-    def casters(self, actor: Actor) -> list[Mesh]:
-        """Return the meshes that may throw an actor's shadow."""
-        return [actor.figure.finest(off * actor.figure.height) for off in (CAST_OFF, SOFT_OFF)]
+        return self._taps[0] / self._used.size, self._taps[1] / self._used.size
 
     def cast(self, frame: Frame) -> Array:
         """Draw depth as the lamp sees it, if it sees another; return the matrix from the world to the shadow
@@ -109,7 +106,7 @@ class Shadows:
     def _drawn(self, frame: Frame, into: _Map, matrix: Array, off: float) -> Array:
         self._drawing.state(into.target, (0, 0, into.size, into.size), moderngl.DEPTH_TEST, colors=False)
         into.target.clear(depth=1.0)
-        depths(self._drawing, frame, frame.which(solid=True), matrix, off)
+        depths(self._drawing, frame, frame.which(solid=True), matrix, frame.casters[off])
         half = np.eye(4) * 0.5
         half[:3, 3], half[3, 3] = 0.5, 1
         return np.asarray(half @ matrix)
@@ -178,18 +175,21 @@ def _strip(frame: Frame) -> Strip | None:
     return patch, (float(along[0]), float(along[1])), fade
 
 
-def depths(drawing: Drawing, frame: Frame, which: Sequence[int], matrix: Array, off: float = 0.0) -> None:
-    """Draw nothing but depth, as seen through `matrix`. off: of its height, that a figure may be off for
-    fewer triangles; 0 draws the frame's meshes.
-    """
+def shadow_casters(actors: Sequence[Actor]) -> dict[float, list[Mesh]]:
+    """Return what may throw each actor's shadow, by how far off that is, of its height."""
+    return {off: [a.figure.finest(off * a.figure.height) for a in actors] for off in (CAST_OFF, SOFT_OFF)}
+
+
+def depths(
+    drawing: Drawing, frame: Frame, which: Sequence[int], matrix: Array, meshes: Sequence[Mesh]
+) -> None:
+    """Draw nothing but depth, as seen through `matrix`. meshes: one for each actor of the frame."""
     program = drawing.program("depth", shaders.DEPTH_VERTEX, shaders.DEPTH)
     set_uniforms(program, u_matrix=matrix, u_palette=0)
     drawing.store.palette.use(0)
     for i in which:
         set_uniforms(program, u_row=frame.rows[i])
-        actor = frame.actors[i]
-        mesh = actor.figure.finest(off * actor.figure.height) if off else frame.meshes[i]
-        drawing.triangles(mesh, actor, program, "depth")
+        drawing.triangles(meshes[i], frame.actors[i], program, "depth")
 
 
 def _lamp(frame: Frame) -> tuple[Array, Array, float]:
@@ -208,14 +208,16 @@ def _window(frame: Frame, axes: Array, texels: float) -> tuple[Array, Array] | N
     """
     camera, (width, height) = frame.camera, frame.size
     seen = camera.project(frame.boxes, width / height)
-    with np.errstate(invalid="ignore"):
-        inside = (np.nanmin(seen, 1) < 1).all(1) & (np.nanmax(seen, 1) > 0).all(1)
+    behind = np.asarray(np.isnan(seen).any(2))  # the eye
+    low, high = (np.where(behind[..., None], fill, seen) for fill in (np.inf, -np.inf))
+    inside = (low.min(1) < 1).all(1) & (high.max(1) > 0).all(1)
+    inside |= behind.any(1) & ~behind.all(1)
     if not inside.any():
         return None
     corners = frame.boxes[inside].reshape(-1, 3)
-    away = (camera.eye - corners) @ camera.axes[2]
+    away = np.maximum((camera.eye - corners) @ camera.axes[2], camera.near)
     tall = height / (2 * np.tan(camera.fov / 2))  # pixels of a metre, a metre away
-    if tall / max(float(away.min()), camera.near) < NEAR * texels:
+    if tall / float(away.min()) < NEAR * texels:
         return None
     # No more of the boxes than is in the picture, from the nearest to the farthest of them.
     right, up, back = camera.axes

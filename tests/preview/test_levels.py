@@ -105,3 +105,22 @@ def test_a_figure_is_drawn_with_the_fewest_triangles_that_are_near_enough(manneq
     assert figure.finest(0.0) is figure.mesh
     assert [figure.finest(level.error) for level in made] == [level.mesh for level in made]
     assert figure.finest(1.0) is made[-1].mesh
+
+
+@pytest.mark.gl
+def test_levels_may_come_while_a_picture_is_drawn(offscreen, mannequin, monkeypatch):
+    """They are made on another thread."""
+    from preview.camera import whole_figure
+    from preview.figure import SkinnedFigure
+    from preview.scene import DARK, Actor, Scene
+    from preview.shadows import Shadows
+
+    figure = SkinnedFigure(mannequin)
+    scene = Scene((Actor(figure, *figure.skeleton.globals(figure.skeleton.rest)),))
+    cast = Shadows.cast
+    monkeypatch.setattr(Shadows, "cast", lambda *told: figure.simplify() or cast(*told))
+    camera = whole_figure(scene.bounds(), 4 / 3)
+    before = offscreen.render(scene, camera, DARK, (160, 120)).astype(int)
+    assert figure.levels
+    after = offscreen.render(scene, camera, DARK, (160, 120)).astype(int)
+    assert (before != after).any() and np.abs(before - after).mean() < 1.5

@@ -71,7 +71,7 @@ def frame_of(scene: Scene, camera: Camera, offscreen: Offscreen) -> Frame:
     matrix = camera.projection(1.0) @ camera.view()
     parts = boxes(actors, offscreen.renderer.store.palettes)
     meshes = [a.figure.mesh for a in actors]
-    return Frame(scene, actors, [0], camera, SIZE, NOON, matrix, scene.bounds(), meshes, parts)
+    return Frame(scene, actors, [0], camera, SIZE, NOON, matrix, scene.bounds(), meshes, parts, {})
 
 
 def test_near_by_an_edge_has_no_saw_teeth(offscreen, monkeypatch):
@@ -122,3 +122,15 @@ def test_the_ground_is_as_dark_whether_or_not_the_body_has_a_map_of_its_own(
         pictures.append(offscreen.render(scene, camera, NOON, SIZE).astype(int))
     apart = np.abs(pictures[0] - pictures[1]).max(-1)
     assert (pictures[0] != pictures[1]).any() and (apart > 24).mean() < 0.01
+
+
+def test_who_stands_behind_the_eye_or_round_it_is_no_trouble(offscreen, mannequin):
+    figure = SkinnedFigure(mannequin)
+    rotations, positions = figure.skeleton.globals(figure.skeleton.rest)
+    ahead, behind = Actor(figure, rotations, positions), Actor(figure, rotations, positions + [0, 0, 3.0])
+    for z in (0.0, 0.2, 1.0, 3.0):
+        camera = Camera((0.0, 1.4, z), 0.0, 0.0, 0.3)
+        picture = offscreen.render(Scene((ahead, behind)), camera, NOON, SIZE)
+        assert picture.shape == (*SIZE, 4)
+    away = frame_of(Scene((behind,)), Camera((0.0, 1.4, 0.0), 0.0, 0.0, 0.5), offscreen)
+    assert shadows._window(away, np.stack(np.eye(3)), 200.0) is None
