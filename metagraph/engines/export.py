@@ -46,6 +46,7 @@ from metagraph.playback.phases import phases
 from metagraph.playback.sampling import LOOP_FADE
 from metagraph.playback.vigour import vigour
 from metagraph.speech.sound import sound_ending
+from metagraph.uncollected import uncollected
 from metagraph.wording import told
 
 Chosen = Callable[[Path], bool]
@@ -286,6 +287,7 @@ def _used(project: Project) -> list[ClipEntry]:
     return [e for e in project.clips.values() if e.id in project.uses or e.id == project.base.clip]
 
 
+@uncollected()
 def to_document(project: Project, glb: str, names: tuple[str, ...], expanded: bool = False) -> c.Export:
     """Return the JSON's content; `names`: of the used clips' animations in the GLB."""
     skeleton = project.skeleton
