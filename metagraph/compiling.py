@@ -21,6 +21,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[1]
 NUMBA = "numba>=0.60"
 
+kept_by_numba = [True]  # whether numba keeps on disk what it makes, and takes it from there
 unkept: list[str] = []  # loops that found no folder to be kept in
 _ONE = Lock()  # one thread installs, the others wait
 
@@ -35,8 +36,11 @@ def there() -> bool:
 
 
 class Loops:
-    """A module of compiled loops that stand in for NumPy as soon as they are loaded. now: the module, None
-    until then.
+    """A module of compiled loops that stand in for NumPy as soon as they are loaded. now: the module, or what
+    is kept of its object code, None until then.
+
+    The module has `warm()`, which calls what it compiles with nothing, `KEPT`, the names of its loops that
+    are kept, and `SOURCES`, the modules that they are compiled from, too.
     """
 
     def __init__(self, module: str) -> None:
@@ -44,11 +48,39 @@ class Loops:
         self.now: Any = None
 
     def load(self) -> None:
-        """Import the module and have it make ready what it compiles (`warm`)."""
+        """Load what is kept of the loops; where nothing is, import the module and have it make them ready."""
+        if self.now is None and not self.load_kept():
+            self.now = self._warmed()
+
+    def load_kept(self) -> bool:
+        """Load what is kept of the loops, in a few milliseconds; return whether they are loaded."""
         if self.now is None:
-            made: Any = importlib.import_module(self.module)
-            made.warm()
-            self.now = made
+            from metagraph import object_code  # what it takes is not needed to open a window
+
+            self.now = object_code.load(self.module)
+        return self.now is not None
+
+    def keep(self, by_numba: bool = False) -> bool:
+        """Compile the loops and keep their object code, where that is not done yet; return whether it is
+        kept. For a process that has not loaded them: of what numba takes from its own cache there is none.
+        by_numba: have numba keep them, too, for which its cache must be empty.
+        """
+        from metagraph import object_code
+
+        if object_code.load(self.module) is not None:
+            return True
+        if object_code.path(self.module) is None:
+            return False
+        kept_by_numba[0] = by_numba
+        module = self._warmed()
+        from metagraph.object_making import make
+
+        return make(module, module.KEPT, (*module.SOURCES, sys.modules[__name__]))
+
+    def _warmed(self) -> Any:
+        module: Any = importlib.import_module(self.module)
+        module.warm()
+        return module
 
 
 def plain(array: Any) -> Any:
@@ -71,7 +103,7 @@ def compiler(keep: bool = True, **options: Any) -> Callable[[Callable[..., Any]]
 
     def compiled(function: Callable[..., Any]) -> Any:
         try:
-            return numba.njit(cache=keep, **options)(function)
+            return numba.njit(cache=keep and kept_by_numba[0], **options)(function)
         except RuntimeError:  # no folder to cache in
             unkept.append(function.__name__)
             return numba.njit(**options)(function)

@@ -29,6 +29,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 WORKER = os.environ.get("PYTEST_XDIST_WORKER", "")
 os.environ["NUMBA_CACHE_DIR"] = str(kernels.provide(WORKER or "alone"))
+os.environ["METAGRAPH_LOOP_CACHE"] = ""  # loops are numba's own but where a test says otherwise
 os.environ["METAGRAPH_MOTION_CACHE"] = str(ROOT / ".pytest_cache" / "motion")
 os.environ["METAGRAPH_MESH_CACHE"] = str(ROOT / ".pytest_cache" / "meshes")
 
@@ -100,8 +101,8 @@ LONG = (
     "fuzz/test_readers.py",
 )
 
-# The gate must give the same answer twice; at the desk, examples are drawn anew each time.
-settings.register_profile("gate", derandomize=True, deadline=None)
+# The gate must give the same answer twice; at the desk, examples are drawn anew each time, and twice as many.
+settings.register_profile("gate", derandomize=True, deadline=None, max_examples=50)
 settings.register_profile("desk", deadline=None)
 settings.register_profile("thorough", deadline=None, max_examples=1000)
 files.strict = True  # what a reader trips over is a bug to be seen here, though users are told in words

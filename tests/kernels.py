@@ -18,7 +18,11 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 HOME = ROOT / ".pytest_cache" / "numba"
-PATTERNS = ("kernels.py", "*_kernels.py", "wander.py", "*solve.py", "plain_vectors.py")
+PATTERNS = (
+    *("kernels.py", "*_kernels.py", "wander.py", "*solve.py", "plain_vectors.py"),
+    *("laying.py", "compiling.py", "object_*.py"),
+)
+LOOPS = "loops"  # a folder within: object code
 
 
 def kept() -> Path:
@@ -40,7 +44,7 @@ def make() -> Path:
         subprocess.run(
             [sys.executable, "-m", "tests.kernels", "here"],
             cwd=ROOT,
-            env={**os.environ, "NUMBA_CACHE_DIR": scratch},
+            env={**os.environ, "NUMBA_CACHE_DIR": scratch, "METAGRAPH_LOOP_CACHE": f"{scratch}/{LOOPS}"},
             check=True,
             timeout=900,
         )
@@ -63,6 +67,7 @@ def provide(name: str) -> Path:
 def compile_all() -> None:
     """Call everything that is compiled."""
     from app.features.motion_graph.synthesis_jobs import Wish, synthesise, takes_of, usable
+    from metagraph import keep_loops, object_code
     from metagraph.formats import bvh, bvh_kernels
     from metagraph.formats.store import open_project
     from metagraph.playback import loops
@@ -73,9 +78,11 @@ def compile_all() -> None:
     from metagraph.synthesis.graph import build
     from metagraph.synthesis.states import states_of
 
+    for known in keep_loops.ALL:
+        assert known.keep(by_numba=True) or not object_code.usable()
     project = open_project(ROOT / "sample_clips" / "sample.metagraph.yaml").project
     with tempfile.TemporaryDirectory() as folder:
-        bvh._loops.append(bvh_kernels)  # else only large files need it
+        bvh.COMPILED.now = bvh_kernels  # else only large files need it
         bvh.write_bvh(
             next(clip.motion for clip in project.clips.values() if clip.motion), Path(folder) / "a.bvh"
         )

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 ASIDE = (
     -0.35
 )  # radians the camera goes round those who talk, to see them from the side and not one of them from behind
-WATCHED = 300  # poses that were asked for when compiled loops begin to pay
+BEGUN, WATCHED = 20, 300  # poses that were asked for when compiled loops pay: kept ones, those to be made
 LEAD = 0.8  # seconds of stance before and after a clip shown in context
 
 _watched = [0]  # poses that were asked for
@@ -139,7 +139,9 @@ class Shown:
 
             return overlaid(self.moving, self.project, seconds, laid)
         _watched[0] += 1
-        if _watched[0] == WATCHED:
+        if _watched[0] == BEGUN:
+            loops.load_kept()
+        elif _watched[0] == WATCHED:
             loops.load_soon()
         return pose_at(self.moving, self.project, seconds)
 

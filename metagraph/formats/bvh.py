@@ -23,7 +23,7 @@ from metagraph.budgets import (
     OUT_OF_PROPORTION,
     Allowance,
 )
-from metagraph.compiling import CompilerError, there
+from metagraph.compiling import CompilerError, Loops, there
 from metagraph.errors import FileError
 from metagraph.files import read_file
 from metagraph.formats.atomic import write_atomically
@@ -40,9 +40,11 @@ Array = NDArray[Any]
 
 # Where compiling pays: numba takes 0.6 s to import, NumPy reads 80 MB/s, the compiled loops 330 MB/s. Many
 # small files count as one large one. Installing numba takes as long as reading some gigabytes without it.
-_COMPILED_FROM, _INSTALLED_FROM = 64 << 20, 2 << 30
+# What is kept of its loops is loaded in milliseconds.
+_KEPT_FROM, _COMPILED_FROM, _INSTALLED_FROM = 1 << 20, 64 << 20, 2 << 30
 _read_so_far = [0]  # bytes of motion this process has read
-_loops: list[Any] = []  # the module of compiled loops, once it is whole; None where it cannot be had
+COMPILED = Loops("metagraph.formats.bvh_kernels")
+_failed: list[CompilerError] = []  # why they cannot be had
 _importing = Lock()
 _LONGEST_HEADER = 16 * MIB
 _DAMAGED = told("The file is damaged: export it again.")
@@ -317,20 +319,17 @@ def _kernels() -> Any:
     """Return the module of compiled loops where it pays and is there; None otherwise, and while another
     thread imports it.
     """
-    if (
-        not _loops
-        and _read_so_far[0] >= (_COMPILED_FROM if there() else _INSTALLED_FROM)
-        and _importing.acquire(blocking=False)
-    ):
+    if COMPILED.now is None and not _failed and _importing.acquire(blocking=False):
         try:
-            from metagraph.formats import bvh_kernels
-
-            _loops.append(bvh_kernels)
-        except CompilerError:
-            _loops.append(None)
+            if _read_so_far[0] >= (_COMPILED_FROM if there() else _INSTALLED_FROM):
+                COMPILED.load()
+            elif _read_so_far[0] >= _KEPT_FROM:
+                COMPILED.load_kept()
+        except CompilerError as error:
+            _failed.append(error)
         finally:
             _importing.release()
-    return _loops[0] if _loops else None
+    return COMPILED.now
 
 
 def _numbers(path: Path, data: bytes, start: int, channels: int) -> Array:

@@ -8,6 +8,8 @@ import numpy as np
 
 from metagraph.compiling import compiler
 
+KEPT, SOURCES = ("parse", "turn"), ()
+
 _POWERS = 10.0 ** np.arange(23)  # exact in double precision
 
 _compiled = compiler(nogil=True, fastmath={"contract", "arcp", "nsz"})
@@ -127,3 +129,10 @@ def turn(values: Any, first: int, last: int, starts: Any, axes: Any, columns: An
             ):
                 x, y, z, w = -x, -y, -z, -w
             out[f, j, 0], out[f, j, 1], out[f, j, 2], out[f, j, 3] = x, y, z, w
+
+
+def warm() -> None:
+    """Have ready what files are read with."""
+    parse(np.frombuffer(b"", np.uint8), 0, 0, np.zeros(0))
+    numbers = np.zeros(0, np.int64)
+    turn(np.zeros((0, 0)), 0, 0, np.zeros(1, np.int64), numbers, numbers, np.zeros((0, 0, 4), np.float32))

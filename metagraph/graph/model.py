@@ -252,7 +252,10 @@ class Uses(Mapping[str, tuple[Action, ...]]):
         return found
 
     def __contains__(self, clip: object) -> bool:
-        return any(clip in uses for uses in self._graphs)
+        for uses in self._graphs:  # noqa: SIM110 - `any` takes thrice as long, and clips are asked by the thousand
+            if clip in uses:
+                return True
+        return False
 
     def __iter__(self) -> Iterator[str]:
         return iter(dict.fromkeys(clip for uses in self._graphs for clip in uses))
@@ -437,9 +440,14 @@ class Project:
         """
         entry = self.clips.get(action.clip)
         length = entry.duration if entry else 0.0
-        start = min(max(0.0, action.timing.start), length)
-        end = length if action.timing.end is None else min(action.timing.end, length)
-        return start, max(start, end)
+        start, end = action.timing.start, action.timing.end
+        if not start > 0.0:  # as with most; what is no number is 0, too
+            start = 0.0
+        elif start > length:
+            start = length
+        if end is None or end > length:
+            end = length
+        return start, end if end > start else start
 
     @cached_property
     def uses(self) -> Mapping[str, tuple[Action, ...]]:

@@ -11,6 +11,7 @@ import numpy as np
 from metagraph.compiling import compiler
 
 Array = Any
+KEPT, SOURCES = ("globals_of",), ()
 
 _exact = compiler(nogil=True, error_model="numpy")
 # Kept as part of what calls it alone: numba would take this one for one with other options, and the other way

@@ -19,6 +19,7 @@ from metagraph.motion import contact_solve, feet_solve, plain_vectors, weight_so
 Array = Any
 Number = Any
 
+KEPT = "hold_hands", "carry_weight"
 SOURCES = (plain_vectors, contact_solve, weight_solve, feet_solve)
 
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from metagraph.graph.model import LAYERS, Project
 from metagraph.motion.skeleton import Pose
 from metagraph.playback.composer import rig
+from metagraph.playback.laid_plan import COMPILED
 from metagraph.playback.laying import layout
 from metagraph.playback.plan import Plan
 
@@ -30,8 +31,9 @@ class Crowd:
     is made.
 
     Poses agree with `pose_at` without life layers, contacts and the guard to 1e-5. The first call in a
-    process imports numba, the first ever compiles (seconds). A crowd is for one thread at a time. Raises
-    ValueError when the project has no skeleton.
+    process loads the loops: their object code where that is kept, or numba, which the first time ever
+    compiles (seconds). A crowd is for one thread at a time. Raises ValueError when the project has no
+    skeleton.
     """
 
     def __init__(self, project: Project, plans: Sequence[Plan]) -> None:
@@ -53,14 +55,14 @@ class Crowd:
         """Return each character's pose at its time, `seconds [C]` or one for all: rotations `[C, J, 4]`,
         translations `[C, J, 3]`.
 
-        out: float32 poses to write into, such as an earlier frame's; new memory costs nearly as much as the
-        poses do.
+        out: float32 poses in one piece to write into, such as an earlier frame's; new memory costs nearly as
+        much as the poses do.
         """
         return self._posed(seconds, out, (_NO_TURNS, _NO_PLACES))
 
     def globals(self, seconds: Any, out: tuple[Array, Array] | None = None) -> tuple[Array, Array]:
-        """Return model-space rotations `[C, J, 4]` and positions `[C, J, 3]`, metres. out: float32 arrays to
-        write into.
+        """Return model-space rotations `[C, J, 4]` and positions `[C, J, 3]`, metres. out: float32 arrays
+        in one piece to write into.
         """
         if self._local is None:
             self._local = self._empty()
@@ -75,8 +77,8 @@ class Crowd:
         return Pose(np.empty((count, joints, 4), np.float32), np.empty((count, joints, 3), np.float32))
 
     def _posed(self, seconds: Any, out: Pose | None, model: tuple[Array, Array]) -> Pose:
-        from metagraph.playback.crowd_kernels import pose
-
+        COMPILED.load()
+        pose = COMPILED.now.pose
         times = np.array(np.broadcast_to(np.asarray(seconds, np.float64), (len(self),)))
         of, found = self._layout, out or self._empty()
         base = of.base, of.travels, of.places

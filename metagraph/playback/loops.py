@@ -4,12 +4,11 @@ contacts, weight and life. Until they are there, and where numba is not, NumPy g
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from threading import Lock, Thread
 
-from metagraph.compiling import ROOT, there, unkept
+from metagraph.compiling import ROOT, there
 from metagraph.motion import forward
 from metagraph.playback import laid_plan, solving
 from metagraph.playback.life import living
@@ -26,13 +25,21 @@ def loaded() -> bool:
 
 
 def load() -> bool:
-    """Load the loops, and return whether they are there: numba is not installed for them. A second; the first
-    time ever they are compiled, half a minute.
+    """Load the loops, and return whether they are there: numba is not installed for them. Milliseconds where
+    their object code is kept; else a second, and the first time ever, when they are compiled, half a minute.
     """
     with _one:
         if not loaded() and there():
             for loops in LOOPS:
                 loops.load()
+    return loaded()
+
+
+def load_kept() -> bool:
+    """Load those loops whose object code is kept, in milliseconds; return whether all are loaded."""
+    with _one:
+        for loops in LOOPS:
+            loops.load_kept()
     return loaded()
 
 
@@ -46,11 +53,10 @@ def load_soon() -> None:
 
 
 def _beside() -> None:
-    if subprocess.run([sys.executable, "-m", __name__], cwd=ROOT, capture_output=True).returncode == 0:
+    if (
+        subprocess.run(
+            [sys.executable, "-m", "metagraph.keep_loops"], cwd=ROOT, capture_output=True
+        ).returncode
+        == 0
+    ):
         load()
-
-
-if __name__ == "__main__":
-    if hasattr(os, "nice"):
-        os.nice(10)  # nobody waits for it
-    sys.exit(0 if load() and not unkept else 1)

@@ -45,6 +45,17 @@ def phases(project: Project, action: Action) -> Phases:
     else:
         joints, seen_from = movers(project, motion, action.layer, action.limb)
         found = _found(ref(motion), joints, seen_from, start, end)
+    if timing.ready is timing.stroke is timing.stroke_end is timing.relax is None and (
+        start
+        == found.start
+        <= found.ready
+        <= found.stroke
+        <= found.stroke_end
+        <= found.relax
+        <= found.end
+        == end
+    ):
+        return found
     ready = _within(timing.ready, found.ready, start, end)
     stroke = _within(timing.stroke, max(ready, found.stroke), start, end)
     stroke_end = _within(timing.stroke_end, max(stroke, found.stroke_end), start, end)

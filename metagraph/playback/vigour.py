@@ -44,8 +44,10 @@ def _speed_of(project: Project, action: Action) -> float | None:
     """Return the mean speed of the fastest mover, metres a second; None where the clip is missing."""
     entry = project.clips.get(action.clip)
     motion = entry.motion if entry is not None else None
+    if motion is None or motion.frames < 2:
+        return None
     start, end = project.span(action)
-    if motion is None or motion.frames < 2 or end <= start:
+    if end <= start:
         return None
     joints, seen_from = movers(project, motion, action.layer, action.limb)
     return _mean_speed(ref(motion), joints, seen_from, start, end)

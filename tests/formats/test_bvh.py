@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from metagraph import compiling, object_code
 from metagraph.compiling import CompilerError
 from metagraph.errors import FileError
 from metagraph.formats import bvh
@@ -59,7 +60,9 @@ Frame Time: {time}
 
 def choose(monkeypatch: pytest.MonkeyPatch, compiled: bool) -> None:
     """Have numbers read by the compiled loops, or without them."""
-    monkeypatch.setattr(bvh, "_loops", [])
+    monkeypatch.setattr(bvh.COMPILED, "now", None)
+    monkeypatch.setattr(bvh, "_failed", [])
+    monkeypatch.setattr(bvh, "_KEPT_FROM", 1 << 60)
     monkeypatch.setattr(bvh, "_COMPILED_FROM", 0 if compiled else 1 << 60)
 
 
@@ -501,6 +504,32 @@ def test_without_a_compiler_large_files_are_read_all_the_same_and_it_is_asked_fo
     for _ in range(2):
         np.testing.assert_allclose(read_bvh(path, 0.01).rotations, expected.rotations, atol=2e-7)
     assert len(asked) == 1
+
+
+def test_what_is_kept_of_the_loops_reads_as_they_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    if not object_code.usable():
+        pytest.skip("object code is for Linux on x86-64")
+    path = tmp_path / "clip.bvh"
+    rng = np.random.default_rng(3)
+    rows = "\n".join(" ".join(f"{x:.4f}" for x in row) for row in rng.normal(0, 90, (4000, 9)))
+    path.write_text(figure(frames=4000, rows=rows))
+    choose(monkeypatch, True)
+    expected = read_bvh(path, 0.01)
+    monkeypatch.setenv("METAGRAPH_LOOP_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr(bvh.COMPILED, "now", None)
+    monkeypatch.setattr(compiling, "kept_by_numba", [True])
+    monkeypatch.delitem(sys.modules, "metagraph.formats.bvh_kernels")
+    assert bvh.COMPILED.keep()
+    monkeypatch.setattr(bvh, "_COMPILED_FROM", 1 << 60)
+    monkeypatch.setattr(bvh, "_KEPT_FROM", 0)
+    monkeypatch.delitem(sys.modules, "metagraph.formats.bvh_kernels")
+    found = read_bvh(path, 0.01)
+    assert bvh.COMPILED.now is not None and "metagraph.formats.bvh_kernels" not in sys.modules
+    np.testing.assert_array_equal(found.rotations, expected.rotations)
+    np.testing.assert_array_equal(found.translations, expected.translations)
+    path.write_text(figure(rows="1 2 3 4 5 x 7 8 9"))
+    with pytest.raises(FileError, match="'x' is not a sensible number"):
+        read_bvh(path)
 
 
 def test_importing_the_reader_does_not_import_numba() -> None:

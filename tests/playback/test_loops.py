@@ -8,12 +8,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pytest
 
-from metagraph import compiling
+from metagraph import compiling, object_code
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Life, Project
 from metagraph.graph.touch import Touch
@@ -21,6 +22,7 @@ from metagraph.motion.skeleton import Pose
 from metagraph.playback import laid_plan, laying, loops
 from metagraph.playback.composer import rig
 from metagraph.playback.contacts import contact_rig, goals_at, solved
+from metagraph.playback.crowd import Crowd
 from metagraph.playback.life.evaluate import enliven
 from metagraph.playback.life.schedule import Schedule, schedule
 from metagraph.playback.life.track import LookAt, MoodFrom, Speech, track_of
@@ -28,6 +30,7 @@ from metagraph.playback.plan import MetaRequest, Plan
 from metagraph.playback.planner import extend, make_plan
 from metagraph.playback.player import layered, layers_at, pose_at
 from metagraph.playback.weight import weighed
+from tests import kernels
 
 ROOT = Path(__file__).parents[2]
 LAYERS_ALONE = 1e-6  # how far a pose of the layers may be off
@@ -252,6 +255,10 @@ def test_poses_of_other_numbers_are_left_to_numpy(switch: Switch, sample: Projec
     assert np.abs(model[1] - sample.skeleton.globals(pose)[1]).max() < 1e-5
 
 
+def test_where_no_object_code_is_kept_none_is_loaded() -> None:
+    assert not loops.load_kept() and not loops.loaded()
+
+
 def test_without_numba_nothing_is_loaded_and_numpy_answers(monkeypatch: Any, sample: Project) -> None:
     monkeypatch.setattr(loops, "there", lambda: False)
     assert not loops.load() and not loops.loaded()
@@ -276,11 +283,39 @@ def test_loading_soon_waits_for_who_compiles(monkeypatch: Any, status: int, ther
     loops.load_soon()
     loops.load_soon()
     loops._begun[0].join(30)
-    assert told == [[sys.executable, "-m", "metagraph.playback.loops"]] and bool(done) == there
+    assert told == [[sys.executable, "-m", "metagraph.keep_loops"]] and bool(done) == there
+
+
+def test_kept_object_code_gives_the_poses_of_numba_but_for_the_last_digit(
+    monkeypatch: pytest.MonkeyPatch, switch: Switch, sample: Project
+) -> None:
+    """Where products may be fused with sums, which of them are is up to each compilation."""
+    if not object_code.usable():
+        pytest.skip("object code is for Linux on x86-64")
+    kept = str(kernels.make() / kernels.LOOPS)
+    switch.off()
+    monkeypatch.setenv("METAGRAPH_LOOP_CACHE", "")
+    assert loops.load() and all(isinstance(known.now, ModuleType) for known in loops.LOOPS)
+    plan = make_plan(sample, 20, seed=6)
+    times = np.arange(0, 20, 0.1)
+
+    def poses() -> list[Any]:
+        whole = pose_at(plan, sample, times)
+        single = [pose_at(plan, sample, float(time)) for time in times[:40]]
+        crowd = Crowd(sample, [plan, plan]).globals([1.0, 7.3])
+        model = sample.skeleton.globals(whole)
+        return [*model, *crowd, whole.translations, whole.rotations, *(one.rotations for one in single)]
+
+    expected = poses()
+    switch.off()
+    monkeypatch.setenv("METAGRAPH_LOOP_CACHE", kept)
+    assert loops.load_kept() and not any(isinstance(known.now, ModuleType) for known in loops.LOOPS)
+    for one, other in zip(poses(), expected, strict=True):
+        np.testing.assert_allclose(one, other, rtol=0, atol=3e-7)
 
 
 def test_who_compiles_says_whether_it_could_be_kept() -> None:
-    made = subprocess.run([sys.executable, "-m", "metagraph.playback.loops"], cwd=ROOT, timeout=600)
+    made = subprocess.run([sys.executable, "-m", "metagraph.keep_loops"], cwd=ROOT, timeout=600)
     assert made.returncode == 0 and not compiling.unkept
 
 

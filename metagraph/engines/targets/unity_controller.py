@@ -19,6 +19,7 @@ from metagraph.engines.engine_machine import Arrow, Machine, State, animations, 
 from metagraph.engines.targets.losses import CROSSFADE, MACHINE, WEIGHTS
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
+from metagraph.engines.targets.unity_clips import Moving, clip_asset
 from metagraph.engines.targets.unity_yaml import (
     CLIP,
     CONTROLLER,
@@ -28,9 +29,7 @@ from metagraph.engines.targets.unity_yaml import (
     STATES,
     TRANSITION,
     Inline,
-    Moving,
     asset,
-    clip_asset,
     fields,
     guid,
     joint_path,
@@ -45,6 +44,7 @@ from metagraph.graph import anatomy
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
+from metagraph.wording import told
 
 BASE = "base"  # the layer at the bottom, its state and clip
 IF, EQUALS = 1, 6  # modes of conditions
@@ -52,10 +52,11 @@ INTEGER, TRIGGER = 3, 9  # types of parameters
 Row = tuple[int, int, str, Mapping[str, Any]]
 
 MOMENT = Loss(
-    "what is asked for after the moment from which an action may be left waits until it has ended: an exit "
-    "time is one moment"
+    told(
+        "what is asked for after the moment from which an action may be left waits until it has ended: an exit time is one moment"
+    )
 )
-UNTRIED = "written field by field as Unity writes its own files; there was no Unity to open it with"
+UNTRIED = told("written field by field as Unity writes its own files; there was no Unity to open it with")
 
 
 def controller(
@@ -383,8 +384,10 @@ TARGETS = (
     ExportTarget(
         "unity-controller",
         "Unity Animator Controller",
-        "an Animator Controller with Avatar Masks and clips as Unity's own text assets, a guide to them, and "
-        "the mesh as a GLB",
+        told(
+            "an Animator Controller with Avatar Masks and clips as Unity's own text assets, a guide to them, and "
+            "the mesh as a GLB"
+        ),
         write,
         (*MACHINE, WEIGHTS, CROSSFADE, MOMENT),
         UNTRIED,

@@ -16,6 +16,7 @@ from metagraph.playback.life import solve
 from metagraph.playback.life.solve import FaceLids, LifeDials, LifeNow
 
 Array = Any
+KEPT, SOURCES = ("bring_to_life",), (solve,)
 
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 _inside = compiler(keep=False, **_OPTIONS)  # kept as part of what calls them
@@ -170,7 +171,7 @@ def _driver(said: int) -> Callable[..., Any]:
     return found
 
 
-bring_to_life = _driver(stamp((solve,)))
+bring_to_life = _driver(stamp(SOURCES))
 
 
 def warm() -> None:

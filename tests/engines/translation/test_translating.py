@@ -12,11 +12,11 @@ from typing import Any
 
 import pytest
 
-from metagraph.engines.translation.listing import RUNTIMES, Translated
+from metagraph.engines.translation.listing import LISTING, NATIVE, RUNTIMES, Translated
 from metagraph.engines.translation.lowering import module_of
 from metagraph.engines.translation.printing import TranslationError
-from metagraph.engines.translation.source import SubsetError
-from metagraph.engines.translation.translating import printed, read, translated, understood
+from metagraph.engines.translation.source import Source, SubsetError
+from metagraph.engines.translation.translating import printed, read, understood
 from metagraph.graph.edits import set_settings
 from metagraph.graph.model import LIMBS, MetaGraph, Project, Settings
 from metagraph.playback import layer_planning, markov, phases, replan
@@ -35,20 +35,26 @@ MEANS = [f.__name__ for f in every_means.MEANS]
 SAID = [f() for f in every_means.MEANS]
 
 
-def test_the_runtimes_hold_what_is_translated_today() -> None:
-    """Else: `.venv/bin/python -m metagraph.engines.translation`."""
-    old = [
-        p.relative_to(RUNTIMES) for p, text in translated().items() if p.read_text(encoding="utf-8") != text
-    ]
-    assert not old
+EVERY = Translated("tests.engines.translation.every_means", "every_means")
 
 
 @pytest.fixture(scope="module")
-def means() -> dict[str, str]:
+def sources() -> dict[Translated, Source]:
+    """What is translated and the module of all means, read at once: to read takes most of the time."""
+    return understood([*LISTING, EVERY], ROOT)
+
+
+def test_the_runtimes_hold_what_is_translated_today(sources: dict[Translated, Source]) -> None:
+    """Else: `.venv/bin/python -m metagraph.engines.translation`."""
+    made = printed({one: module_of(sources[one]) for one in LISTING}, NATIVE)
+    assert not [path for path, text in made.items() if (RUNTIMES / path).read_text(encoding="utf-8") != text]
+
+
+@pytest.fixture(scope="module")
+def means(sources: dict[Translated, Source]) -> dict[str, str]:
     """The module of all means, in each language."""
     wanted = ("MEANS",)
-    one = Translated("tests.engines.translation.every_means", "every_means")
-    (source,) = understood([one], ROOT).values()
+    one, source = EVERY, sources[EVERY]
     names = {n for d in source.tree.defs for n in [getattr(d, "name", "")] if n} | {"STEP", "WORDS"}
     source.only = tuple(names - set(wanted))
     return {Path(path).suffix: text for path, text in printed({one: module_of(source)}, {}).items()}
