@@ -23,7 +23,7 @@ Array = NDArray[Any]
 KEEP_MESHES = 16
 IDLE_FRAMES = 240
 TEXTURE_LIMIT = 2048
-PALETTE = 128  # pixels; textures up to this size are palettes and need no mipmaps
+PALETTE, NARROW = 128, 64  # pixels; textures up to this size, or so narrow, are palettes and need no mipmaps
 MARK_STRENGTH = 200  # of 255: how much a mark covers the figure's own colour
 
 # How the vertex (see mesh.VERTEX) is read by shaders of each kind; positions come from a buffer of their own.
@@ -200,7 +200,8 @@ class Store:
             return self._images[encoded]
         size, pixels = decoded(encoded)
         texture = self._ctx.texture(size, 4, pixels)
-        if max(size) > PALETTE:  # what is smaller holds flat colours; and mipmaps cost a stall in software
+        # What is smaller holds flat colours; and mipmaps cost a stall in software.
+        if max(size) > PALETTE and min(size) > NARROW:
             texture.build_mipmaps()
             texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
         self._images[encoded] = texture

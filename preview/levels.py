@@ -25,7 +25,7 @@ Array = NDArray[Any]
 
 ERRORS = (0.001, 0.002, 0.004, 0.008)  # of the figure's height
 MADE = 1  # to be raised when they are made otherwise
-LEAST = 600  # triangles, fewer than which are drawn as they are
+LEAST, LARGEST = 600, 400_000  # triangles; what has fewer is drawn as it is, with more it would take minutes
 WORTH = 0.85  # of the triangles of the level before, with more than which there is none
 MOST = 64 * 1024 * 1024  # bytes on disk
 
@@ -48,7 +48,7 @@ def levels_of(mesh: Mesh, height: float, cancelled: Callable[[], bool] = lambda:
     """Return the levels of a mesh whose figure is `height` metres tall, finer ones first; none where there
     is little to take away, or once it is `cancelled`.
     """
-    if len(mesh.triangles) < LEAST:
+    if not LEAST <= len(mesh.triangles) <= LARGEST or not np.isfinite(mesh.vertices["position"]).all():
         return ()
     errors = [share * height for share in ERRORS]
     cache, key = DiskCache(kept_in(), MOST, ".npz"), _key(mesh, errors)

@@ -264,9 +264,9 @@ def _spread(mesh: Mesh, which: Array) -> Array:
     up, turn = 1 - 2 * n / max(mesh.matrices, 1), n * 2.39996323
     flat = np.sqrt(1 - up * up)
     ways = np.stack([flat * np.cos(turn), up, flat * np.sin(turn)], 1)
-    moved = (ways[vertices["bones"]] * vertices["weights"][..., None].astype(float)).sum(1)
+    moved = (ways[vertices["bones"]] * np.nan_to_num(vertices["weights"])[..., None].astype(float)).sum(1)
     return np.concatenate(
-        [place, MOVED * height * moved, PAINTED * height * np.clip(vertices["uv"], -8, 8)], 1
+        [place, MOVED * height * moved, PAINTED * height * np.clip(np.nan_to_num(vertices["uv"]), -8, 8)], 1
     )
 
 

@@ -77,6 +77,12 @@ def test_little_is_drawn_as_it_is_and_what_is_cancelled_leaves_nothing(folder):
     assert not list(folder.glob("*/*"))
 
 
+def test_a_mesh_with_places_that_are_no_numbers_is_drawn_as_it_is(folder):
+    mesh = a_ball()
+    mesh.vertices["position"][7] = np.nan
+    assert levels_of(mesh, 1.0) == ()
+
+
 def test_a_level_with_hardly_fewer_triangles_is_none(folder):
     """Every edge of a cube's faces, cut into squares that share nothing, is a border."""
     corners = np.array([[x, 0.0, z] for x in (0, 1) for z in (0, 1)])

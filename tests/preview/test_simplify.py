@@ -121,3 +121,26 @@ def test_the_sample_character_is_less_with_each_level_and_as_wide_and_tall(manne
         place = less.vertices["position"]
         assert np.abs(np.stack([place.min(0), place.max(0)]) - extent).max() < 0.01
     assert counts[1] < 0.7 * counts[0] and counts[2] < 0.7 * counts[1] and counts[3] < 0.7 * counts[2]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_whatever_a_mesh_is_like_what_is_left_is_a_mesh(seed):
+    """Triangles through one another, without area, twice, with three to an edge; vertices nobody uses."""
+    random = np.random.default_rng(seed)
+    count = int(random.integers(3, 60))
+    positions = random.choice([0.0, 0.25, 0.5, 1.0], (count, 3)) + random.normal(
+        0, 1e-3 * (seed % 3), (count, 3)
+    )
+    triangles = random.integers(0, count, (int(random.integers(1, 200)), 3))
+    half = len(triangles) // 2
+    batches = (Batch(0, half, b"one"), Batch(half, len(triangles) - half, None, True))
+    uvs = random.choice([0.0, 0.5, np.nan, 3.0], (count, 2))
+    mesh = mesh_of(positions, triangles, batches, uvs, random.integers(0, 2, count))
+    before = len(triangles)
+    for fewer in simplified(mesh, [1e-3, 0.1, 10.0]):
+        less = fewer.of(mesh)
+        assert len(less.triangles) <= before
+        assert not len(less.triangles) or less.triangles.max() < len(less.vertices)
+        assert sum(b.count for b in less.batches) == len(less.triangles)
+        assert [(b.image, b.double_sided) for b in less.batches] == [(b"one", False), (None, True)]
+        before = len(less.triangles)
