@@ -35,8 +35,10 @@ OTHERS = sorted(set(translation.NAMES) - {translation.ENGLISH})
 
 
 def templates() -> Iterator[tuple[str, str, set[str]]]:
-    """Yield where, what, and the names of values, for each template of the domain's (`metagraph.wording`)."""
-    for path in sorted(DOMAIN.rglob("*.py")):
+    """Yield where, what, and the names of values, for each template of the domain's and the
+    preview's (`metagraph.wording`).
+    """
+    for path in sorted((*DOMAIN.rglob("*.py"), *(DOMAIN.parent / "preview").rglob("*.py"))):
         source = path.read_text(encoding="utf-8")
         if not re.search(r"^from metagraph\.wording import .*\btold\b", source, re.MULTILINE):
             continue
@@ -45,7 +47,7 @@ def templates() -> Iterator[tuple[str, str, set[str]]]:
                 first = node.args[0]
                 for text in (first.body, first.orelse) if isinstance(first, ast.IfExp) else (first,):
                     if isinstance(text, ast.Constant):
-                        where = f"{path.relative_to(DOMAIN)}:{node.lineno}"
+                        where = f"{path.relative_to(DOMAIN.parent)}:{node.lineno}"
                         yield where, str(text.value), {str(k.arg) for k in node.keywords}
 
 
