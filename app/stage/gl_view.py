@@ -58,6 +58,7 @@ class CameraMouse(_Base):
         words.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         words.setAutoFillBackground(True)  # what an OpenGL widget leaves is black
         words.setContentsMargins(24, 24, 24, 24)
+        words.lower()  # buttons over the view stay to be seen
         room = QVBoxLayout(self)
         room.setSizeConstraint(QLayout.SizeConstraint.SetNoConstraint)
         room.addWidget(words)
