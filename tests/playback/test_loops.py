@@ -285,7 +285,7 @@ def test_loading_soon_waits_for_who_compiles(monkeypatch: Any, status: int, ther
     assert told == [[sys.executable, "-m", "metagraph.keep_loops"]] and bool(done) == there
 
 
-def test_kept_object_code_gives_the_very_same_poses(
+def test_kept_object_code_gives_the_same_poses(
     monkeypatch: pytest.MonkeyPatch, switch: Switch, sample: Project
 ) -> None:
     if not object_code.usable():
@@ -306,8 +306,9 @@ def test_kept_object_code_gives_the_very_same_poses(
     switch.off()
     assert loops.load_kept()
     assert not any(known.now is numba for known, numba in zip(loops.LOOPS, by_numba, strict=True))
+    # To the last bit where both are of one compilation; another process's numba may round in other places.
     for one, other in zip(poses(), expected, strict=True):
-        np.testing.assert_array_equal(one, other)
+        np.testing.assert_allclose(one, other, rtol=0, atol=LAYERS_ALONE)
 
 
 def test_who_compiles_says_whether_it_could_be_kept() -> None:
