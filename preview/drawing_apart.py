@@ -31,6 +31,7 @@ MOST = 4  # processes; more would wait for whoever encodes
 # Pictures from which on starting processes costs less than it saves: each takes a second of a core, so that
 # two cores gain a seventh over a minute, and nothing over ten seconds.
 WORTH, LEAST = 900, 300
+WORTH_LEVELS = 90  # pictures that making meshes with fewer triangles pays for
 WAITING = 4  # pictures under way for each process
 
 
@@ -59,6 +60,9 @@ def drawn(
         if first is None:
             return
         scenes = itertools.chain([first], scenes)
+        if count >= WORTH_LEVELS:
+            for actor in first[0].actors:
+                actor.figure.simplify()
         if not processes:
             for scene, camera in scenes:
                 yield here.render(scene, camera, theme, into=into)
@@ -81,7 +85,7 @@ def _drawn_apart(
     """
     figures = list({id(a.figure): a.figure for a in first.actors}.values())
     for figure in figures:
-        _ = figure.coarse, figure.boxes  # once, for all
+        _ = figure.boxes  # once, for all
     width, height = here.size
     slots = processes * WAITING + 1  # one more, that is looked at
     pool = np.memmap(path, np.uint8, "w+", shape=(slots, height, width, 4))

@@ -4,7 +4,7 @@ at once.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any
 
@@ -15,7 +15,8 @@ from metagraph.motion import rotation
 from metagraph.motion.character_mesh import Character, Material, followers
 from metagraph.motion.skeleton import Skeleton
 from preview import joints as rules
-from preview.mesh import VERTEX, Batch, Mesh, ball, capsule, coarse, egg, pieces
+from preview.levels import Level, levels_of
+from preview.mesh import VERTEX, Batch, Mesh, ball, capsule, egg, pieces
 from preview.occlusion import Rods, main_matrices, rods
 
 Array = NDArray[Any]
@@ -33,12 +34,14 @@ class Figure:
     skeleton: whose global transforms the figure takes. mesh: in its rest pose. sources: `[M]`, for each
     matrix of the palette the joint of `skeleton` it follows (-1: none). shadow: joints `[S]` and radii `[S]`
     that darken the ground. meshes: the names of the character's meshes, hidden ones too. instead: why this
-    figure stands in for the character's mesh, in words; "" where it does not.
+    figure stands in for the character's mesh, in words; "" where it does not. levels: meshes with fewer
+    triangles, finer ones first; none before `simplify`.
     """
 
     morphs: tuple[str, ...] = ()  # names of the mesh's morph targets
     meshes: tuple[str, ...] = ()
     instead: str = ""
+    levels: tuple[Level, ...] = ()
 
     def __init__(self, skeleton: Skeleton, mesh: Mesh, sources: Array) -> None:
         self.skeleton, self.mesh, self.sources = skeleton, mesh, sources
@@ -52,10 +55,16 @@ class Figure:
         self.shadow = (self.lines[body], self.line_starts[body])
         self._head = rules.head(skeleton)
 
-    @cached_property
-    def coarse(self) -> Mesh:
-        """The mesh for shadows and for figures small in the picture."""
-        return coarse(self.mesh)
+    def simplify(self, cancelled: Callable[[], bool] = lambda: False) -> None:
+        """Make the `levels`, or read those that were made before; a second or two where there were none, for
+        ten thousand triangles. From any thread. Pictures are as they were but for what is seen at their size.
+        """
+        if not self.levels:
+            self.levels = levels_of(self.mesh, self.height, cancelled)
+
+    def finest(self, error: float) -> Mesh:
+        """Return the mesh with the fewest triangles that is nowhere further off than `error`, metres."""
+        return next((a.mesh for a in reversed(self.levels) if a.error <= error), self.mesh)
 
     @cached_property
     def rods(self) -> Rods | None:

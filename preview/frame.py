@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,7 +25,9 @@ class Frame:
     """What the passes of one picture share.
 
     rows: each actor's first row in the palette. matrix: world to clip space `[4, 4]`. bounds: a box round
-    those who are no ghosts. meshes: which is drawn of each actor. light: world to shadow map, 0..1, or None.
+    those who are no ghosts. meshes: which is drawn of each actor. boxes: the corners of those round all
+    actors' pieces `[N, 8, 3]`. casters: what throws each actor's shadow, by how far off it may be. light:
+    world to shadow map, 0..1, or None.
     """
 
     scene: Scene
@@ -37,6 +39,8 @@ class Frame:
     matrix: Array
     bounds: tuple[Array, Array]
     meshes: list[Mesh]
+    boxes: Array
+    casters: Mapping[float, list[Mesh]]
     light: Array | None = None
 
     @property
@@ -67,17 +71,16 @@ def tall(actor: Actor, camera: Camera, height: int) -> float:
     return float(actor.figure.height / (2 * np.tan(camera.fov / 2) * max(float(away), 1e-3)) * height)
 
 
-def covered(frame: Frame, palettes: Sequence[Array]) -> Array:
+def covered(frame: Frame) -> Array:
     """Return the parts of the picture with figures in them `[N, 4]`: left, low, right, high, pixels from
-    below; rectangles that do not overlap. palettes: each actor's `[instances, M, 3, 4]`.
+    below; rectangles that do not overlap.
 
     Smoothing costs by the point, and the box round a figure with an arm out is mostly empty.
     """
     if not frame.actors:
         return np.zeros((0, 4), int)
     size = np.array(frame.size)
-    corners = np.concatenate([_corners(*at) for at in zip(frame.actors, palettes, strict=True)])
-    seen = frame.camera.project(corners, frame.size[0] / frame.size[1])
+    seen = frame.camera.project(frame.boxes, frame.size[0] / frame.size[1])
     if not np.isfinite(seen).all():  # somebody is behind the eye, or round it
         return np.array([[0, 0, *frame.size]])
     seen[..., 1] = 1 - seen[..., 1]
@@ -99,6 +102,15 @@ def covered(frame: Frame, palettes: Sequence[Array]) -> Array:
     if len(runs) > MOST:
         runs = np.concatenate([runs[:, :2].min(0), runs[:, 2:].max(0)])[None]
     return np.asarray(np.minimum(runs, np.tile(size, 2)))
+
+
+def boxes(actors: Sequence[Actor], palettes: Sequence[Array]) -> Array:
+    """Return the corners of the boxes round all actors' pieces `[N, 8, 3]`. palettes: each actor's
+    `[instances, M, 3, 4]`.
+    """
+    return np.concatenate(
+        [np.zeros((0, 8, 3)), *(_corners(*at) for at in zip(actors, palettes, strict=True))]
+    )
 
 
 def _corners(actor: Actor, palette: Array) -> Array:

@@ -20,10 +20,10 @@ from preview.scene import Actor
 
 Array = NDArray[Any]
 
-KEEP_MESHES = 8
+KEEP_MESHES = 16
 IDLE_FRAMES = 240
 TEXTURE_LIMIT = 2048
-PALETTE = 128  # pixels; textures up to this size are palettes and need no mipmaps
+PALETTE, NARROW = 128, 64  # pixels; textures up to this size, or so narrow, are palettes and need no mipmaps
 MARK_STRENGTH = 200  # of 255: how much a mark covers the figure's own colour
 
 # How the vertex (see mesh.VERTEX) is read by shaders of each kind; positions come from a buffer of their own.
@@ -68,8 +68,6 @@ class LoadedMesh:
     def release(self) -> None:
         for array in self.arrays.values():
             array.release()
-        for texture in self.images.values():
-            texture.release()
         for buffer in (self.vertices, self.positions, self.indices, self.limbs):
             if buffer is not None:
                 buffer.release()
@@ -81,6 +79,7 @@ class Store:
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
         self._meshes: dict[Mesh, LoadedMesh] = {}
+        self._images: dict[bytes, moderngl.Texture] = {}  # which a mesh and its levels of detail share
         self.palette = ctx.texture((3, 1), 4, dtype="f4")
         self.marks = ctx.texture((1, 1), 4)
         self._written: list[Actor] = []  # whose palettes and marks these are
@@ -96,6 +95,7 @@ class Store:
         for loaded in self._meshes.values():
             loaded.release()
         self._meshes.clear()
+        self._let_images_go()
         self.palette.release()
         self.marks.release()
 
@@ -114,10 +114,11 @@ class Store:
             rows.append(row)
             row += actor.count
         crowded = len(self._meshes) > KEEP_MESHES
-        for mesh in [
-            m for m, loaded in self._meshes.items() if loaded.idle > (0 if crowded else IDLE_FRAMES)
-        ]:
+        gone = [m for m, loaded in self._meshes.items() if loaded.idle > (0 if crowded else IDLE_FRAMES)]
+        for mesh in gone:
             self._meshes.pop(mesh).release()
+        if gone:
+            self._let_images_go()
         if len(actors) == len(self._written) and all(
             a is b for a, b in zip(actors, self._written, strict=True)
         ):
@@ -188,12 +189,22 @@ class Store:
             loaded.positions.write(np.ascontiguousarray(moved[loaded.order], "<f4").tobytes())
             loaded.morphs = wanted.tobytes()
 
+    def _let_images_go(self) -> None:
+        """Release the textures that no mesh has any more."""
+        used = {image for loaded in self._meshes.values() for image in loaded.images}
+        for image in [image for image in self._images if image not in used]:
+            self._images.pop(image).release()
+
     def _image(self, encoded: bytes) -> moderngl.Texture:
+        if encoded in self._images:
+            return self._images[encoded]
         size, pixels = decoded(encoded)
         texture = self._ctx.texture(size, 4, pixels)
-        if max(size) > PALETTE:  # what is smaller holds flat colours; and mipmaps cost a stall in software
+        # What is smaller holds flat colours; and mipmaps cost a stall in software.
+        if max(size) > PALETTE and min(size) > NARROW:
             texture.build_mipmaps()
             texture.filter = moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR
+        self._images[encoded] = texture
         return texture
 
 

@@ -78,47 +78,6 @@ def arranged(mesh: Mesh) -> tuple[Array, Array]:
     return order, number[triangles]
 
 
-def coarse(mesh: Mesh, cells: int = 84) -> Mesh:
-    """Return a mesh with vertices merged that share a cell (height / `cells`), a bone and a piece: for
-    shadows and crowds.
-
-    A piece is what triangles connect; pieces stay apart since their places in a texture have nothing in
-    common.
-    """
-    if not len(mesh.triangles):
-        return mesh
-    position = mesh.vertices["position"]
-    low, high = position.min(0), position.max(0)
-    size = max(float((high - low).max()) / cells, 1e-9)
-    cell = ((position - low) / size).astype(np.int64)
-    bone = np.take_along_axis(mesh.vertices["bones"], mesh.vertices["weights"].argmax(1)[:, None], 1)[
-        :, 0
-    ].astype(np.int64)
-    paint = np.clip(mesh.vertices["uv"] % 1.0, 0, 0.999) @ np.array(
-        [0, 16.0]
-    )  # nor do far places of one piece
-    piece = _pieces(len(position), mesh.triangles) * 16 + paint.astype(np.int64)
-    key = (((piece * (mesh.matrices + 1) + bone) * (cells + 2) + cell[:, 0]) * (cells + 2) + cell[:, 1]) * (
-        cells + 2
-    ) + cell[:, 2]
-    _, first, group, count = np.unique(key, return_index=True, return_inverse=True, return_counts=True)
-    middle = np.zeros((len(first), 3))
-    np.add.at(middle, group, position)
-    middle /= count[:, None]
-    # The vertex nearest to the middle stands for its cell, with its own weights and normal.
-    order = np.lexsort((np.linalg.norm(position - middle[group], axis=1), group))
-    chosen = order[np.searchsorted(group[order], np.arange(len(first)))]
-    vertices = mesh.vertices[chosen]
-    triangles, batches, at = [], [], 0
-    for b in mesh.batches:
-        t = group[mesh.triangles[b.first : b.first + b.count]]
-        t = t[(t[:, 0] != t[:, 1]) & (t[:, 1] != t[:, 2]) & (t[:, 2] != t[:, 0])]
-        triangles.append(t)
-        batches.append(Batch(at, len(t), b.image, b.double_sided))
-        at += len(t)
-    return Mesh(vertices, np.concatenate(triangles).astype(np.uint32), tuple(batches), mesh.matrices)
-
-
 def pieces(mesh: Mesh, length: float, margin: float) -> tuple[Array, Array]:
     """Cut a mesh where its bones are, and each bone's part along its longest side.
 
@@ -147,20 +106,6 @@ def pieces(mesh: Mesh, length: float, margin: float) -> tuple[Array, Array]:
     box[1] = margin - box[1]
     corners = np.stack([box[[k & 1, k >> 1 & 1, k >> 2], :, [0, 1, 2]].T for k in range(8)], 1)
     return key // (int(step.max()) + 1), corners
-
-
-def _pieces(count: int, triangles: Array) -> Array:
-    """For each vertex the least vertex it is connected to by triangles, `[V]`."""
-    label = np.arange(count, dtype=np.int64)
-    while True:
-        least = label[triangles].min(1)
-        after = label.copy()
-        for k in range(3):
-            np.minimum.at(after, triangles[:, k], least)
-        after = after[after]
-        if np.array_equal(after, label):
-            return label
-        label = after
 
 
 def lathe(profile: Sequence[tuple[float, float]], sides: int) -> tuple[Array, Array, Array]:

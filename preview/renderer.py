@@ -15,16 +15,18 @@ from preview import shaders
 from preview.backdrop import Backdrop
 from preview.camera import Camera
 from preview.drawing import Drawing, set_uniforms
-from preview.frame import MARGIN, Array, Frame, covered, drawable, tall
+from preview.frame import MARGIN, Array, Frame, boxes, covered, drawable, tall
 from preview.mesh import Mesh
 from preview.scene import DARK, Actor, Scene, Theme
-from preview.shadows import SHADOW_LIMIT, Shadows, depths
+from preview.shadows import SHADOW_LIMIT, Shadows, depths, shadow_casters
 
 GHOST_BACK = (2.0, 1500.0)  # by slope, and in steps of the depth; about a centimetre where a figure stands
 CONTACT, CONTACT_HIGH = 0.75, 0.16  # how much darker a sole is, and of the height, up to where
 SHADE = 0.8  # how dark the figure's shadow on itself is
-COARSE_BELOW, COARSE_CROWD_BELOW = 90, 240  # pixels of height under which figures are drawn coarse
-BESIDE_BELOW = 640  # likewise in software, of a ghost, and in a view beside another
+# Pixels that a figure's surface may be off for its having fewer triangles: on a graphics card and in
+# software; in a crowd, which has no shadows on itself either; in software of a ghost or in a view beside
+# another, looked at less closely.
+OFF, OFF_CROWD, OFF_BESIDE = (0.5, 1.0), 1.4, 1.6
 _SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "software", "basic render")
 
 
@@ -86,21 +88,21 @@ class Renderer:
         self._resize(width, height)
         solid = [a for a in actors if a.opacity >= 1]
         cast = scene.shadow and 0 < sum(a.count for a in solid) <= SHADOW_LIMIT
-        small = COARSE_BELOW if sum(a.count for a in actors) <= SHADOW_LIMIT else COARSE_CROWD_BELOW
-        beside = BESIDE_BELOW if self.software else small
+        crowd = sum(a.count for a in actors) > SHADOW_LIMIT
 
         def mesh(a: Actor) -> Mesh:
-            second = self._beside is not None or a.opacity < 1  # looked at less closely
-            coarse = a.morphs is None and tall(a, camera, height) < (beside if second else small)
-            return a.figure.coarse if coarse else a.figure.mesh
+            second = self.software and (self._beside is not None or a.opacity < 1)
+            off = max(OFF_CROWD if crowd else OFF[self.software], OFF_BESIDE if second else 0.0)
+            return a.figure.finest(off * a.figure.height / max(1.0, tall(a, camera, height)))
 
         meshes = [mesh(a) for a in actors]
-        rows = self._drawing.store.prepare(
-            actors, meshes + ([a.figure.coarse for a in solid] if cast else [])
-        )
+        casters = shadow_casters(actors) if cast else {}
+        rows = self._drawing.store.prepare(actors, sum(casters.values(), meshes))
         matrix = camera.projection(width / height) @ camera.view()
+        bounds = Scene(tuple(solid)).bounds()
+        round_pieces = boxes(actors, self.store.palettes if actors else ())
         frame = Frame(
-            scene, actors, rows, camera, (width, height), theme, matrix, Scene(tuple(solid)).bounds(), meshes
+            scene, actors, rows, camera, (width, height), theme, matrix, bounds, meshes, round_pieces, casters
         )
         if cast:
             frame = replace(frame, light=self._shadows.cast(frame))
@@ -110,7 +112,7 @@ class Renderer:
         ground_to = self._backdrop.draw(frame, target)
         if ground_to > 0 and solid and scene.shadow:
             self._shadows.on_ground(frame, target, ground_to, solid)
-        parts = covered(frame, self.store.palettes)
+        parts = covered(frame)
         if len(parts):
             self._drawing.state(self._main, (0, 0, width, height), moderngl.DEPTH_TEST)
             # Smoothing looks a little beyond.
@@ -168,7 +170,7 @@ class Renderer:
                     u_shade=SHADE,
                 )
                 if frame.light is not None:
-                    set_uniforms(program, u_light=frame.light)
+                    set_uniforms(program, u_light=frame.light, u_spread=self._shadows.spread)
                 if rods is not None:
                     starts, ends = rods.placed(self.store.palettes[i][0])
                     set_uniforms(program, u_rod_starts=starts, u_rod_ends=ends)
@@ -185,7 +187,7 @@ class Renderer:
         self.ctx.polygon_offset = GHOST_BACK
         self._main.color_mask = (False, False, False, False)
         self._main.use()  # a mask counts from the next use
-        depths(self._drawing, frame, which, frame.matrix, coarse=False)
+        depths(self._drawing, frame, which, frame.matrix, frame.meshes)
         self._main.color_mask = (True, True, True, True)
         self._main.use()
         self.ctx.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA

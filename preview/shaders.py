@@ -82,12 +82,13 @@ void main() {
 _SHADOW = """
 uniform sampler2DShadow u_shadow;
 uniform mat4 u_light;
+uniform vec2 u_spread;  // of the map
 float tap(vec3 p) { return textureLod(u_shadow, p, 0.0); }
 // Two taps, each the mean of four texels: enough for an edge a few pixels wide.
-float lit(vec3 world, vec2 radius, float bias) {
+float lit(vec3 world, float bias) {
     vec4 p = u_light * vec4(world, 1.0);
     p.z -= bias;
-    return 0.5 * (tap(p.xyz + vec3(radius, 0.0)) + tap(p.xyz - vec3(radius, 0.0)));
+    return 0.5 * (tap(p.xyz + vec3(u_spread, 0.0)) + tap(p.xyz - vec3(u_spread, 0.0)));
 }
 """
 
@@ -109,7 +110,8 @@ vec2 spread(int i, float count) {
 }
 // How far before the ground the lamp's light ends; less than 0 where it does not.
 float before(vec3 p, vec2 off) {
-    float depth = textureLod(u_depth, p.xy + off, 0.0).r;
+    ivec2 size = textureSize(u_depth, 0);
+    float depth = texelFetch(u_depth, clamp(ivec2((p.xy + off) * vec2(size)), ivec2(0), size - 1), 0).r;
     return p.z - depth - 9.0 * step(1.0, depth);
 }
 void main() {
@@ -310,7 +312,7 @@ void main() {
     float away = 1.0 - clamp(dot(n, v), 0.0, 1.0);
     float light = clamp(facing * 0.86 + 0.14, 0.0, 1.0);  // the terminator is soft, as on skin
 #ifdef SHADOWED
-    light *= mix(1.0, lit(v_world + n * 0.010, vec2(0.0016, 0.0009), 0.0025), u_shade);
+    light *= mix(1.0, lit(v_world + n * 0.010, 0.0025), u_shade);
 #endif
     float up = n.y * 0.5 + 0.5;
     vec3 fill = mix(u_below, u_above, up) * (1.0 - 0.25 * away);

@@ -12,76 +12,115 @@ from numpy.typing import NDArray
 from preview import shaders
 from preview.drawing import Drawing, set_uniforms
 from preview.frame import Frame
+from preview.mesh import Mesh
 from preview.scene import Actor
 
 Array = NDArray[Any]
 
-SHADOW_SIZE = 1024, 320  # texels, on a graphics card and in software
+# Texels, on a graphics card and in software: of all and near by; of all for the ground alone.
+SHADOW_SIZE = (1024, 1024), (416, 208)
+NEAR = 3.0  # pixels of the picture that a texel of the whole may be wide before what is in it has its own map
+# Texels from the middle of the two places of the map that are looked at, likewise.
+TAPS = (1.6, 0.9), (0.8, 0.45)
+CAST_OFF, SOFT_OFF = 0.004, 0.008  # of the height, that what throws a shadow may be off; on the ground alone
+STEPS = 8  # sizes of the map near by for each doubling: else its texels would creep over a body that moves
 SOFT_SIZE = 128, 56  # texels of the ground's shadow, along the light and across
 SHADOW_LIMIT = 8  # instances; a crowd has only the soft spots under it
-Strip = tuple[tuple[float, ...], tuple[float, float]]  # a patch of the ground and its turn
+FAINT = 0.02  # the strength under which a spot on the ground is not worth its points
+Strip = tuple[
+    tuple[float, ...], tuple[float, float], tuple[float, ...]
+]  # a patch of the ground, its turn, fading
+
+
+class _Map:
+    """Depth as the lamp sees it, `size` texels along each side."""
+
+    def __init__(self, ctx: moderngl.Context, size: int) -> None:
+        self.size = size
+        self.seen: tuple[list[Actor], tuple[float, ...], Array] | None = None  # actors, lamp, matrix
+        self.depth = ctx.depth_texture((size, size))
+        self.depth.compare_func = "<="
+        self.depth.repeat_x = self.depth.repeat_y = False
+        self.target = ctx.framebuffer(depth_attachment=self.depth)
+
+    def release(self) -> None:
+        self.target.release()
+        self.depth.release()
 
 
 class Shadows:
-    """Belongs to a drawing; views of one scene share what the lamp saw."""
+    """Belongs to a drawing; views of one scene share what the lamp saw of the whole of it."""
 
     def __init__(self, drawing: Drawing, software: bool) -> None:
-        self._drawing, ctx = drawing, drawing.ctx
-        self._size = SHADOW_SIZE[software]
-        self.map = ctx.depth_texture((self._size, self._size))
-        self.map.compare_func = "<="
-        self._map_fbo = ctx.framebuffer(depth_attachment=self.map)
+        self._drawing, self._taps, ctx = drawing, TAPS[software], drawing.ctx
+        size, small = SHADOW_SIZE[software]
+        self._whole, self._near, self._low = _Map(ctx, size), _Map(ctx, size), _Map(ctx, small)
+        self._used = self._whole
         self._soft = ctx.texture(SOFT_SIZE, 1)
         self._soft_fbo = ctx.framebuffer([self._soft])
-        for texture in (self.map, self._soft):
-            texture.repeat_x = texture.repeat_y = False
-        self._lit: tuple[list[Actor], tuple[float, ...], Array] | None = None  # actors, lamp, matrix
-        self._strip: Strip | None = None  # where their shadow lies on the ground, once it is drawn
+        self._soft.repeat_x = self._soft.repeat_y = False
+        self._softened: tuple[list[Actor], tuple[float, ...]] | None = None  # whose shadow lies on the ground
 
     def release(self) -> None:
         """Give everything back."""
-        held: Any
-        for held in (self._map_fbo, self.map, self._soft_fbo, self._soft):
+        for held in (self._whole, self._near, self._low, self._soft_fbo, self._soft):
             held.release()
+
+    @property
+    def map(self) -> moderngl.Texture:
+        """What figures are shaded by: depth as the lamp sees it."""
+        return self._used.depth
+
+    @property
+    def spread(self) -> tuple[float, float]:
+        """How far apart its texels are looked at, of its size."""
+        return self._taps[0] / self._used.size, self._taps[1] / self._used.size
 
     def cast(self, frame: Frame) -> Array:
         """Draw depth as the lamp sees it, if it sees another; return the matrix from the world to the shadow
-        map, 0..1.
+        map, 0..1. Near by, what is in the picture has a map of its own.
         """
-        before = self._lit
+        axes, centre, radius = _lamp(frame)
+        window = _window(frame, axes, self._whole.size / (2 * radius))
+        if window is None:
+            self._used = self._whole
+            return self._of_all(frame, self._whole, CAST_OFF)
+        self._used = self._near
+        middle, half = (window[0] + window[1]) / 2, (window[1] - window[0]) / 2
+        matrix = np.eye(4)
+        matrix[:3, :3] = axes / [[half[0]], [half[1]], [radius]]
+        matrix[:3, 3] = -np.array([*(middle / half), axes[2] @ centre / radius])
+        return self._drawn(frame, self._near, matrix, CAST_OFF)
+
+    def _of_all(self, frame: Frame, into: _Map, off: float) -> Array:
+        before = into.seen
         if before is not None and before[1] == frame.theme.toward and _alike(before[0], frame.actors):
             return before[2]
-        low, high = frame.bounds
-        centre, radius = (low + high) / 2, max(0.05, float(np.linalg.norm(high - low)) / 2)
-        to_light = frame.theme.to_light
-        side = np.cross([0.0, 1, 0], to_light)
-        side /= np.linalg.norm(side)
-        axes = np.stack([side, np.cross(to_light, side), -to_light])
+        axes, centre, radius = _lamp(frame)
         matrix = np.eye(4)
         matrix[:3, :3] = axes / radius
         matrix[:3, 3] = -axes @ centre / radius
-        self._drawing.state(
-            self._map_fbo,
-            (0, 0, self._size, self._size),
-            moderngl.DEPTH_TEST,
-            colors=False,
-        )
-        self._map_fbo.clear(depth=1.0)
-        depths(self._drawing, frame, frame.which(solid=True), matrix, coarse=True)
+        into.seen = frame.actors, frame.theme.toward, self._drawn(frame, into, matrix, off)
+        return into.seen[2]
+
+    def _drawn(self, frame: Frame, into: _Map, matrix: Array, off: float) -> Array:
+        self._drawing.state(into.target, (0, 0, into.size, into.size), moderngl.DEPTH_TEST, colors=False)
+        into.target.clear(depth=1.0)
+        depths(self._drawing, frame, frame.which(solid=True), matrix, frame.casters[off])
         half = np.eye(4) * 0.5
         half[:3, 3], half[3, 3] = 0.5, 1
-        self._strip = None
-        self._lit = frame.actors, frame.theme.toward, np.asarray(half @ matrix)
-        return self._lit[2]
+        return np.asarray(half @ matrix)
 
     def on_ground(self, frame: Frame, target: Any, ground_to: int, solid: Sequence[Actor]) -> None:
         """What darkens the ground multiplies what is there. ground_to: the row, from below, it ends at."""
-        strip = self._softened(frame) if frame.light is not None else None
+        strip = _strip(frame) if frame.light is not None else None
+        if strip is not None:
+            self._soften(frame, strip)
         self._drawing.state(target, (0, 0, *frame.size), moderngl.BLEND)
         target.scissor = (0, 0, frame.size[0], ground_to)
         self._drawing.ctx.blend_func = moderngl.ZERO, moderngl.SRC_COLOR
         if strip is not None:
-            patch, turn = strip
+            patch, turn, _ = strip
             program = self._drawing.program("cast", shaders.GROUND_VERTEX, shaders.CAST)
             self._soft.use(4)
             set_uniforms(program, u_matrix=frame.matrix, u_patch=patch, u_turn=turn)
@@ -92,51 +131,104 @@ class Shadows:
         self._drawing.squares("spots", program, np.concatenate([_spots(a) for a in solid]), "4f/i", "in_spot")
         target.scissor = None
 
-    def _softened(self, frame: Frame) -> Strip:
-        """Draw the shadow on the ground as seen from above; return where on it that lies: a patch, its turn.
-        Only a strip along the light can be dark.
-        """
-        assert frame.light is not None
-        if self._strip is not None:
-            return self._strip
-        low, high = frame.bounds
-        to_light = frame.theme.to_light
-        thrown = -to_light / to_light[1] * max(0.0, float(high[1]))
-        fade_low, fade_high = np.minimum(low, low + thrown), np.maximum(high, high + thrown)
-        middle, half = (fade_low + fade_high) / 2, (fade_high - fade_low) / 2 * 1.05
-        along = to_light[[0, 2]] / np.linalg.norm(to_light[[0, 2]])
-        axes = np.stack([along, [-along[1], along[0]]])
-        feet = np.array([(x, z) for x in (low[0], high[0]) for z in (low[2], high[2])])
-        strip = np.concatenate([feet, feet + thrown[[0, 2]]]) @ axes.T
-        least, most = strip.min(0) - 0.05 * half.max(), strip.max(0) + 0.05 * half.max()
-        x, z = (least + most) / 2 @ axes
-        patch, turn = (x, z, *((most - least) / 2)), (float(along[0]), float(along[1]))
+    def _soften(self, frame: Frame, strip: Strip) -> None:
+        """Draw the shadow on a strip of the ground as seen from above."""
+        toward, before = frame.theme.toward, self._softened
+        if before is not None and before[1] == toward and _alike(before[0], frame.actors):
+            return
+        self._softened = frame.actors, toward
+        into = self._low if self._used is self._near else self._whole
+        light = self._of_all(frame, into, SOFT_OFF if into is self._low else CAST_OFF)
+        patch, turn, fade = strip
         self._drawing.state(self._soft_fbo, (0, 0, *SOFT_SIZE), moderngl.NOTHING)
         program = self._drawing.program("soft", shaders.COVER, shaders.SOFT)
-        self.map.compare_func = ""
-        self.map.use(1)
-        set_uniforms(program, u_depth=1, u_light=frame.light, u_patch=patch, u_turn=turn)
-        set_uniforms(program, u_fade=(middle[0], middle[2], max(half[0], half[2])))
-        set_uniforms(program, u_scale=float(np.linalg.norm(frame.light[0, :3])))
+        depth = into.depth
+        depth.compare_func = ""
+        depth.use(1)
+        set_uniforms(program, u_depth=1, u_light=light, u_patch=patch, u_turn=turn, u_fade=fade)
+        set_uniforms(program, u_scale=float(np.linalg.norm(light[0, :3])))
         self._drawing.bare("soft", program).render(moderngl.TRIANGLES, 3)
-        self.map.compare_func = "<="
-        self._strip = patch, turn
-        return patch, turn
+        depth.compare_func = "<="
 
 
-def depths(drawing: Drawing, frame: Frame, which: Sequence[int], matrix: Array, coarse: bool) -> None:
-    """Draw nothing but depth, as seen through `matrix`. coarse: with coarse meshes instead of the frame's."""
+def _strip(frame: Frame) -> Strip | None:
+    """Return where on the ground the shadow can be; None where that is out of the picture. Only a strip along
+    the light can be dark.
+    """
+    low, high = frame.bounds
+    to_light = frame.theme.to_light
+    thrown = -to_light / to_light[1] * max(0.0, float(high[1]))
+    fade_low, fade_high = np.minimum(low, low + thrown), np.maximum(high, high + thrown)
+    middle, half = (fade_low + fade_high) / 2, (fade_high - fade_low) / 2 * 1.05
+    along = to_light[[0, 2]] / np.linalg.norm(to_light[[0, 2]])
+    axes = np.stack([along, [-along[1], along[0]]])
+    feet = np.array([(x, z) for x in (low[0], high[0]) for z in (low[2], high[2])])
+    strip = np.concatenate([feet, feet + thrown[[0, 2]]]) @ axes.T
+    least, most = strip.min(0) - 0.05 * half.max(), strip.max(0) + 0.05 * half.max()
+    corners = np.array([(x, z) for x in (least[0], most[0]) for z in (least[1], most[1])]) @ axes
+    seen = np.insert(corners, 1, 0.0, axis=1) @ frame.matrix[:, [0, 1, 2]].T + frame.matrix[:, 3]
+    if (seen[:, :2] > seen[:, 3:]).all(0).any() or (seen[:, :2] < -seen[:, 3:]).all(0).any():
+        return None
+    x, z = (least + most) / 2 @ axes
+    patch = (float(x), float(z), *((most - least) / 2).tolist())
+    fade = (float(middle[0]), float(middle[2]), float(max(half[0], half[2])))
+    return patch, (float(along[0]), float(along[1])), fade
+
+
+def shadow_casters(actors: Sequence[Actor]) -> dict[float, list[Mesh]]:
+    """Return what may throw each actor's shadow, by how far off that is, of its height."""
+    return {off: [a.figure.finest(off * a.figure.height) for a in actors] for off in (CAST_OFF, SOFT_OFF)}
+
+
+def depths(
+    drawing: Drawing, frame: Frame, which: Sequence[int], matrix: Array, meshes: Sequence[Mesh]
+) -> None:
+    """Draw nothing but depth, as seen through `matrix`. meshes: one for each actor of the frame."""
     program = drawing.program("depth", shaders.DEPTH_VERTEX, shaders.DEPTH)
     set_uniforms(program, u_matrix=matrix, u_palette=0)
     drawing.store.palette.use(0)
     for i in which:
         set_uniforms(program, u_row=frame.rows[i])
-        drawing.triangles(
-            frame.actors[i].figure.coarse if coarse else frame.meshes[i],
-            frame.actors[i],
-            program,
-            "depth",
-        )
+        drawing.triangles(meshes[i], frame.actors[i], program, "depth")
+
+
+def _lamp(frame: Frame) -> tuple[Array, Array, float]:
+    """Return the lamp's right, up and forward `[3, 3]`, and the middle `[3]` and radius of what it lights."""
+    low, high = frame.bounds
+    to_light = frame.theme.to_light
+    side = np.cross([0.0, 1, 0], to_light)
+    side /= np.linalg.norm(side)
+    axes = np.stack([side, np.cross(to_light, side), -to_light])
+    return axes, (low + high) / 2, max(0.05, float(np.linalg.norm(high - low)) / 2)
+
+
+def _window(frame: Frame, axes: Array, texels: float) -> tuple[Array, Array] | None:
+    """Return the part of the lamp's picture `[2], [2]`, metres, that shades what is seen, where that is so
+    near that texels would show. texels: of the map of all, a metre.
+    """
+    camera, (width, height) = frame.camera, frame.size
+    seen = camera.project(frame.boxes, width / height)
+    behind = np.asarray(np.isnan(seen).any(2))  # the eye
+    low, high = (np.where(behind[..., None], fill, seen) for fill in (np.inf, -np.inf))
+    inside = (low.min(1) < 1).all(1) & (high.max(1) > 0).all(1)
+    inside |= behind.any(1) & ~behind.all(1)
+    if not inside.any():
+        return None
+    corners = frame.boxes[inside].reshape(-1, 3)
+    away = np.maximum((camera.eye - corners) @ camera.axes[2], camera.near)
+    tall = height / (2 * np.tan(camera.fov / 2))  # pixels of a metre, a metre away
+    if tall / float(away.min()) < NEAR * texels:
+        return None
+    # No more of the boxes than is in the picture, from the nearest to the farthest of them.
+    right, up, back = camera.axes
+    sides = [(x * width * right + y * height * up) / (2 * tall) for x in (-1, 1) for y in (-1, 1)]
+    view = camera.eye + np.array([d * (s - back) for d in (away.min(), away.max()) for s in sides])
+    boxes, view = corners @ axes[:2].T, view @ axes[:2].T
+    low, high = np.maximum(boxes.min(0), view.min(0)), np.minimum(boxes.max(0), view.max(0))
+    half = 2 ** (np.ceil(np.log2(np.maximum((high - low) / 2, 1e-3) * 1.04) * STEPS) / STEPS)
+    texel = half / 128
+    middle = np.round((low + high) / 2 / texel) * texel
+    return middle - half, middle + half
 
 
 def _alike(before: Sequence[Actor], now: Sequence[Actor]) -> bool:
@@ -157,4 +249,4 @@ def _spots(actor: Actor) -> Array:
     radius = 0.55 * length + 0.05 * h + 0.30 * up * h
     strength = 0.60 * np.exp(-5.0 * up) * np.clip(length / (0.12 * h), 0.25, 1.0)
     out = np.stack([middle[..., 0], middle[..., 2], radius, strength], -1).reshape(-1, 4)
-    return np.asarray(out[out[:, 3] > 0.01])
+    return np.asarray(out[out[:, 3] > FAINT])

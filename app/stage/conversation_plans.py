@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 import msgspec
@@ -23,17 +24,20 @@ Key = tuple[Any, ...]
 
 
 class ConversationPlans:
-    """Reads voices and other projects once. Used by one thread at a time: the performance plans one thing
-    after another.
-    """
+    """Reads voices and other projects once. One thread after another: who comes second waits."""
 
     def __init__(self) -> None:
+        self._one = Lock()
         self._voices: dict[Key, Any] = {}
         self._projects: dict[Key, Project] = {}
         self._bodies: dict[Key, tuple[str, ...]] = {}  # morph targets of characters
 
     def show(self, project: Project, ident: str, folder: Path, side: int = 0) -> Shown:
         """Return what all play, a side first, the others with it. folder: what paths begin at."""
+        with self._one:
+            return self._show(project, ident, folder, side)
+
+    def _show(self, project: Project, ident: str, folder: Path, side: int) -> Shown:
         from metagraph.speech.duet import duet, voices
 
         conversation = project.conversations[ident]

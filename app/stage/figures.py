@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.project.document import Document
-from app.project.jobs import Jobs
+from app.project.jobs import Job, Jobs
 from app.stage.playback_source import Shown
 from app.translation import tr
 from metagraph.errors import FileError
@@ -17,6 +17,7 @@ from preview.character_file import figure_of
 from preview.figure import Figure
 
 Key = tuple[str, str, tuple[str, ...]]  # the character's file, the skeleton it is bound to, what is hidden
+REST = 1500  # milliseconds after a figure has come, in which much else is made
 
 
 class Figures(QObject):
@@ -32,6 +33,9 @@ class Figures(QObject):
         self._guests: dict[Key, Figure | None] = {}  # characters of other projects, who talk with this one's
         self._wanted: Key | None = None
         self._unreadable: Key | None = None
+        self._whole: list[Figure] = []  # whose levels of detail are to be made
+        self._later = QTimer(self, singleShot=True, interval=REST)
+        self._later.timeout.connect(self._make_levels)
         document.changed.connect(self._follow)
 
     def _key(self, project: Project) -> Key | None:
@@ -60,6 +64,7 @@ class Figures(QObject):
     def _read(self, result: tuple[Key, Figure]) -> None:
         if result[0] == self._wanted:
             self._skinned = result
+            self._simplify(result[1])
             if result[1].instead:
                 self.document.failed.emit(tr("A stick figure is drawn: {instead}", instead=result[1].instead))
             self.changed.emit()
@@ -112,10 +117,26 @@ class Figures(QObject):
 
     def _came(self, result: tuple[Key, Figure]) -> None:
         self._guests[result[0]] = result[1]
+        self._simplify(result[1])
         self.changed.emit()
+
+    def _simplify(self, figure: Figure) -> None:
+        """Make its levels of detail while it is already drawn, once the window has come to rest."""
+        self._whole.append(figure)
+        self._later.start()
+
+    def _make_levels(self) -> None:
+        figures, self._whole = self._whole, []
+
+        def work(job: Job) -> None:
+            for figure in figures:
+                figure.simplify(lambda: job.cancelled)
+
+        self.jobs.start("levels of detail", work, quick=True)
 
     def _built(self, figure: Figure) -> None:
         self._sticks[figure.skeleton.fingerprint] = figure
+        self._simplify(figure)
         self.changed.emit()
 
 
@@ -128,5 +149,4 @@ def _ready(figure: Figure) -> Figure:
             decoded(batch.image)
     _, rest = figure.skeleton.globals(figure.skeleton.rest)
     figure.bounds(rest)
-    _ = figure.coarse
     return figure

@@ -63,7 +63,7 @@ class Performance(QObject):
         session.onstage.performance_changed.connect(self._staged)
         session.onstage.mode_changed.connect(self._switched)
         session.onstage.conversation_changed.connect(self._conversed)
-        self._conversations = ConversationPlans()
+        self.conversations = ConversationPlans()
         self._noted: tuple[str, ...] = ()  # about a conversation, said once
         self._fires: tuple[Fire, ...] = ()  # triggers of the manual state machine, fired since it began
         self._on_stage: str | None = None
@@ -218,7 +218,7 @@ class Performance(QObject):
             if show == "context" and shown is not None:
                 return in_context(project, shown, layer, stances, anew)
             if talk is not None and project.skeleton is not None:
-                return self._conversations.show(project, talk, folder, side)
+                return self.conversations.show(project, talk, folder, side)
             if kept is None:
                 return Shown(project, make_plan(project, length), length)
             return Shown(

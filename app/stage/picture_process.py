@@ -10,6 +10,7 @@ import pickle
 import queue
 import sys
 import threading
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -27,6 +28,7 @@ MOVING_SIZE, MOVING_RATE, MOVING_MOST = (
 )  # the loop in the stance card: pixels, pictures a second, at most
 STRIP_RATE, STRIP_MOST = 6, 36  # a filmstrip's pictures a second, at most
 SCRUB = 12  # pictures through which the pointer goes over a card
+WORTH_LEVELS = 24  # pictures of a figure after which meshes with fewer triangles pay
 LARGE = 448  # pixels of a picture on a large card
 LONG = ("moving", "strip", "scrub")  # of many pictures
 FRAMED = ("card", "bare", "large", "scrub")  # as near as what the clip moves asks for
@@ -92,6 +94,7 @@ def serve(orders: BinaryIO, results: BinaryIO) -> None:
     except OpenGLError:
         return
     figures: dict[tuple[str, Path | None, tuple[str, ...]], Any] = {}
+    drawn: Counter[tuple[str, Path | None, tuple[str, ...]]] = Counter()
     with offscreen:
         while (order := waiting.get()[2]) is not None:
             pickle.dump(
@@ -101,6 +104,9 @@ def serve(orders: BinaryIO, results: BinaryIO) -> None:
             key = (order.clip.skeleton.fingerprint, order.character, order.hidden)
             if key not in figures:
                 figures[key] = _figure(order.clip.skeleton, order.character, order.hidden)
+            drawn[key] += 1
+            if drawn[key] == WORTH_LEVELS:
+                figures[key].simplify()
             pickle.dump((order.number, draw(offscreen, figures[key], order)), results)
             results.flush()
 

@@ -38,7 +38,7 @@ TITLES = {
     "head": tr("Head"),
 }
 FIXED = {"cameras": 18.0, "words": 40.0}  # pixels of lanes that have no requests
-GHOST = 20.0  # the same of another seed's
+GHOST = 14.0  # the same of another seed's
 TALLEST_SHARE, LEAST_SHARE = 4.0, 0.45  # by which a lane can be made taller or lower
 NARROWEST = 6.0  # pixels of a mark that others leave no room
 

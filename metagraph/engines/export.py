@@ -47,6 +47,7 @@ from metagraph.playback.sampling import LOOP_FADE
 from metagraph.playback.vigour import vigour
 from metagraph.speech.sound import sound_ending
 from metagraph.uncollected import uncollected
+from metagraph.wording import told
 
 Chosen = Callable[[Path], bool]
 
@@ -110,11 +111,16 @@ def sound(project: Project) -> tuple[str, ...]:
     problems = check(project)
     errors = [p for p in problems if p.severity == "error"]
     if errors:
-        more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
-        raise ExportError(f"{errors[0].message}. {errors[0].remedy}{more}")
+        first, rest = errors[0], len(errors) - 1
+        words = "{message}. {remedy} (and {rest} more)" if rest else "{message}. {remedy}"
+        raise ExportError(told(words, message=first.message, remedy=first.remedy, rest=rest))
     if project.skeleton is None or not any(True for _ in project.actions()):
-        raise ExportError("no action is placed yet: there is nothing to export")
-    return tuple(f"{p.message}. {p.remedy}" for p in problems if p.severity == "warning")
+        raise ExportError(told("no action is placed yet: there is nothing to export"))
+    return tuple(
+        told("{message}. {remedy}", message=p.message, remedy=p.remedy)
+        for p in problems
+        if p.severity == "warning"
+    )
 
 
 def stem_of(project: Project) -> str:
@@ -173,7 +179,7 @@ def _sounds(
             ending = sound_ending(source)
             if not is_inside(source, base) and not chosen(source):
                 remedy = "Move it there, or choose the line's sound by hand."
-                raise FileError(source, "lies outside the project's folder", "its sound", remedy)
+                raise FileError(source, told("lies outside the project's folder"), told("its sound"), remedy)
             inside = f"lines/{name}{ending}" if line.channel is None else f"lines/{name}.wav"
             content = (
                 read_file(source, SOUND_FILE) if line.channel is None else _channel(source, line.channel)
@@ -222,9 +228,9 @@ def _write_glb(
     except OSError as error:
         raise FileError(
             path.parent,
-            f"cannot be made ({error.strerror})",
-            "on making the folder",
-            "Choose a folder you may write to.",
+            told("cannot be made ({strerror})", strerror=error.strerror),
+            told("on making the folder"),
+            told("Choose a folder you may write to."),
         ) from None
     shown, notes = mesh_on(skeleton, character, project.hidden)
     presets = presets_of(shown.morphs, project.face.channels) if shown is not None else {}

@@ -16,6 +16,7 @@ from metagraph.budgets import MARKS, MARKS_FILE, NESTING
 from metagraph.errors import FileError
 from metagraph.files import guarded, opened
 from metagraph.playback.annotation import Annotation, Interval, Tier
+from metagraph.wording import told
 
 LONGEST = 1e7  # seconds, four months
 UNITS: Mapping[str, float] = {
@@ -24,8 +25,8 @@ UNITS: Mapping[str, float] = {
     "PAL-50-frames": 1 / 50,
     "NTSC-frames": 1001 / 30000,
 }
-_AGAIN = "Open it in ELAN and save it again."
-_NOT = "Choose a file that ELAN saved (.eaf)."
+_AGAIN = told("Open it in ELAN and save it again.")
+_NOT = told("Choose a file that ELAN saved (.eaf).")
 
 
 @dataclass
@@ -79,25 +80,34 @@ class _Reader:
         return self.parser.CurrentLineNumber
 
     def fail(self, cause: str, line: int | None = None, remedy: str = _AGAIN) -> FileError:
-        return FileError(self.path, cause, f"line {self.line if line is None else line}", remedy)
+        return FileError(
+            self.path, cause, told("line {value}", value=self.line if line is None else line), remedy
+        )
 
     def _entity(self, *_: object) -> None:
-        raise self.fail("it defines entities of its own, which no program of annotations does", remedy=_NOT)
+        raise self.fail(
+            told("it defines entities of its own, which no program of annotations does"), remedy=_NOT
+        )
 
     def _begin(self, name: str, at: dict[str, str]) -> None:
         self.depth += 1
         if self.depth == 1 and name != "ANNOTATION_DOCUMENT":
             raise self.fail(
-                f"its outermost element is '{name}', not 'ANNOTATION_DOCUMENT': this is not an ELAN "
-                "annotation",
+                told(
+                    "its outermost element is '{name}', not 'ANNOTATION_DOCUMENT': this is not an "
+                    "ELAN annotation",
+                    name=name,
+                ),
                 remedy=_NOT,
             )
         if self.depth > NESTING:  # ELAN writes 5
-            raise self.fail(f"elements lie more than {NESTING} deep")
+            raise self.fail(told("elements lie more than {most} deep", most=NESTING))
         if name == "HEADER":
             unit = at.get("TIME_UNITS", "milliseconds")
             if unit not in UNITS:
-                raise self.fail(f"times are in '{unit}'; known are {', '.join(UNITS)}")
+                raise self.fail(
+                    told("times are in '{unit}'; known are {names}", unit=unit, names=", ".join(UNITS))
+                )
             self.unit = UNITS[unit]
             self.old_media = at.get("MEDIA_FILE", "")
         elif name == "MEDIA_DESCRIPTOR":
@@ -117,23 +127,31 @@ class _Reader:
 
     def _need(self, at: Mapping[str, str], key: str, element: str) -> str:
         if not at.get(key):
-            raise self.fail(f"a {element} has no {key}")
+            raise self.fail(told("a {element} has no {key}", element=element, key=key))
         return at[key]
 
     def _slot(self, at: Mapping[str, str]) -> None:
         ident, text = self._need(at, "TIME_SLOT_ID", "TIME_SLOT"), at.get("TIME_VALUE")
         if len(self.slots) > 2 * MARKS:
-            raise self.fail(f"it has more than {2 * MARKS:,} time slots")
+            raise self.fail(told("it has more than {value:,} time slots", value=2 * MARKS))
         if ident in self.slots:
-            raise self.fail(f"time slot '{ident}' is there twice")
+            raise self.fail(told("time slot '{ident}' is there twice", ident=ident))
         seconds = None
         if text is not None:
             try:
                 seconds = int(text[:40]) * self.unit
             except ValueError:
-                raise self.fail(f"'{text}' is not a whole number of {self._unit_name()}") from None
+                raise self.fail(
+                    told("'{text}' is not a whole number of {value}", text=text, value=self._unit_name())
+                ) from None
             if not 0 <= seconds <= LONGEST:
-                raise self.fail(f"a time of {seconds:g} s is not between 0 and {LONGEST:g}")
+                raise self.fail(
+                    told(
+                        "a time of {seconds:g} s is not between 0 and {most:g}",
+                        seconds=seconds,
+                        most=LONGEST,
+                    )
+                )
         self.slots[ident] = seconds
 
     def _unit_name(self) -> str:
@@ -142,25 +160,31 @@ class _Reader:
     def _tier(self, at: Mapping[str, str]) -> None:
         name = self._need(at, "TIER_ID", "TIER")
         if name in self.tiers:
-            raise self.fail(f"tier '{name}' is there twice", remedy="Rename one of them in ELAN.")
+            raise self.fail(
+                told("tier '{name}' is there twice", name=name), remedy=told("Rename one of them in ELAN.")
+            )
         self.tier = self.tiers[name] = _Tier(
             name, at.get("PARTICIPANT", "").strip(), at.get("PARENT_REF", "")
         )
 
     def _mark(self, name: str, at: Mapping[str, str]) -> None:
         if self.tier is None:
-            raise self.fail("an annotation stands outside a tier")
+            raise self.fail(told("an annotation stands outside a tier"))
         ident = self._need(at, "ANNOTATION_ID", name)
         if len(self.marks) >= MARKS:
-            raise self.fail(f"it has more than {MARKS:,} annotations")
+            raise self.fail(told("it has more than {most:,} annotations", most=MARKS))
         if ident in self.marks:
-            raise self.fail(f"annotation '{ident}' is there twice")
+            raise self.fail(told("annotation '{ident}' is there twice", ident=ident))
         if name == "ALIGNABLE_ANNOTATION":
             slots = self._need(at, "TIME_SLOT_REF1", name), self._need(at, "TIME_SLOT_REF2", name)
             unknown = next((s for s in slots if s not in self.slots), None)
             if unknown is not None:
                 raise self.fail(
-                    f"annotation '{ident}' begins or ends at time slot '{unknown}', which is not there"
+                    told(
+                        "annotation '{ident}' begins or ends at time slot '{unknown}', which is not there",
+                        ident=ident,
+                        unknown=unknown,
+                    )
                 )
             self.mark = _Mark(ident, self.line, slots)
         else:
@@ -215,11 +239,13 @@ def read_elan(path: str | Path) -> Annotation:
         raise FileError(
             path,
             cause,
-            f"line {error.lineno}, column {error.offset + 1}",
+            told("line {lineno}, column {offset}", lineno=error.lineno, offset=error.offset + 1),
             _NOT if not reader.tiers else _AGAIN,
         ) from None
     except (LookupError, ValueError) as error:  # an encoding nobody knows
-        raise FileError(path, f"its text cannot be decoded ({error})", "line 1", _AGAIN) from None
+        raise FileError(
+            path, told("its text cannot be decoded ({error})", error=error), told("line 1"), _AGAIN
+        ) from None
     return _annotation(reader)
 
 
@@ -304,7 +330,12 @@ def _refer(reader: _Reader, spans: dict[str, tuple[float, float]]) -> None:
             if mark.slots is None:
                 if mark.of not in reader.marks:
                     raise reader.fail(
-                        f"annotation '{mark.ident}' refers to '{mark.of}', which is not there", mark.line
+                        told(
+                            "annotation '{ident}' refers to '{of}', which is not there",
+                            ident=mark.ident,
+                            of=mark.of,
+                        ),
+                        mark.line,
                     )
                 siblings.setdefault(mark.of, []).append(mark)
         for parent, marks in siblings.items():
@@ -322,7 +353,10 @@ def _refer(reader: _Reader, spans: dict[str, tuple[float, float]]) -> None:
             ready += [mark.ident for mark in marks if mark.ident in waiting]
     if waiting:
         mark = next(iter(waiting.values()))[0][0]
-        raise reader.fail(f"annotation '{mark.ident}' refers to itself by way of '{mark.of}'", mark.line)
+        raise reader.fail(
+            told("annotation '{ident}' refers to itself by way of '{of}'", ident=mark.ident, of=mark.of),
+            mark.line,
+        )
 
 
 def _ordered(marks: Iterable[_Mark]) -> list[_Mark]:

@@ -274,17 +274,17 @@ def _animation(
         channels.append({"sampler": place, "target": {"node": node, "path": path}})
 
     rotations = clip.rotations.astype(np.float64)
+    written = np.round(rotation.normalize(rotations) * 32767) if quantize else rotations
     for joint, kept in enumerate(_keys(rotations, tolerance, True)):
         if joint in posed or joint not in chosen:
             continue
         if moved is not None and joint == min(chosen) and joint != 0 and clip.frames > 1 and len(kept) == 1:
             kept = np.array([0, clip.frames - 1])  # keeps the clip's length, whatever else stands still
-        values = rotations[kept, joint]
-        if body.compress and len(kept) == 1 and joint and _as_posed(values[0], nodes[joint]["rotation"]):
+        node = nodes[joint]
+        single = body.compress and len(kept) == 1 and joint > 0
+        if single and _as_posed(rotations[kept[0], joint], node["rotation"]):
             continue
-        if quantize:
-            values = np.round(rotation.normalize(values) * 32767)
-        add(joint, "rotation", kept, values, SHORT if quantize else FLOAT)
+        add(joint, "rotation", kept, written[kept, joint], SHORT if quantize else FLOAT)
     translations = clip.translations.astype(np.float64)
     for place, kept in zip(clip.translated, _keys(translations, tolerance, False), strict=True):
         if place not in chosen:

@@ -23,6 +23,7 @@ from metagraph.graph.edits import EditError
 from metagraph.graph.manual import ANY, WHENS, Alias, Link, Manual, State
 from metagraph.graph.manual_edits import add_link, link_refusal, machine, name_of, update_links
 from metagraph.graph.model import Layer, Project
+from metagraph.wording import told
 
 COLUMNS = ("from", "to", "when", "trigger", "weight", "exit", "blend")
 ALSO = {"source": "from", "target": "to", "condition": "when", "exit time": "exit", "duration": "blend"}
@@ -88,13 +89,15 @@ def rows_of(text: str) -> list[Row]:
                 check_names(names)
                 continue
             if len(out) >= MOST_ROWS:
-                raise ValueError(f"it has more than {MOST_ROWS:,} rows")
+                raise ValueError(told("it has more than {most:,} rows", most=MOST_ROWS))
             known = {n: c.strip() for n, c in zip(names, cells, strict=False) if n in COLUMNS and c.strip()}
             out.append(Row(lines.line_num, known))
     except csv.Error as error:
-        raise ValueError(f"line {lines.line_num} is no row of a table: {error}") from None
+        raise ValueError(
+            told("line {line_num} is no row of a table: {error}", line_num=lines.line_num, error=error)
+        ) from None
     if names is None:
-        raise ValueError("it is empty")
+        raise ValueError(told("it is empty"))
     return out
 
 
@@ -102,10 +105,10 @@ def check_names(names: Sequence[str]) -> None:
     """Raise ValueError where the first row names not both ends of a link, or a column twice."""
     for name in ("from", "to"):
         if name not in names:
-            raise ValueError(f"the first row names no column '{name}'")
+            raise ValueError(told("the first row names no column '{name}'", name=name))
     twice = next((n for n in COLUMNS if list(names).count(n) > 1), None)
     if twice is not None:
-        raise ValueError(f"the first row names the column '{twice}' twice")
+        raise ValueError(told("the first row names the column '{twice}' twice", twice=twice))
 
 
 def filled(project: Project, layer: Layer, rows: Sequence[Row]) -> Filled:
@@ -121,7 +124,7 @@ def filled(project: Project, layer: Layer, rows: Sequence[Row]) -> Filled:
             after, targets = _nodes(after, layer, row, "to")
             found = machine(after, layer)
             if len(found.links) + len(sources) * len(targets) > MOST_LINKS:
-                raise ValueError(f"the machine would have more than {MOST_LINKS:,} links")
+                raise ValueError(told("the machine would have more than {most:,} links", most=MOST_LINKS))
             # Links that patterns name lead from no state to itself, as drawn ones do.
             one = len(sources) == len(targets) == 1
             pairs = [(a, b) for a in sources for b in targets if a != b or one]
@@ -155,14 +158,21 @@ def _linked(
 def _nodes(project: Project, layer: Layer, row: Row, column: str) -> tuple[Project, list[str]]:
     """Return what a cell names, and the project, with an alias more where several states are to be left."""
     if column not in row.cells:
-        raise ValueError(f"'{column}' is empty")
+        raise ValueError(told("'{column}' is empty", column=column))
     found = machine(project, layer)
     out: dict[str, None] = {}
     words = [w.strip() for w in row.cells[column].split("|")]
     for word in words:
         named = [*found.states] if (word, column) == ("*", "to") else _named(found, word)
         if not named:
-            raise ValueError(f"'{column}' names '{word}', which is no state or alias of the {layer} layer")
+            raise ValueError(
+                told(
+                    "'{column}' names '{word}', which is no state or alias of the {layer} layer",
+                    column=column,
+                    word=word,
+                    layer=layer,
+                )
+            )
         out.update(dict.fromkeys(named))
     states = tuple(i for i in found.states if i in out)
     if column == "to" or len(states) < 2:
@@ -197,7 +207,9 @@ def _settings(row: Row) -> dict[str, Any]:
     if "when" in cells:
         condition["when"] = cells["when"].lower()
         if condition["when"] not in WHENS:
-            raise ValueError(f"'when' is '{cells['when']}' rather than {' or '.join(WHENS)}")
+            raise ValueError(
+                told("'when' is '{cells}' rather than {names}", cells=cells["when"], names=" or ".join(WHENS))
+            )
     if "trigger" in cells:
         condition |= {"trigger": cells["trigger"]} | ({"when": "request"} if "when" not in cells else {})
     if "weight" in cells:
@@ -211,7 +223,7 @@ def _settings(row: Row) -> dict[str, Any]:
         at_end, once = word == "end", word in ("at once", "none")
         part = 1.0 if at_end else _number(word[:-1], "exit") / 100 if word.endswith("%") else None
         if part is not None and part > 1:
-            raise ValueError(f"'exit' is '{cells['exit']}', which is after the end")
+            raise ValueError(told("'exit' is '{cells}', which is after the end", cells=cells["exit"]))
         out["exit_part"] = part
         out["exit_time"] = None if part is not None or once else _number(word, "exit")
     return out
@@ -221,9 +233,11 @@ def _number(word: str, column: str, least: float = 0.0) -> float:
     try:
         value = float(word.strip().removesuffix("s").strip().replace(",", "."))
     except ValueError:
-        raise ValueError(f"'{column}' is '{word}', which is no number") from None
+        raise ValueError(
+            told("'{column}' is '{word}', which is no number", column=column, word=word)
+        ) from None
     if not least <= value <= 1e6:
-        raise ValueError(f"'{column}' is {word}, which is out of range")
+        raise ValueError(told("'{column}' is {word}, which is out of range", column=column, word=word))
     return value
 
 

@@ -15,6 +15,7 @@ from metagraph.formats.transcript_words import REMEDY, Transcript, text_of
 from metagraph.formats.transcripts_json import read_json
 from metagraph.formats.transcripts_text import is_ctm, is_table, read_ctm, read_cues, read_table
 from metagraph.formats.transcripts_tiers import read_elan_tiers, read_textgrid_tiers
+from metagraph.wording import told
 
 
 @guarded
@@ -26,7 +27,7 @@ def read_transcript(path: str | Path) -> Transcript:
     if not head:
         return Transcript({}, {}, ("it is empty",))
     if "\0" in head[:200]:
-        raise FileError(path, "is no text", "its beginning", REMEDY)
+        raise FileError(path, told("is no text"), told("its beginning"), REMEDY)
     if head.startswith(('File type = "ooTextFile', '"ooTextFile')) or path.suffix.casefold() == ".textgrid":
         return read_textgrid_tiers(path)
     if head.startswith("<"):
@@ -39,4 +40,4 @@ def read_transcript(path: str | Path) -> Transcript:
         return read_table(path, text)
     if is_ctm(text):
         return read_ctm(path, text)
-    raise FileError(path, "is none of the transcripts that can be read", "its beginning", REMEDY)
+    raise FileError(path, told("is none of the transcripts that can be read"), told("its beginning"), REMEDY)

@@ -12,8 +12,9 @@ from typing import Any
 
 from metagraph.errors import FileError
 from metagraph.formats.transcript_words import Collected, Transcript
+from metagraph.wording import told
 
-_REMEDY = (
+_REMEDY = told(
     "Whisper writes 'segments', with 'words' where word timestamps were asked for; IBM writes "
     "'results' with 'timestamps'."
 )
@@ -26,12 +27,14 @@ def read_json(path: Path, text: str) -> Transcript:
     except json.JSONDecodeError as error:
         raise FileError(
             path,
-            f"is not JSON ({error.msg})",
-            f"line {error.lineno}, column {error.colno}",
-            "Save the transcript anew.",
+            told("is not JSON ({msg})", msg=error.msg),
+            told("line {lineno}, column {colno}", lineno=error.lineno, colno=error.colno),
+            told("Save the transcript anew."),
         ) from None
     except (RecursionError, ValueError):
-        raise FileError(path, "lists lie too deep in it, or its numbers are too long", "", _REMEDY) from None
+        raise FileError(
+            path, told("lists lie too deep in it, or its numbers are too long"), "", _REMEDY
+        ) from None
     out = Collected(path)
     if isinstance(data, dict) and "sides" in data:
         return _ours(out, text)
@@ -58,7 +61,12 @@ def read_json(path: Path, text: str) -> Transcript:
         _words(out, _list(out, data[key], key), "", key, None)
     else:
         names = ", ".join(f"'{str(k)[:30]}'" for k in list(data)[:6]) or "nothing"
-        raise FileError(path, f"is JSON, but of no transcript that is known; it holds {names}", "", _REMEDY)
+        raise FileError(
+            path,
+            told("is JSON, but of no transcript that is known; it holds {names}", names=names),
+            "",
+            _REMEDY,
+        )
     return out.finished()
 
 
@@ -70,7 +78,9 @@ def _ours(out: Collected, text: str) -> Transcript:
     try:
         read = msgspec.json.decode(text, type=Conversation)
     except (msgspec.ValidationError, msgspec.DecodeError, ValueError) as error:
-        raise out.fail(f"is no conversation as 'metagraph speech' writes it: {error}") from None
+        raise out.fail(
+            told("is no conversation as 'metagraph speech' writes it: {error}", error=error)
+        ) from None
     names = [side.name or str(n + 1) for n, side in enumerate(read.sides)]
     if len(set(names)) < len(names):
         names = [str(n + 1) for n in range(len(names))]
@@ -83,26 +93,26 @@ def _ours(out: Collected, text: str) -> Transcript:
 
 def _list(out: Collected, value: Any, where: str) -> Sequence[Any]:
     if not isinstance(value, list):
-        raise out.fail(f"is no list but {_kind(value)}", f"'{where}'", _REMEDY)
+        raise out.fail(told("is no list but {kind}", kind=_kind(value)), f"'{where}'", _REMEDY)
     return value
 
 
 def _dict(out: Collected, value: Any, where: str) -> Mapping[str, Any]:
     if not isinstance(value, dict):
-        raise out.fail(f"is no object but {_kind(value)}", f"'{where}'", _REMEDY)
+        raise out.fail(told("is no object but {kind}", kind=_kind(value)), f"'{where}'", _REMEDY)
     return value
 
 
 def _kind(value: Any) -> str:
     names = {
-        dict: "an object",
-        list: "a list",
-        str: "a text",
-        bool: "true or false",
-        int: "a number",
-        float: "a number",
+        dict: told("an object"),
+        list: told("a list"),
+        str: told("a text"),
+        bool: told("true or false"),
+        int: told("a number"),
+        float: told("a number"),
     }
-    return names.get(type(value), "nothing")
+    return names.get(type(value), told("nothing"))
 
 
 def _time(out: Collected, value: Any, where: str) -> float | None:
@@ -110,13 +120,13 @@ def _time(out: Collected, value: Any, where: str) -> float | None:
     if value is None:
         return None
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise out.fail(f"a time is {_kind(value)}", where)
+        raise out.fail(told("a time is {kind}", kind=_kind(value)), where)
     try:
         seconds = float(value)
     except (ValueError, OverflowError):
-        raise out.fail(f"a time is '{str(value)[:30]}'", where) from None
+        raise out.fail(told("a time is '{value}'", value=str(value)[:30]), where) from None
     if not math.isfinite(seconds):
-        raise out.fail(f"a time is {seconds:g}", where)
+        raise out.fail(told("a time is {seconds:g}", seconds=seconds), where)
     return seconds
 
 
@@ -146,7 +156,7 @@ def _whisper(out: Collected, data: Mapping[str, Any]) -> None:
         if one.get("words"):
             _words(out, _list(out, one["words"], f"{where}.words"), speaker, f"{where}.words", (start, end))
         elif start is None or end is None:
-            raise out.fail("has no start and end", where)
+            raise out.fail(told("has no start and end"), where)
         else:
             out.add(speaker, _text(one.get("text")), start, end, where)
 
@@ -174,7 +184,7 @@ def _words(
         )
     timed = [r for r in read if r[2] is not None and r[3] is not None]
     if read and not timed and (span is None or None in span):
-        raise out.fail("no word has a start and an end", where, _REMEDY)
+        raise out.fail(told("no word has a start and an end"), where, _REMEDY)
     first = span[0] if span is not None and span[0] is not None else timed[0][2] if timed else 0.0
     last = span[1] if span is not None and span[1] is not None else timed[-1][3] if timed else 0.0
     n = 0
@@ -222,15 +232,17 @@ def _ibm(out: Collected, data: Mapping[str, Any]) -> None:
         for m, stamp in enumerate(stamps):
             place = f"{where}.timestamps[{m}]"
             if not isinstance(stamp, list) or len(stamp) < 3 or not isinstance(stamp[0], str):
-                raise out.fail("is no word with its start and end", place, _REMEDY)
+                raise out.fail(told("is no word with its start and end"), place, _REMEDY)
             start, end = _time(out, stamp[1], place), _time(out, stamp[2], place)
             if start is None or end is None:
-                raise out.fail("is no word with its start and end", place, _REMEDY)
+                raise out.fail(told("is no word with its start and end"), place, _REMEDY)
             out.add(labels.get(round(start, 2), next(iter(labels.values()), "")), stamp[0], start, end, place)
             words += 1
     if untimed and not words:
         raise out.fail(
-            "its words have no times", "'results'", "Ask the service for timestamps (timestamps=true)."
+            told("its words have no times"),
+            "'results'",
+            told("Ask the service for timestamps (timestamps=true)."),
         )
     if untimed:
-        out.notes.append(f"{untimed} results have no times and were left out")
+        out.notes.append(told("{untimed} results have no times and were left out", untimed=untimed))

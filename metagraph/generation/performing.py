@@ -32,6 +32,7 @@ from metagraph.graph.project_retargeting import Bringing
 from metagraph.motion.clip import Clip
 from metagraph.motion.joint_map import RetargetError
 from metagraph.speech.sound import read_recording
+from metagraph.wording import told
 
 Array = NDArray[Any]
 
@@ -112,7 +113,12 @@ def side_sound(conversation: Conversation, side: int, folder: Path) -> tuple[Arr
     for n in (side, *others_of(conversation, side)):
         of = conversation.sides[n]
         if of.audio is None:
-            notes.append(f"{side_name(conversation, n)} has no sound: who speaks when is all that is heard.")
+            notes.append(
+                told(
+                    "{side_name} has no sound: who speaks when is all that is heard.",
+                    side_name=side_name(conversation, n),
+                )
+            )
             continue
         if (key := (int(n != side), of.audio, of.channel)) in heard_once:
             continue

@@ -27,6 +27,7 @@ from metagraph.generation.poses import PoseError, PoseRig, Scale, gram_schmidt, 
 from metagraph.graph.conversation import Conversation, heard_by
 from metagraph.motion.clip import Clip
 from metagraph.motion.mirror import mirror, pairs_of
+from metagraph.wording import told
 
 Array = NDArray[Any]
 
@@ -149,16 +150,22 @@ def take_of(
         )
     if abs(len(poses) - frames_of(sound.shape[1])) > FPS:
         notes.append(
-            f"{who}: motion lasts {len(poses) / FPS:.1f} s, sound {sound.shape[1] / RATE:.1f} s; what is "
-            "over is "
-            "left out. Check that both begin at the same moment."
+            told(
+                "{who}: motion lasts {count:.1f} s, sound {shape:.1f} s; what is over is left out. "
+                "Check that both begin at the same moment.",
+                who=who,
+                count=len(poses) / FPS,
+                shape=sound.shape[1] / RATE,
+            )
         )
     shared = conversation is not None and all(s.segments for s in conversation.sides)
     _check_sound(who, sound, clipped, shared, notes)
     if tracks == 2 and len(sound) == 1:
         sound = np.concatenate([sound, np.zeros_like(sound)])
     if conversation is None:
-        notes.append(f"{who} has no words: loudness tells who speaks, and strokes cannot be judged.")
+        notes.append(
+            told("{who} has no words: loudness tells who speaks, and strokes cannot be judged.", who=who)
+        )
         partner = sound[1] if len(sound) > 1 else None
         activity, marks = voice_activity(sound[0], partner, RATE, count), Marks()
     else:
@@ -167,9 +174,9 @@ def take_of(
     if activity[:, NONE].sum() / FPS > count / FPS - SPOKEN:
         raise TakeError(f"{who}: nobody speaks in it. Check which sound belongs to it")
     if own < SPOKEN:
-        notes.append(f"{who}: this side hardly speaks: it teaches listening alone.")
+        notes.append(told("{who}: this side hardly speaks: it teaches listening alone.", who=who))
     elif not activity[:, PARTNER].any():
-        notes.append(f"{who}: the partner never speaks: it teaches speaking alone.")
+        notes.append(told("{who}: the partner never speaks: it teaches speaking alone.", who=who))
     gains = [gain_of(channel, RATE) for channel in sound]
     heard = features(sound, activity, tracks, gains)[:count]
     if float(poses[:count].std(0).max()) < 1e-3:
@@ -184,15 +191,20 @@ def _check_sound(who: str, sound: Array, clipped: Sequence[float], shared: bool,
     if all(silent):
         raise TakeError(f"{who}: its sound is silent. Check the microphone, or which channel is its own")
     if len(sound) == 1 and not shared:
-        notes.append(f"{who} has one voice only: it is its own, and the partner never speaks.")
+        notes.append(told("{who} has one voice only: it is its own, and the partner never speaks.", who=who))
     elif len(sound) == 1:
-        notes.append(f"{who}: both voices are in one channel; neither is brought to its own loudness.")
+        notes.append(
+            told("{who}: both voices are in one channel; neither is brought to its own loudness.", who=who)
+        )
     elif silent[0]:
         notes.append(
-            f"{who}: its own channel is silent: it teaches listening alone. Are the channels swapped?"
+            told(
+                "{who}: its own channel is silent: it teaches listening alone. Are the channels swapped?",
+                who=who,
+            )
         )
     elif silent[1]:
-        notes.append(f"{who} has one voice only: the partner's channel is silent.")
+        notes.append(told("{who} has one voice only: the partner's channel is silent.", who=who))
     worst = max(clipped, default=0.0)
     if worst > 0.02:
         raise TakeError(
@@ -200,7 +212,9 @@ def _check_sound(who: str, sound: Array, clipped: Sequence[float], shared: bool,
             "export it anew"
         )
     if worst > 1e-4:
-        notes.append(f"{who}: {100 * worst:.2g} % of its sound is cut off at full scale.")
+        notes.append(
+            told("{who}: {value:.2g} % of its sound is cut off at full scale.", who=who, value=100 * worst)
+        )
 
 
 def _marks(conversation: Conversation, side: int) -> Marks:

@@ -1,7 +1,8 @@
 """Forward kinematics: where joints are, from what each does beside its parent; over many poses at once.
 
-Numbers lie with the poses last, so that each step runs along memory, and a depth of the tree is one slice:
-half the time, to the same bit, of `rotation.multiply` and `rotation.rotate` depth after depth.
+Numbers lie with the poses last, so that each step runs along memory, and a depth of the tree is one slice.
+Only what needs a parent is done depth by depth: turns, a product of four by four, then places, a sum. It is,
+to the same bit, `rotation.multiply` and `rotation.rotate` depth after depth, many times as fast.
 """
 
 from __future__ import annotations
@@ -21,6 +22,11 @@ MANY = 2000  # poses for which it pays to load the loops, where they are kept: t
 
 _worked = [0]  # poses so far, without loops
 
+# What of a joint's own turn, w x y z, its parent's w, x, y and z are multiplied by, a row each.
+FACTORS = np.array(((0, 1, 2, 3), (1, 0, 3, 2), (2, 3, 0, 1), (3, 2, 1, 0)))
+SIGNS = np.array(((1, 1, 1, 1), (-1, 1, -1, 1), (-1, 1, 1, -1), (-1, -1, 1, 1)), np.int8)[..., None, None]
+YZX, ZXY = (1, 2, 0), (2, 0, 1)
+
 
 class Forward:
     """What can be known of a tree of joints before there is a pose."""
@@ -36,6 +42,8 @@ class Forward:
             (slice(int(start), int(end)), self._place[parents[level]])
             for start, end, level in zip(ends, ends[1:], levels[1:], strict=False)
         ]
+        self._roots = len(levels[0])
+        self._above = np.array([i for _, above in self._steps for i in above], np.int64)
 
     def __call__(self, rotations: Array, translations: Array) -> tuple[Array, Array]:
         """Return model-space rotations `[F, J, 4]` and positions `[F, J, 3]`, typed as the local ones."""
@@ -57,38 +65,27 @@ class Forward:
         return out
 
     def _some(self, rotations: Array, translations: Array) -> tuple[Array, Array]:
-        turns, at = rotations.transpose(2, 1, 0), translations.transpose(2, 1, 0)
-        q = np.empty((6, *turns.shape[1:]), turns.dtype)  # w x y z x y
-        q[0], q[1:4] = turns[3, self._order], turns[:3, self._order]
-        q[4:] = q[1:3]
-        p = np.empty((5, *at.shape[1:]), at.dtype)  # x y z x y
-        p[:3] = at[:, self._order]
-        p[3:] = p[:2]
-        w, x, y, z = q[:4]
-        # What of a joint's own turn its parent's x, y and z are multiplied by.
-        by_x, by_y, by_z = np.stack((-x, w, -z, y)), np.stack((-y, z, w, -x)), np.stack((-z, -y, x, w))
-        exact = np.result_type(q, p)
+        turns, roots = rotations.transpose(2, 1, 0), self._roots
+        q = np.empty((4, *turns.shape[1:]), turns.dtype)  # w x y z
+        q[0], q[1:] = turns[3, self._order], turns[:3, self._order]
+        by = q.take(FACTORS, 0)
+        by *= SIGNS
         for here, parents in self._steps:
-            above = q.take(parents, 1)
-            aw, yzx, zxy = above[0], above[2:5], above[3:]
-            turned = aw * q[:4, here]
-            turned += above[1] * by_x[:, here]
-            turned += above[2] * by_y[:, here]
-            turned += above[3] * by_z[:, here]
-            cross = np.empty((5, *p[0, here].shape), exact)
-            np.multiply(yzx, p[2:, here], out=cross[:3])
-            cross[:3] -= zxy * p[1:4, here]
-            cross[:3] *= 2
-            cross[3:] = cross[:2]
-            gone = aw * cross[:3]
-            gone += p[:3, here]
-            gone += yzx * cross[2:]
-            gone -= zxy * cross[1:4]
-            gone += p[:3].take(parents, 1)
-            q[:4, here], q[4:, here] = turned, turned[1:3]
-            p[:3, here] = gone
-        out_r, out_p = np.empty(rotations.shape, q.dtype), np.empty(translations.shape, p.dtype)
+            q[:, here] = np.add.reduce(q.take(parents, 1)[:, None] * by[:, :, here], 0)
+        at = translations.transpose(2, 1, 0)[:, self._order]
+        p, above = at[:, roots:], q.take(self._above, 1)
+        aw, yzx, zxy = above[0], above[1:].take(YZX, 0), above[1:].take(ZXY, 0)
+        cross = yzx * p.take(ZXY, 0)
+        cross -= zxy * p.take(YZX, 0)
+        cross *= 2
+        gone = aw * cross
+        gone += p
+        gone += yzx * cross.take(ZXY, 0)
+        gone -= zxy * cross.take(YZX, 0)
+        for here, parents in self._steps:
+            at[:, here] = at.take(parents, 1) + gone[:, here.start - roots : here.stop - roots]
+        out_r, out_p = np.empty(rotations.shape, q.dtype), np.empty(translations.shape, at.dtype)
         seen = out_r.transpose(2, 1, 0)
-        seen[:3], seen[3] = q[1:4].take(self._place, 1), q[0].take(self._place, 0)
-        out_p.transpose(2, 1, 0)[:] = p[:3].take(self._place, 1)
+        seen[:3], seen[3] = q[1:].take(self._place, 1), q[0].take(self._place, 0)
+        out_p.transpose(2, 1, 0)[:] = at.take(self._place, 1)
         return out_r, out_p

@@ -154,7 +154,8 @@ def _extend(shown: Array, stance: Array, extent: Number, scales: Array, scratch:
         part = _ease((abs(scratch[3 * LANES + i]) - 0.1) / 0.4)
         scales[i] = np.float32(1 + (extent - 1) * scales[i] * part)
     _power(scratch, scales)
-    shown[:] = stance
+    for i in range(4 * LANES):  # a slice that is set takes seconds to compile
+        shown[i] = stance[i]
     _append(shown, scratch)
 
 
@@ -310,7 +311,8 @@ def _add_layer(
                     _lerp(turns[edge[0], b], turns[edge[1], b], edge[2], other)
                     _lead(shown, stance, other, lead)
                 if extent != 1:
-                    turned[:] = lanes[way, b]
+                    for i in range(LANES):
+                        turned[i] = lanes[way, b, i]
                     _extend(shown, stance, extent, turned, spare)
                 if mask >= 0:
                     _keep_to(shown, stance, lanes[MASKS + mask, b])
@@ -355,20 +357,9 @@ _to_model = compiler(keep=False, **_OPTIONS)(forward_kernels.to_model)
 
 @_compiled
 def pose(
-    first: int,
-    last: int,
-    seconds: Array,
-    plan_of: Array,
-    layers: Any,
-    base: Array,
-    travels: Array,
-    places: Array,
-    out_r: Array,
-    out_t: Array,
-    parents: Array,
-    model_r: Array,
-    model_p: Array,
-) -> None:
+    first: int, last: int, seconds: Array, plan_of: Array, layers: Any, base: Array, travels: Array,
+    places: Array, out_r: Array, out_t: Array, parents: Array, model_r: Array, model_p: Array,
+) -> None:  # fmt: skip
     """Write poses of characters `first`..`last` to `out_r [C, J, 4]`, `out_t [C, J, 3]`; and where they are
     not empty, those in the character's space to `model_r`, `model_p`. layers: what `_add_layer` takes. base
     `[B, 64]`, travels `[J, 3]`: the base pose. places `[J]`: of the joints in the blocks.
@@ -377,8 +368,12 @@ def pose(
     for start in range(first, last, AT_ONCE):
         end = min(start + AT_ONCE, last)
         for c in range(start, end):
-            blocked[c - start] = base
-            out_t[c] = travels
+            for b in range(len(base)):
+                for i in range(4 * LANES):
+                    blocked[c - start, b, i] = base[b, i]
+            for j in range(len(travels)):
+                for k in range(3):
+                    out_t[c, j, k] = travels[j, k]
         for layer in layers:
             _add_layer(start, end, seconds, plan_of, layer, blocked, out_t)
         for c in range(start, end):

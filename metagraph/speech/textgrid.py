@@ -16,9 +16,10 @@ from pathlib import Path
 from metagraph.budgets import MARKS, MARKS_FILE
 from metagraph.errors import FileError
 from metagraph.files import guarded, read_file
+from metagraph.wording import told
 
 _TOKEN = re.compile(r'"(?:[^"]|"")*"|<[a-z]+>|(?<![^\s=])[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?%?(?!\S)')
-_REMEDY = "Save it from Praat as a text file or a short text file."
+_REMEDY = told("Save it from Praat as a text file or a short text file.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +57,7 @@ def read_textgrid(path: str | Path) -> TextGrid:
 def _text(path: Path) -> str:
     data = read_file(path, MARKS_FILE)
     if data.startswith(b"ooBinaryFile"):
-        raise FileError(path, "is a binary Praat file", remedy=_REMEDY)
+        raise FileError(path, told("is a binary Praat file"), remedy=_REMEDY)
     utf16 = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
     try:
         return data.decode("utf-16" if utf16 else "utf-8-sig")
@@ -80,39 +81,41 @@ class _Reader:
 
     def fail(self, cause: str) -> FileError:
         line = self.text.count("\n", 0, self.at) + 1
-        return FileError(self.path, cause, f"line {line}", _REMEDY)
+        return FileError(self.path, cause, told("line {line}", line=line), _REMEDY)
 
     def word(self, what: str) -> str:
         token = next(self.tokens, None)
         if token is None:
-            raise self.fail(f"ends before its {what}")
+            raise self.fail(told("ends before its {what}", what=what))
         if not token.startswith('"'):
-            raise self.fail(f"{token[:20]} stands where {what} should be")
+            raise self.fail(told("{token} stands where {what} should be", token=token[:20], what=what))
         return token[1:-1].replace('""', '"')
 
     def number(self, what: str) -> float:
         token = next(self.tokens, None)
         if token is None:
-            raise self.fail(f"ends before its {what}")
+            raise self.fail(told("ends before its {what}", what=what))
         try:
             value = float(token)
         except ValueError:
-            raise self.fail(f"{token[:20]} stands where {what} should be") from None
+            raise self.fail(
+                told("{token} stands where {what} should be", token=token[:20], what=what)
+            ) from None
         if not abs(value) < 1e7:
-            raise self.fail(f"{what} is {token[:20]}")
+            raise self.fail(told("{what} is {token}", what=what, token=token[:20]))
         return value
 
     def count(self, what: str) -> int:
         value = self.number(what)
         if value < 0 or value != math.floor(value):
-            raise self.fail(f"{what} is {value:g}")
+            raise self.fail(told("{what} is {value:g}", what=what, value=value))
         return int(value)
 
     def grid(self) -> TextGrid:
         kind = self.word("file type")
         what = self.word("object class")
         if kind != "ooTextFile" or not what.startswith("TextGrid"):
-            raise self.fail(f"it is no TextGrid but {kind[:20]!r}, {what[:20]!r}")
+            raise self.fail(told("it is no TextGrid but {kind!r}, {what!r}", kind=kind[:20], what=what[:20]))
         start, end = self.number("start"), self.number("end")
         exists = next(self.tokens, "")
         tiers = (
@@ -123,7 +126,7 @@ class _Reader:
     def tier(self) -> Tier:
         kind = self.word("tier's class")
         if kind not in ("IntervalTier", "TextTier"):
-            raise self.fail(f"there is no tier of class {kind[:20]!r}")
+            raise self.fail(told("there is no tier of class {kind!r}", kind=kind[:20]))
         name = self.word("tier's name")
         self.number("tier's start")
         self.number("tier's end")
@@ -131,10 +134,14 @@ class _Reader:
         for _ in range(self.count("number of intervals")):
             self.marks += 1
             if self.marks > MARKS:
-                raise self.fail(f"it has more than {MARKS:,} intervals")
+                raise self.fail(told("it has more than {most:,} intervals", most=MARKS))
             start = self.number("interval's start")
             end = self.number("interval's end") if kind == "IntervalTier" else start
             if end < start:
-                raise self.fail(f"an interval ends at {end:g} s, before it starts at {start:g} s")
+                raise self.fail(
+                    told(
+                        "an interval ends at {end:g} s, before it starts at {start:g} s", end=end, start=start
+                    )
+                )
             out.append(Interval(start, end, self.word("interval's text").strip()))
         return Tier(name, tuple(out), kind == "TextTier")

@@ -47,7 +47,7 @@ def arm(p: Array) -> Weights:
     return chain(
         p,
         ("LeftShoulder", "LeftUpperArm", "LeftLowerArm", "LeftHand"),
-        (0.055, 0.042, 0.020),
+        (0.055, 0.050, 0.020),
         (shoulder, ARM, ARM),
     )
 

@@ -289,9 +289,12 @@ def forearm() -> Field:
     return cone(JOINT["LeftLowerArm"], JOINT["LeftHand"] + ARM * 0.03, 0.0410, 0.0325)
 
 
-def sleeve() -> Field:
+def sleeve(end: Array = CUFF) -> Field:
+    """The left one, to a point on the arm. Its elbow stands out behind: skinning flattens what is bent."""
     upper = cone(JOINT["LeftUpperArm"] + ARM * 0.004, JOINT["LeftLowerArm"], 0.0515, 0.0410)
-    return common(union([upper, forearm()], 0.008), plane(CUFF, ARM), 0.004)
+    elbow = ellipsoid(JOINT["LeftLowerArm"] + [0, 0, -0.0095], (0.0390, 0.0390, 0.0370))
+    arm = union([union([upper, forearm()], 0.008), elbow], 0.016)
+    return common(arm, plane(end, ARM), 0.004)
 
 
 def sweater() -> Field:
@@ -380,13 +383,20 @@ def _palm_size(p: Array) -> Array:
     return np.asarray(0.0088 + 0.0040 * step(0.04, 0.0, along))
 
 
+def elbow_size(p: Array, elsewhere: float) -> Array:
+    """So many rings round an elbow that it is round when it is bent."""
+    away = np.stack([np.abs(p[:, 0]), p[:, 1], p[:, 2]], 1) - JOINT["LeftLowerArm"]
+    along = np.abs(away @ ARM) + 4 * np.maximum(np.linalg.norm(away, axis=1) - 0.09, 0)
+    return np.asarray(elsewhere - (elsewhere - 0.0125) * step(0.085, 0.040, along))
+
+
 def _sweater_size(p: Array) -> Array:
-    shoulder, elbow = JOINT["LeftUpperArm"], JOINT["LeftLowerArm"]
+    shoulder = JOINT["LeftUpperArm"]
     q = np.stack([np.abs(p[:, 0]), p[:, 1], p[:, 2]], 1)
     edge = np.minimum(np.abs((q - CUFF) @ ARM) / 0.03, np.abs(p[:, 1] - HEM) / 0.03)
     edge = np.minimum(edge, np.linalg.norm((q - COLLAR_AT) / [0.07, 0.03, 0.07], axis=1))
-    bend = np.minimum(np.linalg.norm(q - shoulder, axis=1) / 0.09, np.linalg.norm(q - elbow, axis=1) / 0.06)
-    out = 0.0320 - 0.0120 * step(1.2, 0.5, bend)
+    out = 0.0320 - 0.0135 * step(1.2, 0.5, np.linalg.norm(q - shoulder, axis=1) / 0.09)
+    out = np.minimum(out, elbow_size(p, 0.0320))
     return np.asarray(out - (out - 0.0165) * step(1.2, 0.6, edge))
 
 
@@ -394,7 +404,7 @@ def _trouser_size(p: Array) -> Array:
     q = np.stack([np.abs(p[:, 0]), p[:, 1], p[:, 2]], 1)
     knee = np.linalg.norm(q - JOINT["LeftLowerLeg"], axis=1) / 0.09
     crotch = np.linalg.norm((q - [0, 0.84, 0]) / [0.05, 0.06, 0.12], axis=1)
-    return np.asarray(0.0340 - 0.0095 * step(1.2, 0.5, knee) - 0.012 * step(1.3, 0.6, crotch))
+    return np.asarray(0.0340 - 0.0160 * step(1.1, 0.6, knee) - 0.012 * step(1.3, 0.6, crotch))
 
 
 def _shoe_size(p: Array) -> Array:

@@ -113,11 +113,11 @@ def _coat() -> Field:
     body = union([shapes.torso(), hips], 0.05)
     body = common(body, plane((0, COAT_HEM, 0), (0, -1, 0)), 0.010)
     body = common(body, plane(shapes.COLLAR_AT + shapes.COLLAR_UP * -0.006, shapes.COLLAR_UP), 0.004)
-    whole = union([body, mirrored(_sleeve_to(0.012))], 0.050)
+    whole = union([body, mirrored(shapes.sleeve(CUFF - ARM * 0.012))], 0.050)
 
     def field(p: Array) -> Array:
         x, half = np.abs(p[:, 0]), _opening(p)
-        lapel = step(0.046, 0.040, x - half) * step(1.10, 1.15, p[:, 1]) * step(0.0, 0.03, p[:, 2])
+        lapel = step(0.054, 0.034, x - half) * step(1.10, 1.15, p[:, 1]) * step(0.0, 0.03, p[:, 2])
         cloth = whole(p) - CLOTH - 0.0050 * lapel
         gap = np.maximum(x - half, 0.010 - p[:, 2])  # negative in the gap
         return np.asarray(-smooth_min(-cloth, gap, 0.008))
@@ -125,16 +125,10 @@ def _coat() -> Field:
     return field
 
 
-def _sleeve_to(sleeve: float) -> Field:
-    """The left sleeve, ending `sleeve` metres above the wrist."""
-    upper = cone(JOINT["LeftUpperArm"] + ARM * 0.004, JOINT["LeftLowerArm"], 0.0515, 0.0410)
-    return common(union([upper, shapes.forearm()], 0.008), plane(CUFF - ARM * sleeve, ARM), 0.004)
-
-
 def _sweater(sleeve: float) -> Field:
     body = common(shapes.torso(), plane((0, HEM, 0), (0, -1, 0)), 0.012)
     body = common(body, plane(shapes.COLLAR_AT + shapes.COLLAR_UP * 0.002, shapes.COLLAR_UP), 0.004)
-    return union([body, mirrored(_sleeve_to(sleeve))], 0.050)
+    return union([body, mirrored(shapes.sleeve(CUFF - ARM * sleeve))], 0.050)
 
 
 def _forearm() -> Field:
@@ -153,12 +147,12 @@ def _forearm() -> Field:
 
 
 def _coat_size(p: Array) -> Array:
-    """Fine along the edges of the opening and of the lapels."""
+    """Fine along the edges of the opening and of the lapels, and round the elbows."""
     x = np.abs(p[:, 0])
     edge = np.minimum(np.abs(x - _opening(p)), np.abs(x - _opening(p) - 0.043))
     front = step(0.0, 0.02, p[:, 2]) * step(0.024, 0.008, edge)
     hem = step(0.03, 0.01, np.abs(p[:, 1] - COAT_HEM))
-    return np.asarray(0.026 - 0.0175 * np.maximum(front, 0.5 * hem))
+    return np.minimum(0.026 - 0.0175 * np.maximum(front, 0.5 * hem), shapes.elbow_size(p, 0.026))
 
 
 def _hair_size(p: Array) -> Array:

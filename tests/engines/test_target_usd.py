@@ -61,7 +61,8 @@ def project(still: Clip) -> Project:
     made = place(made, [second], "arms", "gesture", stance)
     made = place(made, [first], "arms", "transition", stance, other)
     [gesture] = made.graphs["arms"].of(stance, "gesture")
-    return update_actions(made, [gesture.id], name=STRANGE, tags=("greeting", STRANGE))
+    weights = (("LeftHand", 0.5), ("RightHand", 0.25))
+    return update_actions(made, [gesture.id], name=STRANGE, tags=("greeting", STRANGE), joint_weights=weights)
 
 
 @pytest.fixture(scope="module")
@@ -168,7 +169,11 @@ def test_the_graph_stands_in_the_stage_and_leads_to_its_clips(written: Path) -> 
                     if key in ("clip", "stance", "end_stance") and value is not None:
                         [to] = prim.GetRelationship(f"metagraph:{key}").GetTargets()
                         assert stage.GetPrimAtPath(to)
-                    elif value not in (None, []):
+                    elif value in (None, [], {}):
+                        assert not prim.GetAttribute(f"metagraph:{key}")
+                    elif isinstance(value, dict):
+                        assert json.loads(prim.GetAttribute(f"metagraph:{key}").Get()) == value
+                    else:
                         read = prim.GetAttribute(f"metagraph:{key}").Get()
                         assert (list(read) if isinstance(value, list) else read) == pytest.approx(value)
         ways = stage.GetPrimAtPath(f"/Character/Graph/{layer}/Transitions").GetChildren()
@@ -180,6 +185,15 @@ def test_the_graph_stands_in_the_stage_and_leads_to_its_clips(written: Path) -> 
         chosen.SetVariantSelection(name)
         skeleton = stage.GetPrimAtPath("/Character/Skeleton")
         assert skeleton.GetRelationship("skel:animationSource").GetTargets()[0].name == name
+
+
+def test_fields_that_say_nothing_are_left_out_and_nested_ones_are_their_json(written: Path) -> None:
+    said, text = json.loads(written.with_suffix(".json").read_text()), written.read_text()
+    actions = [a for layer in said["layers"].values() for a in layer["actions"]]
+    weighted = [a["joint_weights"] for a in actions if a["joint_weights"]]
+    assert len(actions) > len(weighted) == 1
+    assert text.count("metagraph:joint_weights") == 1
+    assert r"{\"LeftHand\": 0.5, \"RightHand\": 0.25}" in text
 
 
 def test_names_that_are_no_identifiers_become_ones_and_none_is_twice() -> None:

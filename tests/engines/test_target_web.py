@@ -276,7 +276,7 @@ def test_a_character_is_in_any_page_in_five_lines(page: Path, tmp_path: Path) ->
       const id = await ada.say("ah", { audio: one }); let speech;
       while (!(speech = ada.character.plan.track.speeches.find((s) => s.id === id))) await new Promise(requestAnimationFrame);
       return [ada.answer(id).state, speech.end - speech.start, Boolean(speech.timing)]; })()"""
-    (_, early, said, told, spoken, asked, one, both, views), errors = browse(
+    (_, early, said, told, spoken, asked, one, both, views, row), errors = browse(
         tmp_path / "page",
         {"url": "talk.html", "until": "window.customElements.get('metagraph-character')"},
         {"run": heard},
@@ -294,6 +294,8 @@ def test_a_character_is_in_any_page_in_five_lines(page: Path, tmp_path: Path) ->
         {"url": "three.html", "until": "a.object && b.object && c.hasAttribute('broken')"},
         {"run": "[a.character.graph === b.character.graph, c.message.textContent, a.getAttribute('camera')]"},
         {"run": "[a, b].map(({ stage }) => stage.camera.position.distanceTo(stage.target))"},
+        {"run": "(() => { document.body.style.cssText = 'display: flex; margin: 0; height: 100vh'; "
+         "for (const one of [a, b, c]) one.style.cssText = 'flex: 1'; return [c.getBoundingClientRect().right, innerWidth]; })()"},
     )  # fmt: skip
     assert [e for e in errors if "404" not in e and "none.json" not in e] == []
     assert early.startswith(("early#", "#")) and said == "planned" and told and asked
@@ -301,6 +303,7 @@ def test_a_character_is_in_any_page_in_five_lines(page: Path, tmp_path: Path) ->
     assert state in ("planned", "late") and timed and abs(seconds - 1.0) < 0.1
     assert one and both[0] and "none.json is not there (404)" in both[1]
     assert views[0] < views[1] / 2  # the face from near
+    assert row[0] <= row[1] + 0.5  # a row that shares its width is no wider than the window
 
 
 def test_lines_that_cannot_be_read_are_left_out_and_told(sample: Project, tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ from metagraph.playback.planner import make_plan
 from metagraph.playback.player import pose_at
 from sample_clips.make import conformance
 from sample_clips.make.conformance_projects import sparse
-from tests.engines.mutants import folders_to_try
+from tests.engines.mutants import PLAYED, folders_to_try
 
 FOLDERS = sorted(path for path in Path(engines.__file__).with_name("conformance").iterdir() if path.is_dir())
 
@@ -37,7 +37,7 @@ def read(folder: Path) -> dict[str, Any]:
     return out
 
 
-@pytest.fixture(scope="module", params=FOLDERS, ids=lambda path: path.name)
+@pytest.fixture(scope="module", params=PLAYED, ids=lambda path: path.name)
 def shipped(request: Any) -> tuple[Path, Project, dict[str, Any]]:
     folder: Path = request.param
     return (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -85,6 +86,11 @@ def untrained(kind: Kind = "flow-vae", by: float = 0.05, sizes: Sizes | None = N
 
 def babble(seconds: float, seed: int = 1, level: float = 0.2) -> Array:
     """A sound like a voice that comes and goes, `[N]` at RATE."""
+    return _babbled(seconds, seed, level).copy()
+
+
+@lru_cache(maxsize=64)
+def _babbled(seconds: float, seed: int, level: float) -> Array:
     chance = np.random.default_rng(seed)
     t = np.arange(round(seconds * RATE)) / RATE
     knots = chance.uniform(0, 1, int(seconds * 4) + 3)

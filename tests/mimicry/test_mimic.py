@@ -18,6 +18,7 @@ from metagraph.mimicry.keypoint_layouts import LAYOUTS, PLACE, POINTS, swap
 from metagraph.mimicry.mimic import Mimic
 from metagraph.mimicry.pose_measures import turned
 from metagraph.mimicry.tuning import JUDGING, Tuning
+from sample_clips.make import sample_keypoints
 from sample_clips.make.sample_keypoints import SECONDS, View, played, seen, truth
 from tests.mimicry import people
 
@@ -284,6 +285,23 @@ def test_with_the_gaze_the_character_looks_where_the_head_is_turned(somebody: Pr
 
 
 # --- how well, on the recorded script
+
+
+@pytest.fixture(scope="module", autouse=True)
+def worlds_seen_once() -> Iterator[None]:
+    """Where the same person's points are in space is worked out once, however they are looked at."""
+    known: dict[tuple[int, int, int], Any] = {}
+    real = sample_keypoints.world
+
+    def world(project: Project, plan: Any, times: Any, *person: Any) -> Any:
+        key = (id(project), id(plan), len(times))
+        if person or key not in known:
+            known[key] = real(project, plan, times, *person)
+        return known[key]
+
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(sample_keypoints, "world", world)
+        yield
 
 
 def frames(talk: Talk, dims: int, view: View, layout: str = "mediapipe") -> Iterator[tuple[float, Any, Any]]:

@@ -17,6 +17,7 @@ from metagraph.playback.extend_performance import answer, hear, since
 from metagraph.playback.plan import Cue, Plan
 from metagraph.playback.player import pose_at
 from metagraph.playback.running_plan import perform
+from tests import thorough
 
 END = 30.0
 _SAMPLE: list[Project] = []
@@ -97,7 +98,7 @@ def in_ticks(
     return out
 
 
-@settings(max_examples=12)
+@settings(max_examples=thorough.many(6, 50))
 @given(some_asks, st.sampled_from([0.016, 0.2, 1.7]))
 def test_live_in_ticks_gives_what_one_plan_gives(asks: list[Any], tick: float) -> None:
     project = _SAMPLE[0]
@@ -111,7 +112,7 @@ def test_live_in_ticks_gives_what_one_plan_gives(asks: list[Any], tick: float) -
     assert (pose_at(last, project, times).rotations == pose_at(whole, project, times).rotations).all()
 
 
-@settings(max_examples=12)
+@settings(max_examples=thorough.many(6, 50))
 @given(some_asks, st.lists(st.floats(0, 20).map(lambda x: round(x, 2)), min_size=8, max_size=8))
 def test_what_was_told_on_the_way_replays_as_it_was_heard(asks: list[Any], told: list[float]) -> None:
     project = _SAMPLE[0]

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -285,12 +286,16 @@ def test_loading_soon_waits_for_who_compiles(monkeypatch: Any, status: int, ther
     assert told == [[sys.executable, "-m", "metagraph.keep_loops"]] and bool(done) == there
 
 
-def test_kept_object_code_gives_the_same_poses(
+def test_kept_object_code_gives_the_poses_of_numba_but_for_the_last_digit(
     monkeypatch: pytest.MonkeyPatch, switch: Switch, sample: Project
 ) -> None:
+    """Where products may be fused with sums, which of them are is up to each compilation."""
     if not object_code.usable():
         pytest.skip("object code is for Linux on x86-64")
-    monkeypatch.setenv("METAGRAPH_LOOP_CACHE", str(kernels.make() / kernels.LOOPS))
+    kept = str(kernels.make() / kernels.LOOPS)
+    switch.off()
+    monkeypatch.setenv("METAGRAPH_LOOP_CACHE", "")
+    assert loops.load() and all(isinstance(known.now, ModuleType) for known in loops.LOOPS)
     plan = make_plan(sample, 20, seed=6)
     times = np.arange(0, 20, 0.1)
 
@@ -302,13 +307,11 @@ def test_kept_object_code_gives_the_same_poses(
         return [*model, *crowd, whole.translations, whole.rotations, *(one.rotations for one in single)]
 
     expected = poses()
-    by_numba = [known.now for known in loops.LOOPS]
     switch.off()
-    assert loops.load_kept()
-    assert not any(known.now is numba for known, numba in zip(loops.LOOPS, by_numba, strict=True))
-    # To the last bit where both are of one compilation; another process's numba may round in other places.
+    monkeypatch.setenv("METAGRAPH_LOOP_CACHE", kept)
+    assert loops.load_kept() and not any(isinstance(known.now, ModuleType) for known in loops.LOOPS)
     for one, other in zip(poses(), expected, strict=True):
-        np.testing.assert_allclose(one, other, rtol=0, atol=LAYERS_ALONE)
+        np.testing.assert_allclose(one, other, rtol=0, atol=3e-7)
 
 
 def test_who_compiles_says_whether_it_could_be_kept() -> None:

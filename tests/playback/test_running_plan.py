@@ -14,6 +14,7 @@ from metagraph.playback.extend_performance import answer, hear
 from metagraph.playback.plan import Plan
 from metagraph.playback.player import pose_at
 from metagraph.playback.running_plan import AHEAD, RunningPlan, perform
+from tests.thorough import many
 
 LENGTH = 150.0
 
@@ -64,7 +65,7 @@ def session(draw) -> list[a.AnyRequest]:
 
 
 def test_in_pieces_it_is_what_it_is_at_once(sample):
-    @settings(max_examples=25)
+    @settings(max_examples=many(10, 100))
     @given(asks=session(), idle=st.booleans())
     def same(asks: list[a.AnyRequest], idle: bool) -> None:
         one, other = at_once(sample, asks, LENGTH, idle), perform(sample, asks, LENGTH, idle=idle)

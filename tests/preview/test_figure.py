@@ -13,7 +13,7 @@ from metagraph.motion import rotation
 from metagraph.motion.character_mesh import Character, Material, Surface, bound
 from metagraph.motion.skeleton import Pose, Skeleton
 from preview.figure import SkinnedFigure, StickFigure
-from preview.mesh import ball, capsule, coarse
+from preview.mesh import ball, capsule
 from sample_clips.make.conformance_projects import stick_skeleton
 from sample_clips.make.mannequin_skeleton import mannequin_skeleton
 from tests.preview.conftest import chain
@@ -184,16 +184,6 @@ def test_shapes_are_closed_and_face_outwards():
         face = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
         assert (np.einsum("ij,ij->i", face, normals[triangles].sum(1)) > 0).all()
         assert np.allclose(face.sum(0), 0, atol=1e-9)
-
-
-def test_a_coarse_mesh_keeps_the_extent_and_its_batches():
-    mesh = StickFigure(mannequin_skeleton()).mesh
-    less = coarse(mesh, 40)
-    assert len(less.triangles) < len(mesh.triangles)
-    assert sum(b.count for b in less.batches) == len(less.triangles)
-    assert np.ptp(less.vertices["position"], axis=0) == pytest.approx(
-        np.ptp(mesh.vertices["position"], axis=0), rel=0.08
-    )
 
 
 def skinned(figure: SkinnedFigure, rotations: np.ndarray, positions: np.ndarray) -> np.ndarray:

@@ -256,7 +256,7 @@ def check_parts(offscreen, monkeypatch, figure, random):
         camera = replace(camera, distance=camera.distance * distance)
         seen = offscreen.render(scene, camera, DARK, SIZE)
         with monkeypatch.context() as patch:
-            patch.setattr(renderer, "covered", lambda frame, _: np.array([[0, 0, *frame.size]]))
+            patch.setattr(renderer, "covered", lambda frame: np.array([[0, 0, *frame.size]]))
             whole_picture = offscreen.render(scene, camera, DARK, SIZE)
         apart = np.abs(seen.astype(int) - whole_picture)
         assert apart.max() <= 1, f"{distance}: {(apart > 1).sum()} points"  # places in a picture are rounded

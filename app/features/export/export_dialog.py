@@ -146,7 +146,7 @@ class ExportDialog(QDialog):
         groups: dict[str, QTreeWidgetItem] = {}
         for target in registry.targets().values():
             if target.group not in groups:
-                groups[target.group] = QTreeWidgetItem(out, [target.group])
+                groups[target.group] = QTreeWidgetItem(out, [tr_told(target.group)])
                 groups[target.group].setFlags(Qt.ItemFlag.ItemIsEnabled)
                 groups[target.group].setForeground(0, self.palette().placeholderText())
             item = QTreeWidgetItem(groups[target.group], [target.title])
@@ -249,7 +249,7 @@ class ExportDialog(QDialog):
         self.words.setText(
             tr(
                 "Writes {files}. {states} actions, {clips} clips on {joints} joints.",
-                files=target.files,
+                files=tr_told(target.files),
                 states=whole.states,
                 clips=whole.clips,
                 joints=joints,
@@ -258,15 +258,19 @@ class ExportDialog(QDialog):
         for box in (self.expanded, self.vectors, self.tools):
             box.setVisible(played)
         self.compress.setVisible(target.unpacks)
-        rows = [f"<li>{escape(words)}</li>" for words in registry.losses(project, target.name)]
-        note = tr("<p><b>Experimental</b>: {why}.</p>", why=escape(target.untried)) if target.untried else ""
+        rows = [f"<li>{escape(tr_told(words))}</li>" for words in registry.losses(project, target.name)]
+        note = (
+            tr("<p><b>Experimental</b>: {why}.</p>", why=escape(tr_told(target.untried)))
+            if target.untried
+            else ""
+        )
         nothing = tr("<p>Nothing else is lost.</p>") if self.differences else tr("<p>Nothing is lost.</p>")
         lost = (
             f"<p><b>What it loses</b></p><ul style='margin-left:-20px'>{''.join(rows)}</ul>"
             if rows
             else nothing
         )
-        told = "".join(f"<li>{escape(words)}</li>" for words in self.differences)
+        told = "".join(f"<li>{escape(tr_told(words))}</li>" for words in self.differences)
         differs = (
             f"<p><b>How it differs from what was drawn</b></p><ul style='margin-left:-20px'>{told}</ul>"
             if told
@@ -350,7 +354,7 @@ class ExportDialog(QDialog):
             size=size,
             clips=made.clips,
         )
-        self.results[made.target] = Result(str(folder), words, "\n".join(made.warnings[:5]))
+        self.results[made.target] = Result(str(folder), words, "\n".join(map(tr_told, made.warnings[:5])))
         if self.target.name == made.target:
             self._show_result()
 

@@ -56,7 +56,7 @@ from app.widgets.request_menu import STAGE, request_menu
 from metagraph.graph.model import LAYERS
 
 CATCH = 3  # pixels the mouse must move for a press to become a drag
-LEAST = 38  # pixels of a layer in which its two rows are read
+LEAST, LEAST_BESIDE = 38, 32  # pixels of a layer in which its two rows are read; just so, beside other seeds'
 COPIES = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier
 TEXT = tr(
     "Requests, and what plays. Up and Down choose a request, Left and Right move it, Enter changes it, "
@@ -378,7 +378,8 @@ class Lanes(LaneSpan):
         words = ("words",) if self.voices.wanted and self.height() >= spoken.least(LEAST) else ()
         self.set_sizes(replace(self.sizes, extra=(*cameras, *words, *self.what_if.lanes)))
         needed = replace(self.sizes, extra=(*cameras, *self.what_if.lanes))
-        self.setMinimumHeight(round(needed.least(LEAST)))
+        least = LEAST_BESIDE if self.what_if.lanes else LEAST
+        self.setMinimumHeight(round(needed.least(least)))
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)

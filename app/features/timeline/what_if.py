@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from bisect import bisect_left
+from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, QRectF, Qt, Signal
+from PySide6.QtCore import QElapsedTimer, QObject, QRectF, Qt, QTimer, Signal
 from PySide6.QtGui import QPainter
 
 from app.look.names import plain
@@ -16,20 +18,26 @@ from app.stage.performance import Performance
 from app.translation import tr
 from app.widgets.lane_geometry import LEFT, Scale
 from metagraph.graph import edits, performance_edits
+from metagraph.graph.conversation_edits import change_conversation
 from metagraph.graph.model import LAYERS, Layer, Project
 from metagraph.graph.requests import Performance as KeptPerformance
 
 if TYPE_CHECKING:
+    from app.stage.live_stage import LiveStage
     from metagraph.playback.plan import Cue, Plan
 
 SEEDS = 3  # rows at once
+STEP = 4.0  # seconds after which a live session has other rows, whatever it is asked
+REST, IDLE = 1500, 10  # milliseconds between two plannings live, and how many times as long as one takes
 FADED = 0.6  # how much of its colour a ghost has
 PREFIX = "ghost "  # of a lane's name; its seed follows
 ORDER: tuple[Layer, ...] = ("head", "arms", "body")  # strips of a row, from the top
 
 
 class WhatIf(QObject):
-    """changed: other rows are to be shown. on: whether there are any. plans: by seed, as far as planned."""
+    """changed: other rows are to be shown. on: whether there are any. plans: by seed, as far as planned; of a
+    conversation those of the side on stage, of a live session what it was asked so far.
+    """
 
     changed = Signal()
 
@@ -42,19 +50,20 @@ class WhatIf(QObject):
         self.plans: dict[int, Plan] = {}
         self._offset = 1
         self._made_of: tuple[object, ...] = ()
+        self._again = QTimer(self, singleShot=True)
+        self._again.timeout.connect(self._follow)
+        self._took = QElapsedTimer()
         performance.changed.connect(self._follow)
         document.loaded.connect(self.forget)
 
     @property
     def possible(self) -> bool:
-        """Whether what is on stage can be planned with another seed here: a performance, or what is
-        improvised.
+        """Whether what is on stage can be planned with another seed: all but a clip looked at alone and state
+        machines drawn by hand.
         """
         p = self.performance
         return (
-            p.live.stage is None
-            and p.conversation is None
-            and p.session.onstage.mode == "meta"
+            p.session.onstage.mode == "meta"
             and p.session.transport.show == "plan"
             and p.document.project.skeleton is not None
         )
@@ -62,7 +71,11 @@ class WhatIf(QObject):
     @property
     def seed(self) -> int:
         """The seed that plays now."""
-        kept = self.performance.requests.kept
+        live, talk, kept = self._live, self.performance.conversation, self.performance.requests.kept
+        if live is not None:
+            return live.session.plan.seed
+        if talk is not None:
+            return self.document.project.conversations[talk].seed
         own = kept.seed if kept is not None else None
         return int(own if own is not None else self.document.project.settings.seed)
 
@@ -90,21 +103,26 @@ class WhatIf(QObject):
         self._follow()
         self.changed.emit()
 
+    @property
+    def _live(self) -> LiveStage | None:
+        return self.performance.live.stage
+
     def _follow(self) -> None:
         """Plan what is wanted and not there; what plays now has changed."""
-        if not self.on or not self.possible:
+        if not self.on or not self.possible or (self._live is not None and self._again.isActive()):
             return
-        project, kept = self.document.project, self.performance.requests.kept
-        length, seeds = self.performance.length, self._seeds()
-        made_of = (project, kept, length, seeds)
+        made_of, planner = self._wanted()
         if len(made_of) == len(self._made_of) and all(
             a is b or (n > 1 and a == b) for n, (a, b) in enumerate(zip(made_of, self._made_of, strict=True))
         ):
             return
         self._made_of = made_of
+        seeds, plan = self._seeds(), planner()
+        if self._live is not None:  # it goes on and on: a while after these come the next, if they are others
+            self._took.start()
 
         def work(_: object) -> tuple[tuple[object, ...], dict[int, Plan]]:
-            return made_of, {seed: plan_with(project, kept, length, seed) for seed in seeds}
+            return made_of, {seed: plan(seed) for seed in seeds}
 
         self.jobs.start(tr("what if"), work, self._came, lambda error: None, quick=True)
 
@@ -112,11 +130,43 @@ class WhatIf(QObject):
         if found[0] is self._made_of:  # else others are wanted by now
             self.plans = found[1]
             self.changed.emit()
+            if self._live is not None:
+                self._again.start(max(REST, IDLE * self._took.elapsed()))
+
+    def _wanted(self) -> tuple[tuple[object, ...], Callable[[], Callable[[int], Plan]]]:
+        """Return what the rows are made of, the first two by who they are, and what makes who plans a seed on
+        another thread.
+        """
+        project, seeds, live = self.document.project, self._seeds(), self._live
+        length, talk = self.performance.length, self.performance.conversation
+        kept = self.performance.requests.kept
+        if live is not None:
+            end = live.session.plan.end
+
+            def relive() -> Callable[[int], Plan]:
+                asked = live.performance()
+                return lambda seed: plan_with(project, asked, end, seed)
+
+            return (project, live, live.tape.count, int(end / STEP), seeds), relive
+        if talk is not None:
+            side, folder = self.performance.session.onstage.side, self.document.folder or Path()
+
+            def converse(seed: int) -> Plan:
+                other = change_conversation(project, talk, seed=seed)
+                return self.performance.conversations.show(other, talk, folder, side).plan
+
+            return (project, None, talk, side, folder, seeds), lambda: converse
+        return (project, kept, length, seeds), lambda: lambda seed: plan_with(project, kept, length, seed)
 
     def take(self, seed: int) -> None:
-        """Play with a seed from now on."""
+        """Play with a seed from now on; of a live session the next one, since this one's record is of one
+        seed.
+        """
         stage, kept = self.performance.session.onstage.performance, self.performance.requests.kept
-        if stage is not None and kept is not None and kept.seed is not None:
+        talk = self.performance.conversation
+        if talk is not None:
+            self.document.edit(tr("Change seed"), lambda p: change_conversation(p, talk, seed=seed))
+        elif stage is not None and kept is not None and kept.seed is not None:
             self.document.edit(
                 tr("Change seed"), lambda p: performance_edits.change_performance(p, stage, seed=seed)
             )
@@ -142,6 +192,13 @@ class WhatIf(QObject):
             if cue is not None
             else ""
         )
+        if self._live is not None:
+            return tr(
+                "{here}What seed {seed} would have played: head, arms, body\n"
+                "Click: the next session plays it",
+                here=here,
+                seed=seed,
+            )
         return tr(
             "{here}What seed {seed} would play: head, arms, body\nClick plays it instead",
             here=here,
@@ -173,7 +230,7 @@ def paint_ghost(
     painter.setOpacity(FADED)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
     painter.setPen(Qt.PenStyle.NoPen)
-    each, bars = (lane.height() - 5) / len(LAYERS), dict[str, list[QRectF]]()
+    each, bars = (lane.height() - 2) / len(LAYERS), dict[str, list[QRectF]]()
     for n, layer in enumerate(ORDER):
         cues = plan.layers[layer].cues if plan is not None else ()
         begin, end = scale.seconds(LEFT), scale.seconds(width)
@@ -181,7 +238,7 @@ def paint_ghost(
             if cue.start > end:
                 break
             left, right = scale.x(cue.start), scale.x(cue.end)
-            rect = QRectF(left, lane.top() + 3 + n * each, max(2.0, right - left - 1), max(2.0, each - 1))
+            rect = QRectF(left, lane.top() + 1 + n * each, max(2.0, right - left - 1), max(2.0, each - 1))
             bars.setdefault(cue.action.kind, []).append(rect)
     for kind, rects in bars.items():
         painter.setBrush(t.fill(kind))

@@ -22,6 +22,7 @@ from metagraph.graph import requests as a
 from metagraph.graph.model import LAYERS, Project
 from metagraph.playback.bml_writer import write_bml
 from metagraph.playback.phases import phases
+from metagraph.wording import told
 
 # --- BML
 
@@ -187,46 +188,52 @@ def _unsaid(project: Project) -> int:
     return sum(isinstance(x, a.Bml) for p in project.performances.values() for x in p.asks)
 
 
-_ALONE = "written by its documentation; the system was not at hand to run it"
+_ALONE = told("written by its documentation; the system was not at hand to run it")
 TARGETS = (
     ExportTarget(
         "bml",
         "BML blocks",
-        "a block for each kept performance and each line, and the vocabulary they may use",
+        told("a block for each kept performance and each line, and the vocabulary they may use"),
         write_blocks,
         (
             Loss(
-                "what was asked, not what is played: the planner that hears a block chooses actions of its "
-                "own"
+                told(
+                    "what was asked, not what is played: the planner that hears a block chooses "
+                    "actions of its own"
+                )
             ),
-            Loss("when an ask became known is not kept"),
-            Loss("{n} asks that are blocks themselves are left out", _unsaid),
+            Loss(told("when an ask became known is not kept")),
+            Loss(told("{n} asks that are blocks themselves are left out"), _unsaid),
         ),
-        group="Agents",
+        group=told("Agents"),
     ),
     ExportTarget(
         "smartbody",
         "SmartBody gesture map",
-        "a Python script that maps lexemes to animations, and a BVH for each",
+        told("a Python script that maps lexemes to animations, and a BVH for each"),
         write_smartbody,
         (
             *MACHINE,
-            Loss("transitions and fidgets: SmartBody moves between postures by itself"),
-            Loss("a gesture has one lexeme and one type: its first two tags"),
+            Loss(told("transitions and fidgets: SmartBody moves between postures by itself")),
+            Loss(told("a gesture has one lexeme and one type: its first two tags")),
         ),
         _ALONE,
-        "Agents",
+        told("Agents"),
     ),
     ExportTarget(
         "sumerian",
         "Sumerian Hosts (gesture.json)",
-        "gesture.json with in, hold and out, and one GLB",
+        told("gesture.json with in, hold and out, and one GLB"),
         write_sumerian,
         (
             *MACHINE,
-            Loss("stances, fidgets and transitions are in the GLB alone; gesture.json has no word for them"),
+            Loss(
+                told(
+                    "stances, fidgets and transitions are in the GLB alone; gesture.json has no word for them"
+                )
+            ),
         ),
         _ALONE,
-        "Agents",
+        told("Agents"),
     ),
 )

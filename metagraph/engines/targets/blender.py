@@ -8,6 +8,7 @@ import zipfile
 from metagraph.engines.targets.runtimes import RUNTIMES, written
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.formats.atomic import write_atomically
+from metagraph.wording import told
 
 ADDON = "metagraph_blender"
 
@@ -29,8 +30,18 @@ TARGETS = (
     ExportTarget(
         "blender",
         "Blender add-on",
-        "JSON and GLB, and the add-on that reads them, labels actions, sends them back and follows a session",
+        told(
+            "JSON and GLB, and the add-on that reads them, labels actions, sends them back "
+            "and follows a session"
+        ),
         write,
-        (Loss("no planner: Blender shows single actions, and a whole performance only live or from a bake"),),
+        (
+            Loss(
+                told(
+                    "no planner: Blender shows single actions, and a whole performance only live or "
+                    "from a bake"
+                )
+            ),
+        ),
     ),
 )

@@ -42,6 +42,7 @@ from metagraph.formats.atomic import write_atomically
 from metagraph.graph import anatomy
 from metagraph.graph.expand import ends_in
 from metagraph.graph.model import Layer, Part, Project
+from metagraph.wording import told
 
 Version = Literal[3, 4]
 Place = tuple[float, float]
@@ -299,25 +300,29 @@ def _left_early(project: Project) -> int:
 
 LOSSES: tuple[Loss, ...] = (
     Loss(
-        "Godot 4: layers are added to the skeleton's rest; retargeting on import changes it, and with it the "
-        "poses"
+        told(
+            "Godot 4: layers are added to the skeleton's rest; retargeting on import changes it, and with it the poses"
+        )
     ),
     Loss(
-        "Godot 3: layers are not added: spine and legs are the body's alone, arms the arms', head and face "
-        "the head's"
+        told(
+            "Godot 3: layers are not added: spine and legs are the body's alone, arms the arms', head and face the head's"
+        )
     ),
-    Loss("{n} actions that may be left early are left at their end", _left_early),
-    Loss("what plays is not begun anew when it is asked for again"),
-    Loss("where no transition joins two stances, the way between them need not be the planner's"),
+    Loss(told("{n} actions that may be left early are left at their end"), _left_early),
+    Loss(told("what plays is not begun anew when it is asked for again")),
+    Loss(told("where no transition joins two stances, the way between them need not be the planner's")),
 )
 TARGETS = (
     ExportTarget(
         "godot-tree",
         "Godot AnimationTree (.tres)",
-        "an AnimationTree's root for Godot 4 and one for Godot 3, a guide to their states, and one GLB with "
-        "an animation for each state",
+        told(
+            "an AnimationTree's root for Godot 4 and one for Godot 3, a guide to their states, and one GLB with "
+            "an animation for each state"
+        ),
         write,
         (*MACHINE, WEIGHTS, CROSSFADE, *LOSSES),
-        "the tree for Godot 4 was not run there; the one for Godot 3 was, in 3.2.3",
+        told("the tree for Godot 4 was not run there; the one for Godot 3 was, in 3.2.3"),
     ),
 )

@@ -21,6 +21,7 @@ from metagraph.formats.atomic import write_atomically
 from metagraph.graph import anatomy
 from metagraph.graph.expand import ends_in
 from metagraph.graph.model import Layer, Part, Project
+from metagraph.wording import told
 
 OWNERS: Mapping[Part, Layer] = {
     "legs": "body",
@@ -250,12 +251,12 @@ TARGETS = (
     ExportTarget(
         "interactivity",
         "glTF + KHR_interactivity",
-        "one GLB that plays by itself, and a list of the events it hears",
+        told("one GLB that plays by itself, and a list of the events it hears"),
         write,
         (
             *MACHINE,
-            Loss("layers do not add: body, arms and head each move their own joints alone"),
-            Loss("no blends: one animation stops where the next begins"),
+            Loss(told("layers do not add: body, arms and head each move their own joints alone")),
+            Loss(told("no blends: one animation stops where the next begins")),
         ),
     ),
 )

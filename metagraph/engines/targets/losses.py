@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from metagraph.engines.targets.target import Loss
 from metagraph.graph.model import Project
+from metagraph.wording import told
 
 
 def _varied(project: Project) -> int:
@@ -40,28 +41,37 @@ def _weighted(project: Project) -> int:
 
 MACHINE: tuple[Loss, ...] = (
     Loss(
-        "no planner: nothing is drawn by tags, limb or likelihood, nothing is scheduled ahead, no stroke is "
-        "timed; each action is asked for"
+        told(
+            "no planner: nothing is drawn by tags, limb or likelihood, nothing is scheduled ahead, "
+            "no stroke is timed; each action is asked for"
+        )
     ),
-    Loss("no statistics: nobody performs when nothing is asked"),
-    Loss("no life layers: breathing, gaze, blinks and lips are not played"),
-    Loss("holds play as they were made, and preparations are not skipped"),
-    Loss("of the loops of {n} stances the first plays of itself, the others when asked for", _varied),
+    Loss(told("no statistics: nobody performs when nothing is asked")),
+    Loss(told("no life layers: breathing, gaze, blinks and lips are not played")),
+    Loss(told("holds play as they were made, and preparations are not skipped")),
+    Loss(told("of the loops of {n} stances the first plays of itself, the others when asked for"), _varied),
     Loss(
-        "{n} transitions that are not the first between their stances play only when asked for by themselves",
+        told(
+            "{n} transitions that are not the first between their stances play only when asked for "
+            "by themselves"
+        ),
         _ways,
     ),
     Loss(
-        "{n} actions that move part of their layer hold the rest as their stance begins, instead of letting "
-        "it play on",
+        told(
+            "{n} actions that move part of their layer hold the rest as their stance begins, instead "
+            "of letting it play on"
+        ),
         _masked,
     ),
     Loss(
-        "soft weights of joints in {n} actions are part of their clips, as far from how the stance begins, "
-        "and cannot be changed there",
+        told(
+            "soft weights of joints in {n} actions are part of their clips, as far from how the "
+            "stance begins, and cannot be changed there"
+        ),
         _soft,
     ),
-    Loss("{n} loops that play with a seam jump where they repeat", _seams),
+    Loss(told("{n} loops that play with a seam jump where they repeat"), _seams),
 )
-WEIGHTS = Loss("{n} weights of layers on body parts other than 0 and 1 count as 1", _weighted)
-CROSSFADE = Loss("blends are plain crossfades: a clip is held back and hurried while it blends")
+WEIGHTS = Loss(told("{n} weights of layers on body parts other than 0 and 1 count as 1"), _weighted)
+CROSSFADE = Loss(told("blends are plain crossfades: a clip is held back and hurried while it blends"))

@@ -22,6 +22,7 @@ from metagraph.engines.export import ExportError
 from metagraph.errors import FileError
 from metagraph.files import is_file, is_inside, opened, read_file
 from metagraph.formats.atomic import write_atomically
+from metagraph.wording import told
 
 RECORD = ".metagraph-export.json"
 NAMED = 4  # foreign files that are named
@@ -117,8 +118,8 @@ class Staging:
             remedy = "Choose a folder you may write to."
             raise FileError(
                 folder,
-                f"cannot be made ({getattr(error, 'strerror', None) or error})",
-                "on making the folder",
+                told("cannot be made ({value})", value=getattr(error, "strerror", None) or error),
+                told("on making the folder"),
                 remedy,
             ) from None
 
@@ -157,7 +158,10 @@ class Staging:
             where = Path(error.filename2 or error.filename or self.folder)
             remedy = "Close what has it open, or choose a folder you may write to, with space left."
             raise FileError(
-                where, f"cannot be written ({error.strerror or error})", "on exporting", remedy
+                where,
+                told("cannot be written ({value})", value=error.strerror or error),
+                told("on exporting"),
+                remedy,
             ) from None
         except BaseException:
             self._put_back(done)

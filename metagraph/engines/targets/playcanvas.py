@@ -18,6 +18,7 @@ from metagraph.engines.targets.target import ExportOrder, ExportTarget, Made
 from metagraph.formats.atomic import write_atomically
 from metagraph.formats.gltf_writer import SCENE
 from metagraph.graph.model import Project
+from metagraph.wording import told
 
 
 def state_graph(project: Project, built: tuple[Machine, ...]) -> dict[str, Any]:
@@ -118,7 +119,8 @@ def guide(built: tuple[Machine, ...]) -> dict[str, Any]:
 TARGETS = (
     ExportTarget(
         "playcanvas", "PlayCanvas (AnimStateGraph)",
-        "a state graph, the numbers of its actions and stances, and one GLB with an animation for each state",
+        told("a state graph, the numbers of its actions and stances, and one GLB with an "
+        "animation for each state"),
         write, (*MACHINE, WEIGHTS, CROSSFADE),
     ),
 )  # fmt: skip

@@ -16,6 +16,7 @@ from metagraph.formats.atomic import synced_together
 from metagraph.formats.store import writable
 from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import Character
+from metagraph.wording import told
 
 # Modules of this package that have TARGETS, in the order they are offered.
 MODULES = (
@@ -89,7 +90,11 @@ def write(
     if compress and not chosen.unpacks:
         able = ", ".join(t.name for t in targets().values() if t.unpacks)
         raise ExportError(
-            f"'{name}' is not read by what unpacks a GLB: export it without --compress, or for {able}"
+            told(
+                "'{name}' is not read by what unpacks a GLB: export it without --compress, or for {able}",
+                name=name,
+                able=able,
+            )
         )
     project = writable(project)
     warnings = sound(project)

@@ -10,10 +10,11 @@ from metagraph import engines
 from metagraph.engines.export import write
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.errors import FileError
+from metagraph.wording import told
 
 RUNTIMES = Path(engines.__file__).with_name("runtimes")
 REQUESTS = "../../../../docs/live.md"  # where a README finds them here; an export carries them along
-BML = Loss("requests in Behaviour Markup Language are read by the desktop alone")
+BML = Loss(told("requests in Behaviour Markup Language are read by the desktop alone"))
 
 
 def written(order: ExportOrder) -> Made:
@@ -53,9 +54,9 @@ def copied(source: Path, target: Path, leave: tuple[str, ...] = ()) -> list[Path
         except OSError as error:
             raise FileError(
                 place,
-                f"cannot be written ({error.strerror})",
-                "on copying the runtime",
-                "Choose a place you may write to, with space left.",
+                told("cannot be written ({strerror})", strerror=error.strerror),
+                told("on copying the runtime"),
+                told("Choose a place you may write to, with space left."),
             ) from None
         out.append(place)
     return out
@@ -85,54 +86,54 @@ TARGETS = (
     ExportTarget(
         "metagraph",
         "Metagraph (JSON + GLB)",
-        "one JSON, the graph, and one GLB, its clips",
+        told("one JSON, the graph, and one GLB, its clips"),
         written,
-        group="Played as the preview does",
+        group=told("Played as the preview does"),
         unpacks=True,
     ),
     ExportTarget(
         "javascript",
         "JavaScript, three.js",
-        "JSON and GLB, and in metagraph/ the runtime: ES modules for browsers, Node and three.js",
+        told("JSON and GLB, and in metagraph/ the runtime: ES modules for browsers, Node and three.js"),
         _with("javascript", "metagraph"),
         (BML,),
-        group="Played as the preview does",
+        group=told("Played as the preview does"),
         unpacks=True,
     ),
     ExportTarget(
         "godot",
         "Godot 4 add-on",
-        "JSON and GLB, and in addons/metagraph/ the runtime in GDScript",
+        told("JSON and GLB, and in addons/metagraph/ the runtime in GDScript"),
         _with("godot", "."),
         (BML,),
-        group="Played as the preview does",
+        group=told("Played as the preview does"),
     ),
     ExportTarget(
         "unity",
         "Unity package",
-        "JSON and GLB, and in Metagraph/ the runtime in C#",
+        told("JSON and GLB, and in Metagraph/ the runtime in C#"),
         _with("unity", "Metagraph"),
         (BML,),
-        untried="compiled and checked outside Unity; not run in Unity",
-        group="Played as the preview does",
+        untried=told("compiled and checked outside Unity; not run in Unity"),
+        group=told("Played as the preview does"),
         unpacks=True,
     ),
     ExportTarget(
         "cpp",
         "C++17",
-        "JSON and GLB, and in metagraph/ the runtime: headers that need the standard library alone",
+        told("JSON and GLB, and in metagraph/ the runtime: headers that need the standard library alone"),
         _with("cpp", "metagraph"),
         (BML,),
-        group="Played as the preview does",
+        group=told("Played as the preview does"),
         unpacks=True,
     ),
     ExportTarget(
         "unreal",
         "Unreal 5 plugin",
-        "JSON and GLB, and in Plugins/Metagraph/ a plugin with the runtime in C++",
+        told("JSON and GLB, and in Plugins/Metagraph/ a plugin with the runtime in C++"),
         _plugin,
         (BML,),
-        untried="compiled and played against stand-ins for Unreal's types; not run in Unreal",
-        group="Played as the preview does",
+        untried=told("compiled and played against stand-ins for Unreal's types; not run in Unreal"),
+        group=told("Played as the preview does"),
     ),
 )

@@ -17,13 +17,18 @@ from metagraph.engines.targets.losses import MACHINE
 from metagraph.engines.targets.meshes import mesh_of
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.formats.atomic import write_atomically
+from metagraph.wording import told
 
 HOST = Loss(
-    "it decides only: who runs it plays each state's animation, blends for as long as the arrow says, and "
-    "adds the layers"
+    told(
+        "it decides only: who runs it plays each state's animation, blends for as long as the arrow "
+        "says, and adds the layers"
+    )
 )
-FORGETFUL = Loss("what is asked while an action plays that may not be left yet is not remembered")
-TOLD = Loss("what is asked while an action plays that may not be left yet is told as missed, not remembered")
+FORGETFUL = Loss(told("what is asked while an action plays that may not be left yet is not remembered"))
+TOLD = Loss(
+    told("what is asked while an action plays that may not be left yet is told as missed, not remembered")
+)
 
 
 def _events(machine: Machine, arrow: Arrow) -> Iterator[str]:
@@ -186,14 +191,14 @@ TARGETS = (
     ExportTarget(
         "xstate",
         "XState (JSON)",
-        "one state chart for XState 5, and one GLB with an animation for each state",
+        told("one state chart for XState 5, and one GLB with an animation for each state"),
         write_xstate,
         (*MACHINE, HOST, TOLD),
     ),
     ExportTarget(
         "scxml",
         "SCXML",
-        "one W3C state chart, and one GLB with an animation for each state",
+        told("one W3C state chart, and one GLB with an animation for each state"),
         write_scxml,
         (*MACHINE, HOST, FORGETFUL),
     ),

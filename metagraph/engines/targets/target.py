@@ -9,6 +9,7 @@ from pathlib import Path
 from metagraph.engines.export import Chosen, nothing_chosen
 from metagraph.graph.model import Project
 from metagraph.motion.character_mesh import Character
+from metagraph.wording import Told, told
 
 Tell = Callable[[int, int, str], None]
 
@@ -25,7 +26,10 @@ class Loss:
     def told(self, project: Project) -> str | None:
         """Return the words for a project, None where it loses nothing."""
         number = 1 if self.count is None else self.count(project)
-        return self.words.replace("{n}", str(number)) if number else None
+        if not number:
+            return None
+        template = self.words.template if isinstance(self.words, Told) else self.words
+        return told(template, n=number) if "{n}" in template else self.words
 
 
 @dataclass(frozen=True)
@@ -68,7 +72,7 @@ class ExportTarget:
     write: Callable[[ExportOrder], Made]
     losses: tuple[Loss, ...] = ()
     untried: str = ""
-    group: str = "Formats"
+    group: str = told("Formats")
     unpacks: bool = False
 
 

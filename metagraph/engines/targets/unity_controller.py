@@ -44,6 +44,7 @@ from metagraph.graph import anatomy
 from metagraph.graph.model import Project
 from metagraph.motion.clip import Clip
 from metagraph.motion.skeleton import Skeleton
+from metagraph.wording import told
 
 BASE = "base"  # the layer at the bottom, its state and clip
 IF, EQUALS = 1, 6  # modes of conditions
@@ -51,10 +52,11 @@ INTEGER, TRIGGER = 3, 9  # types of parameters
 Row = tuple[int, int, str, Mapping[str, Any]]
 
 MOMENT = Loss(
-    "what is asked for after the moment from which an action may be left waits until it has ended: an exit "
-    "time is one moment"
+    told(
+        "what is asked for after the moment from which an action may be left waits until it has ended: an exit time is one moment"
+    )
 )
-UNTRIED = "written field by field as Unity writes its own files; there was no Unity to open it with"
+UNTRIED = told("written field by field as Unity writes its own files; there was no Unity to open it with")
 
 
 def controller(
@@ -382,8 +384,10 @@ TARGETS = (
     ExportTarget(
         "unity-controller",
         "Unity Animator Controller",
-        "an Animator Controller with Avatar Masks and clips as Unity's own text assets, a guide to them, and "
-        "the mesh as a GLB",
+        told(
+            "an Animator Controller with Avatar Masks and clips as Unity's own text assets, a guide to them, and "
+            "the mesh as a GLB"
+        ),
         write,
         (*MACHINE, WEIGHTS, CROSSFADE, MOMENT),
         UNTRIED,

@@ -19,6 +19,7 @@ from metagraph.engines.targets.runtimes import written
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.formats.usd_writer import CHARACTER, clip_paths, named, write_usd
 from metagraph.formats.usda import Names, Prim, number, text, texts
+from metagraph.wording import told
 
 GRAPH = f"{CHARACTER}/Graph"
 
@@ -84,7 +85,7 @@ def _properties(said: dict[str, Any]) -> list[str]:
     """Return the fields of an object of JSON; what is nested deeper than a list is its JSON as a text."""
     out = []
     for key, value in said.items():
-        if value is None or value == []:
+        if value is None or value in ([], {}):
             continue
         kind, shown = _value(value)
         out.append(f"custom {kind} metagraph:{key} = {shown}")
@@ -145,12 +146,17 @@ TARGETS = (
     ExportTarget(
         "usd",
         "USD (UsdSkel)",
-        "a stage: skeleton, skinned mesh with blend shapes, an animation for each clip, the graph; JSON and "
-        "GLB beside it",
+        told(
+            "a stage: skeleton, skinned mesh with blend shapes, an animation for each "
+            "clip, the graph; JSON and "
+            "GLB beside it"
+        ),
         write,
         (
-            Loss("no planner: the stage holds clips and graph for programs that ask; one clip plays"),
-            Loss("no life layers: breathing, gaze, blinks and lips are not in the clips; a bake has them"),
+            Loss(told("no planner: the stage holds clips and graph for programs that ask; one clip plays")),
+            Loss(
+                told("no life layers: breathing, gaze, blinks and lips are not in the clips; a bake has them")
+            ),
         ),
     ),
 )

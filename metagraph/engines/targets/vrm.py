@@ -30,6 +30,7 @@ from metagraph.motion.joint_map import known_roles
 from metagraph.motion.roles import REQUIRED
 from metagraph.motion.skeleton import Pose, Skeleton, unique_names
 from metagraph.motion.t_pose import t_pose
+from metagraph.wording import told
 
 META = "vrm_meta.json"
 LICENCE = "https://vrm.dev/licenses/1.0/"
@@ -97,7 +98,9 @@ def meta_of(project: Project, folder: Path | None) -> tuple[dict[str, Any], bool
     try:
         said = msgspec.json.decode(read_file(path, _LARGEST), type=dict[str, Any])
     except msgspec.MsgspecError as error:
-        raise FileError(path, f"it is no JSON object ({error})", "its content", _remedy()) from None
+        raise FileError(
+            path, told("it is no JSON object ({error})", error=error), told("its content"), _remedy()
+        ) from None
     for key, value in said.items():
         fits = (
             (key in _TEXTS and isinstance(value, str))
@@ -107,7 +110,12 @@ def meta_of(project: Project, folder: Path | None) -> tuple[dict[str, Any], bool
         )
         if not fits or (key == "authors" and not value):
             allowed = f"one of {', '.join(_WORDS[key])}" if key in _WORDS else "known to VRM"
-            raise FileError(path, f"what it says is not {allowed}", f"field '{key}'", _remedy())
+            raise FileError(
+                path,
+                told("what it says is not {allowed}", allowed=allowed),
+                told("field '{key}'", key=key),
+                _remedy(),
+            )
     return {**meta, **usual, **said, "licenseUrl": LICENCE}, True
 
 
@@ -161,16 +169,19 @@ def _write(order: ExportOrder) -> Made:
     lacking = [role for role in REQUIRED if role not in roles]
     if lacking:
         raise ExportError(
-            f"VRM needs a humanoid: no joint was found for {', '.join(lacking[:3])}. Say which it is "
-            "under the character's joints"
+            told(
+                "VRM needs a humanoid: no joint was found for {names}. Say which it is under the "
+                "character's joints",
+                names=", ".join(lacking[:3]),
+            )
         )
     _, at = skeleton.globals(skeleton.rest)
     axes = axes_of(skeleton, roles, at)
     if axes[2] @ [0, 0, 1] < 0.95:
-        raise ExportError("VRM's figures look along +Z in their rest pose, and this one does not")
+        raise ExportError(told("VRM's figures look along +Z in their rest pose, and this one does not"))
     body, notes = mesh_of(order)
     if body is None:
-        raise ExportError("VRM is a character: choose a mesh that fits the clips, and export with it")
+        raise ExportError(told("VRM is a character: choose a mesh that fits the clips, and export with it"))
     order.tell(0, 2, "clips")
     bones = humanoid(skeleton, roles)
     meta, said = meta_of(project, order.base)
@@ -207,11 +218,11 @@ TARGETS = (
     ExportTarget(
         "vrm",
         "VRM 1.0 avatar",
-        "a VRM: the character in a T, its bones, expressions and licence, clips as animations",
+        told("a VRM: the character in a T, its bones, expressions and licence, clips as animations"),
         _write,
         (
-            Loss("no meta-graph: an avatar's program moves it, the clips are there by their names"),
-            Loss("no life layers: breathing, gaze, blinks and lips are the program's"),
+            Loss(told("no meta-graph: an avatar's program moves it, the clips are there by their names")),
+            Loss(told("no life layers: breathing, gaze, blinks and lips are the program's")),
         ),
     ),
 )

@@ -6,6 +6,7 @@ from metagraph.engines.targets.runtimes import BML, RUNTIMES, copied, written
 from metagraph.engines.targets.target import ExportOrder, ExportTarget, Loss, Made
 from metagraph.engines.targets.web_tools import NEEDED, NET, THREE, bundled, tools
 from metagraph.formats.atomic import write_atomically
+from metagraph.wording import told
 
 CHARACTER = "metagraph-character.js"  # the element, and with it all that it needs
 _WHOSE = f"/*! Metagraph's player with three.js {THREE}, MIT, threejs.org */\n".encode()
@@ -36,8 +37,10 @@ def write(order: ExportOrder) -> Made:
         if modules is None:
             at = NET
             notes.append(
-                "three.js is not at hand: the page loads it from the net. With npm installed, exporting "
-                "again puts it beside the page"
+                told(
+                    "three.js is not at hand: the page loads it from the net. With npm installed, "
+                    "exporting again puts it beside the page"
+                )
             )
         else:
             for name in NEEDED:
@@ -68,10 +71,12 @@ TARGETS = (
     ExportTarget(
         "web",
         "Web page",
-        "a folder for any static server: a page, the character as an element for any other, JSON and GLB",
+        told(
+            "a folder for any static server: a page, the character as an element for any other, JSON and GLB"
+        ),
         write,
-        (BML, Loss("the picture: light and floor are the page's own, the motion is the same")),
-        group="Played as the preview does",
+        (BML, Loss(told("the picture: light and floor are the page's own, the motion is the same"))),
+        group=told("Played as the preview does"),
         unpacks=True,
     ),
 )

@@ -27,6 +27,7 @@ PLACES: dict[type[Printer], Callable[[str], str]] = {  # where each language's f
     Cpp: lambda word: f"cpp/{word}.hpp",
     GDScript: lambda word: f"godot/addons/metagraph/core/{word}.gd",
 }
+UNKNOWN = ("numpy.*", "numba.*", "yaml.*")  # nothing translated knows arrays and files; reading is slow
 
 
 def translated() -> dict[Path, str]:
@@ -46,7 +47,8 @@ def understood(listing: Sequence[Translated], root: Path) -> dict[Translated, So
     options.export_types = options.preserve_asts = options.local_partial_types = True
     options.incremental = False
     options.mypy_path = [str(root)]
-    options.per_module_options = {"numpy.*": {"follow_imports": "skip"}}  # nothing translated knows arrays
+    left_out = {"follow_imports": "skip", "follow_imports_for_stubs": True}
+    options.per_module_options = dict.fromkeys(UNKNOWN, left_out)
     paths = {one: root / f"{one.module.replace('.', '/')}.py" for one in listing}
     found = build.build([BuildSource(str(p), one.module) for one, p in paths.items()], options)
     own = tuple(f"{p.name}:" for one, p in paths.items() if not one.only)

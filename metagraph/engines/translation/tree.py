@@ -380,8 +380,18 @@ def walk(node: object) -> Iterator[Expression | Statement]:
     if isinstance(node, tuple):
         for one in node:
             yield from walk(one)
-    elif is_dataclass(node) and not isinstance(node, Type):
-        if isinstance(node, Expression | Statement):
-            yield node
-        for f in fields(node):
-            yield from walk(getattr(node, f.name))
+        return
+    kind = type(node)
+    names = _HELD.get(kind)
+    if names is None:
+        names = ()
+        if is_dataclass(node) and not isinstance(node, Type):
+            names = tuple(f.name for f in fields(node))
+        _HELD[kind] = names
+    if names and isinstance(node, Expression | Statement):
+        yield node
+    for name in names:
+        yield from walk(getattr(node, name))
+
+
+_HELD: dict[type, tuple[str, ...]] = {}  # what a piece of tree of a class has pieces in

@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 
 from app.cli.parser import main
-from metagraph.engines.vectors import check_vectors
+from metagraph.engines import vectors
+from metagraph.engines.vectors import check_vectors, every_case
 from tests.processes import metagraph, started, until
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -36,7 +37,8 @@ def test_a_target_is_written_and_its_losses_are_told(few, tmp_path, capsys):
     assert data["losses"] and f"loses: {data['losses'][0]}" in shown.err
 
 
-def test_vectors_are_written_beside_the_graph_they_are_of(few, tmp_path, capsys):
+def test_vectors_are_written_beside_the_graph_they_are_of(few, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(vectors, "every_case", lambda project: list(every_case(project))[::8])
     assert main(["export", str(few), "-o", str(tmp_path), "--vectors", "--no-mesh"]) == 0
     assert check_vectors(tmp_path).failures == []
     assert main(["export", str(few), "-o", str(tmp_path / "x"), "--vectors", "-t", "bml"]) == 0

@@ -101,3 +101,13 @@ def test_thumbnails_are_drawn_elsewhere_and_a_loop_moves(document, figures, toy,
     finally:
         thumbnails.stop()
     assert thumbnails.picture(clip) is None, "stopped, it orders nothing"
+
+
+def test_a_figure_is_drawn_at_once_and_gets_its_levels_of_detail_later(document, figures, sample, qtbot):
+    document.load(replace(sample, character=str(MANNEQUIN)), None)
+    qtbot.waitUntil(lambda: figures.figure(sample.skeleton) is not None)
+    figure = figures.figure(sample.skeleton)
+    assert isinstance(figure, SkinnedFigure) and not figure.levels, "nobody waits for them"
+    qtbot.waitUntil(lambda: bool(figure.levels), timeout=60_000)
+    counts = [len(figure.mesh.triangles), *(len(level.mesh.triangles) for level in figure.levels)]
+    assert counts == sorted(counts, reverse=True)

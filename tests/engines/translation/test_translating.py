@@ -12,11 +12,11 @@ from typing import Any
 
 import pytest
 
-from metagraph.engines.translation.listing import RUNTIMES, Translated
+from metagraph.engines.translation.listing import LISTING, NATIVE, RUNTIMES, Translated
 from metagraph.engines.translation.lowering import module_of
 from metagraph.engines.translation.printing import TranslationError
-from metagraph.engines.translation.source import SubsetError
-from metagraph.engines.translation.translating import printed, read, translated, understood
+from metagraph.engines.translation.source import Source, SubsetError
+from metagraph.engines.translation.translating import printed, read, understood
 from metagraph.graph.edits import set_settings
 from metagraph.graph.model import LIMBS, MetaGraph, Project, Settings
 from metagraph.playback import layer_planning, markov, phases, replan
@@ -27,6 +27,7 @@ from metagraph.playback.life.mouth import accents_of, mouth_track
 from metagraph.playback.mood import Mood, MoodFrom, Moods
 from metagraph.playback.plan import LayerPlan, MetaAction, MetaRequest, Report
 from metagraph.playback.vigour import vigour
+from tests.engines.test_runtime_cpp import SELDOM
 from tests.engines.translation import every_means
 
 HERE = Path(__file__).parent
@@ -35,20 +36,26 @@ MEANS = [f.__name__ for f in every_means.MEANS]
 SAID = [f() for f in every_means.MEANS]
 
 
-def test_the_runtimes_hold_what_is_translated_today() -> None:
-    """Else: `.venv/bin/python -m metagraph.engines.translation`."""
-    old = [
-        p.relative_to(RUNTIMES) for p, text in translated().items() if p.read_text(encoding="utf-8") != text
-    ]
-    assert not old
+EVERY = Translated("tests.engines.translation.every_means", "every_means")
 
 
 @pytest.fixture(scope="module")
-def means() -> dict[str, str]:
+def sources() -> dict[Translated, Source]:
+    """What is translated and the module of all means, read at once: to read takes most of the time."""
+    return understood([*LISTING, EVERY], ROOT)
+
+
+def test_the_runtimes_hold_what_is_translated_today(sources: dict[Translated, Source]) -> None:
+    """Else: `.venv/bin/python -m metagraph.engines.translation`."""
+    made = printed({one: module_of(sources[one]) for one in LISTING}, NATIVE)
+    assert not [path for path, text in made.items() if (RUNTIMES / path).read_text(encoding="utf-8") != text]
+
+
+@pytest.fixture(scope="module")
+def means(sources: dict[Translated, Source]) -> dict[str, str]:
     """The module of all means, in each language."""
     wanted = ("MEANS",)
-    one = Translated("tests.engines.translation.every_means", "every_means")
-    (source,) = understood([one], ROOT).values()
+    one, source = EVERY, sources[EVERY]
     names = {n for d in source.tree.defs for n in [getattr(d, "name", "")] if n} | {"STEP", "WORDS"}
     source.only = tuple(names - set(wanted))
     return {Path(path).suffix: text for path, text in printed({one: module_of(source)}, {}).items()}
@@ -389,7 +396,7 @@ def _compiled(code: str, folder: Path) -> list[str]:
     """Return what a program says, compiled without a warning."""
     (folder / "all.cpp").write_text("#include <iostream>\n" + code)
     places = ["-I", str(folder), "-I", str(RUNTIMES / "cpp")]
-    command = ["g++", "-std=c++17", "-Wall", "-Wextra", "-Werror", *places, "-o", "all", "all.cpp"]
+    command = ["g++", *SELDOM, "-std=c++17", "-Wall", "-Wextra", "-Werror", *places, "-o", "all", "all.cpp"]
     made = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
     assert made.returncode == 0, made.stderr[:3000]
     done = subprocess.run(["./all"], cwd=folder, capture_output=True, text=True, timeout=60)

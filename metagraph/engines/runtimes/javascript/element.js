@@ -14,7 +14,7 @@ import { StreamedVoice } from "./streamed_voice.js";
 import { Talk } from "./talk.js";
 import { MetagraphObject } from "./three.js";
 
-const STYLE = `:host { display: block; position: relative; min-height: 120px; max-height: 100vh; aspect-ratio: 3 / 4; }
+const STYLE = `:host { display: block; position: relative; min-width: 0; min-height: 120px; max-height: 100vh; aspect-ratio: 3 / 4; }
 :host([hidden]) { display: none; }
 canvas { position: absolute; inset: 0; width: 100%; height: 100%; display: block; outline-offset: -2px; }
 p { position: absolute; inset: auto 12px 10px; margin: 0; font: 14px/1.4 system-ui, sans-serif; color: #888; pointer-events: none; white-space: pre-line; }

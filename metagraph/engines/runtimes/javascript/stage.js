@@ -59,7 +59,7 @@ export class Stage {
     sun.castShadow = true;
     sun.shadow.mapSize.set(1024, 1024);
     Object.assign(sun.shadow.camera, { left: -1.5, right: 1.5, top: 2.2, bottom: -1.2 });
-    sun.shadow.radius = 6;
+    sun.shadow.radius = 4;
     sun.shadow.normalBias = 0.02; // a face must not speckle its own cheeks
     this.scene.add(sun);
     const rim = new DirectionalLight(0xffffff, 0.9);

@@ -1,0 +1,110 @@
+"""Levels of detail: meshes with fewer triangles for figures that are small in the picture, and for shadows.
+
+They are kept in the user's folder for caches, by what the mesh is; losing them costs a second or two.
+METAGRAPH_MESH_CACHE names another folder; empty, nothing is kept.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from metagraph.disk_cache import DiskCache, cache_folder
+from preview.mesh import Mesh
+from preview.simplify import Fewer, simplified
+
+Array = NDArray[Any]
+
+ERRORS = (0.001, 0.002, 0.004, 0.008)  # of the figure's height
+MADE = 1  # to be raised when they are made otherwise
+LEAST, LARGEST = 600, 400_000  # triangles; what has fewer is drawn as it is, with more it would take minutes
+WORTH = 0.85  # of the triangles of the level before, with more than which there is none
+MOST = 64 * 1024 * 1024  # bytes on disk
+
+
+@dataclass(frozen=True, eq=False)
+class Level:
+    """error: how far the surface is off, metres, about."""
+
+    error: float
+    mesh: Mesh
+
+
+def kept_in() -> Path | None:
+    """Return the folder levels are kept in, None where nothing is."""
+    told = os.environ.get("METAGRAPH_MESH_CACHE")
+    return cache_folder("meshes") if told is None else Path(told) if told else None
+
+
+def levels_of(mesh: Mesh, height: float, cancelled: Callable[[], bool] = lambda: False) -> tuple[Level, ...]:
+    """Return the levels of a mesh whose figure is `height` metres tall, finer ones first; none where there
+    is little to take away, or once it is `cancelled`.
+    """
+    if not LEAST <= len(mesh.triangles) <= LARGEST or not np.isfinite(mesh.vertices["position"]).all():
+        return ()
+    errors = [share * height for share in ERRORS]
+    cache, key = DiskCache(kept_in(), MOST, ".npz"), _key(mesh, errors)
+    content = cache.read(key)
+    found = None if content is None else _read(content, mesh)
+    if found is None:
+        found = list(simplified(mesh, errors, cancelled))
+        if len(found) < len(errors):
+            return ()
+        cache.write(key, _written(found))
+    out, before = [], len(mesh.triangles)
+    for error, fewer in zip(errors, found, strict=True):
+        if len(fewer.triangles) <= WORTH * before:
+            out.append(Level(error, fewer.of(mesh)))
+            before = len(fewer.triangles)
+    return tuple(out)
+
+
+def _key(mesh: Mesh, errors: list[float]) -> str:
+    out = hashlib.blake2b(repr((MADE, errors, mesh.matrices)).encode(), digest_size=20)
+    out.update(repr([(b.first, b.count) for b in mesh.batches]).encode())
+    for values in (mesh.vertices, mesh.triangles):
+        out.update(np.ascontiguousarray(values).tobytes())
+    return out.hexdigest()
+
+
+def _written(levels: list[Fewer]) -> bytes:
+    out = io.BytesIO()
+    np.savez(
+        out,
+        **{
+            f"{name}{n}": getattr(level, name).astype(np.uint32)
+            for n, level in enumerate(levels)
+            for name in ("used", "triangles", "counts")
+        },
+    )
+    return out.getvalue()
+
+
+def _read(content: bytes, mesh: Mesh) -> list[Fewer] | None:
+    """Return what was kept; None where it cannot be what was."""
+    try:
+        with np.load(io.BytesIO(content), allow_pickle=False) as held:
+            found = [
+                Fewer(held[f"used{n}"], held[f"triangles{n}"], held[f"counts{n}"].astype(np.int64))
+                for n in range(len(ERRORS))
+            ]
+    except Exception:  # whatever is wrong with it, it is made again
+        return None
+    whole = all(
+        f.used.ndim == 1
+        and f.triangles.shape[1:] == (3,)
+        and f.counts.shape == (len(mesh.batches),)
+        and int(f.counts.sum()) == len(f.triangles)
+        and (not len(f.used) or int(f.used.max()) < len(mesh.vertices))
+        and (not len(f.triangles) or int(f.triangles.max()) < len(f.used))
+        for f in found
+    )
+    return found if whole else None

@@ -1,0 +1,136 @@
+"""Shadows: of figures on themselves near by, and on the ground."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from metagraph.motion.character_mesh import Material, Surface
+from preview import shadows
+from preview.camera import Camera
+from preview.figure import SkinnedFigure
+from preview.frame import Frame, boxes
+from preview.offscreen import Offscreen
+from preview.scene import DARK, Actor, Scene
+from tests.preview.conftest import chain
+from tests.preview.test_figure import character
+
+pytestmark = pytest.mark.gl
+SIZE = (400, 400)
+NOON = replace(DARK, toward=(0.35, 1.0, 0.5))
+
+
+def slab(y: float, half: float) -> tuple[np.ndarray, np.ndarray]:
+    """A level square seen from above."""
+    positions = np.array([[x, y, z] for x in (-half, half) for z in (-half, half)])
+    return positions, np.array([[0, 1, 3], [0, 3, 2]])
+
+
+def shelf() -> Scene:
+    """A small square above a large one: its shadow has straight edges."""
+    (low, first), (high, second) = slab(0.9, 0.9), slab(1.1, 0.12)
+    made = character(
+        chain("a", "b", "c"),
+        positions=np.concatenate([low, high]),
+        triangles=np.concatenate([first, second + 4]),
+        normals=np.tile([0.0, 1, 0], (8, 1)),
+        uvs=np.zeros((8, 2)),
+        joints=np.zeros((8, 4), int),
+        weights=np.tile([1.0, 0, 0, 0], (8, 1)),
+        materials=(Material("white", (0.8, 0.8, 0.8, 1)),),
+        surfaces=(Surface(0, 4, 0),),
+    )
+    figure = SkinnedFigure(made)
+    return Scene((Actor(figure, *figure.skeleton.globals(figure.skeleton.rest)),))
+
+
+def near() -> Camera:
+    """Straight down on the shadow's far corner, past the small square."""
+    return Camera((-0.13, 0.9, -0.20), 0.0, np.radians(88.0), 0.6)
+
+
+def steps(picture: np.ndarray) -> float:
+    """How far an edge that leads upwards through a picture is from a straight line, pixels, at most."""
+    light = picture[..., :3].astype(float).mean(-1)
+    middle = (light.min() + light.max()) / 2
+    at = []
+    for row in light:
+        crossings = np.flatnonzero((row[:-1] < middle) != (row[1:] < middle))
+        if len(crossings):
+            n = crossings[0]
+            at.append(n + (middle - row[n]) / (row[n + 1] - row[n]))
+    rows = np.arange(len(at))
+    return float(np.abs(at - np.polyval(np.polyfit(rows, at, 1), rows)).max())
+
+
+def frame_of(scene: Scene, camera: Camera, offscreen: Offscreen) -> Frame:
+    offscreen.render(scene, camera, NOON, SIZE)
+    actors = list(scene.actors)
+    matrix = camera.projection(1.0) @ camera.view()
+    parts = boxes(actors, offscreen.renderer.store.palettes)
+    meshes = [a.figure.mesh for a in actors]
+    return Frame(scene, actors, [0], camera, SIZE, NOON, matrix, scene.bounds(), meshes, parts, {})
+
+
+def test_near_by_an_edge_has_no_saw_teeth(offscreen, monkeypatch):
+    """Straight edges stay straight; in the map of all a texel is seven pixels wide here."""
+    picture = offscreen.render(shelf(), near(), NOON, SIZE)
+    monkeypatch.setattr(shadows, "NEAR", 1e9)
+    toothed = offscreen.render(shelf(), near(), NOON, SIZE)
+    assert np.ptp(picture[..., 0].astype(int)) > 40, "the shadow is in the picture"
+    edge = np.s_[200:340, 60:200]
+    assert steps(picture[edge]) < 0.5 * steps(toothed[edge])
+
+
+def test_what_is_seen_near_by_has_a_map_of_its_own_and_what_is_far_has_not(offscreen):
+    axes = np.stack(np.eye(3)[[0, 2, 1]] * [[1], [1], [-1]])
+    scene, texels = shelf(), 200.0
+    close, far = (frame_of(scene, c, offscreen) for c in (near(), replace(near(), distance=8.0)))
+    assert shadows._window(far, axes, texels) is None
+    window = shadows._window(close, axes, texels)
+    assert window is not None
+    low, high = window
+    assert (high - low < 2.6).all() and (low < [-0.13, -0.20]).all() and (high > [-0.13, -0.20]).all()
+    away = frame_of(scene, replace(near(), target=(9.0, 0.9, 9.0)), offscreen)
+    assert shadows._window(away, axes, texels) is None, "nothing of it is in the picture"
+
+
+def test_a_window_keeps_its_size_while_a_body_sways_a_little(offscreen):
+    axes = np.stack(np.eye(3)[[0, 2, 1]] * [[1], [1], [-1]])
+    sizes = set()
+    for x in np.linspace(0, 0.004, 5):
+        frame = frame_of(shelf(), replace(near(), target=(-0.13 + x, 0.9, -0.2)), offscreen)
+        window = shadows._window(frame, axes, 200.0)
+        assert window is not None
+        sizes.add(tuple((window[1] - window[0]).round(9)))
+    assert len(sizes) == 1
+
+
+def test_the_ground_is_as_dark_whether_or_not_the_body_has_a_map_of_its_own(
+    offscreen, mannequin, monkeypatch
+):
+    """Its own shadow comes from a smaller picture then."""
+    figure = SkinnedFigure(mannequin)
+    scene = Scene((Actor(figure, *figure.skeleton.globals(figure.skeleton.rest)),))
+    camera = Camera((0.3, 0.2, -0.3), 0.4, 0.5, 2.0)
+    pictures = []
+    for limit in (1e9, 1e-9):  # never, always
+        monkeypatch.setattr(shadows, "NEAR", limit)
+        scene = replace(scene, actors=tuple(replace(a) for a in scene.actors))  # so that nothing is kept
+        pictures.append(offscreen.render(scene, camera, NOON, SIZE).astype(int))
+    apart = np.abs(pictures[0] - pictures[1]).max(-1)
+    assert (pictures[0] != pictures[1]).any() and (apart > 24).mean() < 0.01
+
+
+def test_who_stands_behind_the_eye_or_round_it_is_no_trouble(offscreen, mannequin):
+    figure = SkinnedFigure(mannequin)
+    rotations, positions = figure.skeleton.globals(figure.skeleton.rest)
+    ahead, behind = Actor(figure, rotations, positions), Actor(figure, rotations, positions + [0, 0, 3.0])
+    for z in (0.0, 0.2, 1.0, 3.0):
+        camera = Camera((0.0, 1.4, z), 0.0, 0.0, 0.3)
+        picture = offscreen.render(Scene((ahead, behind)), camera, NOON, SIZE)
+        assert picture.shape == (*SIZE, 4)
+    away = frame_of(Scene((behind,)), Camera((0.0, 1.4, 0.0), 0.0, 0.0, 0.5), offscreen)
+    assert shadows._window(away, np.stack(np.eye(3)), 200.0) is None
