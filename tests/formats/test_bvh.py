@@ -525,8 +525,8 @@ def test_what_is_kept_of_the_loops_reads_as_they_do(tmp_path: Path, monkeypatch:
     monkeypatch.delitem(sys.modules, "metagraph.formats.bvh_kernels")
     found = read_bvh(path, 0.01)
     assert bvh.COMPILED.now is not None and "metagraph.formats.bvh_kernels" not in sys.modules
-    np.testing.assert_array_equal(found.rotations, expected.rotations)
-    np.testing.assert_array_equal(found.translations, expected.translations)
+    np.testing.assert_allclose(found.rotations, expected.rotations, atol=2e-7)
+    np.testing.assert_allclose(found.translations, expected.translations, atol=2e-7)
     path.write_text(figure(rows="1 2 3 4 5 x 7 8 9"))
     with pytest.raises(FileError, match="'x' is not a sensible number"):
         read_bvh(path)
