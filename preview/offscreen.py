@@ -11,6 +11,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from metagraph.wording import told
 from preview.camera import Camera
 from preview.renderer import Renderer
 from preview.scene import DARK, Scene, Theme
@@ -18,6 +19,15 @@ from preview.scene import DARK, Scene, Theme
 
 class OpenGLError(RuntimeError):
     """There is no OpenGL 3.3 here; the message says what to install."""
+
+
+def no_opengl(reasons: str) -> OpenGLError:
+    """Return what to raise where OpenGL 3.3 cannot be had. reasons: what the system says."""
+    remedy = {
+        "linux": told("Install Mesa's software renderer, on Debian or Ubuntu: apt install libegl1 libgl1"),
+        "darwin": told("Sign in to a graphical session; macOS gives no OpenGL without one"),
+    }.get(sys.platform, told("Install the graphics card's driver"))
+    return OpenGLError(told("There is no OpenGL 3.3 ({reasons}). {remedy}.", reasons=reasons, remedy=remedy))
 
 
 def standalone_context() -> moderngl.Context:
@@ -29,11 +39,7 @@ def standalone_context() -> moderngl.Context:
             return moderngl.create_context(standalone=True, require=330, **options)
         except Exception as error:  # each backend raises its own kinds
             reasons.append(f"{options.get('backend', 'system')}: {error}")
-    remedy = {
-        "linux": "Install Mesa's software renderer, on Debian or Ubuntu: apt install libegl1 libgl1",
-        "darwin": "Sign in to a graphical session; macOS gives no OpenGL without one",
-    }.get(sys.platform, "Install the graphics card's driver")
-    raise OpenGLError(f"There is no OpenGL 3.3 ({'; '.join(reasons)}). {remedy}.")
+    raise no_opengl("; ".join(reasons))
 
 
 class Offscreen:

@@ -26,7 +26,7 @@ from PySide6.QtGui import (
     QWheelEvent,
 )
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
-from PySide6.QtWidgets import QWidget
+from PySide6.QtWidgets import QLabel, QLayout, QVBoxLayout, QWidget
 
 from app.translation import tr, tr_error
 from preview.camera import Camera
@@ -45,11 +45,24 @@ class CameraMouse(_Base):
     """Mouse to camera, for any widget that has `frame_wanted`."""
 
     camera: Camera
+    failed: Any
 
     def _init_camera(self) -> None:
         self.camera = Camera()
         self.moved_by_hand = False
         self._last: QPointF | None = None
+
+    def _cannot_draw(self, error: Exception) -> None:
+        """Say in the middle of the view why it stays empty, and to whoever listens."""
+        words = QLabel(tr_error(error), self, wordWrap=True, alignment=Qt.AlignmentFlag.AlignCenter)
+        words.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        words.setAutoFillBackground(True)  # what an OpenGL widget leaves is black
+        words.setContentsMargins(24, 24, 24, 24)
+        words.lower()  # buttons over the view stay to be seen
+        room = QVBoxLayout(self)
+        room.setSizeConstraint(QLayout.SizeConstraint.SetNoConstraint)
+        room.addWidget(words)
+        self.failed.emit(words.text())
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         self._last = event.position()
@@ -99,11 +112,13 @@ class GLView(CameraMouse, QOpenGLWidget):
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
 
     def initializeGL(self) -> None:
+        from preview.offscreen import no_opengl
+
         try:
             self._ctx = moderngl.create_context(require=330)
             self._renderer = Renderer(self._ctx)
         except Exception as error:
-            self.failed.emit(tr("The preview needs OpenGL 3.3: {error}", error=error))
+            self._cannot_draw(no_opengl(str(error)))
             return
         self.context().aboutToBeDestroyed.connect(self._lost)
 
@@ -164,7 +179,7 @@ class ImageView(CameraMouse, QWidget):
                 self._contexts.append(self._offscreen)
             except OpenGLError as error:
                 self._offscreen = False
-                self.failed.emit(tr_error(error))
+                self._cannot_draw(error)
         painter = QPainter(self)
         if self._offscreen:
             scene = self._compose()  # which may move the camera

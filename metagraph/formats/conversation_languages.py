@@ -8,12 +8,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from metagraph.formats.conversation_words import Told
-from metagraph.formats.transcript_words import count
+from metagraph.formats.transcript_words import count, listed
 from metagraph.graph.conversation import AUTO
 from metagraph.speech.language_detection import Spoken, language_spoken
 from metagraph.speech.language_packs import ENGLISH, Language, languages
+from metagraph.wording import told
 
-_BY_LISTS = (
+_BY_LISTS = told(
     "responses, hesitations and clauses go by that language's lists, lips by its letters as English spells. "
     "Choose another language if that is wrong."
 )
@@ -35,8 +36,12 @@ class Speaking:
     def __post_init__(self) -> None:
         if self.language not in (AUTO, *self.packs):
             raise ValueError(
-                f"there are no words of '{self.language[:40]}': known are {', '.join(self.packs)}; choose "
-                "one, 'auto', or give a list of words of your own"
+                told(
+                    "there are no words of '{language}': known are {names}; choose one, 'auto', or "
+                    "give a list of words of your own",
+                    language=self.language[:40],
+                    names=", ".join(self.packs),
+                )
             )
 
     @property
@@ -53,20 +58,24 @@ class Speaking:
 
 
 def languages_of(
-    notes: list[str], called: Sequence[str], told: Sequence[Told], speaking: Speaking
+    notes: list[str], called: Sequence[str], said: Sequence[Told], speaking: Speaking
 ) -> tuple[Language | None, ...]:
     """Return what each is read in, None where nobody knows; say how that was found."""
-    spoken = [_spoken(one, speaking) for one in told]
+    spoken = [_spoken(one, speaking) for one in said]
     if speaking.language != AUTO:
         chosen = speaking.packs[speaking.language]
         for name, found in zip(called, spoken, strict=True):
             if found is not None and found.language not in (None, chosen):
                 assert found.language is not None
                 notes.append(
-                    f"{name}: its words look {found.language.called}; they are read as {chosen.called}, as "
-                    "was chosen."
+                    told(
+                        "{name}: its words look {called}; they are read as {called2}, as was chosen.",
+                        name=name,
+                        called=found.language.called,
+                        called2=chosen.called,
+                    )
                 )
-        return (chosen,) * len(told)
+        return (chosen,) * len(said)
     partners = [_partner(spoken, n) for n in range(len(spoken))]
     out: list[Language | None] = []
     for found, partner in zip(spoken, partners, strict=True):
@@ -82,10 +91,10 @@ def languages_of(
     worded = [s for s in spoken if s is not None]
     alike = len(worded) == len(spoken) and len({s.language for s in worded}) == 1
     if alike and worded[0].language is not None:
-        notes += _all_alike(worded) if any(t.segments is None for t in told) else []
+        notes += _all_alike(worded) if any(t.segments is None for t in said) else []
         return tuple(out)
     for n, (name, found) in enumerate(zip(called, spoken, strict=True)):
-        if found is not None and told[n].segments is None:
+        if found is not None and said[n].segments is None:
             notes += _told(name, found, out[n], partners[n], speaking)
     return tuple(out)
 
@@ -102,15 +111,22 @@ def _all_alike(spoken: Sequence[Spoken]) -> list[str]:
     assert spoken[0].language is not None
     if spoken[0].language.code == ENGLISH:
         return []
-    each = [f"{s.known:,} of {s.words:,}" for s in spoken]
-    of = f"{', '.join(each[:-1])} and {each[-1]}"
-    who = "Both" if len(spoken) == 2 else "All"
-    return [f"{who} speak {spoken[0].language.called}, as {of} words tell; {_BY_LISTS}"]
+    of = listed([told("{known:,} of {words:,}", known=s.known, words=s.words) for s in spoken])
+    return [
+        told(
+            "Both speak {language}, as {of} words tell; {lists}"
+            if len(spoken) == 2
+            else "All speak {language}, as {of} words tell; {lists}",
+            language=spoken[0].language.called,
+            of=of,
+            lists=_BY_LISTS,
+        )
+    ]
 
 
-def _spoken(told: Told, speaking: Speaking) -> Spoken | None:
+def _spoken(said: Told, speaking: Speaking) -> Spoken | None:
     """Return what one's words tell; None where there are none."""
-    texts = [w.text for w in told.words] or [s.text for s in told.segments or () if s.text]
+    texts = [w.text for w in said.words] or [s.text for s in said.segments or () if s.text]
     return language_spoken(texts, tuple(speaking.packs.values())) if texts else None
 
 
@@ -119,28 +135,53 @@ def _told(
 ) -> list[str]:
     if read is None and found.how != "unknown":
         return [
-            f"{name}: {count(found.words, 'word')} do not tell the language; as the other's is not known, "
-            "sound tells clauses and short answers here, too."
+            told(
+                "{name}: {count} do not tell the language; as the other's is not known, sound tells clauses "
+                "and short answers here, too.",
+                name=name,
+                count=count(found.words, "word"),
+            )
         ]
     if read is None:
         known = ", ".join(speaking.packs)
         return [
-            f"{name}: its words are of no language that there are lists for ({known}), so sound tells "
-            "clauses and short answers, and no word is taken for a response or a hesitation. Choose the "
-            "language, or give a list of its words."
+            told(
+                "{name}: its words are of no language that there are lists for ({known}), so sound tells "
+                "clauses and short answers, and no word is taken for a response or a hesitation. Choose the "
+                "language, or give a list of its words.",
+                name=name,
+                known=known,
+            )
         ]
     if found.how == "sure":
         if read.code == ENGLISH:
             return []
         return [
-            f"{name}: its words are {read.called}, as {found.known:,} of {found.words:,} tell; {_BY_LISTS}"
+            told(
+                "{name}: its words are {language}, as {known:,} of {words:,} tell; {lists}",
+                name=name,
+                language=read.called,
+                known=found.known,
+                words=found.words,
+                lists=_BY_LISTS,
+            )
         ]
     if partner is not None and partner.language is read:
-        why = "as the other's are"
+        why = told("as the other's are")
+    elif speaking.otherwise == read.code:
+        why = told("which the project is set to")
     else:
-        why = "which the project is set to" if speaking.otherwise == read.code else "which is taken then"
-    few = "are too few to tell" if found.words < 12 else "do not tell"
+        why = told("which is taken then")
     return [
-        f"{name}: {count(found.words, 'word')} {few} the language by; undecided, they are read as "
-        f"{read.called}, {why}."
+        told(
+            "{name}: {count} are too few to tell the language by; undecided, they are read as {language}, "
+            "{why}."
+            if found.words < 12
+            else "{name}: {count} do not tell the language by; undecided, they are read as {language}, "
+            "{why}.",
+            name=name,
+            count=count(found.words, "word"),
+            language=read.called,
+            why=why,
+        )
     ]

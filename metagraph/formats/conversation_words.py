@@ -14,11 +14,12 @@ import msgspec
 import numpy as np
 
 from metagraph.errors import FileError
-from metagraph.formats.transcript_words import Transcript, count
+from metagraph.formats.transcript_words import Transcript, count, listed
 from metagraph.graph.conversation import SHORTEST, Segment, Word
 from metagraph.speech.activity import HUSH, activity
 from metagraph.speech.pitch import Pitch
 from metagraph.speech.sound import HeardSound
+from metagraph.wording import joined, told
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +54,7 @@ class Told:
 
 
 def sides_of(
-    notes: list[str], voices: Sequence[Voice], told: list[tuple[Path, Transcript]], most: int
+    notes: list[str], voices: Sequence[Voice], said: list[tuple[Path, Transcript]], most: int
 ) -> tuple[tuple[Voice, Told], ...]:
     """Return the sides: the sound of each, and what the transcripts say of it. voices: one a channel or file,
     a single one if all share it. most: sides at most.
@@ -61,16 +62,16 @@ def sides_of(
     Two at least. There are as many as there are voices, or more where the words name more speakers: those
     share the sound in which they are loudest.
     """
-    if len(told) > 1:
-        return _one_a_side(notes, voices, told)
-    speakers = _speakers(notes, *told[0], most) if told else []
+    if len(said) > 1:
+        return _one_a_side(notes, voices, said)
+    speakers = _speakers(notes, *said[0], most) if said else []
     if len(speakers) == 1:
-        return _one_speaker(notes, voices, told[0][0], speakers[0])
+        return _one_speaker(notes, voices, said[0][0], speakers[0])
     if len(voices) == 1:
         speakers += [Told()] * (2 - len(speakers))
         return tuple((voices[0], one) for one in speakers)
     if len(speakers) > len(voices):
-        return _sharing(notes, voices, told[0][0], speakers)
+        return _sharing(notes, voices, said[0][0], speakers)
     of = _best(voices, speakers)
     return tuple((voice, speakers[of.index(n)] if n in of else Told()) for n, voice in enumerate(voices))
 
@@ -84,8 +85,13 @@ def _sharing(
         loud = [_loudness(voices, one.words, n) for n in range(len(voices))]
         out.append((voices[loud.index(max(loud))], one))
     notes.append(
-        f"{path.name} names {len(speakers)} speakers of {len(voices)} channels: some share one, and there "
-        "only the transcript tells who speaks."
+        told(
+            "{name} names {count} speakers of {count2} channels: some share one, and there only the "
+            "transcript tells who speaks.",
+            name=path.name,
+            count=len(speakers),
+            count2=len(voices),
+        )
     )
     return tuple(out)
 
@@ -113,20 +119,26 @@ def _speakers(notes: list[str], path: Path, transcript: Transcript, most: int) -
         found = speaking
     if len(found) > most:
         kept = sorted(found, key=lambda s: -(len(s.words) or len(s.segments or ())))[:most]
-        gone = ", ".join(f"'{s.name}'" if s.name else "one without a name" for s in found if s not in kept)
+        left = [s for s in found if s not in kept]
+        gone = joined([f"'{s.name[:40]}'" if s.name else told("one without a name") for s in left[:8]], ", ")
         notes.append(
-            f"{path.name}: it has {len(found)} speakers; left out of a conversation of "
-            f"{'two' if most <= 2 else most}: {gone[:300]}."
+            told(
+                "{name}: it has {count} speakers; left out of a conversation of {value}: {gone}.",
+                name=path.name,
+                count=len(found),
+                value=told("two") if most <= 2 else most,
+                gone=gone,
+            )
         )
         found = [s for s in found if s in kept]
     return found
 
 
 def _one_a_side(
-    notes: list[str], voices: Sequence[Voice], told: list[tuple[Path, Transcript]]
+    notes: list[str], voices: Sequence[Voice], said: list[tuple[Path, Transcript]]
 ) -> tuple[tuple[Voice, Told], ...]:
     out = []
-    for path, transcript in told:
+    for path, transcript in said:
         found = _speakers(notes, path, transcript, 1)
         one = found[0] if found else Told()
         out.append(one if one.name else replace(one, name=path.stem[:200]))
@@ -138,10 +150,15 @@ def _one_a_side(
         for order in (of, range(len(out)))
     )
     if better > here + 3 * sum(bool(s.words) for s in out):
-        fits = " and ".join(f"{told[k][0].name} fits {voices[n].called}" for k, n in enumerate(of) if k != n)
+        swapped = [(said[k][0].name, voices[n].called) for k, n in enumerate(of) if k != n]
+        each = [told("{name} fits {voice}", name=name, voice=voice) for name, voice in swapped]
+        fits = listed(each)
         notes.append(
-            f"{fits} better than the other way round; they were not swapped. Give them in the order of the "
-            "sides."
+            told(
+                "{fits} better than the other way round; they were not swapped. Give them in the "
+                "order of the sides.",
+                fits=fits,
+            )
         )
     return tuple(zip(voices, out, strict=True))
 
@@ -152,8 +169,11 @@ def _one_speaker(
     """Return what one speaker's words are to all sides: each word is whose channel is louder then."""
     if len(voices) == 1:
         notes.append(
-            f"{path.name} names no two speakers, and the sound is one: all is taken for the first's. Name "
-            "the speakers in the transcript."
+            told(
+                "{name} names no two speakers, and the sound is one: all is taken for the first's. "
+                "Name the speakers in the transcript.",
+                name=path.name,
+            )
         )
         return (voices[0], one), (voices[0], Told())
     if one.segments is not None or not one.words:
@@ -163,18 +183,28 @@ def _one_speaker(
         shares = [float(np.mean([s == n for s in sides])) for n in range(len(voices))]
         if max(shares) < 0.9:
             notes.append(
-                f"{path.name} names no two speakers; each word is given to the side whose channel is louder "
-                "then."
+                told(
+                    "{name} names no two speakers; each word is given to the side whose channel is "
+                    "louder then.",
+                    name=path.name,
+                )
             )
             return tuple(
                 (v, Told(words=tuple(w for w, s in zip(one.words, sides, strict=True) if s == n), path=path))
                 for n, v in enumerate(voices)
             )
         first = shares.index(max(shares))
-    rest = "the other side has none, so its loudness tells what it says"
+    rest = told("the other side has none, so its loudness tells what it says")
     if len(voices) > 2:
-        rest = "the others have none, so their loudness tells what they say"
-    notes.append(f"{path.name} has the words of one speaker, of {voices[first].called}; {rest}.")
+        rest = told("the others have none, so their loudness tells what they say")
+    notes.append(
+        told(
+            "{name} has the words of one speaker, of {called}; {rest}.",
+            name=path.name,
+            called=voices[first].called,
+            rest=rest,
+        )
+    )
     return tuple((v, one if n == first else Told()) for n, v in enumerate(voices))
 
 
@@ -205,11 +235,11 @@ def _level(voice: Voice, start: float, end: float) -> float:
     return max(float(part.mean()) - voice.top, -60.0) if len(part) else -60.0
 
 
-def within(notes: list[str], called: str, told: Told, length: float) -> list[Word]:
+def within(notes: list[str], called: str, said: Told, length: float) -> list[Word]:
     """Return the words as far as the sound goes, seconds. Raises FileError where it has gone before the
     first.
     """
-    words = told.words
+    words = said.words
     out = [
         w if w.end <= length else msgspec.structs.replace(w, end=round(length, 4))
         for w in words
@@ -217,16 +247,25 @@ def within(notes: list[str], called: str, told: Told, length: float) -> list[Wor
     ]
     gone = len(words) - len(out)
     cut = sum(w.end > length + 0.05 for w in words[: len(out)])
-    if gone and not out and told.path is not None:
-        cause = f"all its {count(gone, 'word')} lie past the end of the sound, which lasts {length:.1f} s"
-        raise FileError(told.path, cause, told.name, "Choose this sound's own transcript.")
-    if gone or cut:
-        does = " and ".join(
-            f"{count(n, 'word')} {what}" for n, what in ((gone, "left out"), (cut, "cut")) if n
+    if gone and not out and said.path is not None:
+        cause = told(
+            "all its {count} lie past the end of the sound, which lasts {length:.1f} s",
+            count=count(gone, "word"),
+            length=length,
         )
+        raise FileError(said.path, cause, said.name, told("Choose this sound's own transcript."))
+    if gone or cut:
+        parts = [told("{count} left out", count=count(gone, "word"))] if gone else []
+        parts += [told("{count} cut", count=count(cut, "word"))] if cut else []
+        does = listed(parts)
         notes.append(
-            f"{called}: {does}, past the end of the sound at {length:.1f} s. Check that the transcript is of "
-            "this sound."
+            told(
+                "{called}: {does}, past the end of the sound at {length:.1f} s. Check that the "
+                "transcript is of this sound.",
+                called=called,
+                does=does,
+                length=length,
+            )
         )
     return out
 
@@ -237,7 +276,11 @@ def tell_unheard(notes: list[str], called: str, words: Sequence[Word], voice: Vo
     heard = sum(any(s.start - 0.2 < (w.start + w.end) / 2 < s.end + 0.2 for s in spoken) for w in words)
     if len(words) >= 5 and heard < 0.5 * len(words):
         notes.append(
-            f"{called}: {len(words) - heard} of {count(len(words), 'word')} lie where nothing is heard. "
-            "Check that transcript and sound "
-            "belong together and begin at the same moment."
+            told(
+                "{called}: {count} of {count2} lie where nothing is heard. Check that transcript and "
+                "sound belong together and begin at the same moment.",
+                called=called,
+                count=len(words) - heard,
+                count2=count(len(words), "word"),
+            )
         )

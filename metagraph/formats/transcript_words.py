@@ -5,7 +5,7 @@ from __future__ import annotations
 import codecs
 import re
 import unicodedata
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
@@ -14,12 +14,17 @@ from metagraph.budgets import MARKS, TEXT_FILE
 from metagraph.errors import FileError
 from metagraph.files import read_file
 from metagraph.graph.conversation import SHORTEST, Segment, Word
+from metagraph.wording import Told, joined, told
 
 LATEST = 1e6  # seconds
 TO_ALL = "all"  # in "clause to all: ...", as our exports write whom a segment is said to
 _TEXT = 1000  # characters of a word
 SUFFIXES = (".TextGrid", ".eaf", ".vtt", ".srt", ".json", ".ctm", ".tsv")
-REMEDY = f"Known are {', '.join(SUFFIXES)}: TextGrid, ELAN, WebVTT, SRT, JSON of Whisper or IBM, CTM, tables."
+REMEDY = told(
+    "Known are {names}: TextGrid, ELAN, WebVTT, SRT, JSON of Whisper or IBM, CTM, tables.",
+    names=", ".join(SUFFIXES),
+)
+_CORRECT = told("Correct it there, or save the transcript anew.")
 _SILENT = frozenset(
     (
         "",
@@ -72,9 +77,7 @@ class Collected:
     wrong: int = 0
     count: int = 0
 
-    def fail(
-        self, cause: str, where: str = "", remedy: str = "Correct it there, or save the transcript anew."
-    ) -> FileError:
+    def fail(self, cause: str, where: str = "", remedy: str = _CORRECT) -> FileError:
         return FileError(self.path, cause, where, remedy)
 
     def add(
@@ -84,7 +87,7 @@ class Collected:
         start, end: seconds. Raises FileError.
         """
         if not (abs(start) <= LATEST and abs(end) <= LATEST):
-            raise self.fail(f"a word's time is {start:g} to {end:g} s", where)
+            raise self.fail(told("a word's time is {start:g} to {end:g} s", start=start, end=end), where)
         words = self.speakers.setdefault(speaker[:200], [])
         texts = [" ".join(text.split())] if whole else _STOPPED.sub(" ", text).split()
         texts = [t for t in texts if not is_silent(t)] if not is_silent(text) else []
@@ -96,7 +99,11 @@ class Collected:
             end = start + 0.06 * len(text)
         self.count += len(texts)
         if self.count > MARKS:
-            raise self.fail(f"has more than {MARKS:,} words", where, "Cut the recording into pieces.")
+            raise self.fail(
+                told("has more than {most:,} words", most=MARKS),
+                where,
+                told("Cut the recording into pieces."),
+            )
         if len(texts) == 1:
             words.append(Word(text=texts[0][:_TEXT], start=round(start, 4), end=round(end, 4)))
             return
@@ -113,25 +120,39 @@ class Collected:
         notes = list(self.notes)
         out = {}
         for name, words in self.speakers.items():
-            out[name], told = settled(words)
-            whose = f"'{name}': " if name else ""
-            notes += [whose + t for t in told]
+            out[name], done = settled(words)
+            notes += [told("'{name}': {note}", name=name, note=note) if name else note for note in done]
         if self.wrong:
             notes.append(
-                f"{count(self.wrong, 'word')} ended before beginning; so long as letters take is kept"
+                told(
+                    "{count} ended before beginning; so long as letters take is kept",
+                    count=count(self.wrong, "word"),
+                )
             )
         if self.spread:
             notes.append(
-                f"{count(self.spread, 'word')} had no times of their own; they share those of their sentence "
-                "by their letters"
+                told(
+                    "{count} had no times of their own; they share those of their sentence by their letters",
+                    count=count(self.spread, "word"),
+                )
             )
         if not any(out.values()):
-            notes.append("it holds no words")
+            notes.append(told("it holds no words"))
         return Transcript(out, dict(segments or {}), tuple(notes))
 
 
-def count(number: int, what: str) -> str:
-    return f"{number:,} {what}{'' if number == 1 else 's'}"
+def listed(words: Sequence[str]) -> str:
+    """Return several words as a list in a sentence: commas, and "and" before the last."""
+    some = joined(words[:-1], ", ")
+    return told("{some} and {last}", some=some, last=words[-1]) if len(words) > 1 else words[0]
+
+
+def count(number: int, what: str) -> Told:
+    """Return how many words or segments, in words."""
+    one = number == 1
+    if what == "word":
+        return told("{number:,} word" if one else "{number:,} words", number=number)
+    return told("{number:,} segment" if one else "{number:,} segments", number=number)
 
 
 def is_silent(text: str) -> bool:
@@ -168,13 +189,15 @@ def settled(words: Iterable[Word]) -> tuple[tuple[Word, ...], list[str]]:
     for n in range(len(out) - 1):  # what was made longer ends where the next begins
         if out[n].end > out[n + 1].start > out[n].start:
             out[n] = Word(text=out[n].text, start=out[n].start, end=out[n + 1].start)
-    notes = []
+    notes: list[str] = []
     if moved:
-        notes.append(f"{count(moved, 'word')} out of order, sorted by time")
+        notes.append(told("{count} out of order, sorted by time", count=count(moved, "word")))
     if over:
-        notes.append(f"{count(over, 'word')} overlapped the one before, which ends there now")
+        notes.append(
+            told("{count} overlapped the one before, which ends there now", count=count(over, "word"))
+        )
     if gone:
-        notes.append(f"{count(gone, 'word')} lay wholly within another and were left out")
+        notes.append(told("{count} lay wholly within another and were left out", count=count(gone, "word")))
     return tuple(out), notes
 
 

@@ -13,6 +13,7 @@ from metagraph.graph.conversation import EVERYBODY, SHORTEST, SPOKEN, Segment, S
 from metagraph.playback.annotation import IGNORE, guess_role
 from metagraph.playback.annotation import Tier as ElanTier
 from metagraph.speech.textgrid import read_textgrid
+from metagraph.wording import told
 
 _ROLES = {
     "word": "words",
@@ -133,15 +134,15 @@ def _from_tiers(path: Path, tiers: Sequence[_Tier], notes: Iterable[str]) -> Tra
     if not worded and not any(t.role == "segments" for t in tiers):
         if not tiers:
             raise out.fail(
-                "it has no tiers",
+                told("it has no tiers"),
                 "",
-                "Save it anew with a tier of words for each speaker, or go on without words.",
+                told("Save it anew with a tier of words for each speaker, or go on without words."),
             )
         names = ", ".join(f"'{t.name[:40]}'" for t in tiers[:8])
         raise out.fail(
-            f"no tier holds words; its tiers are {names}",
+            told("no tier holds words; its tiers are {names}", names=names),
             "",
-            "Name the tier that does 'words', or 'Ann - words' of two speakers.",
+            told("Name the tier that does 'words', or 'Ann - words' of two speakers."),
         )
     worded = _one_each(out, worded)
     ours = {t.whose for t in tiers if t.role == "segments"}
@@ -172,8 +173,11 @@ def _one_each(out: Collected, tiers: Sequence[_Tier]) -> list[_Tier]:
     for tier in tiers:
         if tier is not best[tier.whose] and any(not is_silent(x) for x, *_ in tier.rows):
             out.notes.append(
-                f"tier '{tier.name}' left out, as '{best[tier.whose].name}' holds more words of the same "
-                "speaker"
+                told(
+                    "tier '{name}' left out, as '{name2}' holds more words of the same speaker",
+                    name=tier.name,
+                    name2=best[tier.whose].name,
+                )
             )
     return list(best.values())
 
@@ -225,11 +229,20 @@ def _segments(out: Collected, tier: _Tier, tiers: Sequence[_Tier]) -> tuple[Segm
     if unknown:
         kinds = ", ".join(SPOKEN)
         out.notes.append(
-            f"tier '{tier.name}': {count(len(unknown), 'segment')} left out, as '{unknown[0]}' is none of "
-            f"{kinds}"
+            told(
+                "tier '{name}': {count} left out, as '{unknown}' is none of {kinds}",
+                name=tier.name,
+                count=count(len(unknown), "segment"),
+                unknown=unknown[0],
+                kinds=kinds,
+            )
         )
     if over:
         out.notes.append(
-            f"tier '{tier.name}': {count(over, 'segment')} overlapped the one before and were cut or left out"
+            told(
+                "tier '{name}': {count} overlapped the one before and were cut or left out",
+                name=tier.name,
+                count=count(over, "segment"),
+            )
         )
     return tuple(found)

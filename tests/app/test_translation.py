@@ -6,23 +6,28 @@ import ast
 import re
 import string
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import metagraph
 from app import translation
 from app.look.plural import many
 from app.translation import tr, tr_error, tr_told
+from metagraph.engines.targets import registry
 from metagraph.errors import FileError
 from metagraph.formats import import_words
+from metagraph.formats.conversations import read_conversation
 from metagraph.formats.imports import import_files
 from metagraph.graph import edits
 from metagraph.graph.check import check
 from metagraph.graph.model import Project
-from metagraph.wording import told
+from metagraph.wording import Told, told
+from tests.speech import talk
 
 APP = Path(translation.__file__).parent
 DOMAIN = Path(metagraph.__file__).parent
@@ -30,8 +35,10 @@ OTHERS = sorted(set(translation.NAMES) - {translation.ENGLISH})
 
 
 def templates() -> Iterator[tuple[str, str, set[str]]]:
-    """Yield where, what, and the names of values, for each template of the domain's (`metagraph.wording`)."""
-    for path in sorted(DOMAIN.rglob("*.py")):
+    """Yield where, what, and the names of values, for each template of the domain's and the
+    preview's (`metagraph.wording`).
+    """
+    for path in sorted((*DOMAIN.rglob("*.py"), *(DOMAIN.parent / "preview").rglob("*.py"))):
         source = path.read_text(encoding="utf-8")
         if not re.search(r"^from metagraph\.wording import .*\btold\b", source, re.MULTILINE):
             continue
@@ -40,7 +47,7 @@ def templates() -> Iterator[tuple[str, str, set[str]]]:
                 first = node.args[0]
                 for text in (first.body, first.orelse) if isinstance(first, ast.IfExp) else (first,):
                     if isinstance(text, ast.Constant):
-                        where = f"{path.relative_to(DOMAIN)}:{node.lineno}"
+                        where = f"{path.relative_to(DOMAIN.parent)}:{node.lineno}"
                         yield where, str(text.value), {str(k.arg) for k in node.keywords}
 
 
@@ -159,6 +166,29 @@ def test_an_import_is_told_in_the_language_whatever_files_are_left_out(english: 
     )
     assert lines[1].startswith("worse.glb, ihre ersten Bytes: sie ist ")
     assert import_words.said(result) == "Imported 0 clips. Left out: 2 files that cannot be used"
+
+
+def test_what_targets_write_and_lose_is_said_in_the_language(english: None) -> None:
+    translation.choose("de")
+    words = translation.words_of("de")
+    for target in registry.targets().values():
+        for said in (target.files, target.group, target.untried, *(loss.words for loss in target.losses)):
+            assert not said or (isinstance(said, Told) and said.template in words), f"{target.name}: {said}"
+    (counted,) = [loss for loss in registry.target("scxml").losses if "with a seam" in loss.words]
+    loops = replace(counted, count=lambda project: 3).told(Project())
+    assert loops == "3 loops that play with a seam jump where they repeat"
+    assert tr_told(loops) == "3 Schleifen, die mit einer Naht spielen, springen an der Wiederholung"
+
+
+def test_what_came_of_recordings_is_said_in_the_language(english: None, tmp_path: Path) -> None:
+    seconds = np.arange(3 * 16000) / 16000
+    voice = 0.2 * np.sin(2 * np.pi * 130 * seconds) * (np.sin(2 * np.pi * 0.7 * seconds) > 0)
+    talk.write_sound(tmp_path / "a.wav", np.array([voice, 0 * voice]), 16000)
+    read = read_conversation([tmp_path / "a.wav"], [], tmp_path)
+    translation.choose("de")
+    assert read.notes[0].startswith("a.wav: the right channel is silent.")
+    assert tr_told(read.notes[0]).startswith("a.wav: der Kanal rechts ist stumm.")
+    assert all(isinstance(note, Told) and tr_told(note) != note for note in read.notes), read.notes
 
 
 def test_what_was_said_is_known_in_english_for_logs(english: None) -> None:

@@ -13,6 +13,7 @@ import pytest
 from metagraph.engines.targets import registry
 from metagraph.engines.targets.runtimes import copied
 from metagraph.graph.model import Project
+from tests.engines.test_runtime_cpp import SELDOM
 
 ROOT = Path(__file__).resolve().parents[2]
 RUNTIMES = ROOT / "metagraph" / "engines" / "runtimes"
@@ -55,7 +56,7 @@ def played(tmp_path_factory: pytest.TempPathFactory) -> Path:
     program = folder / "play"
     done = subprocess.run(
         [
-            "g++", "-std=c++20", "-O0", "-Wall", "-Wextra", "-Werror", "-fno-exceptions", "-fno-rtti",
+            "g++", *SELDOM, "-std=c++20", "-O0", "-Wall", "-Wextra", "-Werror", "-fno-exceptions", "-fno-rtti",
             *(f"-I{f}" for f in (names, STAND_IN, *inside)), str(STAND_IN / "play.cpp"), "-o", str(program),
         ],
         capture_output=True, text=True, timeout=300, check=False,

@@ -188,7 +188,7 @@ def _unsaid(project: Project) -> int:
     return sum(isinstance(x, a.Bml) for p in project.performances.values() for x in p.asks)
 
 
-_ALONE = "written by its documentation; the system was not at hand to run it"
+_ALONE = told("written by its documentation; the system was not at hand to run it")
 TARGETS = (
     ExportTarget(
         "bml",

@@ -27,6 +27,7 @@ from metagraph.playback.life.mouth import accents_of, mouth_track
 from metagraph.playback.mood import Mood, MoodFrom, Moods
 from metagraph.playback.plan import LayerPlan, MetaAction, MetaRequest, Report
 from metagraph.playback.vigour import vigour
+from tests.engines.test_runtime_cpp import SELDOM
 from tests.engines.translation import every_means
 
 HERE = Path(__file__).parent
@@ -395,7 +396,7 @@ def _compiled(code: str, folder: Path) -> list[str]:
     """Return what a program says, compiled without a warning."""
     (folder / "all.cpp").write_text("#include <iostream>\n" + code)
     places = ["-I", str(folder), "-I", str(RUNTIMES / "cpp")]
-    command = ["g++", "-std=c++17", "-Wall", "-Wextra", "-Werror", *places, "-o", "all", "all.cpp"]
+    command = ["g++", *SELDOM, "-std=c++17", "-Wall", "-Wextra", "-Werror", *places, "-o", "all", "all.cpp"]
     made = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
     assert made.returncode == 0, made.stderr[:3000]
     done = subprocess.run(["./all"], cwd=folder, capture_output=True, text=True, timeout=60)
